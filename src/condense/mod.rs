@@ -1,0 +1,343 @@
+//! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
+//!
+//! With y = W x and any reference stiffness κ, harmonic h of M ẍ + C ẋ + K x + Wᴴ f = F obeys
+//!
+//! > y_h − y_lin,h + G_h (f_h − κ y_h) = 0,  G = W Z_κ⁻¹ Wᴴ,  y_lin = W Z_κ⁻¹ F,
+//! > Z_κ = K − h²ω²M + ihωC + Wᴴ κ W,
+//!
+//! exactly. κ = kt(1 + i)/2 (kt/2 for the mean) keeps every pole off the real axis for modes that
+//! move the contact, so that neither the free nor the stuck resonances of an undamped structure
+//! are singular. The whole motion follows as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
+
+pub mod flexibility;
+
+use crate::contact::Law;
+use crate::error::{Result, fail, try_push, try_vec};
+use crate::harmonics::HarmonicSet;
+use crate::linalg::power_of_two;
+use crate::linalg::sparse::Csc;
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
+use crate::options::SolverOptions;
+use flexibility::Workspace;
+use num_complex::Complex64;
+
+/// Row of a relative coordinate: at most two degrees of freedom with their coefficients.
+pub type Row = [Option<(usize, Complex64)>; 2];
+
+/// What one harmonic sees of the structure.
+#[derive(Clone, Debug)]
+pub struct HarmonicBlock {
+    /// Harmonic number h.
+    pub number: usize,
+    /// K_h, with the springs of contacts that never slip.
+    pub stiffness: Csc,
+    /// C_h
+    pub damping: Csc,
+    /// M_h
+    pub mass: Csc,
+    /// F_h in units of the length scale.
+    pub force: Vec<Complex64>,
+    /// Rows of W, one per relative coordinate.
+    pub rows: Vec<Row>,
+}
+
+/// A law on one relative coordinate.
+#[derive(Clone, Copy, Debug)]
+pub struct PlacedLaw {
+    /// The relative coordinate.
+    pub coordinate: usize,
+    /// Number of the contact in the model.
+    pub contact: usize,
+    /// The law in the solver's units.
+    pub law: Law,
+}
+
+/// A model made ready for solving: harmonics chosen, contacts gathered on relative coordinates,
+/// matrices per harmonic.
+#[derive(Clone, Debug)]
+pub struct Condensed {
+    set: HarmonicSet,
+    ndof: usize,
+    length: f64,
+    blocks: Vec<HarmonicBlock>,
+    laws: Vec<PlacedLaw>,
+    reference: Vec<f64>,
+    contacts: usize,
+    never_slipping: usize,
+    inert: usize,
+}
+
+/// What the condensation removed from the problem, for the user to see.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reduction {
+    /// Sectors of the wheel; all but one are removed.
+    pub sectors: usize,
+    /// Degrees of freedom of one sector.
+    pub degrees_of_freedom: usize,
+    /// Relative coordinates that remain of them.
+    pub coordinates: usize,
+    /// Contacts in the model.
+    pub contacts: usize,
+    /// Contacts that became linear springs (infinite slip limit).
+    pub never_slipping: usize,
+    /// Contacts without force (no stiffness or no slip limit).
+    pub inert: usize,
+    /// Highest harmonic number asked for.
+    pub harmonics_asked: usize,
+    /// Harmonics carried.
+    pub harmonics_carried: usize,
+    /// Whether the mean is carried.
+    pub mean_carried: bool,
+    /// Whether the even harmonics were left out because law and forcing are odd.
+    pub even_removed: bool,
+    /// Real unknowns of the nonlinear problem.
+    pub unknowns: usize,
+}
+
+impl Condensed {
+    /// Condenses a model under the given options, with the motion scaled for frequency `omega`.
+    ///
+    /// # Errors
+    /// `Argument` for a force beyond the carried harmonics, `Unsupported` or `Argument` for missing
+    /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`.
+    pub fn new(model: &Model, options: &SolverOptions, omega: f64) -> Result<Self> {
+        let mut inert = 0;
+        let mut never_slipping = Vec::new();
+        let mut active = Vec::new();
+        for (i, contact) in model.contacts().iter().enumerate() {
+            let limit = contact.slip_limit();
+            if contact.kt == 0.0 || limit == 0.0 {
+                inert += 1;
+            } else if limit.is_infinite() {
+                try_push(&mut never_slipping, i, "the contacts")?;
+            } else {
+                try_push(&mut active, i, "the contacts")?;
+            }
+        }
+        let mut forced = Vec::new();
+        for force in model
+            .excitation()
+            .forces()
+            .iter()
+            .filter(|f| f.value != Complex64::ZERO)
+        {
+            try_push(&mut forced, force.harmonic, "the forces")?;
+        }
+        forced.sort_unstable();
+        forced.dedup();
+        if forced.is_empty() {
+            // Without forces nothing moves; the fundamental carries the zero solution.
+            forced.push(usize::from(options.harmonics > 0));
+        }
+        let odd = active.iter().all(|&i| Law::new(&model.contacts()[i], 1.0).is_odd());
+        let set = HarmonicSet::excited(
+            &forced,
+            options.harmonics,
+            !active.is_empty(),
+            odd,
+            options.keep_even_harmonics,
+        )?;
+        let (coordinate_of, representatives) = gather(model, &active)?;
+        let mut blocks = Vec::new();
+        for &number in set.numbers() {
+            let block = harmonic_block(model, number, &never_slipping, &representatives)?;
+            try_push(&mut blocks, block, "the matrices per harmonic")?;
+        }
+        let mut reference = try_vec(representatives.len(), 0.0, "the contacts")?;
+        for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
+            reference[coordinate] += model.contacts()[contact].kt;
+        }
+        let mut condensed = Self {
+            set,
+            ndof: model.ndof(),
+            length: 1.0,
+            blocks,
+            laws: Vec::new(),
+            reference,
+            contacts: model.contacts().len(),
+            never_slipping: never_slipping.len(),
+            inert,
+        };
+        condensed.set_length(model, omega, &coordinate_of, &active)?;
+        Ok(condensed)
+    }
+
+    /// Chooses the length scale, a power of two near the largest motion of the linear structure,
+    /// so that nothing over- or underflows whatever the units, and scales forces and limits.
+    fn set_length(&mut self, model: &Model, omega: f64, coordinate_of: &[usize], active: &[usize]) -> Result<()> {
+        let largest = model
+            .excitation()
+            .forces()
+            .iter()
+            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
+        let unit = power_of_two(largest);
+        for block in &mut self.blocks {
+            model.excitation().add_to(block.number, 1.0 / unit, &mut block.force);
+        }
+        let mut workspace = Workspace::new(self, None)?;
+        let mut motion = 0.0_f64;
+        for i in 0..self.blocks.len() {
+            workspace.evaluate(self, i, omega)?;
+            motion = motion.max(workspace.largest_motion());
+        }
+        let scale = power_of_two(motion);
+        self.length = unit * scale;
+        for block in &mut self.blocks {
+            for f in &mut block.force {
+                *f /= scale;
+            }
+        }
+        for (&coordinate, &contact) in coordinate_of.iter().zip(active) {
+            let law = Law::new(&model.contacts()[contact], self.length);
+            try_push(
+                &mut self.laws,
+                PlacedLaw {
+                    coordinate,
+                    contact,
+                    law,
+                },
+                "the contacts",
+            )?;
+        }
+        Ok(())
+    }
+
+    /// The carried harmonics.
+    #[must_use]
+    pub fn set(&self) -> &HarmonicSet {
+        &self.set
+    }
+
+    /// Degrees of freedom of the structure (one sector).
+    #[must_use]
+    pub fn ndof(&self) -> usize {
+        self.ndof
+    }
+
+    /// Unit of all lengths in the solver, in the caller's unit.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        self.length
+    }
+
+    /// Matrices, forces and rows per carried harmonic.
+    #[must_use]
+    pub fn blocks(&self) -> &[HarmonicBlock] {
+        &self.blocks
+    }
+
+    /// The laws, in the order of the contacts.
+    #[must_use]
+    pub fn laws(&self) -> &[PlacedLaw] {
+        &self.laws
+    }
+
+    /// Number of relative coordinates.
+    #[must_use]
+    pub fn coordinates(&self) -> usize {
+        self.reference.len()
+    }
+
+    /// Number of contacts in the model, the removed ones included.
+    #[must_use]
+    pub fn contacts(&self) -> usize {
+        self.contacts
+    }
+
+    /// Reference stiffness κ of a coordinate in the i-th carried harmonic.
+    #[must_use]
+    pub fn kappa(&self, coordinate: usize, i: usize) -> Complex64 {
+        let half = 0.5 * self.reference[coordinate];
+        Complex64::new(half, if self.blocks[i].number == 0 { 0.0 } else { half })
+    }
+
+    /// What was removed.
+    #[must_use]
+    pub fn reduction(&self, model: &Model, options: &SolverOptions) -> Reduction {
+        Reduction {
+            sectors: model.structure().sectors(),
+            degrees_of_freedom: self.ndof,
+            coordinates: self.coordinates(),
+            contacts: self.contacts,
+            never_slipping: self.never_slipping,
+            inert: self.inert,
+            harmonics_asked: options.harmonics,
+            harmonics_carried: self.set.numbers().len(),
+            mean_carried: self.set.has_mean(),
+            even_removed: self.set.is_odd(),
+            unknowns: self.coordinates() * self.set.packed_len(),
+        }
+    }
+}
+
+/// Gathers active contacts on unique relative coordinates: per active contact its coordinate, and
+/// per coordinate one contact that stands for it.
+fn gather(model: &Model, active: &[usize]) -> Result<(Vec<usize>, Vec<usize>)> {
+    let sectors = model.structure().sectors() as i128;
+    let key = |position: usize| {
+        let c = &model.contacts()[active[position]];
+        (c.dof_a, c.dof_b, i128::from(c.sector_offset).rem_euclid(sectors))
+    };
+    let mut order = try_vec(active.len(), 0, "the contacts")?;
+    for (i, o) in order.iter_mut().enumerate() {
+        *o = i;
+    }
+    order.sort_by_key(|&i| key(i));
+    let mut coordinate_of = try_vec(active.len(), 0, "the contacts")?;
+    let mut representatives = Vec::new();
+    for (k, &i) in order.iter().enumerate() {
+        if k == 0 || key(i) != key(order[k - 1]) {
+            try_push(&mut representatives, active[i], "the contacts")?;
+        }
+        coordinate_of[i] = representatives.len() - 1;
+    }
+    Ok((coordinate_of, representatives))
+}
+
+fn harmonic_block(
+    model: &Model,
+    number: usize,
+    never_slipping: &[usize],
+    representatives: &[usize],
+) -> Result<HarmonicBlock> {
+    let structure = model.structure();
+    let n = model.ndof();
+    let row = |i: usize| {
+        let contact = &model.contacts()[i];
+        contact.row(structure.phase(number, contact.sector_offset))
+    };
+    let mut stiffness = structure.wave_matrix(MatrixKind::Stiffness, number)?;
+    if !never_slipping.is_empty() {
+        let mut springs = Vec::new();
+        for &i in never_slipping {
+            let (row, kt) = (row(i), model.contacts()[i].kt);
+            for (p, a) in row.into_iter().flatten() {
+                for (q, b) in row.into_iter().flatten() {
+                    try_push(&mut springs, (p, q, a.conj() * b * kt), "the stuck contacts")?;
+                }
+            }
+        }
+        let springs = Csc::from_triplets(n, n, springs)?;
+        let plain = crate::linalg::sparse::Form::Plain;
+        stiffness = Csc::sum(
+            n,
+            &[(Complex64::ONE, &stiffness, plain), (Complex64::ONE, &springs, plain)],
+        )?;
+    }
+    let mut rows = try_vec(representatives.len(), [None; 2], "the contacts")?;
+    for (r, &i) in rows.iter_mut().zip(representatives) {
+        *r = row(i);
+    }
+    if number == 0 && (!stiffness.is_real()) {
+        return fail!(Internal, "the mean saw a complex stiffness");
+    }
+    Ok(HarmonicBlock {
+        number,
+        stiffness,
+        damping: structure.wave_matrix(MatrixKind::Damping, number)?,
+        mass: structure.wave_matrix(MatrixKind::Mass, number)?,
+        force: try_vec(n, Complex64::ZERO, "the forces")?,
+        rows,
+    })
+}

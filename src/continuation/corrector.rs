@@ -1,0 +1,229 @@
+//! Newton's method on R(u, p) = 0 with one linear condition on (u, p): the corrector of the
+//! continuation, and with damping the solver of the first point.
+
+use super::Metric;
+use crate::error::{Error, Result, Status, try_vec};
+use crate::linalg::bordered::Bordered;
+use crate::linalg::norm;
+use crate::problem::{Linearisation, Problem};
+use num_complex::Complex64;
+
+/// A solution that was found.
+#[derive(Clone, Debug)]
+pub struct Corrected {
+    /// Newton iterations taken.
+    pub iterations: usize,
+    /// Residual relative to the problem's scale, before the last correction.
+    pub residual: f64,
+    /// Round-off stopped the residual above the wanted tolerance.
+    pub stalled: bool,
+    /// Observed amplitude.
+    pub amplitude: Complex64,
+    /// Derivative of the amplitude along the tangent.
+    pub slope: Complex64,
+    /// Unit tangent in the metric used, given in unscaled numbers, pointing along the row.
+    pub tangent: Vec<f64>,
+}
+
+/// How a correction ended.
+#[derive(Debug)]
+pub enum Outcome {
+    /// With a solution.
+    Converged(Corrected),
+    /// Without one.
+    Failed,
+    /// On the caller's wish.
+    Cancelled,
+}
+
+/// Newton's method with its memory.
+pub struct Corrector {
+    at: Linearisation,
+    lu: Bordered,
+    step: Vec<f64>,
+    trial: Vec<f64>,
+    next: Vec<f64>,
+    tolerance: f64,
+    max_iterations: usize,
+}
+
+/// Relative size of a Newton step that is round-off: no further progress can be had.
+const ROUND_OFF: f64 = 1e-13;
+
+/// Smallest damping factor.
+const SMALLEST_DAMPING: f64 = 1.0 / 1024.0;
+
+impl Corrector {
+    /// Memory for `n` unknowns.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize, tolerance: f64, max_iterations: usize) -> Result<Self> {
+        Ok(Self {
+            at: Linearisation::new(n)?,
+            lu: Bordered::new(n)?,
+            step: try_vec(n + 1, 0.0, "Newton's method")?,
+            trial: try_vec(n + 1, 0.0, "Newton's method")?,
+            next: try_vec(n + 1, 0.0, "Newton's method")?,
+            tolerance,
+            max_iterations,
+        })
+    }
+
+    /// Corrects `v` = (u, p) within the plane through it whose normal is `row` (in scaled
+    /// unknowns); a row (0, …, 0, 1) keeps p.
+    ///
+    /// `damped` applies the natural monotonicity test (Deuflhard, Newton Methods for Nonlinear
+    /// Problems, 2004, §3.3): a step of length λ is taken when the simplified Newton step there
+    /// has shrunk by 1 − λ/4.
+    ///
+    /// # Errors
+    /// What the problem reports, singular matrices excepted: they end as [`Outcome::Failed`].
+    pub fn correct(
+        &mut self,
+        problem: &mut dyn Problem,
+        v: &mut [f64],
+        row: &[f64],
+        metric: Metric,
+        damped: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Outcome> {
+        let n = v.len() - 1;
+        if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? {
+            return Ok(Outcome::Failed);
+        }
+        let mut damping = 1.0;
+        let mut last_size = f64::INFINITY;
+        for iteration in 0..=self.max_iterations {
+            if cancelled.is_some_and(|f| f()) {
+                return Ok(Outcome::Cancelled);
+            }
+            let residual = self.relative_residual();
+            if !residual.is_finite() || !self.factor(metric, row)? {
+                return Ok(Outcome::Failed);
+            }
+            self.newton_step();
+            let size = norm(&self.step);
+            let round_off = size <= ROUND_OFF * (1.0 + metric.norm(v));
+            if residual <= self.tolerance || round_off {
+                return Ok(Outcome::Converged(self.finish(problem, v, metric, iteration, residual)));
+            }
+            if iteration == self.max_iterations || (!damped && size > last_size) {
+                break;
+            }
+            last_size = size;
+            if damped {
+                match self.damped_step(problem, v, metric, size, damping)? {
+                    Some(used) => damping = used,
+                    None => break,
+                }
+            } else {
+                metric.add(v, 1.0, &self.step);
+                if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? {
+                    break;
+                }
+            }
+        }
+        Ok(Outcome::Failed)
+    }
+
+    /// ‖R‖ over the problem's scale; 0 where both vanish.
+    fn relative_residual(&self) -> f64 {
+        let r = norm(&self.at.residual);
+        if r == 0.0 { 0.0 } else { r / self.at.scale }
+    }
+
+    fn factor(&mut self, metric: Metric, row: &[f64]) -> Result<bool> {
+        tolerate(
+            self.lu
+                .factor(&self.at.jacobian, &self.at.d_parameter, metric.u, metric.p, row),
+        )
+    }
+
+    /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns.
+    fn newton_step(&mut self) {
+        let n = self.step.len() - 1;
+        for (s, r) in self.step.iter_mut().zip(&self.at.residual) {
+            *s = -r;
+        }
+        self.step[n] = 0.0;
+        self.lu.solve(&mut self.step);
+    }
+
+    /// Tries λ = min(1, 4·last), halving; returns the λ that was taken.
+    fn damped_step(
+        &mut self,
+        problem: &mut dyn Problem,
+        v: &mut [f64],
+        metric: Metric,
+        size: f64,
+        last: f64,
+    ) -> Result<Option<f64>> {
+        let n = v.len() - 1;
+        let mut damping = (4.0 * last).min(1.0);
+        while damping >= SMALLEST_DAMPING {
+            self.trial.copy_from_slice(v);
+            metric.add(&mut self.trial, damping, &self.step);
+            if tolerate(problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at))? {
+                for (s, r) in self.next.iter_mut().zip(&self.at.residual) {
+                    *s = -r;
+                }
+                self.next[n] = 0.0;
+                self.lu.solve(&mut self.next);
+                let shrunk = norm(&self.next) <= (1.0 - 0.25 * damping) * size;
+                if shrunk || self.relative_residual() <= self.tolerance {
+                    v.copy_from_slice(&self.trial);
+                    return Ok(Some(damping));
+                }
+            }
+            damping *= 0.5;
+        }
+        Ok(None)
+    }
+
+    /// The last Newton step is applied without another evaluation (its error is the square of a
+    /// residual already below the tolerance); tangent and amplitude come from the same factors.
+    fn finish(
+        &mut self,
+        problem: &dyn Problem,
+        v: &mut [f64],
+        metric: Metric,
+        iterations: usize,
+        residual: f64,
+    ) -> Corrected {
+        let n = v.len() - 1;
+        let mut tangent = self.step.clone();
+        metric.unscale(&mut tangent);
+        let (at_residual, correction) = problem.observe(&v[..n], &tangent);
+        metric.add(v, 1.0, &self.step);
+        self.step.fill(0.0);
+        self.step[n] = 1.0;
+        self.lu.solve(&mut self.step);
+        let length = norm(&self.step);
+        for (t, s) in tangent.iter_mut().zip(&self.step) {
+            *t = s / length;
+        }
+        metric.unscale(&mut tangent);
+        let (_, slope) = problem.observe(&v[..n], &tangent);
+        Corrected {
+            iterations,
+            residual,
+            stalled: residual > self.tolerance,
+            amplitude: at_residual + correction,
+            slope,
+            tangent,
+        }
+    }
+}
+
+/// A singular matrix is a failed attempt, anything else an error.
+fn tolerate(result: Result<()>) -> Result<bool> {
+    match result {
+        Ok(()) => Ok(true),
+        Err(Error {
+            status: Status::Singular,
+            ..
+        }) => Ok(false),
+        Err(e) => Err(e),
+    }
+}

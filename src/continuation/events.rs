@@ -1,0 +1,198 @@
+//! What lies between two accepted points: folds, peaks of the observed amplitude, and solutions at
+//! given parameter values, each solved for and not interpolated.
+
+use super::corrector::{Corrector, Outcome};
+use super::predictor::Cubic;
+use super::{Metric, Point, Settings};
+use crate::error::{Result, try_vec};
+use crate::linalg::norm;
+use crate::problem::Problem;
+
+/// What is looked for between two points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// The parameter turns: the tangent has no component along it.
+    Fold,
+    /// The observed amplitude is largest: d|z|/ds = 0, falling after.
+    Peak,
+}
+
+impl Event {
+    /// The function whose root is the event; tangents must have length 1.
+    fn function(self, point: &Point, length: f64) -> f64 {
+        match self {
+            Self::Fold => point.tangent[point.tangent.len() - 1] / length,
+            Self::Peak => {
+                let z = point.amplitude;
+                let size = z.norm();
+                if size == 0.0 {
+                    0.0
+                } else {
+                    (z.conj() / size * point.slope).re / length
+                }
+            }
+        }
+    }
+
+    /// Whether the event lies between two neighbouring points.
+    #[must_use]
+    pub fn between(self, a: &Point, b: &Point) -> bool {
+        let (fa, fb) = (self.function(a, 1.0), self.function(b, 1.0));
+        match self {
+            Self::Fold => fa * fb < 0.0,
+            Self::Peak => fa > 0.0 && fb <= 0.0,
+        }
+    }
+}
+
+/// Solves for points between accepted ones.
+pub struct Locator {
+    corrector: Corrector,
+    settings: Settings,
+    row: Vec<f64>,
+    derivative: Vec<f64>,
+}
+
+/// Cap on the evaluations of one search.
+const MAX_EVALUATIONS: usize = 60;
+
+/// Width of the bracket, as a share of the step, at which an event counts as found.
+const WIDTH: f64 = 1e-11;
+
+impl Locator {
+    /// Memory for `n` unknowns.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize, settings: Settings) -> Result<Self> {
+        Ok(Self {
+            corrector: Corrector::new(n, settings.tolerance, settings.max_iterations)?,
+            settings,
+            row: try_vec(n + 1, 0.0, "the search for events")?,
+            derivative: try_vec(n + 1, 0.0, "the search for events")?,
+        })
+    }
+
+    fn metric(&self, a: &Point, b: &Point) -> Metric {
+        Metric::along(norm(a.unknowns()).max(norm(b.unknowns())), &self.settings)
+    }
+
+    /// The event between `a` and `b`, by the Illinois variant of regula falsi on the arc.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn locate(&mut self, problem: &mut dyn Problem, event: Event, a: &Point, b: &Point) -> Result<Option<Point>> {
+        let metric = self.metric(a, b);
+        let value = |point: &Point| event.function(point, metric.norm(&point.tangent));
+        let (mut low, mut high) = ((0.0, value(a)), (1.0, value(b)));
+        let mut best: Option<Point> = None;
+        if high.1 == 0.0 {
+            return Ok(Some(b.clone()));
+        }
+        let mut side = 0;
+        for _ in 0..MAX_EVALUATIONS {
+            let s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let s = if s > low.0 && s < high.0 {
+                s
+            } else {
+                0.5 * (low.0 + high.0)
+            };
+            let Some(point) = self.solve_between(problem, metric, a, b, s, None)? else {
+                return Ok(best);
+            };
+            let f = value(&point);
+            best = Some(point);
+            if f == 0.0 || high.0 - low.0 < WIDTH {
+                break;
+            }
+            if (f > 0.0) == (low.1 > 0.0) {
+                if (s - low.0).abs() < WIDTH {
+                    break;
+                }
+                low = (s, f);
+                if side == -1 {
+                    high.1 *= 0.5;
+                }
+                side = -1;
+            } else {
+                if (s - high.0).abs() < WIDTH {
+                    break;
+                }
+                high = (s, f);
+                if side == 1 {
+                    low.1 *= 0.5;
+                }
+                side = 1;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The solution at parameter `p` between `a` and `b`, whose parameters enclose it without a
+    /// fold in between.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn at_parameter(&mut self, problem: &mut dyn Problem, a: &Point, b: &Point, p: f64) -> Result<Option<Point>> {
+        for end in [a, b] {
+            if end.parameter().to_bits() == p.to_bits() {
+                return Ok(Some(end.clone()));
+            }
+        }
+        let metric = self.metric(a, b);
+        let n = a.v.len() - 1;
+        let cubic = Cubic::new(a, b, metric);
+        let mut v = a.v.clone();
+        let (mut low, mut high) = (0.0, 1.0);
+        let rising = b.parameter() > a.parameter();
+        for _ in 0..50 {
+            let s = 0.5 * (low + high);
+            cubic.at(s, &mut v, &mut self.derivative);
+            if (v[n] < p) == rising {
+                low = s;
+            } else {
+                high = s;
+            }
+        }
+        self.solve_between(problem, metric, a, b, 0.5 * (low + high), Some(p))
+    }
+
+    /// Solves in the plane across the cubic at s, or at a fixed parameter.
+    fn solve_between(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        a: &Point,
+        b: &Point,
+        s: f64,
+        fixed: Option<f64>,
+    ) -> Result<Option<Point>> {
+        let n = a.v.len() - 1;
+        let cubic = Cubic::new(a, b, metric);
+        let mut v = a.v.clone();
+        cubic.at(s, &mut v, &mut self.derivative);
+        if let Some(p) = fixed {
+            v[n] = p;
+            self.row.fill(0.0);
+            self.row[n] = 1.0;
+        } else {
+            metric.unit(&self.derivative, &mut self.row);
+        }
+        let guess = v.clone();
+        let outcome = self.corrector.correct(problem, &mut v, &self.row, metric, true, None)?;
+        let Outcome::Converged(corrected) = outcome else {
+            return Ok(None);
+        };
+        if metric.distance(&guess, &v) > cubic.chord {
+            return Ok(None);
+        }
+        if let Some(p) = fixed {
+            v[n] = p;
+        }
+        let mut point = Point::new(v, corrected, 0.0);
+        if metric.dot(&point.tangent, &self.derivative) < 0.0 {
+            point.reverse();
+        }
+        Ok(Some(point))
+    }
+}

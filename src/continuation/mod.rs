@@ -1,0 +1,432 @@
+//! Arc-length continuation of R(u, p) = 0, one accepted point after the other.
+//!
+//! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times
+//! its present size, p in units of the range. A step predicts by the cubic through the last two
+//! points and tangents, corrects in the plane orthogonal to the tangent (Allgower & Georg,
+//! Introduction to Numerical Continuation Methods, 2003, doi:10.1137/1.9780898719154), and is
+//! accepted when the prediction was close and the direction kept.
+
+pub mod corrector;
+pub mod events;
+pub mod predictor;
+pub mod start;
+pub mod step_control;
+
+use crate::error::{Result, Status, try_vec};
+use crate::linalg::norm;
+use crate::problem::Problem;
+use corrector::{Corrected, Corrector, Outcome};
+use num_complex::Complex64;
+use predictor::Cubic;
+use step_control::StepControl;
+
+/// Units in which the unknowns and the parameter are measured.
+#[derive(Clone, Copy, Debug)]
+pub struct Metric {
+    /// Unit of the unknowns.
+    pub u: f64,
+    /// Unit of the parameter.
+    pub p: f64,
+}
+
+impl Metric {
+    /// Norm of a vector (u, p).
+    #[must_use]
+    pub fn norm(self, v: &[f64]) -> f64 {
+        let (u, p) = v.split_at(v.len() - 1);
+        (norm(u) / self.u).hypot(p[0] / self.p)
+    }
+
+    /// Distance of two points.
+    #[must_use]
+    pub fn distance(self, a: &[f64], b: &[f64]) -> f64 {
+        self.dot_with(a, b, |x, y| (x - y) * (x - y)).sqrt()
+    }
+
+    /// Inner product.
+    #[must_use]
+    pub fn dot(self, a: &[f64], b: &[f64]) -> f64 {
+        self.dot_with(a, b, |x, y| x * y)
+    }
+
+    fn dot_with(self, a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
+        let n = a.len() - 1;
+        let u: f64 = a[..n].iter().zip(&b[..n]).map(|(x, y)| f(x / self.u, y / self.u)).sum();
+        u + f(a[n] / self.p, b[n] / self.p)
+    }
+
+    /// v += factor·step, the step in scaled unknowns.
+    pub fn add(self, v: &mut [f64], factor: f64, step: &[f64]) {
+        let n = v.len() - 1;
+        for (v, s) in v[..n].iter_mut().zip(step) {
+            *v += factor * self.u * s;
+        }
+        v[n] += factor * self.p * step[n];
+    }
+
+    /// Turns scaled into unscaled numbers.
+    pub fn unscale(self, v: &mut [f64]) {
+        let n = v.len() - 1;
+        for x in &mut v[..n] {
+            *x *= self.u;
+        }
+        v[n] *= self.p;
+    }
+
+    /// Turns a direction in unscaled numbers into a scaled vector of length 1.
+    fn unit(self, direction: &[f64], row: &mut [f64]) {
+        let n = row.len() - 1;
+        let length = self.norm(direction);
+        for i in 0..n {
+            row[i] = direction[i] / self.u / length;
+        }
+        row[n] = direction[n] / self.p / length;
+    }
+}
+
+/// A point of a branch.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Unknowns and parameter.
+    pub v: Vec<f64>,
+    /// Direction of the branch, in the sense in which it is followed.
+    pub tangent: Vec<f64>,
+    /// Observed amplitude.
+    pub amplitude: Complex64,
+    /// Its derivative along the tangent.
+    pub slope: Complex64,
+    /// Relative residual.
+    pub residual: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Arc length of the step.
+    pub step: f64,
+    /// Round-off stopped the residual above the tolerance.
+    pub stalled: bool,
+}
+
+impl Point {
+    /// A corrected point, its tangent pointing as found.
+    #[must_use]
+    pub fn new(v: Vec<f64>, corrected: Corrected, step: f64) -> Self {
+        Self {
+            v,
+            tangent: corrected.tangent,
+            amplitude: corrected.amplitude,
+            slope: corrected.slope,
+            residual: corrected.residual,
+            iterations: corrected.iterations,
+            step,
+            stalled: corrected.stalled,
+        }
+    }
+
+    /// The parameter.
+    #[must_use]
+    pub fn parameter(&self) -> f64 {
+        self.v[self.v.len() - 1]
+    }
+
+    /// The unknowns.
+    #[must_use]
+    pub fn unknowns(&self) -> &[f64] {
+        &self.v[..self.v.len() - 1]
+    }
+
+    fn reverse(&mut self) {
+        for t in &mut self.tangent {
+            *t = -*t;
+        }
+        self.slope = -self.slope;
+    }
+}
+
+/// How an attempt to advance ended.
+#[derive(Debug)]
+pub enum Advance {
+    /// With the next point; `last` when it is the end of the range.
+    Accepted {
+        /// The point.
+        point: Point,
+        /// Whether the end of the range was reached.
+        last: bool,
+    },
+    /// The branch turned back and left the range where it began; the point lies there.
+    LeftAtStart {
+        /// The point.
+        point: Point,
+    },
+    /// No further point could be found.
+    Stopped(Status),
+}
+
+/// Bounds and tolerances of a continuation.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Begin of the parameter range.
+    pub start: f64,
+    /// End of the parameter range.
+    pub end: f64,
+    /// Relative residual wanted.
+    pub tolerance: f64,
+    /// Cap on Newton iterations.
+    pub max_iterations: usize,
+    /// Steps.
+    pub steps: StepControl,
+}
+
+/// A branch being followed.
+pub struct Continuation {
+    settings: Settings,
+    steps: StepControl,
+    corrector: Corrector,
+    previous: Option<Point>,
+    current: Point,
+    /// Largest motion and amplitude met so far.
+    largest: (f64, f64),
+    row: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+/// Cosine of the largest turn of the branch within one step.
+const STRAIGHT: f64 = 0.5;
+
+/// Motions below this share of the largest met so far no longer refine the metric.
+const FLOOR: f64 = 1e-2;
+
+/// What the corrected prediction of one step came to.
+enum Attempt {
+    Good { point: Point, error: f64 },
+    Poor { error: f64 },
+    Failed,
+    Cancelled,
+}
+
+impl Continuation {
+    /// Follows the branch from a solved point at the begin of the range.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(settings: Settings, mut first: Point) -> Result<Self> {
+        let n = first.v.len() - 1;
+        if (settings.end - settings.start) * first.tangent[n] < 0.0 {
+            first.reverse();
+        }
+        Ok(Self {
+            settings,
+            steps: settings.steps,
+            corrector: Corrector::new(n, settings.tolerance, settings.max_iterations)?,
+            largest: (norm(first.unknowns()), first.amplitude.norm()),
+            previous: None,
+            current: first,
+            row: try_vec(n + 1, 0.0, "the continuation")?,
+            scratch: try_vec(n + 1, 0.0, "the continuation")?,
+        })
+    }
+
+    /// The point that was accepted last.
+    #[must_use]
+    pub fn current(&self) -> &Point {
+        &self.current
+    }
+
+    /// The point before it.
+    #[must_use]
+    pub fn previous(&self) -> Option<&Point> {
+        self.previous.as_ref()
+    }
+
+    /// Finds the next point. After the end of the range was reported it must not be called again.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn advance(&mut self, problem: &mut dyn Problem, cancelled: Option<&dyn Fn() -> bool>) -> Result<Advance> {
+        let metric = self.metric();
+        let n = self.row.len() - 1;
+        let order = if self.previous.is_some() { 4.0 } else { 2.0 };
+        loop {
+            let step = self.steps.step();
+            let (v, amplitude) = self.predict(metric, step);
+            let (fixed, length) = match self.overshoot(v[n]) {
+                None => (None, step),
+                Some((bound, share)) => (Some(bound), share * step),
+            };
+            let attempt = if let Some(bound) = fixed {
+                // The range ends here: predict just so far, and solve at the end exactly.
+                let (mut v, amplitude) = self.predict(metric, length);
+                v[n] = bound;
+                self.try_point(problem, metric, v, amplitude, length, true, cancelled)?
+            } else {
+                self.try_point(problem, metric, v, amplitude, step, false, cancelled)?
+            };
+            match attempt {
+                Attempt::Cancelled => return Ok(Advance::Stopped(Status::StoppedByCaller)),
+                Attempt::Good { point, error } => {
+                    if fixed.is_none() && self.overshoot(point.parameter()).is_some() {
+                        // The correction ran past the end: come back with a shorter step.
+                        if !self.steps.failed() {
+                            return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
+                        }
+                        continue;
+                    }
+                    self.steps.accepted(length, error, order, point.iterations);
+                    return Ok(self.accept(point, fixed));
+                }
+                Attempt::Poor { error } => {
+                    if !self.steps.rejected(error, order) {
+                        return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
+                    }
+                }
+                Attempt::Failed => {
+                    if !self.steps.failed() {
+                        return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
+                    }
+                }
+            }
+        }
+    }
+
+    fn accept(&mut self, point: Point, fixed: Option<f64>) -> Advance {
+        self.largest.0 = self.largest.0.max(norm(point.unknowns()));
+        self.largest.1 = self.largest.1.max(point.amplitude.norm());
+        self.previous = Some(core::mem::replace(&mut self.current, point.clone()));
+        match fixed {
+            Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
+            Some(_) => Advance::Accepted { point, last: true },
+            None => Advance::Accepted { point, last: false },
+        }
+    }
+
+    /// Units for the step that starts at the current point.
+    fn metric(&self) -> Metric {
+        Metric::along(
+            norm(self.current.unknowns()).max(FLOOR * self.largest.0),
+            &self.settings,
+        )
+    }
+
+    /// Predicted point and amplitude a step ahead; leaves the tangent as the row of the plane.
+    fn predict(&mut self, metric: Metric, step: f64) -> (Vec<f64>, Complex64) {
+        let here = &self.current;
+        metric.unit(&here.tangent, &mut self.row);
+        let reach = step / metric.norm(&here.tangent);
+        let tangent: Vec<f64> = here.v.iter().zip(&here.tangent).map(|(v, t)| v + reach * t).collect();
+        let straight = (tangent, here.amplitude + here.slope * reach);
+        let Some(previous) = &self.previous else {
+            return straight;
+        };
+        let cubic = Cubic::new(previous, here, metric);
+        if cubic.chord == 0.0 {
+            return straight;
+        }
+        let s = 1.0 + step / cubic.chord;
+        let mut v = here.v.clone();
+        cubic.at(s, &mut v, &mut self.scratch);
+        if metric.distance(&v, &straight.0) > 0.5 * step {
+            return straight;
+        }
+        (v, cubic.amplitude(s))
+    }
+
+    /// The bound of the range that a parameter value lies beyond, and the share of the way to it.
+    fn overshoot(&self, p: f64) -> Option<(f64, f64)> {
+        let here = self.current.parameter();
+        let (start, end) = (self.settings.start, self.settings.end);
+        let sense = (end - start).signum();
+        let bound = if sense * (p - end) >= 0.0 {
+            end
+        } else if sense * (p - start) <= 0.0 && sense * (p - here) < 0.0 {
+            start
+        } else {
+            return None;
+        };
+        Some((bound, ((bound - here) / (p - here)).clamp(0.0, 1.0)))
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    fn try_point(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        mut v: Vec<f64>,
+        amplitude: Complex64,
+        step: f64,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Attempt> {
+        let n = v.len() - 1;
+        let predicted = v.clone();
+        if keep_parameter {
+            self.row.fill(0.0);
+            self.row[n] = 1.0;
+        }
+        let corrected = match self
+            .corrector
+            .correct(problem, &mut v, &self.row, metric, false, cancelled)?
+        {
+            Outcome::Converged(corrected) => corrected,
+            Outcome::Failed => return Ok(Attempt::Failed),
+            Outcome::Cancelled => return Ok(Attempt::Cancelled),
+        };
+        if keep_parameter {
+            v[n] = predicted[n];
+        }
+        let mut point = Point::new(v, corrected, step);
+        let here = &self.current;
+        if metric.dot(&point.tangent, &here.tangent) < 0.0 {
+            point.reverse();
+        }
+        // The direction must be kept by the tangent and by the chord: a branch never turns round
+        // within a step, and never walks back to where it came from.
+        let chord = metric.distance(&point.v, &here.v);
+        let along = metric.dot(&point.v, &here.tangent) - metric.dot(&here.v, &here.tangent);
+        let cosine = |dot: f64, a: f64, b: f64| if a * b > 0.0 { dot / (a * b) } else { 1.0 };
+        let turned = cosine(
+            metric.dot(&point.tangent, &here.tangent),
+            metric.norm(&point.tangent),
+            metric.norm(&here.tangent),
+        ) < STRAIGHT;
+        let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
+        let far = chord > 3.0 * step;
+        let error = self.prediction_error(&predicted, &point, amplitude);
+        if turned || back || far {
+            return Ok(Attempt::Failed);
+        }
+        if !self.steps.accepts(error) {
+            return Ok(Attempt::Poor { error });
+        }
+        Ok(Attempt::Good { point, error })
+    }
+
+    /// Relative error of the prediction in the motion and in the observed amplitude.
+    fn prediction_error(&self, predicted: &[f64], point: &Point, amplitude: Complex64) -> f64 {
+        let relative = |difference: f64, size: f64| if difference == 0.0 { 0.0 } else { difference / size };
+        let n = predicted.len() - 1;
+        let mut difference = 0.0_f64;
+        for (a, b) in predicted[..n].iter().zip(&point.v) {
+            difference = difference.hypot(a - b);
+        }
+        let motion = relative(difference, norm(point.unknowns()).max(FLOOR * self.largest.0));
+        let observed = relative(
+            (amplitude - point.amplitude).norm(),
+            point.amplitude.norm().max(FLOOR * self.largest.1),
+        );
+        motion.max(observed)
+    }
+}
+
+impl Metric {
+    /// Units for unknowns of the given size and the range of `settings`.
+    #[must_use]
+    pub fn along(size: f64, settings: &Settings) -> Self {
+        let range = (settings.end - settings.start).abs();
+        Self {
+            u: if size > 0.0 { 10.0 * size } else { 1.0 },
+            p: if range > 0.0 {
+                range
+            } else {
+                settings.start.abs().max(1.0)
+            },
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! Cubic Hermite interpolation and extrapolation of a branch through two points and their
+//! tangents.
+
+use super::{Metric, Point};
+use num_complex::Complex64;
+
+/// The cubic through `a` (s = 0) and `b` (s = 1) with their tangents.
+pub struct Cubic<'p> {
+    a: &'p Point,
+    b: &'p Point,
+    /// Length of the chord in the metric.
+    pub chord: f64,
+    /// Factors that give the stored tangents the length of the chord.
+    reach: (f64, f64),
+}
+
+impl<'p> Cubic<'p> {
+    /// The curve in a metric.
+    #[must_use]
+    pub fn new(a: &'p Point, b: &'p Point, metric: Metric) -> Self {
+        let chord = metric.distance(&a.v, &b.v);
+        Self {
+            a,
+            b,
+            chord,
+            reach: (chord / metric.norm(&a.tangent), chord / metric.norm(&b.tangent)),
+        }
+    }
+
+    /// Weights of a, b and of their tangents at s, and of their derivatives.
+    fn weights(&self, s: f64) -> ([f64; 4], [f64; 4]) {
+        let (ra, rb) = self.reach;
+        let (s2, s3) = (s * s, s * s * s);
+        (
+            [
+                2.0 * s3 - 3.0 * s2 + 1.0,
+                3.0 * s2 - 2.0 * s3,
+                ra * (s3 - 2.0 * s2 + s),
+                rb * (s3 - s2),
+            ],
+            [
+                6.0 * (s2 - s),
+                6.0 * (s - s2),
+                ra * (3.0 * s2 - 4.0 * s + 1.0),
+                rb * (3.0 * s2 - 2.0 * s),
+            ],
+        )
+    }
+
+    /// The point at s, and the derivative by s.
+    pub fn at(&self, s: f64, v: &mut [f64], derivative: &mut [f64]) {
+        let (w, d) = self.weights(s);
+        for i in 0..v.len() {
+            let (a, b) = (self.a.v[i], self.b.v[i]);
+            let (ta, tb) = (self.a.tangent[i], self.b.tangent[i]);
+            // Written around b, so that rounding stays relative to the distance.
+            v[i] = b + w[0] * (a - b) + w[2] * ta + w[3] * tb;
+            derivative[i] = d[0] * (a - b) + d[2] * ta + d[3] * tb;
+        }
+    }
+
+    /// The observed amplitude at s.
+    #[must_use]
+    pub fn amplitude(&self, s: f64) -> Complex64 {
+        let (w, _) = self.weights(s);
+        let (a, b) = (self.a, self.b);
+        b.amplitude + (a.amplitude - b.amplitude) * w[0] + a.slope * w[2] + b.slope * w[3]
+    }
+}

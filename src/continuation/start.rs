@@ -1,0 +1,141 @@
+//! The first point of a branch: damped Newton from the problem's own starts, then a homotopy.
+//!
+//! The homotopy follows the solution from the stuck structure down to the given slip limits, by
+//! the same arc-length continuation that follows the branch afterwards.
+
+use super::corrector::{Corrector, Outcome};
+use super::step_control::StepControl;
+use super::{Advance, Continuation, Metric, Point, Settings};
+use crate::error::{Result, fail, try_vec};
+use crate::linalg::norm;
+use crate::problem::{Problem, Start};
+
+/// How the search for the first point ended.
+#[derive(Debug)]
+pub enum First {
+    /// With a point.
+    Found(Point),
+    /// On the caller's wish.
+    Cancelled,
+}
+
+/// Most points that the homotopy may take.
+const MAX_HOMOTOPY_POINTS: usize = 2_000;
+
+/// Solves for the first point at `settings.start`.
+///
+/// # Errors
+/// `NoConvergence` when every way failed, `Singular` when the linear structure has no solution,
+/// and what the problem reports.
+pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&dyn Fn() -> bool>) -> Result<First> {
+    let n = problem.size();
+    let p = settings.start;
+    let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations)?;
+    let mut v = try_vec(n + 1, 0.0, "the start")?;
+    let mut stuck: Option<Vec<f64>> = None;
+    for kind in [Start::Given, Start::Stuck, Start::Reference] {
+        if !problem.start(kind, p, &mut v[..n])? {
+            continue;
+        }
+        if kind == Start::Reference {
+            // The homotopy is surer than a poorer start.
+            if let Some(u) = &stuck {
+                match homotopy(problem, settings, u, &mut corrector, cancelled)? {
+                    Some(first) => return Ok(first),
+                    None => {
+                        problem.start(kind, p, &mut v[..n])?;
+                    }
+                }
+            }
+        }
+        v[n] = p;
+        if kind == Start::Stuck {
+            stuck = Some(v[..n].to_vec());
+        }
+        match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
+            Outcome::Converged(corrected) => {
+                v[n] = p;
+                return Ok(First::Found(Point::new(v, corrected, 0.0)));
+            }
+            Outcome::Cancelled => return Ok(First::Cancelled),
+            Outcome::Failed => {}
+        }
+    }
+    fail!(
+        NoConvergence,
+        "no solution was found at the start, parameter {p}: Newton's method and the homotopy in the slip limit failed; start elsewhere, or raise max_newton"
+    )
+}
+
+/// Damped Newton at the fixed parameter in `v`.
+fn at_fixed(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    corrector: &mut Corrector,
+    v: &mut [f64],
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Outcome> {
+    let n = v.len() - 1;
+    let mut row = try_vec(n + 1, 0.0, "the start")?;
+    row[n] = 1.0;
+    let metric = Metric::along(norm(&v[..n]), settings);
+    corrector.correct(problem, v, &row, metric, true, cancelled)
+}
+
+/// From the stuck solution `u` down to the given slip limits.
+fn homotopy(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    u: &[f64],
+    corrector: &mut Corrector,
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Option<First>> {
+    let n = u.len();
+    let Some(begin) = problem.begin_homotopy(settings.start, u) else {
+        return Ok(None);
+    };
+    let eased = Settings {
+        start: begin,
+        end: 0.0,
+        steps: StepControl::new(0.0, 0.0, 0.0),
+        ..*settings
+    };
+    let reached = follow(problem, &eased, u, corrector, cancelled);
+    problem.end_homotopy();
+    let Some(mut v) = reached? else {
+        return Ok(None);
+    };
+    v[n] = settings.start;
+    Ok(match at_fixed(problem, settings, corrector, &mut v, cancelled)? {
+        Outcome::Converged(corrected) => {
+            v[n] = settings.start;
+            Some(First::Found(Point::new(v, corrected, 0.0)))
+        }
+        Outcome::Cancelled => Some(First::Cancelled),
+        Outcome::Failed => None,
+    })
+}
+
+/// Follows the homotopy to its end and returns the unknowns there.
+fn follow(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    u: &[f64],
+    corrector: &mut Corrector,
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Option<Vec<f64>>> {
+    let mut v = u.to_vec();
+    v.push(settings.start);
+    let Outcome::Converged(corrected) = at_fixed(problem, settings, corrector, &mut v, cancelled)? else {
+        return Ok(None);
+    };
+    let mut continuation = Continuation::new(*settings, Point::new(v, corrected, 0.0))?;
+    for _ in 0..MAX_HOMOTOPY_POINTS {
+        match continuation.advance(problem, cancelled)? {
+            Advance::Accepted { point, last: true } => return Ok(Some(point.v)),
+            Advance::Accepted { .. } => {}
+            Advance::LeftAtStart { .. } | Advance::Stopped(_) => return Ok(None),
+        }
+    }
+    Ok(None)
+}

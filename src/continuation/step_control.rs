@@ -1,0 +1,75 @@
+//! The arc-length step, controlled by the error of the predictor.
+
+/// Step length and its bounds, in scaled unknowns.
+#[derive(Clone, Copy, Debug)]
+pub struct StepControl {
+    step: f64,
+    min: f64,
+    max: f64,
+}
+
+/// Relative error of the prediction that is aimed at: small enough for two to three Newton
+/// iterations and for a curve that draws smoothly.
+pub const TARGET: f64 = 0.02;
+
+/// A prediction worse than this many targets is not accepted.
+const REJECT: f64 = 8.0;
+
+/// Iterations above which the step shrinks whatever the error.
+const MANY_ITERATIONS: usize = 6;
+
+impl StepControl {
+    /// Steps from `first` within `min` and `max`; zeros choose.
+    #[must_use]
+    pub fn new(first: f64, min: f64, max: f64) -> Self {
+        let max = if max > 0.0 { max } else { 0.04 };
+        let min = if min > 0.0 { min } else { (1e-10_f64).min(max) };
+        let first = if first > 0.0 { first } else { 0.25 * max };
+        Self {
+            step: first.clamp(min, max),
+            min,
+            max,
+        }
+    }
+
+    /// The step to try.
+    #[must_use]
+    pub fn step(&self) -> f64 {
+        self.step
+    }
+
+    /// Whether a predictor error can be accepted.
+    #[must_use]
+    pub fn accepts(&self, error: f64) -> bool {
+        error <= REJECT * TARGET || self.step <= 2.0 * self.min
+    }
+
+    /// Chooses the next step after a point was accepted; the error of the predictor grows with the
+    /// step to the power `order`.
+    pub fn accepted(&mut self, used: f64, error: f64, order: f64, iterations: usize) {
+        let mut factor = (0.8 * (TARGET / error.max(1e-12)).powf(1.0 / order)).clamp(0.3, 2.5);
+        if iterations > MANY_ITERATIONS {
+            factor = factor.min(0.7);
+        }
+        self.step = (used * factor).clamp(self.min, self.max);
+    }
+
+    /// Shortens the step after a prediction that was too poor; `false` at the smallest step.
+    pub fn rejected(&mut self, error: f64, order: f64) -> bool {
+        let factor = (0.8 * (TARGET / error.max(TARGET)).powf(1.0 / order)).clamp(0.1, 0.6);
+        self.shorten(factor)
+    }
+
+    /// Shortens the step after a failure; `false` at the smallest step.
+    pub fn failed(&mut self) -> bool {
+        self.shorten(0.4)
+    }
+
+    fn shorten(&mut self, factor: f64) -> bool {
+        if self.step <= self.min {
+            return false;
+        }
+        self.step = (self.step * factor).max(self.min);
+        true
+    }
+}

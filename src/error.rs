@@ -1,0 +1,267 @@
+//! Status codes, their names, and the one error type of the crate.
+//!
+//! An error carries its sentence in a fixed buffer, so that reporting a failure (an exhausted
+//! memory among them) never allocates.
+
+use core::fmt;
+
+/// Outcome of a call. `0` is success, negative values mean that nothing was written, positive
+/// values that the work stopped early and the partial result is there.
+#[repr(i32)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Status {
+    /// Done.
+    Ok = 0,
+    /// A progress hook or the cancel flag asked to stop; the points found so far are kept.
+    StoppedByCaller = 1,
+    /// The step fell below its minimum; the points found so far are kept.
+    StoppedStepTooSmall = 2,
+    /// The limit on the number of points was reached; the points found so far are kept.
+    StoppedMaxPoints = 3,
+    /// More harmonics were needed than allowed; the points found so far are kept.
+    StoppedMaxHarmonics = 4,
+    /// The residual stopped falling above the wanted tolerance (round-off); all points are kept.
+    StoppedStalled = 5,
+    /// A required pointer is NULL.
+    Null = -1,
+    /// An argument has a value outside its range.
+    Argument = -2,
+    /// A count or length does not fit.
+    Dimension = -3,
+    /// A number is NaN or infinite where it must be finite.
+    NotFinite = -4,
+    /// A matrix that was announced as symmetric or Hermitian is not.
+    NotHermitian = -5,
+    /// A linear system has no unique solution.
+    Singular = -6,
+    /// The iteration did not converge.
+    NoConvergence = -7,
+    /// A struct was not filled by its `_init` function, or comes from another version.
+    StructSize = -8,
+    /// A callback reported a failure or returned numbers that are not finite.
+    Callback = -9,
+    /// The combination asked for is not provided.
+    Unsupported = -10,
+    /// Memory could not be had.
+    OutOfMemory = -11,
+    /// The problem has no bounded periodic solution.
+    NoBoundedSolution = -12,
+    /// A handle is not (or no longer) one of this library, or is of another type.
+    Handle = -13,
+    /// An object is in use by a running call.
+    Busy = -14,
+    /// An index lies outside its range.
+    Index = -15,
+    /// A matrix that must be positive definite is not.
+    NotPositiveDefinite = -16,
+    /// A defect of the library itself.
+    Internal = -99,
+}
+
+impl Status {
+    /// Name of the constant in the C header, as static text.
+    #[must_use]
+    pub const fn name(self) -> &'static core::ffi::CStr {
+        match self {
+            Self::Ok => c"HBVIB_OK",
+            Self::StoppedByCaller => c"HBVIB_STOPPED_BY_CALLER",
+            Self::StoppedStepTooSmall => c"HBVIB_STOPPED_STEP_TOO_SMALL",
+            Self::StoppedMaxPoints => c"HBVIB_STOPPED_MAX_POINTS",
+            Self::StoppedMaxHarmonics => c"HBVIB_STOPPED_MAX_HARMONICS",
+            Self::StoppedStalled => c"HBVIB_STOPPED_STALLED",
+            Self::Null => c"HBVIB_E_NULL",
+            Self::Argument => c"HBVIB_E_ARGUMENT",
+            Self::Dimension => c"HBVIB_E_DIMENSION",
+            Self::NotFinite => c"HBVIB_E_NOT_FINITE",
+            Self::NotHermitian => c"HBVIB_E_NOT_HERMITIAN",
+            Self::Singular => c"HBVIB_E_SINGULAR",
+            Self::NoConvergence => c"HBVIB_E_NO_CONVERGENCE",
+            Self::StructSize => c"HBVIB_E_STRUCT_SIZE",
+            Self::Callback => c"HBVIB_E_CALLBACK",
+            Self::Unsupported => c"HBVIB_E_UNSUPPORTED",
+            Self::OutOfMemory => c"HBVIB_E_OUT_OF_MEMORY",
+            Self::NoBoundedSolution => c"HBVIB_E_NO_BOUNDED_SOLUTION",
+            Self::Handle => c"HBVIB_E_HANDLE",
+            Self::Busy => c"HBVIB_E_BUSY",
+            Self::Index => c"HBVIB_E_INDEX",
+            Self::NotPositiveDefinite => c"HBVIB_E_NOT_POSITIVE_DEFINITE",
+            Self::Internal => c"HBVIB_E_INTERNAL",
+        }
+    }
+
+    /// All values, for tables and for turning an integer back into a status.
+    pub const ALL: [Self; 23] = [
+        Self::Ok,
+        Self::StoppedByCaller,
+        Self::StoppedStepTooSmall,
+        Self::StoppedMaxPoints,
+        Self::StoppedMaxHarmonics,
+        Self::StoppedStalled,
+        Self::Null,
+        Self::Argument,
+        Self::Dimension,
+        Self::NotFinite,
+        Self::NotHermitian,
+        Self::Singular,
+        Self::NoConvergence,
+        Self::StructSize,
+        Self::Callback,
+        Self::Unsupported,
+        Self::OutOfMemory,
+        Self::NoBoundedSolution,
+        Self::Handle,
+        Self::Busy,
+        Self::Index,
+        Self::NotPositiveDefinite,
+        Self::Internal,
+    ];
+}
+
+/// Longest error sentence in bytes; what does not fit is cut at a character boundary.
+pub const TEXT_CAPACITY: usize = 255;
+
+/// A sentence in a fixed buffer.
+#[derive(Clone, Copy)]
+pub struct Text {
+    bytes: [u8; TEXT_CAPACITY],
+    len: usize,
+}
+
+impl Text {
+    /// The empty text.
+    pub const EMPTY: Self = Self {
+        bytes: [0; TEXT_CAPACITY],
+        len: 0,
+    };
+
+    /// The sentence.
+    #[must_use]
+    pub fn as_str(&self) -> &str {
+        core::str::from_utf8(&self.bytes[..self.len]).unwrap_or("")
+    }
+}
+
+impl fmt::Write for Text {
+    fn write_str(&mut self, s: &str) -> fmt::Result {
+        let mut take = s.len().min(TEXT_CAPACITY - self.len);
+        while !s.is_char_boundary(take) {
+            take -= 1;
+        }
+        self.bytes[self.len..self.len + take].copy_from_slice(&s.as_bytes()[..take]);
+        self.len += take;
+        Ok(())
+    }
+}
+
+/// What went wrong, where, and what to do about it.
+#[derive(Clone, Copy)]
+pub struct Error {
+    /// The kind of failure; always negative.
+    pub status: Status,
+    /// Number of the offending argument of the C function, counted from 1; 0 if none.
+    pub argument: i32,
+    text: Text,
+}
+
+impl Error {
+    /// An error with its sentence: `Error::new(Status::Index, format_args!("dof {i} …"))`.
+    #[must_use]
+    pub fn new(status: Status, message: fmt::Arguments<'_>) -> Self {
+        let mut text = Text::EMPTY;
+        // Writing into the fixed buffer cuts, it cannot fail.
+        let _ = fmt::Write::write_fmt(&mut text, message);
+        Self {
+            status,
+            argument: 0,
+            text,
+        }
+    }
+
+    /// The same error, blaming the C function's argument number `argument` (from 1).
+    #[must_use]
+    pub fn in_argument(mut self, argument: i32) -> Self {
+        self.argument = argument;
+        self
+    }
+
+    /// The same error with `place` and a colon in front of its sentence.
+    #[must_use]
+    pub fn at(self, place: fmt::Arguments<'_>) -> Self {
+        let inner = self.text;
+        Self {
+            text: Self::new(self.status, format_args!("{place}: {}", inner.as_str())).text,
+            ..self
+        }
+    }
+
+    /// Memory for `what` could not be had.
+    #[must_use]
+    pub fn out_of_memory(what: &str) -> Self {
+        Self::new(
+            Status::OutOfMemory,
+            format_args!("no memory for {what}; reduce the size of the problem"),
+        )
+    }
+
+    /// The sentence.
+    #[must_use]
+    pub fn message(&self) -> &str {
+        self.text.as_str()
+    }
+}
+
+impl fmt::Display for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.message())
+    }
+}
+
+impl fmt::Debug for Error {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?}: {}", self.status, self.message())
+    }
+}
+
+impl std::error::Error for Error {}
+
+/// Result with the crate's [`Error`].
+pub type Result<T> = core::result::Result<T, Error>;
+
+/// Shorthand for `Err(Error::new(Status::$status, format_args!(…)))`.
+macro_rules! fail {
+    ($status:ident, $($message:tt)*) => {
+        Err($crate::error::Error::new($crate::error::Status::$status, format_args!($($message)*)))
+    };
+}
+pub(crate) use fail;
+
+/// A vector of `len` copies of `value` whose memory is asked for fallibly.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn try_vec<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
+    let mut v = Vec::new();
+    v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))?;
+    v.resize(len, value);
+    Ok(v)
+}
+
+/// Appends `value`, asking fallibly for memory.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn try_push<T>(v: &mut Vec<T>, value: T, what: &str) -> Result<()> {
+    v.try_reserve(1).map_err(|_| Error::out_of_memory(what))?;
+    v.push(value);
+    Ok(())
+}
+
+/// Appends copies of `values`, asking fallibly for memory.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn try_extend<T: Clone>(v: &mut Vec<T>, values: &[T], what: &str) -> Result<()> {
+    v.try_reserve(values.len()).map_err(|_| Error::out_of_memory(what))?;
+    v.extend_from_slice(values);
+    Ok(())
+}

@@ -1,0 +1,363 @@
+//! Real Fourier series over one turn: values, reversals (roots of the derivative), level crossings.
+
+use crate::error::{Result, try_vec};
+use crate::harmonics::HarmonicSet;
+use num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Value, first and second derivative of a series at one time.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet {
+    /// x(τ)
+    pub x: f64,
+    /// dx/dτ
+    pub dx: f64,
+    /// d²x/dτ²
+    pub ddx: f64,
+}
+
+/// x, x′ and x″ of a packed signal at τ.
+#[must_use]
+pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
+    let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
+    let mut j = Jet {
+        x: mean.first().copied().unwrap_or(0.0),
+        dx: 0.0,
+        ddx: 0.0,
+    };
+    let mut turn = Complex64::cis(tau);
+    let stride = set.stride();
+    let step = if stride == 2 { turn * turn } else { turn };
+    let mut p = 1.0;
+    for pair in rest.chunks_exact(2) {
+        let x = pair[0] * turn.re - pair[1] * turn.im;
+        let quadrature = pair[0] * turn.im + pair[1] * turn.re;
+        j.x += x;
+        j.dx -= p * quadrature;
+        j.ddx -= p * p * x;
+        turn *= step;
+        p += stride as f64;
+    }
+    j
+}
+
+/// An extremum of a signal: its time in τ and its value.
+#[derive(Clone, Copy, Debug)]
+pub struct Extremum {
+    /// Time, in [0, 2π).
+    pub tau: f64,
+    /// Value of the signal there.
+    pub x: f64,
+}
+
+/// Grid points per period of the highest harmonic.
+const POINTS_PER_WAVE: usize = 8;
+
+/// Highest reduced harmonic up to which a table of sines is quicker than a transform.
+const TABLE_LIMIT: usize = 40;
+
+/// Finds every reversal of motions with one harmonic set: x′ on a grid, then roots in its cells.
+///
+/// For sets of odd harmonics only [0, π) is scanned: x(τ + π) = −x(τ).
+pub struct Reversals {
+    points: usize,
+    spacing: f64,
+    slope: Vec<f64>,
+    kind: Grid,
+}
+
+enum Grid {
+    /// Per harmonic the rows −p sin(pτⱼ) and −p cos(pτⱼ).
+    Table(Vec<f64>),
+    /// Inverse transform of i·p·Xₚ over the whole turn.
+    Transform {
+        plan: Arc<dyn Fft<f64>>,
+        buffer: Vec<Complex64>,
+        scratch: Vec<Complex64>,
+    },
+}
+
+impl Reversals {
+    /// Tables and memory for motions of `set`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet) -> Result<Self> {
+        let highest = set.highest_reduced().max(1);
+        // A multiple of 4, so that half a turn is a whole number of cells.
+        let whole = (POINTS_PER_WAVE * highest).max(16).next_multiple_of(4);
+        let points = if set.is_odd() { whole / 2 } else { whole };
+        let spacing = TAU / whole as f64;
+        let kind = if highest <= TABLE_LIMIT {
+            let mut table = try_vec(2 * set.oscillating() * points, 0.0, "a table of sines")?;
+            for k in 0..set.oscillating() {
+                let p = set.reduced(k);
+                for j in 0..points {
+                    // Reduce the angle exactly: p·j modulo the number of points of a turn.
+                    let angle = ((p * j) % whole) as f64 * spacing;
+                    table[2 * k * points + j] = -(p as f64) * angle.sin();
+                    table[(2 * k + 1) * points + j] = -(p as f64) * angle.cos();
+                }
+            }
+            Grid::Table(table)
+        } else {
+            let whole = whole.next_power_of_two();
+            let plan = FftPlanner::new().plan_fft_inverse(whole);
+            let scratch = try_vec(plan.get_inplace_scratch_len(), Complex64::ZERO, "a transform")?;
+            return Ok(Self {
+                points: if set.is_odd() { whole / 2 } else { whole },
+                spacing: TAU / whole as f64,
+                slope: try_vec(whole + 2, 0.0, "a scan of reversals")?,
+                kind: Grid::Transform {
+                    plan,
+                    buffer: try_vec(whole, Complex64::ZERO, "a transform")?,
+                    scratch,
+                },
+            });
+        };
+        Ok(Self {
+            points,
+            spacing,
+            slope: try_vec(points + 2, 0.0, "a scan of reversals")?,
+            kind,
+        })
+    }
+
+    /// Fills `found` with the extrema of the signal in ascending time: over [0, 2π), or over
+    /// [0, π) for sets of odd harmonics. A constant signal has none.
+    pub fn find(&mut self, set: &HarmonicSet, packed: &[f64], found: &mut Vec<Extremum>) {
+        found.clear();
+        self.scan(set, packed);
+        let n = self.points;
+        // Two points past the end close the cycle.
+        let sign = if set.is_odd() { -1.0 } else { 1.0 };
+        self.slope[n] = sign * self.slope[0];
+        self.slope[n + 1] = sign * self.slope[1];
+        for j in 0..n {
+            let (a, b) = (self.slope[j], self.slope[j + 1]);
+            let tau = j as f64 * self.spacing;
+            if a == 0.0 || (a > 0.0) != (b > 0.0) {
+                if a == 0.0 && b == 0.0 {
+                    continue;
+                }
+                if a == 0.0 {
+                    // A root on the grid counts if the slope really changes sign there.
+                    let before = if j == 0 {
+                        sign * self.slope[n - 1]
+                    } else {
+                        self.slope[j - 1]
+                    };
+                    if (before > 0.0) == (b > 0.0) && before != 0.0 {
+                        continue;
+                    }
+                    found.push(Extremum {
+                        tau,
+                        x: jet(set, packed, tau).x,
+                    });
+                } else if b != 0.0 {
+                    push_root(set, packed, tau, tau + self.spacing, a, b, found);
+                }
+            }
+            self.hidden_pair(set, packed, j, found);
+        }
+        // Roots just past the end belong to the start of the turn.
+        let turn = if set.is_odd() { PI } else { TAU };
+        for e in found.iter_mut() {
+            if e.tau >= turn {
+                e.tau -= turn;
+                e.x *= sign;
+            }
+        }
+        found.sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau));
+    }
+
+    /// x′ at the grid points.
+    fn scan(&mut self, set: &HarmonicSet, packed: &[f64]) {
+        let n = self.points;
+        let rest = &packed[usize::from(set.has_mean())..];
+        let slope = &mut self.slope[..n];
+        match &mut self.kind {
+            Grid::Table(table) => {
+                slope.fill(0.0);
+                for (pair, rows) in rest.chunks_exact(2).zip(table.chunks_exact(2 * n)) {
+                    let (sines, cosines) = rows.split_at(n);
+                    for ((s, &a), &b) in slope.iter_mut().zip(sines).zip(cosines) {
+                        *s += pair[0] * a + pair[1] * b;
+                    }
+                }
+            }
+            Grid::Transform { plan, buffer, scratch } => {
+                buffer.fill(Complex64::ZERO);
+                for (k, pair) in rest.chunks_exact(2).enumerate() {
+                    let p = set.reduced(k);
+                    buffer[p] = Complex64::new(-pair[1], pair[0]) * p as f64;
+                }
+                plan.process_with_scratch(buffer, scratch);
+                for (s, z) in slope.iter_mut().zip(buffer.iter()) {
+                    *s = z.re;
+                }
+            }
+        }
+    }
+
+    /// Two roots of x′ may hide between grid points of equal sign: where |x′| has a minimum on the
+    /// grid, the extremum of x′ nearby is found and its sign compared.
+    fn hidden_pair(&self, set: &HarmonicSet, packed: &[f64], j: usize, found: &mut Vec<Extremum>) {
+        let [a, b, c] = [self.slope[j], self.slope[j + 1], self.slope[j + 2]];
+        let same_sign = (a > 0.0) == (b > 0.0) && (b > 0.0) == (c > 0.0);
+        if !same_sign || b == 0.0 || b.abs() > a.abs() || b.abs() >= c.abs() {
+            return;
+        }
+        // The parabola through the three points must come near zero for a pair to be possible.
+        let curvature = a - 2.0 * b + c;
+        let vertex = if curvature == 0.0 {
+            b
+        } else {
+            b - (c - a).powi(2) / (8.0 * curvature)
+        };
+        if vertex * b.signum() > 0.5 * (a.abs().max(c.abs()) - b.abs()) {
+            return;
+        }
+        let start = j as f64 * self.spacing;
+        let end = start + 2.0 * self.spacing;
+        // x″ changes sign between start and end: bisection, then the secant, on x″.
+        let (mut low, mut high) = (start, end);
+        let rising = jet(set, packed, low).ddx;
+        if (rising > 0.0) == (jet(set, packed, high).ddx > 0.0) {
+            return;
+        }
+        for _ in 0..50 {
+            let middle = 0.5 * (low + high);
+            let at = jet(set, packed, middle);
+            if (at.dx > 0.0) != (b > 0.0) {
+                push_root(set, packed, start, middle, a, at.dx, found);
+                push_root(set, packed, middle, end, at.dx, c, found);
+                return;
+            }
+            if (at.ddx > 0.0) == (rising > 0.0) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+    }
+}
+
+/// Refines the root of x′ in (a, b), whose end values have opposite signs, and keeps it.
+fn push_root(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, fa: f64, fb: f64, found: &mut Vec<Extremum>) {
+    let mut x = 0.0;
+    let tau = safe_newton(a, b, fa, fb, |tau| {
+        let at = jet(set, packed, tau);
+        x = at.x;
+        (at.dx, at.ddx)
+    });
+    found.push(Extremum { tau, x });
+}
+
+/// The time in (a, b) at which a signal, monotone there, passes `level`.
+#[must_use]
+pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: f64, level: f64) -> f64 {
+    safe_newton(a, b, xa - level, xb - level, |tau| {
+        let at = jet(set, packed, tau);
+        (at.x - level, at.dx)
+    })
+}
+
+/// Width below which another Newton step no longer matters: the force is continuous at every
+/// event, so an event misplaced by ε changes the Fourier integrals by O(ε²).
+const EVENT_TOLERANCE: f64 = 1e-9;
+
+/// Newton's method inside a bracket, with bisection where a step leaves it or does not converge.
+/// The last evaluation of `f` is within the tolerance of the returned root.
+fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    let (mut low, mut high) = if fa < 0.0 { (a, b) } else { (b, a) };
+    let mut tau = if fa == fb {
+        0.5 * (a + b)
+    } else {
+        a - fa * (b - a) / (fb - fa)
+    };
+    if !(tau > a && tau < b) {
+        tau = 0.5 * (a + b);
+    }
+    let mut last = (b - a).abs();
+    for _ in 0..100 {
+        let (value, slope) = f(tau);
+        if value == 0.0 {
+            return tau;
+        }
+        if value < 0.0 {
+            low = tau;
+        } else {
+            high = tau;
+        }
+        let newton = tau - value / slope;
+        let inside = (newton - low) * (newton - high) < 0.0;
+        let next = if inside && (newton - tau).abs() <= 0.5 * last {
+            newton
+        } else {
+            0.5 * (low + high)
+        };
+        last = (next - tau).abs();
+        tau = next;
+        if last < EVENT_TOLERANCE {
+            let (value, slope) = f(tau);
+            let polished = tau - value / slope;
+            return if (polished - tau).abs() <= last { polished } else { tau };
+        }
+    }
+    tau
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn extrema(set: &HarmonicSet, packed: &[f64]) -> Vec<Extremum> {
+        let mut found = Vec::new();
+        Reversals::new(set).unwrap().find(set, packed, &mut found);
+        found
+    }
+
+    #[test]
+    fn reversals_alternate_and_are_complete() {
+        // Against a dense scan, on motions rich in high harmonics, table and transform.
+        for highest in [1, 2, 5, 9, 63] {
+            for odd in [false, true] {
+                let set = HarmonicSet::excited(&[1], highest, true, odd, false).unwrap();
+                let packed: Vec<f64> = (0..set.packed_len())
+                    .map(|i| ((i * 37 + highest) as f64 * 0.7).sin() / (1.0 + 0.3 * i as f64))
+                    .collect();
+                let found = extrema(&set, &packed);
+                let turn = if odd { PI } else { TAU };
+                let n = 40_000;
+                let slope = |j: usize| jet(&set, &packed, (j as f64 + 0.5) * turn / n as f64).dx;
+                let changes = (0..n).filter(|&j| {
+                    let next = if j + 1 == n && odd {
+                        -slope(0)
+                    } else {
+                        slope((j + 1) % n)
+                    };
+                    (slope(j) > 0.0) != (next > 0.0)
+                });
+                assert_eq!(found.len(), changes.count(), "H = {highest}, odd = {odd}");
+                for e in &found {
+                    let at = jet(&set, &packed, e.tau);
+                    assert!(at.dx.abs() < 1e-9 * at.ddx.abs().max(1.0));
+                    assert!((at.x - e.x).abs() < 1e-13);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_hidden_pair_of_reversals_is_found() {
+        let set = HarmonicSet::excited(&[1], 3, true, false, false).unwrap();
+        // x' = sin-like slope touching zero: x = -cos τ + 0.2502 cos 2τ has a tiny extra pair at 0.
+        let packed = [0.0, -1.0, 0.0, 0.2502, 0.0, 0.0, 0.0];
+        assert_eq!(extrema(&set, &packed).len(), 4);
+        let packed = [0.0, -1.0, 0.0, 0.2498, 0.0, 0.0, 0.0];
+        assert_eq!(extrema(&set, &packed).len(), 2);
+    }
+}

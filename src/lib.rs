@@ -1,0 +1,29 @@
+//! hbvib: harmonic balance of vibrating structures with friction contacts.
+//!
+//! Mass, damping and stiffness matrices, contact data and forces go in; converged harmonics of the
+//! steady state come out: M ẍ + C ẋ + K x + f_nl = f_ex with x(t) = Re Σₕ Xₕ e^{ihωt}.
+//!
+//! The way of the data, one direction, each step a module of its own:
+//!
+//! [`model`] (structure, contacts, excitation) → [`condense`] (relative coordinates) → [`problem`]
+//! (residual and Jacobian, with [`aft`] evaluating the [`contact`] laws) → [`continuation`]
+//! (predict, correct, accept) → [`branch`] (points, peaks, folds). [`analysis`] puts them together
+//! and [`capi`] hands them to C.
+//!
+//! Units are the caller's, consistent; angular frequencies in rad per time unit; amplitudes are
+//! peak values.
+
+pub mod aft;
+pub mod analysis;
+pub mod branch;
+pub mod condense;
+pub mod contact;
+pub mod continuation;
+pub mod error;
+pub mod fourier;
+pub mod harmonics;
+pub mod hooks;
+pub mod linalg;
+pub mod model;
+pub mod options;
+pub mod problem;

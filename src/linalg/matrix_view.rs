@@ -1,0 +1,293 @@
+//! The borrowed matrix that callers hand in, and the one home of its checks.
+
+use super::sparse::{Csc, Form};
+use crate::error::{Error, Result, Status, fail, try_push};
+use num_complex::Complex64;
+
+/// How the entries lie in memory.
+#[derive(Clone, Copy, Debug)]
+pub enum Storage<'a> {
+    /// Dense, column after column, `ld` elements apart (`0`: packed).
+    ColMajor {
+        /// Leading dimension in elements, at least the number of rows.
+        ld: usize,
+    },
+    /// Dense, row after row, `ld` elements apart (`0`: packed).
+    RowMajor {
+        /// Leading dimension in elements, at least the number of columns.
+        ld: usize,
+    },
+    /// Compressed sparse columns; duplicates are summed.
+    Csc {
+        /// cols + 1 offsets, the first equal to the index base.
+        col_ptr: &'a [i64],
+        /// Row of each entry, counted from the index base.
+        row_idx: &'a [i64],
+    },
+}
+
+/// The numbers.
+#[derive(Clone, Copy, Debug)]
+pub enum Values<'a> {
+    /// Real entries.
+    Real(&'a [f64]),
+    /// Complex entries.
+    Complex(&'a [Complex64]),
+}
+
+impl Values<'_> {
+    fn len(&self) -> usize {
+        match self {
+            Self::Real(v) => v.len(),
+            Self::Complex(v) => v.len(),
+        }
+    }
+
+    fn get(&self, i: usize) -> Complex64 {
+        match self {
+            Self::Real(v) => v[i].into(),
+            Self::Complex(v) => v[i],
+        }
+    }
+}
+
+/// Which part of the matrix is given, and what is promised of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// All entries of a symmetric or Hermitian matrix; the symmetry is checked.
+    Full,
+    /// The lower triangle of a symmetric or Hermitian matrix; the upper one is not read.
+    Lower,
+    /// The upper triangle of a symmetric or Hermitian matrix; the lower one is not read.
+    Upper,
+    /// All entries of any matrix.
+    General,
+}
+
+/// A borrowed matrix: copied in, never kept.
+#[derive(Clone, Copy, Debug)]
+pub struct MatrixView<'a> {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub cols: usize,
+    /// Layout.
+    pub storage: Storage<'a>,
+    /// Entries.
+    pub values: Values<'a>,
+    /// Part given.
+    pub part: Part,
+    /// 0 or 1: base of the indices of a sparse matrix, and of those in error sentences.
+    pub index_base: usize,
+}
+
+/// Symmetry gaps up to this share of the largest entry are rounding and are averaged away.
+const SYMMETRY_TOLERANCE: f64 = 1e-10;
+
+impl<'a> MatrixView<'a> {
+    /// A packed dense real column-major matrix of order `n`, symmetry checked.
+    #[must_use]
+    pub fn dense(n: usize, values: &'a [f64]) -> Self {
+        Self {
+            rows: n,
+            cols: n,
+            storage: Storage::ColMajor { ld: 0 },
+            values: Values::Real(values),
+            part: Part::Full,
+            index_base: 0,
+        }
+    }
+
+    /// A packed dense complex column-major matrix of order `n`, Hermitian symmetry checked.
+    #[must_use]
+    pub fn dense_complex(n: usize, values: &'a [Complex64]) -> Self {
+        Self {
+            values: Values::Complex(values),
+            ..Self::dense(n, &[])
+        }
+    }
+
+    /// The same view with another [`Part`].
+    #[must_use]
+    pub fn part(mut self, part: Part) -> Self {
+        self.part = part;
+        self
+    }
+
+    /// Checks the view and copies it; `name` ("stiffness") opens every error sentence, `order` is
+    /// the number of rows and columns wanted.
+    ///
+    /// # Errors
+    /// `Dimension`, `Index`, `NotFinite`, `NotHermitian` or `OutOfMemory`, naming the place.
+    pub fn copy_in(&self, name: &str, order: usize) -> Result<Csc> {
+        if self.rows != order || self.cols != order {
+            return fail!(
+                Dimension,
+                "{name} is {} x {}, needs {order} x {order}",
+                self.rows,
+                self.cols
+            );
+        }
+        let entries = match self.storage {
+            Storage::ColMajor { ld } => self.dense_entries(name, ld, false)?,
+            Storage::RowMajor { ld } => self.dense_entries(name, ld, true)?,
+            Storage::Csc { col_ptr, row_idx } => self.sparse_entries(name, col_ptr, row_idx)?,
+        };
+        let a = Csc::from_triplets(order, order, entries)?;
+        if self.part == Part::Full {
+            return self.symmetrised(name, a);
+        }
+        Ok(a)
+    }
+
+    fn dense_entries(&self, name: &str, ld: usize, row_major: bool) -> Result<Vec<(usize, usize, Complex64)>> {
+        let (inner, outer) = if row_major {
+            (self.cols, self.rows)
+        } else {
+            (self.rows, self.cols)
+        };
+        let ld = if ld == 0 { inner } else { ld };
+        if ld < inner {
+            return fail!(Dimension, "{name}: leading dimension = {ld}, needs at least {inner}");
+        }
+        let needed = outer
+            .checked_sub(1)
+            .and_then(|o| o.checked_mul(ld))
+            .and_then(|o| o.checked_add(inner))
+            .unwrap_or(if outer == 0 { 0 } else { usize::MAX });
+        if self.values.len() < needed {
+            return fail!(Dimension, "{name} has {} entries, needs {needed}", self.values.len());
+        }
+        let mut entries = Vec::new();
+        for o in 0..outer {
+            for k in 0..inner {
+                let (i, j) = if row_major { (o, k) } else { (k, o) };
+                self.take(name, i, j, self.values.get(o * ld + k), &mut entries)?;
+            }
+        }
+        Ok(entries)
+    }
+
+    fn sparse_entries(&self, name: &str, col_ptr: &[i64], row_idx: &[i64]) -> Result<Vec<(usize, usize, Complex64)>> {
+        let base = self.index_base as i64;
+        if col_ptr.len() != self.cols + 1 {
+            return fail!(
+                Dimension,
+                "{name}: col_ptr has {} entries, needs cols + 1 = {}",
+                col_ptr.len(),
+                self.cols + 1
+            );
+        }
+        if col_ptr[0] != base {
+            return fail!(
+                Index,
+                "{name}: col_ptr[0] = {}, needs the index base {base}",
+                col_ptr[0]
+            );
+        }
+        if let Some(j) = (0..self.cols).find(|&j| col_ptr[j + 1] < col_ptr[j]) {
+            return fail!(
+                Index,
+                "{name}: col_ptr[{}] = {} is below col_ptr[{j}] = {}",
+                j + 1,
+                col_ptr[j + 1],
+                col_ptr[j]
+            );
+        }
+        let count = col_ptr[self.cols] - base;
+        if usize::try_from(count).ok() != Some(row_idx.len()) || row_idx.len() != self.values.len() {
+            return fail!(
+                Dimension,
+                "{name}: col_ptr ends at {count} entries, but there are {} row indices and {} values",
+                row_idx.len(),
+                self.values.len()
+            );
+        }
+        let mut entries = Vec::new();
+        for j in 0..self.cols {
+            for k in (col_ptr[j] - base) as usize..(col_ptr[j + 1] - base) as usize {
+                let row = row_idx[k] - base;
+                if row < 0 || row >= self.rows as i64 {
+                    return fail!(
+                        Index,
+                        "{name}: row_idx[{k}] = {}, needs {base} .. {}",
+                        row_idx[k],
+                        self.rows as i64 - 1 + base
+                    );
+                }
+                self.take(name, row as usize, j, self.values.get(k), &mut entries)?;
+            }
+        }
+        Ok(entries)
+    }
+
+    /// Keeps an entry, and its mirror image where one triangle stands for both.
+    fn take(
+        &self,
+        name: &str,
+        i: usize,
+        j: usize,
+        v: Complex64,
+        entries: &mut Vec<(usize, usize, Complex64)>,
+    ) -> Result<()> {
+        if (self.part == Part::Lower && i < j) || (self.part == Part::Upper && i > j) {
+            return Ok(());
+        }
+        if !v.is_finite() {
+            let what = if v.is_nan() { "NaN" } else { "infinite" };
+            let base = self.index_base;
+            return fail!(NotFinite, "{name}[{},{}] is {what}", i + base, j + base);
+        }
+        if v == Complex64::ZERO {
+            return Ok(());
+        }
+        try_push(entries, (i, j, v), name)?;
+        if i != j && matches!(self.part, Part::Lower | Part::Upper) {
+            try_push(entries, (j, i, v.conj()), name)?;
+        }
+        Ok(())
+    }
+
+    fn symmetrised(&self, name: &str, a: Csc) -> Result<Csc> {
+        let (i, j, gap) = a.worst_hermitian_pair();
+        let largest = a.max_abs();
+        if gap > SYMMETRY_TOLERANCE * largest {
+            let one_triangle = a
+                .col_ptr
+                .windows(2)
+                .enumerate()
+                .all(|(j, range)| a.row_idx[range[0]..range[1]].iter().all(|&i| i <= j))
+                || a.col_ptr
+                    .windows(2)
+                    .enumerate()
+                    .all(|(j, range)| a.row_idx[range[0]..range[1]].iter().all(|&i| i >= j));
+            let hint = if one_triangle {
+                "; it looks like one triangle was passed: say LOWER or UPPER"
+            } else {
+                "; say GENERAL if that is meant"
+            };
+            let base = self.index_base;
+            return Err(Error::new(
+                Status::NotHermitian,
+                format_args!(
+                    "{name}[{},{}] and {name}[{},{}] differ by {gap:.3e}, {:.1e} of the largest entry{hint}",
+                    i + base,
+                    j + base,
+                    j + base,
+                    i + base,
+                    gap / largest
+                ),
+            ));
+        }
+        if gap == 0.0 {
+            return Ok(a);
+        }
+        // Average A and Aᴴ = conj(Aᵀ).
+        let transposed = Csc::sum(a.rows, &[(Complex64::ONE, &a, Form::Transposed)])?;
+        let half = Complex64::new(0.5, 0.0);
+        Csc::sum(
+            a.rows,
+            &[(half, &a, Form::Plain), (half, &transposed, Form::Conjugated)],
+        )
+    }
+}

@@ -1,0 +1,31 @@
+//! Algebra without mechanics: matrix input, sparse storage, LU factors, eigenvalues.
+
+pub mod bordered;
+pub mod eigen;
+pub mod lu;
+pub mod matrix_view;
+pub mod sparse;
+
+/// Euclidean norm that neither overflows nor underflows.
+#[must_use]
+pub fn norm(v: &[f64]) -> f64 {
+    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    if largest == 0.0 || !largest.is_finite() {
+        return if v.iter().any(|x| x.is_nan()) {
+            f64::NAN
+        } else {
+            largest
+        };
+    }
+    largest * v.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt()
+}
+
+/// The power of two nearest below `x`, for scaling without rounding; 1 where `x` is 0 or not finite.
+#[must_use]
+pub fn power_of_two(x: f64) -> f64 {
+    if x > 0.0 && x.is_finite() {
+        x.log2().floor().clamp(-1020.0, 1020.0).exp2()
+    } else {
+        1.0
+    }
+}

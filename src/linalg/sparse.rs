@@ -1,0 +1,156 @@
+//! Compressed sparse columns with complex values: the one storage of structural matrices.
+
+use crate::error::{Result, try_push, try_vec};
+use num_complex::Complex64;
+
+/// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
+/// duplicates.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Csc {
+    /// Number of rows.
+    pub rows: usize,
+    /// Number of columns.
+    pub cols: usize,
+    /// Start of each column in [`Self::row_idx`], and the end of the last.
+    pub col_ptr: Vec<usize>,
+    /// Row of each stored entry.
+    pub row_idx: Vec<usize>,
+    /// Value of each stored entry.
+    pub values: Vec<Complex64>,
+}
+
+/// How a matrix enters a sum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// A itself.
+    Plain,
+    /// The transpose Aᵀ, not conjugated.
+    Transposed,
+    /// The complex conjugate, not transposed.
+    Conjugated,
+}
+
+impl Csc {
+    /// From (row, column, value) triplets; duplicates are summed, as finite elements have them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn from_triplets(rows: usize, cols: usize, mut entries: Vec<(usize, usize, Complex64)>) -> Result<Self> {
+        entries.sort_unstable_by_key(|&(i, j, _)| (j, i));
+        let mut a = Self {
+            rows,
+            cols,
+            col_ptr: try_vec(cols + 1, 0, "a sparse matrix")?,
+            row_idx: Vec::new(),
+            values: Vec::new(),
+        };
+        let mut last = None;
+        for (i, j, v) in entries {
+            if last == Some((i, j)) {
+                if let Some(sum) = a.values.last_mut() {
+                    *sum += v;
+                }
+            } else {
+                try_push(&mut a.row_idx, i, "a sparse matrix")?;
+                try_push(&mut a.values, v, "a sparse matrix")?;
+                a.col_ptr[j + 1] += 1;
+                last = Some((i, j));
+            }
+        }
+        for j in 0..cols {
+            a.col_ptr[j + 1] += a.col_ptr[j];
+        }
+        Ok(a)
+    }
+
+    /// Σ cᵢ·form(Aᵢ) over square matrices of one order n.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn sum(n: usize, terms: &[(Complex64, &Self, Form)]) -> Result<Self> {
+        let mut entries = Vec::new();
+        for (c, a, form) in terms {
+            for j in 0..a.cols {
+                for (i, v) in a.column(j) {
+                    let entry = match form {
+                        Form::Plain => (i, j, c * v),
+                        Form::Transposed => (j, i, c * v),
+                        Form::Conjugated => (i, j, c * v.conj()),
+                    };
+                    try_push(&mut entries, entry, "a sum of sparse matrices")?;
+                }
+            }
+        }
+        Self::from_triplets(n, n, entries)
+    }
+
+    /// Entries of column `j` as (row, value).
+    pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, Complex64)> + '_ {
+        let range = self.col_ptr[j]..self.col_ptr[j + 1];
+        self.row_idx[range.clone()]
+            .iter()
+            .copied()
+            .zip(self.values[range].iter().copied())
+    }
+
+    /// y += c·A x.
+    pub fn multiply_add(&self, c: Complex64, x: &[Complex64], y: &mut [Complex64]) {
+        for j in 0..self.cols {
+            let cx = c * x[j];
+            for (i, v) in self.column(j) {
+                y[i] += v * cx;
+            }
+        }
+    }
+
+    /// Adds c·A to a dense column-major matrix.
+    pub fn add_to_dense(&self, c: Complex64, dense: &mut [Complex64]) {
+        for j in 0..self.cols {
+            for (i, v) in self.column(j) {
+                dense[j * self.rows + i] += c * v;
+            }
+        }
+    }
+
+    /// Whether no entry is stored.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    /// Whether every value is real.
+    #[must_use]
+    pub fn is_real(&self) -> bool {
+        self.values.iter().all(|v| v.im == 0.0)
+    }
+
+    /// Largest modulus of an entry.
+    #[must_use]
+    pub fn max_abs(&self) -> f64 {
+        self.values.iter().fold(0.0, |m, v| m.max(v.norm()))
+    }
+
+    /// The entry of row `i` and column `j`, zero where none is stored.
+    #[must_use]
+    pub fn get(&self, i: usize, j: usize) -> Complex64 {
+        let range = self.col_ptr[j]..self.col_ptr[j + 1];
+        self.row_idx[range.clone()]
+            .binary_search(&i)
+            .map_or(Complex64::ZERO, |k| self.values[range.start + k])
+    }
+
+    /// The position (row, column) that is worst in A = Aᴴ, with |aᵢⱼ − conj(aⱼᵢ)|.
+    #[must_use]
+    pub fn worst_hermitian_pair(&self) -> (usize, usize, f64) {
+        let mut worst = (0, 0, 0.0);
+        for j in 0..self.cols {
+            for (i, v) in self.column(j) {
+                let gap = (v - self.get(j, i).conj()).norm();
+                if gap > worst.2 {
+                    worst = (i, j, gap);
+                }
+            }
+        }
+        worst
+    }
+}

@@ -1,0 +1,162 @@
+//! Waves on a cyclic structure. The one home of the sign of a phase.
+//!
+//! In the wave of engine order EO sector s + 1 lags: x_{s+1,h} = e^{−ihφ} x_{s,h}, φ = 2π·EO/N with
+//! the signed EO. Harmonic h therefore lives on nodal diameter h·EO mod N, and sees
+//! A_h = A₀ + A₁ e^{−ihφ} + A₋₁ e^{+ihφ} (Thomas 1979, doi:10.1002/nme.1620140107; Wildheim 1979,
+//! doi:10.1115/1.3424673).
+
+use super::structure::{MatrixKind, Structure};
+use crate::error::{Result, fail};
+use crate::linalg::sparse::{Csc, Form};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+impl Structure {
+    /// Residue h·EO mod N in 0 .. N.
+    fn residue(&self, harmonic: i64) -> usize {
+        let n = self.sectors() as i128;
+        (i128::from(harmonic) * i128::from(self.engine_order())).rem_euclid(n) as usize
+    }
+
+    /// The nodal diameter 0 ..= N/2 of a wave of `waves` waves per turn, and whether it runs
+    /// against the sense in which sector s + 1 lags.
+    #[must_use]
+    pub fn fold(&self, waves: i64) -> (usize, bool) {
+        let n = self.sectors();
+        let residue = i128::from(waves).rem_euclid(n as i128) as usize;
+        if 2 * residue <= n {
+            (residue, false)
+        } else {
+            (n - residue, true)
+        }
+    }
+
+    /// Nodal diameter of a harmonic of the wave.
+    #[must_use]
+    pub fn diameter_of(&self, harmonic: usize) -> usize {
+        self.fold(self.residue(harmonic as i64) as i64).0
+    }
+
+    /// e^{−i·offset·hφ}: motion of sector s + offset over that of sector s, exact at the
+    /// quarters of a turn.
+    #[must_use]
+    pub fn phase(&self, harmonic: usize, offset: i64) -> Complex64 {
+        self.wave_phase(self.residue(harmonic as i64), offset)
+    }
+
+    /// e^{−2πi·diameter·offset/N}: the same for the wave of `diameter` waves per turn.
+    #[must_use]
+    pub fn wave_phase(&self, diameter: usize, offset: i64) -> Complex64 {
+        let n = self.sectors() as i128;
+        self.lag((diameter as i128 * i128::from(offset)).rem_euclid(n) as usize)
+    }
+
+    /// e^{−2πi·residue/N}
+    fn lag(&self, residue: usize) -> Complex64 {
+        let n = self.sectors();
+        match (4 * residue).checked_div(n) {
+            Some(q) if 4 * residue == q * n => [Complex64::ONE, -Complex64::I, -Complex64::ONE, Complex64::I][q % 4],
+            _ => Complex64::cis(-TAU * residue as f64 / n as f64),
+        }
+    }
+
+    /// Whether a contact with this sector offset stays within one sector.
+    pub(super) fn same_sector(&self, offset: i64) -> bool {
+        i128::from(offset).rem_euclid(self.sectors() as i128) == 0
+    }
+
+    /// The matrix that harmonic `harmonic` of the wave sees; the damping includes Rayleigh's part,
+    /// and the mean sees the real part of complex matrices.
+    ///
+    /// # Errors
+    /// `Argument` when the nodal diameter of the harmonic was not given; `OutOfMemory`.
+    pub fn wave_matrix(&self, which: MatrixKind, harmonic: usize) -> Result<Csc> {
+        self.residue_matrix(which, self.residue(harmonic as i64), harmonic == 0)
+    }
+
+    /// The matrix of the wave in which sector s + 1 lags by 2π·diameter/N.
+    ///
+    /// # Errors
+    /// As [`Self::wave_matrix`].
+    pub fn diameter_matrix(&self, which: MatrixKind, diameter: usize) -> Result<Csc> {
+        self.residue_matrix(which, diameter % self.sectors(), false)
+    }
+
+    fn residue_matrix(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {
+        let given = self.given(which, residue, real)?;
+        let (alpha, beta) = self.rayleigh;
+        if which != MatrixKind::Damping || (alpha == 0.0 && beta == 0.0) {
+            return Ok(given);
+        }
+        let mass = self.given(MatrixKind::Mass, residue, real)?;
+        let stiffness = self.given(MatrixKind::Stiffness, residue, real)?;
+        Csc::sum(
+            self.ndof(),
+            &[
+                (Complex64::ONE, &given, Form::Plain),
+                (alpha.into(), &mass, Form::Plain),
+                (beta.into(), &stiffness, Form::Plain),
+            ],
+        )
+    }
+
+    fn given(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {
+        let n = self.ndof();
+        let blocks = &self.blocks[which as usize];
+        let mut sum = if blocks.diameters.is_empty() {
+            let lag = self.lag(residue);
+            let mut terms = Vec::with_capacity(3);
+            if let Some(own) = &blocks.own {
+                terms.push((Complex64::ONE, own, Form::Plain));
+            }
+            if let Some(next) = &blocks.next {
+                terms.push((lag, next, Form::Plain));
+            }
+            match (&blocks.previous, &blocks.next) {
+                (Some(previous), _) => terms.push((lag.conj(), previous, Form::Plain)),
+                (None, Some(next)) => terms.push((lag.conj(), next, Form::Transposed)),
+                (None, None) => {}
+            }
+            Csc::sum(n, &terms)?
+        } else {
+            let (diameter, backward) = self.fold(residue as i64);
+            let Some(matrix) = blocks.diameters.get(diameter).and_then(Option::as_ref) else {
+                return fail!(
+                    Argument,
+                    "the matrices of nodal diameter {diameter} are needed for a carried harmonic, but were not given"
+                );
+            };
+            let form = if backward { Form::Conjugated } else { Form::Plain };
+            Csc::sum(n, &[(Complex64::ONE, matrix, form)])?
+        };
+        if real {
+            for v in &mut sum.values {
+                v.im = 0.0;
+            }
+        }
+        Ok(sum)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::model::Model;
+
+    #[test]
+    fn harmonics_fold_onto_nodal_diameters() {
+        let mut model = Model::cyclic(1, 24).unwrap();
+        model.set_wave(2);
+        let diameters: Vec<usize> = [1, 3, 5, 7, 9, 11, 13, 12]
+            .iter()
+            .map(|&h| model.structure().diameter_of(h))
+            .collect();
+        assert_eq!(diameters, [2, 6, 10, 10, 6, 2, 2, 0]);
+        model.set_wave(-2);
+        assert_eq!(model.structure().diameter_of(1), 2);
+        assert_eq!(model.structure().fold(-2), (2, true));
+        model.set_wave(12);
+        assert_eq!(model.structure().diameter_of(1), 12);
+        assert_eq!(model.structure().phase(1, 1).re, -1.0);
+        assert_eq!(model.structure().phase(1, 1).im, 0.0);
+    }
+}

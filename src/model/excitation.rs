@@ -1,0 +1,68 @@
+//! Forces per degree of freedom and harmonic.
+
+use crate::error::{Result, fail, try_push};
+use crate::options::MAX_HARMONIC;
+use num_complex::Complex64;
+
+/// One harmonic force: Re(value·e^{i·harmonic·ωt}) on `dof`.
+#[derive(Clone, Copy, Debug)]
+pub struct Force {
+    /// Degree of freedom.
+    pub dof: usize,
+    /// Harmonic number; 0 is a constant force.
+    pub harmonic: usize,
+    /// Complex amplitude, peak.
+    pub value: Complex64,
+}
+
+/// All forces on a model.
+#[derive(Clone, Debug, Default)]
+pub struct Excitation {
+    forces: Vec<Force>,
+}
+
+impl Excitation {
+    /// Adds a force on a structure of `ndof` degrees of freedom.
+    pub(super) fn add(&mut self, ndof: usize, dof: usize, harmonic: usize, value: Complex64) -> Result<()> {
+        if dof >= ndof {
+            return fail!(Index, "force: dof = {dof}, needs 0 .. {}", ndof - 1);
+        }
+        if harmonic > MAX_HARMONIC {
+            return fail!(Argument, "force: harmonic = {harmonic}, needs 0 .. {MAX_HARMONIC}");
+        }
+        if !value.is_finite() {
+            return fail!(
+                NotFinite,
+                "force on dof {dof}: value = {} + {}i is not finite",
+                value.re,
+                value.im
+            );
+        }
+        if harmonic == 0 && value.im != 0.0 {
+            return fail!(
+                Argument,
+                "force on dof {dof}: a constant force is real, but im = {}",
+                value.im
+            );
+        }
+        try_push(&mut self.forces, Force { dof, harmonic, value }, "the forces")
+    }
+
+    /// Removes all forces.
+    pub(super) fn clear(&mut self) {
+        self.forces.clear();
+    }
+
+    /// The forces in the order in which they were added.
+    #[must_use]
+    pub fn forces(&self) -> &[Force] {
+        &self.forces
+    }
+
+    /// Adds the forces of one harmonic, times `scale`, to a vector over the degrees of freedom.
+    pub fn add_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
+        for f in self.forces.iter().filter(|f| f.harmonic == harmonic) {
+            vector[f.dof] += f.value * scale;
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! Undamped natural modes of the structure with its contacts removed or stuck.
+
+use super::Model;
+use super::structure::MatrixKind;
+use crate::error::{Result, fail};
+use crate::linalg::eigen;
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+
+/// State of the contacts in a linear analysis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactState {
+    /// Without force.
+    Free,
+    /// Linear springs of stiffness kt.
+    Stuck,
+}
+
+/// Natural modes in ascending order of frequency.
+#[derive(Clone, Debug)]
+pub struct LinearModes {
+    /// Natural angular frequencies; rigid-body modes come out near zero.
+    pub omega: Vec<f64>,
+    /// Mass-normalised shapes (φᴴ M φ = 1 over one sector), one after the other, ndof each.
+    pub shapes: Vec<Complex64>,
+}
+
+impl Model {
+    /// Undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave
+    /// whose sector s + 1 lags. Motion without mass has no mode, so a singular mass matrix gives
+    /// fewer modes than degrees of freedom.
+    ///
+    /// # Errors
+    /// `Argument` for a diameter out of range, `NotHermitian` when K is not, and those of
+    /// [`eigen::generalised`].
+    pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
+        let n = self.ndof();
+        let structure = self.structure();
+        if diameter > structure.sectors() / 2 {
+            return fail!(
+                Argument,
+                "diameter = {diameter}, needs 0 .. {} for {} sectors",
+                structure.sectors() / 2,
+                structure.sectors()
+            );
+        }
+        let stiffness = structure.diameter_matrix(MatrixKind::Stiffness, diameter)?;
+        let (i, j, gap) = stiffness.worst_hermitian_pair();
+        if gap > 1e-10 * stiffness.max_abs() {
+            return fail!(
+                NotHermitian,
+                "natural modes need a Hermitian stiffness, but stiffness[{i},{j}] and its mirror differ by {gap:.3e}"
+            );
+        }
+        let mass = structure.diameter_matrix(MatrixKind::Mass, diameter)?;
+        let dense = |a: &crate::linalg::sparse::Csc| {
+            let mut d = DMatrix::<Complex64>::zeros(n, n);
+            a.add_to_dense(Complex64::ONE, d.as_mut_slice());
+            d
+        };
+        let (mut k, m) = (dense(&stiffness), dense(&mass));
+        if contacts == ContactState::Stuck {
+            for contact in self.contacts().iter().filter(|c| c.slip_limit() > 0.0) {
+                let row = contact.row(structure.wave_phase(diameter, contact.sector_offset));
+                for (i, a) in row.iter().flatten() {
+                    for (j, b) in row.iter().flatten() {
+                        k[(*i, *j)] += a.conj() * b * contact.kt;
+                    }
+                }
+            }
+        }
+        let pairs = eigen::generalised(k, m)?;
+        Ok(LinearModes {
+            omega: pairs.values.iter().map(|&x| x.max(0.0).sqrt()).collect(),
+            shapes: pairs.vectors.as_slice().to_vec(),
+        })
+    }
+}

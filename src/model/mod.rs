@@ -1,0 +1,185 @@
+//! The model: structure, contacts, excitation. Matrices and contact data go in here.
+
+pub mod cyclic;
+pub mod excitation;
+pub mod linear_modes;
+pub mod structure;
+
+use crate::contact::Contact;
+use crate::error::{Result, fail, try_push};
+use crate::linalg::matrix_view::MatrixView;
+use excitation::Excitation;
+use num_complex::Complex64;
+use structure::{MatrixKind, Structure};
+
+/// A structure with its contacts and forces: M ẍ + C ẋ + K x + f_nl = f_ex.
+///
+/// Cyclic models describe one of N equal sectors; sector s + 1 lags behind sector s by the phase
+/// 2π·EO/N per harmonic, where EO is the engine order of the wave.
+#[derive(Clone, Debug)]
+pub struct Model {
+    structure: Structure,
+    contacts: Vec<Contact>,
+    excitation: Excitation,
+}
+
+impl Model {
+    /// A plain structure of `ndof` degrees of freedom, all matrices zero.
+    ///
+    /// # Errors
+    /// `Dimension` unless 1 ≤ ndof ≤ [`structure::MAX_DOF`].
+    pub fn new(ndof: usize) -> Result<Self> {
+        Self::cyclic(ndof, 1)
+    }
+
+    /// A sector of `ndof` degrees of freedom, one of `sectors`, under engine order 0.
+    ///
+    /// # Errors
+    /// `Dimension` for `ndof`, `Argument` for `sectors` out of range.
+    pub fn cyclic(ndof: usize, sectors: usize) -> Result<Self> {
+        Ok(Self {
+            structure: Structure::new(ndof, sectors)?,
+            contacts: Vec::new(),
+            excitation: Excitation::default(),
+        })
+    }
+
+    /// Sets the (sector's own) mass, damping or stiffness matrix, ndof × ndof. M must be symmetric
+    /// or Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General).
+    /// Complex entries act on all harmonics above zero; the mean sees the real part.
+    ///
+    /// # Errors
+    /// Those of [`MatrixView::copy_in`]; `NotPositiveDefinite` for a negative diagonal mass.
+    pub fn set_matrix(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_own(which, a)
+    }
+
+    /// Adds α M + β K to the damping.
+    ///
+    /// # Errors
+    /// `NotFinite`.
+    pub fn set_rayleigh(&mut self, alpha_mass: f64, beta_stiffness: f64) -> Result<()> {
+        self.structure.set_rayleigh(alpha_mass, beta_stiffness)
+    }
+
+    /// Sets the coupling of a cyclic model's sector (rows) to the next one (columns). The coupling
+    /// to the previous sector is its transpose unless [`Self::set_coupling_previous`] is called.
+    ///
+    /// # Errors
+    /// As [`Self::set_matrix`]; `Unsupported` for a plain structure.
+    pub fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_coupling(which, to_next)
+    }
+
+    /// Sets the coupling of the sector (rows) to the previous one (columns), for damping and
+    /// stiffness without symmetry.
+    ///
+    /// # Errors
+    /// As [`Self::set_coupling`].
+    pub fn set_coupling_previous(&mut self, which: MatrixKind, to_previous: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_coupling_previous(which, to_previous)
+    }
+
+    /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N, 0 ≤ diameter ≤ N/2.
+    ///
+    /// # Errors
+    /// As [`Self::set_matrix`]; `Argument` for a diameter out of range or a matrix kind that was
+    /// given by sector blocks.
+    pub fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_diameter(which, diameter, a)
+    }
+
+    /// Sets the engine order of the wave, of any sign and size.
+    pub fn set_wave(&mut self, engine_order: i64) {
+        self.structure.set_wave(engine_order);
+    }
+
+    /// Adds a contact and returns its number. Equal contacts add up.
+    ///
+    /// # Errors
+    /// `Index` for a degree of freedom out of range, `Argument` for a contact of a degree of
+    /// freedom with itself, and those of [`Contact::check_constants`].
+    pub fn add_contact(&mut self, contact: &Contact) -> Result<usize> {
+        contact.check_constants()?;
+        let n = self.ndof();
+        for (name, dof) in [("dof_a", contact.dof_a), ("dof_b", contact.dof_b)] {
+            if let Some(dof) = dof.filter(|&d| d >= n) {
+                return fail!(Index, "contact: {name} = {dof}, needs 0 .. {}", n - 1);
+            }
+        }
+        let same_sector = self.structure.same_sector(contact.sector_offset);
+        if contact.dof_a == contact.dof_b && (same_sector || contact.dof_a.is_none()) {
+            return fail!(
+                Argument,
+                "contact: both sides are {}; a contact needs two different sides",
+                if contact.dof_a.is_none() {
+                    "the ground"
+                } else {
+                    "the same degree of freedom"
+                }
+            );
+        }
+        if contact.sector_offset != 0 && self.structure.sectors() == 1 {
+            return fail!(
+                Argument,
+                "contact: sector_offset = {}, needs 0 in a plain structure",
+                contact.sector_offset
+            );
+        }
+        try_push(&mut self.contacts, *contact, "the contacts")?;
+        Ok(self.contacts.len() - 1)
+    }
+
+    /// Changes the normal load of a contact.
+    ///
+    /// # Errors
+    /// `Index` for an unknown contact, else as [`Contact::check_constants`].
+    pub fn set_preload(&mut self, id: usize, preload: f64) -> Result<()> {
+        let count = self.contacts.len();
+        let Some(contact) = self.contacts.get_mut(id) else {
+            return fail!(Index, "contact id = {id}, but the model has {count} contacts");
+        };
+        let changed = Contact { preload, ..*contact };
+        changed.check_constants()?;
+        *contact = changed;
+        Ok(())
+    }
+
+    /// Adds the force Re(value·e^{i·harmonic·ωt}) on a degree of freedom (of sector 1; the others
+    /// lag with the wave). Forces on one degree of freedom and harmonic add up.
+    ///
+    /// # Errors
+    /// `Index`, `Argument` or `NotFinite`, naming the argument.
+    pub fn add_force(&mut self, dof: usize, harmonic: usize, value: Complex64) -> Result<()> {
+        self.excitation.add(self.structure.ndof(), dof, harmonic, value)
+    }
+
+    /// Removes all forces.
+    pub fn clear_forces(&mut self) {
+        self.excitation.clear();
+    }
+
+    /// Degrees of freedom (of one sector).
+    #[must_use]
+    pub fn ndof(&self) -> usize {
+        self.structure.ndof()
+    }
+
+    /// The linear structure.
+    #[must_use]
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// The contacts in the order in which they were added.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// The forces.
+    #[must_use]
+    pub fn excitation(&self) -> &Excitation {
+        &self.excitation
+    }
+}

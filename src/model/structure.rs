@@ -1,0 +1,208 @@
+//! The linear structure: sector blocks of mass, damping and stiffness, or their matrices per nodal
+//! diameter.
+
+use crate::error::{Result, fail, try_vec};
+use crate::linalg::matrix_view::{MatrixView, Part};
+use crate::linalg::sparse::Csc;
+
+/// Most degrees of freedom that are accepted.
+pub const MAX_DOF: usize = 1 << 31;
+
+/// Most sectors that are accepted.
+pub const MAX_SECTORS: usize = 1 << 20;
+
+/// Which of the structure's matrices.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MatrixKind {
+    /// M
+    Mass = 0,
+    /// C
+    Damping = 1,
+    /// K
+    Stiffness = 2,
+}
+
+impl MatrixKind {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Mass => "mass",
+            Self::Damping => "damping",
+            Self::Stiffness => "stiffness",
+        }
+    }
+}
+
+/// One of M, C, K as it was given.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Blocks {
+    /// The sector on itself.
+    pub own: Option<Csc>,
+    /// Rows of sector s, columns of s + 1.
+    pub next: Option<Csc>,
+    /// Rows of sector s, columns of s − 1; `None`: the transpose of `next`.
+    pub previous: Option<Csc>,
+    /// Per nodal diameter 0 ..= N/2 instead of blocks.
+    pub diameters: Vec<Option<Csc>>,
+}
+
+/// Matrices of a structure, plain (one sector) or cyclic.
+#[derive(Clone, Debug)]
+pub struct Structure {
+    ndof: usize,
+    sectors: usize,
+    engine_order: i64,
+    pub(super) blocks: [Blocks; 3],
+    pub(super) rayleigh: (f64, f64),
+}
+
+impl Structure {
+    pub(super) fn new(ndof: usize, sectors: usize) -> Result<Self> {
+        if ndof == 0 || ndof > MAX_DOF {
+            return fail!(Dimension, "ndof = {ndof}, needs 1 .. {MAX_DOF}");
+        }
+        if sectors == 0 || sectors > MAX_SECTORS {
+            return fail!(Argument, "sectors = {sectors}, needs 1 .. {MAX_SECTORS}");
+        }
+        Ok(Self {
+            ndof,
+            sectors,
+            engine_order: 0,
+            blocks: Default::default(),
+            rayleigh: (0.0, 0.0),
+        })
+    }
+
+    /// Degrees of freedom of one sector.
+    #[must_use]
+    pub fn ndof(&self) -> usize {
+        self.ndof
+    }
+
+    /// Number of sectors N; 1 for a plain structure.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.sectors
+    }
+
+    /// Engine order of the wave.
+    #[must_use]
+    pub fn engine_order(&self) -> i64 {
+        self.engine_order
+    }
+
+    pub(super) fn set_wave(&mut self, engine_order: i64) {
+        self.engine_order = engine_order;
+    }
+
+    pub(super) fn set_rayleigh(&mut self, alpha_mass: f64, beta_stiffness: f64) -> Result<()> {
+        for (name, value) in [("alpha_mass", alpha_mass), ("beta_stiffness", beta_stiffness)] {
+            if !value.is_finite() {
+                return fail!(NotFinite, "Rayleigh damping: {name} = {value}, needs a finite number");
+            }
+        }
+        self.rayleigh = (alpha_mass, beta_stiffness);
+        Ok(())
+    }
+
+    pub(super) fn set_own(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
+        self.refuse_general_mass(which, a)?;
+        self.refuse_diameters(which)?;
+        let own = a.copy_in(which.name(), self.ndof)?;
+        if which == MatrixKind::Mass {
+            if let Some(i) = (0..self.ndof).find(|&i| own.get(i, i).re < 0.0) {
+                return fail!(
+                    NotPositiveDefinite,
+                    "mass matrix is not positive semidefinite: mass[{},{}] = {}",
+                    i + a.index_base,
+                    i + a.index_base,
+                    own.get(i, i).re
+                );
+            }
+        }
+        self.blocks[which as usize].own = Some(own);
+        Ok(())
+    }
+
+    pub(super) fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
+        let next = self.coupling(which, to_next)?;
+        self.blocks[which as usize].next = Some(next);
+        Ok(())
+    }
+
+    pub(super) fn set_coupling_previous(&mut self, which: MatrixKind, to_previous: &MatrixView<'_>) -> Result<()> {
+        if which == MatrixKind::Mass {
+            return fail!(
+                Unsupported,
+                "mass is symmetric: its coupling to the previous sector follows from the next one"
+            );
+        }
+        let previous = self.coupling(which, to_previous)?;
+        self.blocks[which as usize].previous = Some(previous);
+        Ok(())
+    }
+
+    /// A coupling block is a general matrix whatever the view says of itself.
+    fn coupling(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<Csc> {
+        if self.sectors == 1 {
+            return fail!(
+                Unsupported,
+                "a plain structure has no neighbouring sector; use a cyclic model"
+            );
+        }
+        self.refuse_diameters(which)?;
+        let part = match a.part {
+            Part::Full => Part::General,
+            other => other,
+        };
+        a.part(part).copy_in(which.name(), self.ndof)
+    }
+
+    pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
+        self.refuse_general_mass(which, a)?;
+        let highest = self.sectors / 2;
+        if diameter > highest {
+            return fail!(
+                Argument,
+                "diameter = {diameter}, needs 0 .. {highest} for {} sectors; a wave of {diameter} diameters is that of {}",
+                self.sectors,
+                self.fold(diameter as i64).0
+            );
+        }
+        let blocks = &self.blocks[which as usize];
+        if blocks.own.is_some() || blocks.next.is_some() {
+            return fail!(
+                Argument,
+                "{} was given by sector blocks; it cannot be given per nodal diameter too",
+                which.name()
+            );
+        }
+        let matrix = a.copy_in(which.name(), self.ndof)?;
+        let blocks = &mut self.blocks[which as usize];
+        if blocks.diameters.is_empty() {
+            blocks.diameters = try_vec(highest + 1, None, "the matrices per diameter")?;
+        }
+        blocks.diameters[diameter] = Some(matrix);
+        Ok(())
+    }
+
+    fn refuse_diameters(&self, which: MatrixKind) -> Result<()> {
+        if self.blocks[which as usize].diameters.is_empty() {
+            return Ok(());
+        }
+        fail!(
+            Argument,
+            "{} was given per nodal diameter; it cannot be given by sector blocks too",
+            which.name()
+        )
+    }
+
+    fn refuse_general_mass(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
+        if which == MatrixKind::Mass && a.part == Part::General {
+            return fail!(
+                NotHermitian,
+                "mass must be symmetric or Hermitian, but was passed as GENERAL"
+            );
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,181 @@
+//! Options of the analyses and the one home of their defaults.
+
+use crate::error::{Result, fail};
+use num_complex::Complex64;
+
+/// Options that every analysis shares.
+#[derive(Clone, Copy, Debug)]
+pub struct SolverOptions {
+    /// Relative error wanted in the response. `0` (the default): exactly [`Self::harmonics`].
+    pub tolerance: f64,
+    /// Highest harmonic number H.
+    pub harmonics: usize,
+    /// Cap on H where the tolerance decides.
+    pub max_harmonics: usize,
+    /// `0`: exact stick-slip events. Otherwise every law is sampled at so many equidistant times
+    /// per period, at least 2H + 1.
+    pub samples: usize,
+    /// First arc-length step in scaled unknowns; `0` chooses.
+    pub step: f64,
+    /// Smallest step before the branch is given up; `0` chooses.
+    pub step_min: f64,
+    /// Largest step; `0` chooses.
+    pub step_max: f64,
+    /// Residual, relative to the contact motion, at which a point counts as converged. A last
+    /// Newton correction follows, so the solution is far closer than this.
+    pub tol_residual: f64,
+    /// Cap on Newton iterations per point.
+    pub max_newton: usize,
+    /// Cap on the number of accepted points.
+    pub max_points: usize,
+    /// Degree of freedom whose fundamental defines amplitude and peaks; `None`: the forced one
+    /// that moves most in the stuck response at the start.
+    pub response_dof: Option<usize>,
+    /// Carry the mean and the even harmonics even where symmetry makes them zero.
+    pub keep_even_harmonics: bool,
+    /// Threads that may be used; `1` starts none. Results do not depend on it.
+    pub num_threads: usize,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self {
+            tolerance: 0.0,
+            harmonics: 9,
+            max_harmonics: 511,
+            samples: 0,
+            step: 0.0,
+            step_min: 0.0,
+            step_max: 0.0,
+            tol_residual: 1e-10,
+            max_newton: 25,
+            max_points: 20_000,
+            response_dof: None,
+            keep_even_harmonics: false,
+            num_threads: 1,
+        }
+    }
+}
+
+/// Highest harmonic number that is accepted; beyond it index arithmetic and time are not sane.
+pub const MAX_HARMONIC: usize = 100_000;
+
+/// Most samples per period that are accepted.
+pub const MAX_SAMPLES: usize = 1 << 24;
+
+impl SolverOptions {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`Status::Argument`](crate::error::Status::Argument) naming the field, its value and its
+    /// range; `Unsupported` for a tolerance above zero.
+    pub fn check(&self) -> Result<()> {
+        if !(self.tolerance >= 0.0 && self.tolerance < 1.0) {
+            return fail!(Argument, "tolerance = {}, needs 0 <= tolerance < 1", self.tolerance);
+        }
+        if self.tolerance > 0.0 {
+            return fail!(
+                Unsupported,
+                "tolerance = {}: choosing the harmonics from a tolerance is not provided yet; set tolerance = 0 and harmonics",
+                self.tolerance
+            );
+        }
+        if self.harmonics > MAX_HARMONIC {
+            return fail!(Argument, "harmonics = {}, needs 0 .. {MAX_HARMONIC}", self.harmonics);
+        }
+        if self.samples > MAX_SAMPLES || (self.samples > 0 && self.samples < 2 * self.harmonics + 1) {
+            return fail!(
+                Argument,
+                "samples = {}, needs 0 (exact events) or 2*harmonics+1 = {} .. {MAX_SAMPLES}",
+                self.samples,
+                2 * self.harmonics + 1
+            );
+        }
+        for (name, value) in [
+            ("step", self.step),
+            ("step_min", self.step_min),
+            ("step_max", self.step_max),
+        ] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return fail!(Argument, "{name} = {value}, needs a finite number >= 0 (0 = automatic)");
+            }
+        }
+        if self.step_max > 0.0 && self.step_min > self.step_max {
+            return fail!(
+                Argument,
+                "step_min = {} exceeds step_max = {}",
+                self.step_min,
+                self.step_max
+            );
+        }
+        if !(self.tol_residual > 0.0 && self.tol_residual < 1.0) {
+            return fail!(
+                Argument,
+                "tol_residual = {}, needs 0 < tol_residual < 1",
+                self.tol_residual
+            );
+        }
+        if self.max_newton == 0 {
+            return fail!(Argument, "max_newton = 0, needs at least 1");
+        }
+        if self.max_points == 0 {
+            return fail!(Argument, "max_points = 0, needs at least 1");
+        }
+        Ok(())
+    }
+}
+
+/// Options of a forced response over a range of frequency.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ForcedOptions<'a> {
+    /// First angular frequency, rad per time unit, above zero.
+    pub omega_start: f64,
+    /// Last angular frequency; below the first for a downward sweep, equal to it for one point.
+    pub omega_stop: f64,
+    /// Angular frequencies within the range at which every solution on the branch is wanted.
+    pub at: &'a [f64],
+    /// Start values: complex, (H + 1) × ndof, harmonic by harmonic; `None`: the stuck solution.
+    pub guess: Option<&'a [Complex64]>,
+}
+
+impl ForcedOptions<'_> {
+    /// Checks range, requested frequencies and guess (against `(harmonics + 1) * ndof`).
+    ///
+    /// # Errors
+    /// `Argument`, `NotFinite` or `Dimension`, naming the field, its value and its range.
+    pub fn check(&self, guess_len: usize) -> Result<()> {
+        for (name, value) in [("omega_start", self.omega_start), ("omega_stop", self.omega_stop)] {
+            if !value.is_finite() {
+                return fail!(NotFinite, "{name} = {value}, needs a finite angular frequency > 0");
+            }
+            if value <= 0.0 {
+                return fail!(Argument, "{name} = {value}, needs an angular frequency > 0");
+            }
+        }
+        let (low, high) = (
+            self.omega_start.min(self.omega_stop),
+            self.omega_start.max(self.omega_stop),
+        );
+        for (i, &w) in self.at.iter().enumerate() {
+            if !w.is_finite() {
+                return fail!(NotFinite, "at[{i}] = {w}, needs a finite angular frequency");
+            }
+            if w < low || w > high {
+                return fail!(Argument, "at[{i}] = {w}, needs a frequency within {low} .. {high}");
+            }
+        }
+        if let Some(guess) = self.guess {
+            if guess.len() != guess_len {
+                return fail!(
+                    Dimension,
+                    "guess has {} complex entries, needs (harmonics+1)*ndof = {guess_len}",
+                    guess.len()
+                );
+            }
+            if let Some(i) = guess.iter().position(|z| !z.is_finite()) {
+                return fail!(NotFinite, "guess[{i}] is not finite");
+            }
+        }
+        Ok(())
+    }
+}

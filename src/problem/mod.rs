@@ -1,0 +1,77 @@
+//! The vocabulary between a mechanical problem and the continuation: R(u, p) = 0 with one
+//! parameter p. The continuation sees this trait and nothing else of mechanics.
+
+pub mod forced;
+
+use crate::error::{Result, try_vec};
+use num_complex::Complex64;
+
+/// Residual and derivatives at one point.
+#[derive(Clone, Debug)]
+pub struct Linearisation {
+    /// R
+    pub residual: Vec<f64>,
+    /// ∂R/∂u, column-major.
+    pub jacobian: Vec<f64>,
+    /// ∂R/∂p
+    pub d_parameter: Vec<f64>,
+    /// Size against which the residual is measured.
+    pub scale: f64,
+}
+
+impl Linearisation {
+    /// Memory for `n` unknowns.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize) -> Result<Self> {
+        Ok(Self {
+            residual: try_vec(n, 0.0, "the residual")?,
+            jacobian: try_vec(n.saturating_mul(n), 0.0, "the Jacobian")?,
+            d_parameter: try_vec(n, 0.0, "the residual")?,
+            scale: 0.0,
+        })
+    }
+}
+
+/// Start values for the first point, in the order in which they are tried.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Start {
+    /// The caller's guess, where there is one.
+    Given,
+    /// All contacts stuck.
+    Stuck,
+    /// All contacts replaced by their reference stiffness: bounded also where the stuck
+    /// structure resonates without damping.
+    Reference,
+}
+
+/// A problem R(u, p) = 0 with one parameter.
+pub trait Problem {
+    /// Number of unknowns.
+    fn size(&self) -> usize;
+
+    /// Residual and derivatives at (u, p).
+    ///
+    /// # Errors
+    /// Those of the linear algebra and of callbacks.
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()>;
+
+    /// The observed complex amplitude at the point last evaluated, and its derivative along
+    /// `direction` (n + 1 numbers, the parameter last).
+    fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64);
+
+    /// Fills start values; `false` where this start does not exist.
+    ///
+    /// # Errors
+    /// Those of [`Self::evaluate`].
+    fn start(&mut self, kind: Start, p: f64, u: &mut [f64]) -> Result<bool>;
+
+    /// Turns the problem at fixed `p` into a homotopy whose parameter runs from the returned
+    /// value, where `u` (the stuck start) is the solution, to 0, where the problem is the given
+    /// one. `None`: there is nothing to ease. [`Self::end_homotopy`] turns it back.
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<f64>;
+
+    /// Ends the homotopy.
+    fn end_homotopy(&mut self);
+}
