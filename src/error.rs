@@ -118,7 +118,7 @@ impl Status {
 }
 
 /// Longest error sentence in bytes; what does not fit is cut at a character boundary.
-pub const TEXT_CAPACITY: usize = 255;
+pub const TEXT_CAPACITY: usize = 231;
 
 /// A sentence in a fixed buffer.
 #[derive(Clone, Copy)]

@@ -273,11 +273,8 @@ const EVENT_TOLERANCE: f64 = 1e-9;
 /// The last evaluation of `f` is within the tolerance of the returned root.
 fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut high) = if fa < 0.0 { (a, b) } else { (b, a) };
-    let mut tau = if fa == fb {
-        0.5 * (a + b)
-    } else {
-        a - fa * (b - a) / (fb - fa)
-    };
+    // The secant; equal end values give no number, and the middle.
+    let mut tau = a - fa * (b - a) / (fb - fa);
     if !(tau > a && tau < b) {
         tau = 0.5 * (a + b);
     }

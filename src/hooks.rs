@@ -30,6 +30,9 @@ pub enum LogLevel {
     Debug = 3,
 }
 
+/// Receiver of log lines.
+pub type LogSink<'a> = dyn FnMut(LogLevel, &str) + 'a;
+
 /// Callbacks of the host. Nothing is ever printed; without hooks a solve is silent.
 #[derive(Default)]
 pub struct Hooks<'a> {
@@ -38,7 +41,7 @@ pub struct Hooks<'a> {
     /// Asked at each Newton iteration; `true` stops the solve and keeps the points so far.
     pub cancelled: Option<&'a dyn Fn() -> bool>,
     /// Receives log lines.
-    pub log: Option<&'a mut dyn FnMut(LogLevel, &str)>,
+    pub log: Option<&'a mut LogSink<'a>>,
 }
 
 impl Hooks<'_> {

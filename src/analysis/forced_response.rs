@@ -155,10 +155,10 @@ impl Follower<'_> {
         b: &Point,
         last: bool,
     ) -> Result<()> {
-        if Event::Peak.between(a, b) {
-            if let Some(peak) = locator.locate(problem, Event::Peak, a, b)? {
-                self.keep_special(problem, SpecialKind::Peak, peak)?;
-            }
+        if Event::Peak.between(a, b)
+            && let Some(peak) = locator.locate(problem, Event::Peak, a, b)?
+        {
+            self.keep_special(problem, SpecialKind::Peak, peak)?;
         }
         let fold = if Event::Fold.between(a, b) {
             locator.locate(problem, Event::Fold, a, b)?
@@ -187,10 +187,9 @@ impl Follower<'_> {
         for (i, &p) in self.range.at.iter().enumerate() {
             let (pa, pb) = (a.parameter(), b.parameter());
             let inside = (pa <= p && p < pb) || (pb < p && p <= pa);
-            if inside || (last && p.to_bits() == pb.to_bits()) {
-                if let Some(point) = locator.at_parameter(problem, a, b, p)? {
-                    self.keep_special(problem, SpecialKind::At(i), point)?;
-                }
+            let inside = inside || (last && p.to_bits() == pb.to_bits());
+            if inside && let Some(point) = locator.at_parameter(problem, a, b, p)? {
+                self.keep_special(problem, SpecialKind::At(i), point)?;
             }
         }
         Ok(())

@@ -7,6 +7,7 @@ use crate::error::{Result, fail, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
+use crate::model::spring::{Row, Wave, relative_row};
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 use num_complex::Complex64;
@@ -129,7 +130,7 @@ impl Dynamic {
     fn new(model: &Model, h: usize, omega: f64) -> Result<Self> {
         let structure = model.structure();
         let n = model.ndof();
-        let k = structure.wave_matrix(MatrixKind::Stiffness, h)?;
+        let k = model.sprung_stiffness(Wave::Harmonic(h), core::iter::empty())?;
         let c = structure.wave_matrix(MatrixKind::Damping, h)?;
         let m = structure.wave_matrix(MatrixKind::Mass, h)?;
         let h = h as f64;
@@ -155,7 +156,7 @@ impl Dynamic {
 /// Forces and Jacobians of all contacts at a motion.
 struct ContactTerms {
     set: HarmonicSet,
-    terms: Vec<(Vec<[Option<(usize, Complex64)>; 2]>, Evaluation)>,
+    terms: Vec<(Vec<Row>, Evaluation)>,
 }
 
 impl ContactTerms {
@@ -168,7 +169,8 @@ impl ContactTerms {
         for contact in model.contacts() {
             let mut rows = Vec::new();
             for h in 0..=solver.harmonics {
-                let row = contact.row(model.structure().phase(h, contact.sector_offset));
+                let phase = model.structure().phase(h, contact.sector_offset);
+                let row = relative_row(contact.dof_a, contact.dof_b, phase);
                 let y: Complex64 = row.iter().flatten().map(|&(p, a)| a * x[h * n + p]).sum();
                 set.set(&mut packed, h, y);
                 crate::error::try_push(&mut rows, row, "the contacts")?;

@@ -4,9 +4,10 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use super::{Condensed, Row};
+use super::Condensed;
 use crate::error::{Result, try_vec};
 use crate::linalg::lu::Lu;
+use crate::model::spring::Row;
 use num_complex::Complex64;
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is

@@ -12,18 +12,16 @@
 pub mod flexibility;
 
 use crate::contact::Law;
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
+use crate::model::spring::{Row, Wave, relative_row};
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 use flexibility::Workspace;
 use num_complex::Complex64;
-
-/// Row of a relative coordinate: at most two degrees of freedom with their coefficients.
-pub type Row = [Option<(usize, Complex64)>; 2];
 
 /// What one harmonic sees of the structure.
 #[derive(Clone, Debug)]
@@ -303,34 +301,13 @@ fn harmonic_block(
 ) -> Result<HarmonicBlock> {
     let structure = model.structure();
     let n = model.ndof();
-    let row = |i: usize| {
-        let contact = &model.contacts()[i];
-        contact.row(structure.phase(number, contact.sector_offset))
-    };
-    let mut stiffness = structure.wave_matrix(MatrixKind::Stiffness, number)?;
-    if !never_slipping.is_empty() {
-        let mut springs = Vec::new();
-        for &i in never_slipping {
-            let (row, kt) = (row(i), model.contacts()[i].kt);
-            for (p, a) in row.into_iter().flatten() {
-                for (q, b) in row.into_iter().flatten() {
-                    try_push(&mut springs, (p, q, a.conj() * b * kt), "the stuck contacts")?;
-                }
-            }
-        }
-        let springs = Csc::from_triplets(n, n, springs)?;
-        let plain = crate::linalg::sparse::Form::Plain;
-        stiffness = Csc::sum(
-            n,
-            &[(Complex64::ONE, &stiffness, plain), (Complex64::ONE, &springs, plain)],
-        )?;
-    }
+    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
+    let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
     let mut rows = try_vec(representatives.len(), [None; 2], "the contacts")?;
     for (r, &i) in rows.iter_mut().zip(representatives) {
-        *r = row(i);
-    }
-    if number == 0 && (!stiffness.is_real()) {
-        return fail!(Internal, "the mean saw a complex stiffness");
+        let contact = &model.contacts()[i];
+        let phase = structure.phase(number, contact.sector_offset);
+        *r = relative_row(contact.dof_a, contact.dof_b, phase);
     }
     Ok(HarmonicBlock {
         number,

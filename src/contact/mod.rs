@@ -10,7 +10,6 @@ use crate::error::{Result, fail};
 use crate::fourier::Extremum;
 use crate::harmonics::HarmonicSet;
 use jenkins::Jenkins;
-use num_complex::Complex64;
 
 /// Which law a contact obeys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,16 +56,6 @@ impl Contact {
     #[must_use]
     pub fn slip_limit(&self) -> f64 {
         if self.mu == 0.0 { 0.0 } else { self.mu * self.preload }
-    }
-
-    /// The row r of the relative motion y = r·x, at most two entries as (degree of freedom,
-    /// coefficient): side a minus side b, where `phase` is the motion of b's sector over a's.
-    #[must_use]
-    pub fn row(&self, phase: Complex64) -> [Option<(usize, Complex64)>; 2] {
-        [
-            self.dof_a.map(|dof| (dof, Complex64::ONE)),
-            self.dof_b.map(|dof| (dof, -phase)),
-        ]
     }
 
     /// Checks the constants of the law.

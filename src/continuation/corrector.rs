@@ -2,7 +2,7 @@
 //! continuation, and with damping the solver of the first point.
 
 use super::Metric;
-use crate::error::{Error, Result, Status, try_vec};
+use crate::error::{Result, Status, try_vec};
 use crate::linalg::bordered::Bordered;
 use crate::linalg::norm;
 use crate::problem::{Linearisation, Problem};
@@ -218,12 +218,8 @@ impl Corrector {
 
 /// A singular matrix is a failed attempt, anything else an error.
 fn tolerate(result: Result<()>) -> Result<bool> {
-    match result {
-        Ok(()) => Ok(true),
-        Err(Error {
-            status: Status::Singular,
-            ..
-        }) => Ok(false),
-        Err(e) => Err(e),
-    }
+    result.map(|()| true).or_else(|e| match e.status {
+        Status::Singular => Ok(false),
+        _ => Err(e),
+    })
 }

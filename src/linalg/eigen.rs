@@ -27,20 +27,20 @@ const MASSLESS: f64 = 1e-12;
 /// # Errors
 /// `NotPositiveDefinite` when M has a negative eigenvalue, `Singular` when K cannot be condensed
 /// onto the directions with mass, `NoConvergence` from the eigensolver.
-pub fn generalised(k: DMatrix<Complex64>, m: DMatrix<Complex64>) -> Result<Pairs> {
+pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>) -> Result<Pairs> {
     let n = k.nrows();
     // The common case, M positive definite: L⁻¹ K L⁻ᴴ keeps the sparsest rounding.
     if let Some(cholesky) = Cholesky::new(m.clone()) {
         let l = cholesky.l();
         let diagonal = l.diagonal().map(|x| x.re);
         if diagonal.min() > 1e-5 * diagonal.max() {
-            let (Some(left), true) = (l.solve_lower_triangular(&k), n > 0) else {
+            let (Some(left), true) = (l.solve_lower_triangular(k), n > 0) else {
                 return fail!(NotPositiveDefinite, "mass matrix is not positive definite");
             };
             let Some(a) = l.solve_lower_triangular(&left.adjoint()) else {
                 return fail!(NotPositiveDefinite, "mass matrix is not positive definite");
             };
-            let (values, vectors) = hermitian(a)?;
+            let (values, vectors) = hermitian(&a)?;
             let Some(vectors) = l.adjoint().solve_upper_triangular(&vectors) else {
                 return fail!(NotPositiveDefinite, "mass matrix is not positive definite");
             };
@@ -78,7 +78,7 @@ pub fn generalised(k: DMatrix<Complex64>, m: DMatrix<Complex64>) -> Result<Pairs
     };
     let scale: Vec<f64> = mass[massless..].iter().map(|x| 1.0 / x.sqrt()).collect();
     let a = DMatrix::from_fn(heavy, heavy, |i, j| condensed[(i, j)] * scale[i] * scale[j]);
-    let (values, reduced) = hermitian(a)?;
+    let (values, reduced) = hermitian(&a)?;
     let heavy_part = DMatrix::from_fn(heavy, heavy, |i, j| reduced[(i, j)] * scale[i]);
     let light_part = static_part * &heavy_part;
     let mut stacked = DMatrix::zeros(n, heavy);
@@ -91,9 +91,9 @@ pub fn generalised(k: DMatrix<Complex64>, m: DMatrix<Complex64>) -> Result<Pairs
 }
 
 /// Eigenvalues in ascending order and orthonormal eigenvectors of a Hermitian matrix.
-fn hermitian(a: DMatrix<Complex64>) -> Result<(Vec<f64>, DMatrix<Complex64>)> {
+fn hermitian(a: &DMatrix<Complex64>) -> Result<(Vec<f64>, DMatrix<Complex64>)> {
     let n = a.nrows();
-    let symmetric = (&a + a.adjoint()) * Complex64::new(0.5, 0.0);
+    let symmetric = (a + a.adjoint()) * Complex64::new(0.5, 0.0);
     let Some(eigen) = SymmetricEigen::try_new(symmetric, f64::EPSILON, MAX_ITERATIONS) else {
         return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
     };
@@ -117,7 +117,7 @@ mod tests {
         // Two springs in series between ground and a unit mass, massless joint: 1/(1/2 + 1/2) = 1.
         let k = real(2, &[4.0, -2.0, -2.0, 2.0]);
         let m = real(2, &[0.0, 0.0, 0.0, 1.0]);
-        let pairs = generalised(k, m).unwrap();
+        let pairs = generalised(&k, &m).unwrap();
         assert_eq!(pairs.values.len(), 1);
         assert!((pairs.values[0] - 1.0).abs() < 1e-14);
         assert!((pairs.vectors[(0, 0)] - pairs.vectors[(1, 0)] * 0.5).norm() < 1e-14);
@@ -125,7 +125,7 @@ mod tests {
 
     #[test]
     fn an_indefinite_mass_is_an_error() {
-        let pairs = generalised(real(2, &[1.0, 0.0, 0.0, 1.0]), real(2, &[1.0, 0.0, 0.0, -1.0]));
+        let pairs = generalised(&real(2, &[1.0, 0.0, 0.0, 1.0]), &real(2, &[1.0, 0.0, 0.0, -1.0]));
         assert!(pairs.is_err_and(|e| e.status == crate::error::Status::NotPositiveDefinite));
     }
 }

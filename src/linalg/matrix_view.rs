@@ -205,13 +205,13 @@ impl<'a> MatrixView<'a> {
         }
         let mut entries = Vec::new();
         for j in 0..self.cols {
-            for k in (col_ptr[j] - base) as usize..(col_ptr[j + 1] - base) as usize {
-                let row = row_idx[k] - base;
+            let range = (col_ptr[j] - base) as usize..(col_ptr[j + 1] - base) as usize;
+            for (k, &given) in range.clone().zip(&row_idx[range]) {
+                let row = given - base;
                 if row < 0 || row >= self.rows as i64 {
                     return fail!(
                         Index,
-                        "{name}: row_idx[{k}] = {}, needs {base} .. {}",
-                        row_idx[k],
+                        "{name}: row_idx[{k}] = {given}, needs {base} .. {}",
                         self.rows as i64 - 1 + base
                     );
                 }

@@ -95,8 +95,8 @@ impl Csc {
 
     /// y += c·A x.
     pub fn multiply_add(&self, c: Complex64, x: &[Complex64], y: &mut [Complex64]) {
-        for j in 0..self.cols {
-            let cx = c * x[j];
+        for (j, &x) in x.iter().enumerate() {
+            let cx = c * x;
             for (i, v) in self.column(j) {
                 y[i] += v * cx;
             }

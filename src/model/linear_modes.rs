@@ -1,6 +1,7 @@
 //! Undamped natural modes of the structure with its contacts removed or stuck.
 
 use super::Model;
+use super::spring::Wave;
 use super::structure::MatrixKind;
 use crate::error::{Result, fail};
 use crate::linalg::eigen;
@@ -44,7 +45,11 @@ impl Model {
                 structure.sectors()
             );
         }
-        let stiffness = structure.diameter_matrix(MatrixKind::Stiffness, diameter)?;
+        let stuck = self
+            .contacts()
+            .iter()
+            .filter(|c| contacts == ContactState::Stuck && c.slip_limit() > 0.0);
+        let stiffness = self.sprung_stiffness(Wave::Diameter(diameter), stuck)?;
         let (i, j, gap) = stiffness.worst_hermitian_pair();
         if gap > 1e-10 * stiffness.max_abs() {
             return fail!(
@@ -58,18 +63,7 @@ impl Model {
             a.add_to_dense(Complex64::ONE, d.as_mut_slice());
             d
         };
-        let (mut k, m) = (dense(&stiffness), dense(&mass));
-        if contacts == ContactState::Stuck {
-            for contact in self.contacts().iter().filter(|c| c.slip_limit() > 0.0) {
-                let row = contact.row(structure.wave_phase(diameter, contact.sector_offset));
-                for (i, a) in row.iter().flatten() {
-                    for (j, b) in row.iter().flatten() {
-                        k[(*i, *j)] += a.conj() * b * contact.kt;
-                    }
-                }
-            }
-        }
-        let pairs = eigen::generalised(k, m)?;
+        let pairs = eigen::generalised(&dense(&stiffness), &dense(&mass))?;
         Ok(LinearModes {
             omega: pairs.values.iter().map(|&x| x.max(0.0).sqrt()).collect(),
             shapes: pairs.vectors.as_slice().to_vec(),

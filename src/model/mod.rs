@@ -3,13 +3,15 @@
 pub mod cyclic;
 pub mod excitation;
 pub mod linear_modes;
+pub mod spring;
 pub mod structure;
 
 use crate::contact::Contact;
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, fail, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use excitation::Excitation;
 use num_complex::Complex64;
+use spring::Spring;
 use structure::{MatrixKind, Structure};
 
 /// A structure with its contacts and forces: M ẍ + C ẋ + K x + f_nl = f_ex.
@@ -20,6 +22,7 @@ use structure::{MatrixKind, Structure};
 pub struct Model {
     structure: Structure,
     contacts: Vec<Contact>,
+    springs: Vec<Spring>,
     excitation: Excitation,
 }
 
@@ -40,6 +43,7 @@ impl Model {
         Ok(Self {
             structure: Structure::new(ndof, sectors)?,
             contacts: Vec::new(),
+            springs: Vec::new(),
             excitation: Excitation::default(),
         })
     }
@@ -100,34 +104,87 @@ impl Model {
     /// `Index` for a degree of freedom out of range, `Argument` for a contact of a degree of
     /// freedom with itself, and those of [`Contact::check_constants`].
     pub fn add_contact(&mut self, contact: &Contact) -> Result<usize> {
+        self.check_contact(contact)?;
+        try_push(&mut self.contacts, *contact, "the contacts")?;
+        Ok(self.contacts.len() - 1)
+    }
+
+    /// Adds many contacts and returns the number of the first; the others follow in order. All of
+    /// them are checked before any is added.
+    ///
+    /// # Errors
+    /// As [`Self::add_contact`], naming the position in the list.
+    pub fn add_contacts(&mut self, contacts: &[Contact]) -> Result<usize> {
+        for (i, contact) in contacts.iter().enumerate() {
+            self.check_contact(contact)
+                .map_err(|e| e.at(format_args!("entry {i}")))?;
+        }
+        try_extend(&mut self.contacts, contacts, "the contacts")?;
+        Ok(self.contacts.len() - contacts.len())
+    }
+
+    fn check_contact(&self, contact: &Contact) -> Result<()> {
         contact.check_constants()?;
+        self.check_sides("contact", contact.dof_a, contact.dof_b, contact.sector_offset)
+    }
+
+    /// Adds a linear spring between two degrees of freedom, or one and the ground.
+    ///
+    /// # Errors
+    /// As [`Self::add_contact`]; `NotFinite` for the stiffness, which may have any sign.
+    pub fn add_spring(&mut self, spring: &Spring) -> Result<()> {
+        self.add_springs(core::slice::from_ref(spring))
+    }
+
+    /// Adds many linear springs; all of them are checked before any is added.
+    ///
+    /// # Errors
+    /// As [`Self::add_spring`], naming the position in the list.
+    pub fn add_springs(&mut self, springs: &[Spring]) -> Result<()> {
+        for (i, spring) in springs.iter().enumerate() {
+            self.check_spring(spring).map_err(|e| e.at(format_args!("entry {i}")))?;
+        }
+        try_extend(&mut self.springs, springs, "the springs")
+    }
+
+    fn check_spring(&self, spring: &Spring) -> Result<()> {
+        if !spring.stiffness.is_finite() {
+            return fail!(
+                NotFinite,
+                "spring: stiffness = {}, needs a finite number",
+                spring.stiffness
+            );
+        }
+        self.check_sides("spring", spring.dof_a, spring.dof_b, spring.sector_offset)
+    }
+
+    /// Both sides of a contact or spring must exist and differ.
+    fn check_sides(&self, what: &str, a: Option<usize>, b: Option<usize>, sector_offset: i64) -> Result<()> {
         let n = self.ndof();
-        for (name, dof) in [("dof_a", contact.dof_a), ("dof_b", contact.dof_b)] {
+        for (name, dof) in [("dof_a", a), ("dof_b", b)] {
             if let Some(dof) = dof.filter(|&d| d >= n) {
-                return fail!(Index, "contact: {name} = {dof}, needs 0 .. {}", n - 1);
+                return fail!(Index, "{what}: {name} = {dof}, needs 0 .. {}", n - 1);
             }
         }
-        let same_sector = self.structure.same_sector(contact.sector_offset);
-        if contact.dof_a == contact.dof_b && (same_sector || contact.dof_a.is_none()) {
+        let same_sector = self.structure.same_sector(sector_offset);
+        if a == b && (same_sector || a.is_none()) {
             return fail!(
                 Argument,
-                "contact: both sides are {}; a contact needs two different sides",
-                if contact.dof_a.is_none() {
+                "{what}: dof_a and dof_b are both {}; it needs two different sides",
+                if a.is_none() {
                     "the ground"
                 } else {
                     "the same degree of freedom"
                 }
             );
         }
-        if contact.sector_offset != 0 && self.structure.sectors() == 1 {
+        if sector_offset != 0 && self.structure.sectors() == 1 {
             return fail!(
                 Argument,
-                "contact: sector_offset = {}, needs 0 in a plain structure",
-                contact.sector_offset
+                "{what}: sector_offset = {sector_offset}, needs 0 in a plain structure"
             );
         }
-        try_push(&mut self.contacts, *contact, "the contacts")?;
-        Ok(self.contacts.len() - 1)
+        Ok(())
     }
 
     /// Changes the normal load of a contact.
@@ -175,6 +232,12 @@ impl Model {
     #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
+    }
+
+    /// The linear springs in the order in which they were added.
+    #[must_use]
+    pub fn springs(&self) -> &[Spring] {
+        &self.springs
     }
 
     /// The forces.

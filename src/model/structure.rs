@@ -105,19 +105,19 @@ impl Structure {
     }
 
     pub(super) fn set_own(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
-        self.refuse_general_mass(which, a)?;
+        Self::refuse_general_mass(which, a)?;
         self.refuse_diameters(which)?;
         let own = a.copy_in(which.name(), self.ndof)?;
-        if which == MatrixKind::Mass {
-            if let Some(i) = (0..self.ndof).find(|&i| own.get(i, i).re < 0.0) {
-                return fail!(
-                    NotPositiveDefinite,
-                    "mass matrix is not positive semidefinite: mass[{},{}] = {}",
-                    i + a.index_base,
-                    i + a.index_base,
-                    own.get(i, i).re
-                );
-            }
+        if which == MatrixKind::Mass
+            && let Some(i) = (0..self.ndof).find(|&i| own.get(i, i).re < 0.0)
+        {
+            return fail!(
+                NotPositiveDefinite,
+                "mass matrix is not positive semidefinite: mass[{},{}] = {}",
+                i + a.index_base,
+                i + a.index_base,
+                own.get(i, i).re
+            );
         }
         self.blocks[which as usize].own = Some(own);
         Ok(())
@@ -158,7 +158,7 @@ impl Structure {
     }
 
     pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
-        self.refuse_general_mass(which, a)?;
+        Self::refuse_general_mass(which, a)?;
         let highest = self.sectors / 2;
         if diameter > highest {
             return fail!(
@@ -196,7 +196,7 @@ impl Structure {
         )
     }
 
-    fn refuse_general_mass(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
+    fn refuse_general_mass(which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
         if which == MatrixKind::Mass && a.part == Part::General {
             return fail!(
                 NotHermitian,
