@@ -350,11 +350,15 @@ mod tests {
 
     #[test]
     fn a_hidden_pair_of_reversals_is_found() {
+        // x' = cos t + 2b cos 2t has two roots around t = pi for b > 1/2; shifted by half a cell,
+        // both lie between the same two grid points.
         let set = HarmonicSet::excited(&[1], 3, true, false, false).unwrap();
-        // x' = sin-like slope touching zero: x = -cos τ + 0.2502 cos 2τ has a tiny extra pair at 0.
-        let packed = [0.0, -1.0, 0.0, 0.2502, 0.0, 0.0, 0.0];
-        assert_eq!(extrema(&set, &packed).len(), 4);
-        let packed = [0.0, -1.0, 0.0, 0.2498, 0.0, 0.0, 0.0];
-        assert_eq!(extrema(&set, &packed).len(), 2);
+        let shifted = |b: f64| {
+            let x1 = Complex64::new(0.0, -1.0) * Complex64::cis(0.13);
+            let x2 = Complex64::new(0.0, -b) * Complex64::cis(0.26);
+            [0.0, x1.re, x1.im, x2.re, x2.im, 0.0, 0.0]
+        };
+        assert_eq!(extrema(&set, &shifted(0.5001)).len(), 4);
+        assert_eq!(extrema(&set, &shifted(0.4999)).len(), 2);
     }
 }
