@@ -50,7 +50,13 @@ pub fn forced_response(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let mut problem = Forced::new(&condensed, response, solver.samples, given)?;
+    let mut problem = Forced::new(
+        &condensed,
+        response,
+        (range.omega_start, range.omega_stop),
+        solver.samples,
+        given,
+    )?;
     let reduction = condensed.reduction(model, solver);
     let branch = Branch::new(condensed.clone(), reduction, solver.samples, solver.harmonics, response);
     let mut follower = Follower {

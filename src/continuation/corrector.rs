@@ -134,10 +134,13 @@ impl Corrector {
     }
 
     fn factor(&mut self, metric: Metric, row: &[f64]) -> Result<bool> {
-        tolerate(
-            self.lu
-                .factor(&self.at.jacobian, &self.at.d_parameter, metric.u, metric.p, row),
-        )
+        tolerate(self.lu.factor(
+            &self.at.jacobian,
+            &self.at.d_parameter,
+            &self.at.active,
+            (metric.u, metric.p),
+            row,
+        ))
     }
 
     /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns.

@@ -112,6 +112,24 @@ impl Csc {
         }
     }
 
+    /// The values of this matrix at the places of `pattern`, which must hold all of its own.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn aligned(&self, pattern: &Self) -> Result<Vec<Complex64>> {
+        let mut values = try_vec(pattern.values.len(), Complex64::ZERO, "a sparse matrix")?;
+        for j in 0..pattern.cols {
+            let mut at = pattern.col_ptr[j];
+            for (i, v) in self.column(j) {
+                while pattern.row_idx[at] < i {
+                    at += 1;
+                }
+                values[at] = v;
+            }
+        }
+        Ok(values)
+    }
+
     /// Whether no entry is stored.
     #[must_use]
     pub fn is_empty(&self) -> bool {

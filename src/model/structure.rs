@@ -72,6 +72,14 @@ impl Structure {
         })
     }
 
+    /// Whether any damping was given.
+    #[must_use]
+    pub fn is_damped(&self) -> bool {
+        let b = &self.blocks[MatrixKind::Damping as usize];
+        let given = [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters);
+        self.rayleigh != (0.0, 0.0) || given.flatten().any(|a| !a.is_empty())
+    }
+
     /// Degrees of freedom of one sector.
     #[must_use]
     pub fn ndof(&self) -> usize {
