@@ -111,7 +111,10 @@ impl<'a> Forced<'a> {
         }
         self.tabulated = None;
         for (i, table) in self.tables.iter_mut().enumerate() {
-            table.clone_from(self.workspace.evaluate(self.condensed, i, omega)?);
+            // A derived clone_from would take new memory at each frequency.
+            let found = self.workspace.evaluate(self.condensed, i, omega)?;
+            table.value.copy_from_slice(&found.value);
+            table.slope.copy_from_slice(&found.slope);
         }
         self.tabulated = Some(omega);
         Ok(())
