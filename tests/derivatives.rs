@@ -92,7 +92,11 @@ fn half_range(motion: &[Complex64]) -> f64 {
         let at = (0..n).max_by(|&i, &j| (sign * x[i]).total_cmp(&(sign * x[j]))).unwrap();
         let (a, b, c) = (x[(at + n - 1) % n], x[at], x[(at + 1) % n]);
         let curvature = a - 2.0 * b + c;
-        let beyond = if curvature == 0.0 { 0.0 } else { (c - a).powi(2) / (8.0 * curvature) };
+        let beyond = if curvature == 0.0 {
+            0.0
+        } else {
+            (c - a).powi(2) / (8.0 * curvature)
+        };
         sign * (b - beyond)
     };
     0.5 * (highest(1.0) + highest(-1.0))
@@ -244,7 +248,9 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
     let mut model = Model::cyclic(N, if shape == Shape::Cyclic { SECTORS } else { 1 }).unwrap();
     let symmetric: Vec<Complex64> = feed.block(0.2).into_iter().map(Complex64::from).collect();
     let mass: Vec<f64> = hermitian(&symmetric, 1.0).iter().map(|z| z.re).collect();
-    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &mass)).unwrap();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &mass))
+        .unwrap();
     for (which, diagonal) in [(MatrixKind::Damping, 0.5), (MatrixKind::Stiffness, 8.0)] {
         match shape {
             Shape::General | Shape::Cyclic => {

@@ -103,10 +103,7 @@ impl Skewed {
     }
 
     fn forces(&self) -> Vec<(usize, usize, Complex64)> {
-        let mut forces = vec![
-            (0, 1, Complex64::new(1.0, 0.3)),
-            (1, 1, Complex64::new(-0.4, 0.8)),
-        ];
+        let mut forces = vec![(0, 1, Complex64::new(1.0, 0.3)), (1, 1, Complex64::new(-0.4, 0.8))];
         if self.constant != 0.0 {
             forces.push((2, 0, self.constant.into()));
         }

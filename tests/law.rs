@@ -104,7 +104,10 @@ fn below_the_slip_limit_the_force_is_the_spring() {
     let motion = [Complex64::ZERO, Complex64::from_polar(0.999 * PLAY, 0.4)];
     let f = force(&motion, 0);
     assert!((f[1] - KT * motion[1]).norm() < 1e-14 * LIMIT);
-    assert_eq!(work(&motion, &[Complex64::ZERO, KT * motion[1]]).abs() < 1e-12 * LIMIT * PLAY, true);
+    assert_eq!(
+        work(&motion, &[Complex64::ZERO, KT * motion[1]]).abs() < 1e-12 * LIMIT * PLAY,
+        true
+    );
 }
 
 #[test]
@@ -178,13 +181,7 @@ fn sampling_near_nyquist_is_not_what_exact_events_do() {
 
 #[test]
 fn a_constant_motion_drags_the_virgin_slider_to_its_limit_and_no_further() {
-    for (x, expected) in [
-        (0.4, 0.4),
-        (-0.7, -0.7),
-        (1.0, 1.0),
-        (3.0, 1.0),
-        (-50.0, -1.0),
-    ] {
+    for (x, expected) in [(0.4, 0.4), (-0.7, -0.7), (1.0, 1.0), (3.0, 1.0), (-50.0, -1.0)] {
         let motion = [(x * PLAY).into(), Complex64::ZERO];
         let f = force(&motion, 0);
         assert!((f[0].re - expected * LIMIT).abs() < 1e-14 * LIMIT, "{x}");

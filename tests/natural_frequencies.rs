@@ -20,7 +20,10 @@ fn compare(model: &Model, state: ContactState, diameter: usize, expected: &[Valu
     for (omega, f) in modes.omega.iter().zip(&expected) {
         let found = omega / TAU;
         if *f == 0.0 {
-            assert!(found < 1e-7 * highest, "diameter {diameter}: rigid motion at {found} Hz");
+            assert!(
+                found < 1e-7 * highest,
+                "diameter {diameter}: rigid motion at {found} Hz"
+            );
         } else {
             let error = (found / f - 1.0).abs();
             assert!(error < 1e-10, "diameter {diameter}: {found} Hz, needs {f}");

@@ -9,8 +9,8 @@ mod common;
 use common::{BASE, harmonics};
 use hbvib::condense::Condensed;
 use hbvib::continuation::corrector::{Corrector, Outcome};
-use hbvib::continuation::{Metric, Settings};
 use hbvib::continuation::step_control::StepControl;
+use hbvib::continuation::{Metric, Settings};
 use hbvib::linalg::norm;
 use hbvib::options::SolverOptions;
 use hbvib::problem::forced::Forced;
@@ -136,8 +136,11 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
                 *x *= 1.001;
             }
             v[n] = factor * omega;
-            let (count, outcome) =
-                allocations(|| corrector.correct(&mut problem, &mut v, &row, metric, damped, None).unwrap());
+            let (count, outcome) = allocations(|| {
+                corrector
+                    .correct(&mut problem, &mut v, &row, metric, damped, None)
+                    .unwrap()
+            });
             let Outcome::Converged(corrected) = outcome else {
                 panic!("H = {highest}, {samples} samples: not converged");
             };

@@ -36,7 +36,12 @@ fn fundamental(model: &Model, highest: usize, omega: f64) -> Vec<Complex64> {
     assert_eq!(slip(&branch, 0), 0.0);
     let x = all_harmonics(&branch, 0);
     for (h, block) in x.chunks_exact(NDOF).enumerate() {
-        assert!(h == 1 || block.iter().all(|z| *z == Complex64::ZERO || z.norm() < 1e-13 * x[NDOF].norm()));
+        assert!(
+            h == 1
+                || block
+                    .iter()
+                    .all(|z| *z == Complex64::ZERO || z.norm() < 1e-13 * x[NDOF].norm())
+        );
     }
     x[NDOF..2 * NDOF].to_vec()
 }
@@ -87,7 +92,14 @@ fn limits_of_the_law_are_linear_systems() {
     let contact = case.contact();
     let omega = TAU * 208.9;
     for (name, contact, stiffness) in [
-        ("no load", Contact { preload: 0.0, ..contact }, 0.0),
+        (
+            "no load",
+            Contact {
+                preload: 0.0,
+                ..contact
+            },
+            0.0,
+        ),
         ("no friction", Contact { mu: 0.0, ..contact }, 0.0),
         (
             "no friction under infinite load",

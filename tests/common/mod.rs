@@ -312,5 +312,9 @@ pub fn relative_gap(a: &[Complex64], b: &[Complex64]) -> f64 {
 
 /// Highest slip share of a stored point.
 pub fn slip(branch: &Branch, point: usize) -> f64 {
-    branch.slip_fraction_at(point).unwrap().iter().fold(0.0, |m, &x| m.max(x))
+    branch
+        .slip_fraction_at(point)
+        .unwrap()
+        .iter()
+        .fold(0.0, |m, &x| m.max(x))
 }
