@@ -83,7 +83,10 @@ impl Tables {
                 _ => false,
             };
             if !done {
-                table.clone_from(workspace.evaluate(condensed, i, omega, !self.pointwise)?);
+                // A derived clone_from would take new memory at each frequency.
+                let found = workspace.evaluate(condensed, i, omega, !self.pointwise)?;
+                table.value.copy_from_slice(&found.value);
+                table.slope.copy_from_slice(&found.slope);
             }
         }
         self.tabulated = Some((omega, self.pointwise));

@@ -104,7 +104,7 @@ impl Corrector {
             }
             self.newton_step();
             let size = norm(&self.step);
-            let round_off = size <= ROUND_OFF * (1.0 + metric.norm(v));
+            let round_off = self.is_round_off(v, metric);
             if residual <= self.tolerance || round_off {
                 return Ok(Outcome::Converged(self.finish(problem, v, metric, iteration, residual)));
             }
@@ -131,6 +131,14 @@ impl Corrector {
     fn relative_residual(&self) -> f64 {
         let r = norm(&self.at.residual);
         if r == 0.0 { 0.0 } else { r / self.at.scale }
+    }
+
+    /// Whether the Newton step at hand is round-off of `v`. The metric does not measure that: its
+    /// unit may be far above unknowns that were large elsewhere on the branch.
+    fn is_round_off(&self, v: &[f64], metric: Metric) -> bool {
+        let n = v.len() - 1;
+        norm(&self.step[..n]) * metric.u <= ROUND_OFF * norm(&v[..n])
+            && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p)
     }
 
     fn factor(&mut self, metric: Metric, row: &[f64]) -> Result<bool> {

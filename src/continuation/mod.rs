@@ -191,6 +191,12 @@ pub struct Continuation {
 /// Cosine of the largest turn of the branch within one step.
 const STRAIGHT: f64 = 0.5;
 
+/// Step below which a sharp turn counts as a corner of the branch.
+const CORNER_STEP: f64 = 1e-6;
+
+/// Smallest cosine at a corner that is passed.
+const SHARPEST_CORNER: f64 = 0.05;
+
 /// Motions below this share of the largest met so far no longer refine the metric.
 const FLOOR: f64 = 1e-2;
 
@@ -381,13 +387,16 @@ impl Continuation {
         let chord = metric.distance(&point.v, &here.v);
         let along = metric.dot(&point.v, &here.tangent) - metric.dot(&here.v, &here.tangent);
         let cosine = |dot: f64, a: f64, b: f64| if a * b > 0.0 { dot / (a * b) } else { 1.0 };
+        // A smooth curve is straight over a short enough step. What still turns there is a corner
+        // of the branch, as the onset of slip can be, and it is passed.
+        let straight = if step > CORNER_STEP { STRAIGHT } else { SHARPEST_CORNER };
         let turned = cosine(
             metric.dot(&point.tangent, &here.tangent),
             metric.norm(&point.tangent),
             metric.norm(&here.tangent),
-        ) < STRAIGHT;
-        let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
-        let far = chord > 3.0 * step;
+        ) < straight;
+        let back = cosine(along, chord, metric.norm(&here.tangent)) < straight;
+        let far = chord > 1.5 * step / straight;
         let error = self.prediction_error(&predicted, &point, amplitude);
         if turned || back || far {
             return Ok(Attempt::Failed);
