@@ -215,13 +215,23 @@ impl Follower<'_> {
         let metric = Metric::along(norm(point.unknowns()), &self.settings);
         let mut row = try_vec(n + 1, 0.0, "the special points")?;
         row[n] = 1.0;
-        problem.set_pointwise(true);
-        let outcome = self.corrector.correct(problem, &mut point.v, &row, metric, true, None);
-        problem.set_pointwise(false);
+        let mut v = point.v.clone();
+        // At a fold the solution at a fixed frequency is not isolated.
+        let outcome = if matches!(kind, SpecialKind::Fold) {
+            Ok(Outcome::Failed)
+        } else {
+            problem.set_pointwise(true);
+            let outcome = self.corrector.correct(problem, &mut v, &row, metric, true, None);
+            problem.set_pointwise(false);
+            outcome
+        };
         if let Outcome::Converged(corrected) = outcome? {
-            point.v[n] = p;
+            v[n] = p;
+            point.v = v;
             point.amplitude = corrected.amplitude;
             point.residual = corrected.residual;
+        } else {
+            self.corrector.evaluate(problem, &point.v)?;
         }
         problem.response(point.unknowns(), &mut self.response);
         let kept = Kept {

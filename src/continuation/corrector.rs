@@ -127,6 +127,15 @@ impl Corrector {
         Ok(Outcome::Failed)
     }
 
+    /// Evaluates the problem at `v`, so that what it tells of itself holds there.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn evaluate(&mut self, problem: &mut dyn Problem, v: &[f64]) -> Result<()> {
+        let n = v.len() - 1;
+        problem.evaluate(&v[..n], v[n], &mut self.at)
+    }
+
     /// ‖R‖ over the problem's scale; 0 where both vanish.
     fn relative_residual(&self) -> f64 {
         let r = norm(&self.at.residual);
