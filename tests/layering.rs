@@ -154,7 +154,11 @@ fn every_file_imports_from_lower_layers_or_its_own_module_only() {
         if module == "lib" {
             continue;
         }
-        assert!(layer(&module).is_some(), "{}: name the layer of {module}", path.display());
+        assert!(
+            layer(&module).is_some(),
+            "{}: name the layer of {module}",
+            path.display()
+        );
         for target in found {
             // Macros of the error module are exported at the root.
             let target = if target == "fail" { "error".to_owned() } else { target };
@@ -191,7 +195,10 @@ fn imports_are_found_in_every_form_that_the_language_has() {
     assert_eq!(of("aft/exact.rs", "use crate::contact::{Law, Piece};"), ["contact"]);
     assert_eq!(of("aft/exact.rs", "let x = crate::model::Model::new(1);"), ["model"]);
     assert_eq!(
-        of("aft/mod.rs", "use crate::{error::{fail, Result}, harmonics, linalg::norm};"),
+        of(
+            "aft/mod.rs",
+            "use crate::{error::{fail, Result}, harmonics, linalg::norm};"
+        ),
         ["error", "harmonics", "linalg"]
     );
     assert_eq!(of("aft/exact.rs", "use super::super::model::Model;"), ["model"]);
