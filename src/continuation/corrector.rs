@@ -23,6 +23,8 @@ pub struct Corrected {
     pub slope: Complex64,
     /// Unit tangent in the metric used, given in unscaled numbers, pointing along the row.
     pub tangent: Vec<f64>,
+    /// Whether det [J r; tangentᵀ] is positive.
+    pub positive: bool,
 }
 
 /// How a correction ended.
@@ -216,14 +218,7 @@ impl Corrector {
         metric.unscale(&mut tangent);
         let (at_residual, correction) = problem.observe(&v[..n], &tangent);
         metric.add(v, 1.0, &self.step);
-        self.step.fill(0.0);
-        self.step[n] = 1.0;
-        self.lu.solve(&mut self.step);
-        let length = norm(&self.step);
-        for (t, s) in tangent.iter_mut().zip(&self.step) {
-            *t = s / length;
-        }
-        metric.unscale(&mut tangent);
+        self.tangent(metric, &mut tangent);
         let (_, slope) = problem.observe(&v[..n], &tangent);
         Corrected {
             iterations,
@@ -232,7 +227,43 @@ impl Corrector {
             amplitude: at_residual + correction,
             slope,
             tangent,
+            positive: self.lu.is_positive(),
         }
+    }
+
+    /// Unit tangent from the factors at hand, in unscaled numbers.
+    fn tangent(&mut self, metric: Metric, tangent: &mut [f64]) {
+        let n = self.step.len() - 1;
+        self.step.fill(0.0);
+        self.step[n] = 1.0;
+        self.lu.solve(&mut self.step);
+        let length = norm(&self.step);
+        for (t, s) in tangent.iter_mut().zip(&self.step) {
+            *t = s / length;
+        }
+        metric.unscale(tangent);
+    }
+
+    /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled
+    /// into `tangent`, pointing along the row. Returns whether det [J r; tangentᵀ] is positive;
+    /// `None` where the matrix is singular.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn direction_at(
+        &mut self,
+        problem: &mut dyn Problem,
+        v: &[f64],
+        row: &[f64],
+        metric: Metric,
+        tangent: &mut [f64],
+    ) -> Result<Option<bool>> {
+        let n = v.len() - 1;
+        if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? || !self.factor(metric, row)? {
+            return Ok(None);
+        }
+        self.tangent(metric, tangent);
+        Ok(Some(self.lu.is_positive()))
     }
 }
 

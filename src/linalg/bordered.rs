@@ -96,6 +96,13 @@ impl Bordered {
         self.lu.factor()
     }
 
+    /// Whether the determinant of the factored matrix is positive. With t the solution for
+    /// (0, …, 0, 1) that of [J r; tᵀ] has the same sign.
+    #[must_use]
+    pub fn is_positive(&self) -> bool {
+        self.lu.is_positive()
+    }
+
     /// Solves in place for a right-hand side of n + 1 numbers.
     pub fn solve(&mut self, b: &mut [f64]) {
         let n = self.n;

@@ -267,6 +267,16 @@ fn singular(n: usize, pivot: usize, size: f64) -> Result<()> {
     )
 }
 
+impl Lu<f64> {
+    /// Whether the determinant of the factored matrix is positive.
+    #[must_use]
+    pub fn is_positive(&self) -> bool {
+        let swaps = self.pivots.iter().enumerate().filter(|&(k, &p)| k != p).count();
+        let negative = (0..self.n).filter(|&k| self.a[k * self.n + k] < 0.0).count();
+        (swaps + negative) % 2 == 0
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
