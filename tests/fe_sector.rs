@@ -125,7 +125,11 @@ fn compare_response(force: f64, force_key: &str, harmonics: usize, key: &str) {
     }
     let amplitude = number(&reference["peak_amp_m"]);
     let error = (response.peak.amplitude() / amplitude - 1.0).abs();
-    assert!(error < 1e-6, "peak {:e}, needs {amplitude:e}", response.peak.amplitude());
+    assert!(
+        error < 1e-6,
+        "peak {:e}, needs {amplitude:e}",
+        response.peak.amplitude()
+    );
     // The curve is flat at its peak, so the frequency of the reference is less exact there.
     let frequency = number(&reference["peak_freq_Hz"]);
     assert!((response.peak.frequency / frequency - 1.0).abs() < 1e-6);

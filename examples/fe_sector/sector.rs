@@ -127,11 +127,7 @@ impl Sector {
         structure.set_rayleigh(0.0, DAMPING).map_err(|e| e.to_string())?;
         structure.set_wave(ENGINE_ORDER);
         let pairs = read_pairs(&folder.join("contacts.csv"), size, structure.ndof())?;
-        Ok(Self {
-            size,
-            pairs,
-            structure,
-        })
+        Ok(Self { size, pairs, structure })
     }
 
     /// Degrees of freedom.

@@ -120,13 +120,7 @@ struct Entry {
     line: usize,
 }
 
-fn compress(
-    path: &Path,
-    rows: usize,
-    cols: usize,
-    symmetric: bool,
-    mut entries: Vec<Entry>,
-) -> Result<Matrix, String> {
+fn compress(path: &Path, rows: usize, cols: usize, symmetric: bool, mut entries: Vec<Entry>) -> Result<Matrix, String> {
     entries.sort_unstable_by_key(|e| (e.col, e.row, e.line));
     let same = |pair: &&[Entry]| (pair[0].col, pair[0].row) == (pair[1].col, pair[1].row);
     if let Some([first, again]) = entries.windows(2).find(same) {
