@@ -1,0 +1,226 @@
+//! One forced response, complete or refused, at a few named degrees of freedom, and its JSON.
+#![allow(dead_code, reason = "each example uses a part of this module")]
+
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::time::{Duration, Instant};
+
+use hbvib::analysis::forced_response;
+use hbvib::branch::Branch;
+use hbvib::error::Status;
+use hbvib::hooks::{Hooks, Progress};
+use hbvib::model::Model;
+use hbvib::options::{ForcedOptions, SolverOptions};
+use num_complex::Complex64;
+use serde_json::{Map, Value};
+
+use crate::json::number;
+
+/// A range of frequency, and frequencies within it at which every solution is wanted, in Hz.
+#[derive(Clone, Debug, Default)]
+pub struct Range {
+    /// Where the response begins.
+    pub from: f64,
+    /// Where it ends; it may lie below the begin.
+    pub to: f64,
+    /// In the order in which the solutions are to be listed.
+    pub at: Vec<f64>,
+}
+
+/// A solution: motion of sector 1, x(t) = Re Σ `X_p` exp(i p ω t).
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Number of the point in the branch.
+    pub number: usize,
+    /// Frequency of the force, Hz.
+    pub frequency: f64,
+    /// Every harmonic that is carried: its number, and `X_p` of each degree of freedom wanted.
+    pub harmonics: Vec<(usize, Vec<Complex64>)>,
+}
+
+impl Point {
+    /// `X_1` of the first degree of freedom wanted.
+    pub fn fundamental(&self) -> Complex64 {
+        let first = self.harmonics.iter().find(|h| h.0 == 1);
+        first.map_or(Complex64::ZERO, |h| h.1[0])
+    }
+
+    /// Its absolute value.
+    pub fn amplitude(&self) -> f64 {
+        self.fundamental().norm()
+    }
+}
+
+/// A response over the whole of a range.
+#[derive(Debug)]
+pub struct Response {
+    /// The curve from exactly the begin to exactly the end.
+    pub points: Vec<Point>,
+    /// The point of largest amplitude, an end of the range if it is there.
+    pub peak: Point,
+    /// Every solution at the frequencies asked for, in the order asked.
+    pub at: Vec<Point>,
+    /// Whether rounding kept the residual of a point above the solver's tolerance.
+    pub stalled: bool,
+    /// All that the library returned.
+    pub branch: Branch,
+    /// Where the time went.
+    pub times: Times,
+}
+
+/// Time of the parts of a response.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Times {
+    /// Condensation and the first point.
+    pub first_point: Duration,
+    /// The points after the first, with the peaks and the frequencies asked for.
+    pub curve: Duration,
+    /// Recovery of the motion from that of the contacts.
+    pub recovery: Duration,
+}
+
+impl Response {
+    /// Follows the response of a model and reports the share of the range that is done. The first
+    /// of the degrees of freedom `wanted` is followed: its fundamental defines the peak.
+    ///
+    /// # Errors
+    ///
+    /// If the model or an option is refused, or the response could not be followed to its end.
+    pub fn follow(
+        model: &Model,
+        solver: &SolverOptions,
+        range: &Range,
+        wanted: &[usize],
+        mut progress: impl FnMut(f64),
+    ) -> Result<Self, Box<dyn Error>> {
+        let solver = SolverOptions {
+            response_dof: wanted.first().copied(),
+            ..*solver
+        };
+        let at: Vec<f64> = range.at.iter().map(|f| f * TAU).collect();
+        let options = ForcedOptions {
+            omega_start: range.from * TAU,
+            omega_stop: range.to * TAU,
+            at: &at,
+            guess: None,
+        };
+        let begin = Instant::now();
+        let mut first = None;
+        let mut report = |state: &Progress| {
+            first.get_or_insert_with(|| begin.elapsed());
+            progress(state.fraction_done);
+            false
+        };
+        let mut hooks = Hooks {
+            progress: Some(&mut report),
+            ..Hooks::default()
+        };
+        let branch = forced_response(model, &solver, &options, &mut hooks)?;
+        let end = branch.omega().last().copied().unwrap_or(f64::NAN);
+        if end.to_bits() != options.omega_stop.to_bits() {
+            let reason = branch.status().name().to_string_lossy();
+            return Err(format!(
+                "the response ends at {} Hz ({reason}), before {} Hz",
+                end / TAU,
+                range.to
+            )
+            .into());
+        }
+        let solved = begin.elapsed();
+        let mut response = Self::collect(branch, range, wanted)?;
+        let first_point = first.unwrap_or(solved);
+        response.times = Times {
+            first_point,
+            curve: solved - first_point,
+            recovery: begin.elapsed() - solved,
+        };
+        Ok(response)
+    }
+
+    fn collect(branch: Branch, range: &Range, wanted: &[usize]) -> Result<Self, Box<dyn Error>> {
+        // Hz to rad/s and back may change the last digit: the frequencies given are kept as given.
+        let given = |omega: f64| {
+            let mut known = [range.from, range.to].into_iter();
+            let found = known.find(|f| (f * TAU).to_bits() == omega.to_bits());
+            found.unwrap_or(omega / TAU)
+        };
+        let curve = branch.omega().iter().enumerate();
+        let points: Vec<Point> = curve
+            .map(|(i, &omega)| point(&branch, i, given(omega), wanted))
+            .collect::<Result<_, _>>()?;
+        let mut at = Vec::new();
+        for (i, &frequency) in range.at.iter().enumerate() {
+            if branch.at(i).is_empty() {
+                return Err(format!("no solution was found at {frequency} Hz").into());
+            }
+            for special in branch.at(i) {
+                at.push(point(&branch, special.point, frequency, wanted)?);
+            }
+        }
+        let maxima = branch.peaks().iter();
+        let maxima: Vec<Point> = maxima
+            .map(|p| point(&branch, p.point, given(p.omega), wanted))
+            .collect::<Result<_, _>>()?;
+        let all = maxima.iter().chain(&points).chain(&at);
+        let peak = all.reduce(|best, p| if p.amplitude() > best.amplitude() { p } else { best });
+        let peak = peak.ok_or("the response has no points")?.clone();
+        Ok(Self {
+            points,
+            peak,
+            at,
+            stalled: branch.status() == Status::StoppedStalled,
+            branch,
+            times: Times::default(),
+        })
+    }
+
+    /// Newton iterations of the points on the curve, those of peaks and frequencies asked for not
+    /// counted.
+    pub fn iterations(&self) -> usize {
+        self.branch.newton_iterations().iter().sum::<f64>() as usize
+    }
+
+    /// The response as JSON; `amplitude` names the amplitude, `names` the degrees of freedom wanted.
+    ///
+    /// # Errors
+    ///
+    /// If a number is not finite.
+    pub fn to_json(&self, amplitude: &str, names: &[&str]) -> Result<Value, Box<dyn Error>> {
+        let one = |point: &Point| point_to_json(point, amplitude, names);
+        let list = |points: &[Point]| points.iter().map(one).collect::<Result<Vec<_>, _>>();
+        let mut object = Map::new();
+        object.insert("points".into(), list(&self.points)?.into());
+        object.insert("peak".into(), one(&self.peak)?);
+        object.insert("at".into(), list(&self.at)?.into());
+        Ok(object.into())
+    }
+}
+
+fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Result<Point, Box<dyn Error>> {
+    let n = branch.ndof();
+    let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
+    branch.harmonics_at(number, &mut all)?;
+    let of = |p: usize| wanted.iter().map(|dof| all[p * n + dof]).collect();
+    Ok(Point {
+        number,
+        frequency,
+        harmonics: branch.carried().iter().map(|&p| (p, of(p))).collect(),
+    })
+}
+
+fn point_to_json(point: &Point, amplitude: &str, names: &[&str]) -> Result<Value, Box<dyn Error>> {
+    let mut harmonics = Map::new();
+    for (dof, &name) in names.iter().enumerate() {
+        let mut of_dof = Map::new();
+        for (p, x) in &point.harmonics {
+            let pair = vec![number(x[dof].re)?, number(x[dof].im)?];
+            of_dof.insert(p.to_string(), pair.into());
+        }
+        harmonics.insert(name.into(), of_dof.into());
+    }
+    let mut object = Map::new();
+    object.insert("frequency_hz".into(), number(point.frequency)?);
+    object.insert(amplitude.into(), number(point.amplitude())?);
+    object.insert("harmonics".into(), harmonics.into());
+    Ok(object.into())
+}
