@@ -3,7 +3,7 @@
 use super::Model;
 use super::spring::Wave;
 use super::structure::MatrixKind;
-use crate::error::{Result, fail};
+use crate::error::{Result, check_memory, fail};
 use crate::linalg::eigen;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -26,6 +26,9 @@ pub struct LinearModes {
     pub shapes: Vec<Complex64>,
 }
 
+/// Most square matrices that [`eigen::generalised`] holds at a time.
+const EIGEN_COPIES: usize = 8;
+
 impl Model {
     /// Undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave
     /// whose sector s + 1 lags. Motion without mass has no mode, so a singular mass matrix gives
@@ -45,6 +48,8 @@ impl Model {
                 structure.sectors()
             );
         }
+        // The eigensolver's matrices are nalgebra's, which ends the process where memory ends.
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
         let stuck = self
             .contacts()
             .iter()
