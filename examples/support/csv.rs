@@ -12,11 +12,7 @@ use std::path::Path;
 /// # Errors
 ///
 /// If a row has another number of columns than the header, or the file cannot be written.
-pub fn write_csv(
-    path: impl AsRef<Path>,
-    header: &[&str],
-    rows: &[Vec<f64>],
-) -> Result<(), Box<dyn Error>> {
+pub fn write_csv(path: impl AsRef<Path>, header: &[&str], rows: &[Vec<f64>]) -> Result<(), Box<dyn Error>> {
     let path = path.as_ref();
     if let Some(row) = rows.iter().position(|row| row.len() != header.len()) {
         return Err(format!("row {row} of {} does not match the header", path.display()).into());

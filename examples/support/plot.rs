@@ -63,11 +63,7 @@ impl Series {
     /// Makes a series from its parts.
     pub fn new(label: impl Into<String>, style: Style, points: Vec<(f64, f64)>) -> Self {
         let label = label.into();
-        Self {
-            label,
-            points,
-            style,
-        }
+        Self { label, points, style }
     }
 }
 
@@ -119,10 +115,7 @@ impl Figure {
         let mut svg = String::new();
         let canvas = SVGBackend::with_string(&mut svg, large);
         self.draw(&Pen::new(canvas, SVG_SCALE, false))?;
-        fs::write(
-            with_suffix(".svg"),
-            svg.replacen(&size(large), &size(SIZE), 1),
-        )?;
+        fs::write(with_suffix(".svg"), svg.replacen(&size(large), &size(SIZE), 1))?;
 
         let large = scaled(PNG_SCALE);
         let mut pixels = vec![255; 3 * large.0 as usize * large.1 as usize];
@@ -153,14 +146,8 @@ impl Figure {
             }
         };
         let entries = legend.iter().map(|l| entry(l.0)).fold(0.0, f64::max);
-        let legend_width = entries
-            .max(pen.width(&self.legend_title, LEGEND_TEXT))
-            .min(330.0);
-        let margin = if legend_width > 0.0 {
-            legend_width + 32.0
-        } else {
-            30.0
-        };
+        let legend_width = entries.max(pen.width(&self.legend_title, LEGEND_TEXT)).min(330.0);
+        let margin = if legend_width > 0.0 { legend_width + 32.0 } else { 30.0 };
         let top = if self.title.is_empty() { 20.0 } else { 50.0 };
         let tick_width = |tick: &(f64, String)| pen.width(&tick.1, TICK_TEXT);
         y.set_ticks(if self.log_y { 12 } else { 8 });
@@ -203,13 +190,7 @@ impl Figure {
         let size = LEGEND_TEXT.min(row * 0.9);
         let mut at = top + row / 2.0;
         if !self.legend_title.is_empty() {
-            pen.text(
-                &self.legend_title,
-                (left, at),
-                LEGEND_TEXT,
-                HPos::Left,
-                right - left,
-            )?;
+            pen.text(&self.legend_title, (left, at), LEGEND_TEXT, HPos::Left, right - left)?;
             at += row;
         }
         for (shape, (label, color)) in legend.iter().enumerate().filter(|l| !l.1.0.is_empty()) {
@@ -244,9 +225,7 @@ impl Figure {
         x.ticks.iter().try_for_each(|t| vertical(t.0, MAJOR))?;
         y.ticks.iter().try_for_each(|t| horizontal(t.0, MAJOR))?;
         let corners = [(x0, y0), (x1, y0), (x1, y1), (x0, y1), (x0, y0)];
-        corners
-            .windows(2)
-            .try_for_each(|side| pen.line(side, FRAME, 1.3))?;
+        corners.windows(2).try_for_each(|side| pen.line(side, FRAME, 1.3))?;
         for (value, label) in &x.ticks {
             let at = across(*value);
             pen.line(&[(at, y1), (at, y1 + 6.0)], FRAME, 1.3)?;
@@ -260,18 +239,7 @@ impl Figure {
         let (middle, height) = (f64::midpoint(x0, x1), f64::from(SIZE.1));
         let width = 2.0 * middle.min(f64::from(SIZE.0) - middle) - 16.0;
         pen.text(&self.title, (middle, 25.0), TITLE_TEXT, HPos::Center, width)?;
-        pen.text(
-            &self.x_label,
-            (middle, height - 20.0),
-            LABEL_TEXT,
-            HPos::Center,
-            width,
-        )?;
-        pen.upright(
-            &self.y_label,
-            (20.0, f64::midpoint(y0, y1)),
-            LABEL_TEXT,
-            height - 30.0,
-        )
+        pen.text(&self.x_label, (middle, height - 20.0), LABEL_TEXT, HPos::Center, width)?;
+        pen.upright(&self.y_label, (20.0, f64::midpoint(y0, y1)), LABEL_TEXT, height - 30.0)
     }
 }

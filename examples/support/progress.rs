@@ -62,26 +62,19 @@ impl Bar {
             String::new()
         };
         let (label, total) = (&self.label, self.total);
-        write_stderr(&format!(
-            "\r\x1b[K{label} [{done}{open}] {steps}/{total}{left}"
-        ));
+        write_stderr(&format!("\r\x1b[K{label} [{done}{open}] {steps}/{total}{left}"));
     }
 
     /// Ends the stage and leaves a line with its total and the time taken.
     pub fn finish(self) {
         let clear = if self.visible { "\r\x1b[K" } else { "" };
         let seconds = self.start.elapsed().as_secs_f64();
-        write_stderr(&format!(
-            "{clear}{}: {} in {seconds:.1} s\n",
-            self.label, self.total
-        ));
+        write_stderr(&format!("{clear}{}: {} in {seconds:.1} s\n", self.label, self.total));
     }
 }
 
 /// Writes to standard error; that it is closed is no reason to stop the program.
 fn write_stderr(text: &str) {
     let mut stderr = std::io::stderr().lock();
-    let _ = stderr
-        .write_all(text.as_bytes())
-        .and_then(|()| stderr.flush());
+    let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }

@@ -33,11 +33,7 @@ impl Axis {
             if log {
                 low = low.max(high - MAX_DECADES);
             }
-            let small = if log {
-                0.1
-            } else {
-                1e-9 * low.abs().max(high.abs())
-            };
+            let small = if log { 0.1 } else { 1e-9 * low.abs().max(high.abs()) };
             let margin = if high - low > small {
                 pad * (high - low)
             } else if log {
@@ -117,10 +113,7 @@ fn linear_ticks(low: f64, high: f64, count: u32) -> Vec<(f64, String)> {
     let power = raw.log10().floor();
     let unit = 10_f64.powf(power);
     let step = [1.0, 2.0, 5.0, 10.0].map(|m| m * unit);
-    let step = step
-        .into_iter()
-        .find(|s| *s >= raw * (1.0 - 1e-9))
-        .unwrap_or(raw);
+    let step = step.into_iter().find(|s| *s >= raw * (1.0 - 1e-9)).unwrap_or(raw);
     let exponent = (step.log10() + 1e-9).floor();
     let largest = low.abs().max(high.abs());
     let plain = (1e-3..1e6).contains(&largest);

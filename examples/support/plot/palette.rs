@@ -36,9 +36,7 @@ pub(super) fn legend(series: &[Series]) -> Vec<(&str, RGBColor)> {
         same.all(|s| s.style == Style::Dashed)
     };
     let dashed: Vec<&str> = labels.iter().copied().filter(|l| is_dashed(l)).collect();
-    let reference = dashed
-        .first()
-        .filter(|_| dashed.len() == 1 && labels.len() > 1);
+    let reference = dashed.first().filter(|_| dashed.len() == 1 && labels.len() > 1);
     let count = labels.len() - usize::from(reference.is_some());
     let mut used = 0;
     let mut color = |label: &str| {

@@ -26,11 +26,7 @@ pub(super) struct Pen<DB: DrawingBackend> {
 impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
     pub(super) fn new(backend: DB, scale: u32, raster: bool) -> Self {
         let (area, scale) = (backend.into_drawing_area(), f64::from(scale));
-        Self {
-            area,
-            scale,
-            raster,
-        }
+        Self { area, scale, raster }
     }
 
     #[allow(clippy::cast_possible_truncation)]
@@ -53,8 +49,7 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
         // The bitmap would get holes where a thick polygon of many corners overlaps itself.
         for side in points.windows(2) {
             self.area.draw(&PathElement::new(side, stroke))?;
-            self.area
-                .draw(&Circle::new(side[1], width / 2, color.filled()))?;
+            self.area.draw(&Circle::new(side[1], width / 2, color.filled()))?;
         }
         Ok(())
     }
@@ -69,9 +64,7 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
     ) -> Outcome {
         let [(x0, y0), (x1, y1)] = frame;
         let inside = |p: &&Point| (x0..=x1).contains(&p.0) && (y0..=y1).contains(&p.1);
-        let mut runs = visible_runs(points, frame)
-            .into_iter()
-            .map(|run| simplify(&run));
+        let mut runs = visible_runs(points, frame).into_iter().map(|run| simplify(&run));
         match style {
             Style::Line => runs.try_for_each(|run| self.line(&run, color, 2.0)),
             Style::Dashed => {
@@ -95,10 +88,7 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
             2 => &[(-5.2, 4.0), (5.2, 4.0), (0.0, -5.5)],
             _ => &[(-5.5, 0.0), (0.0, -5.5), (5.5, 0.0), (0.0, 5.5)],
         };
-        let corners: Vec<_> = corners
-            .iter()
-            .map(|d| self.pixel((x + d.0, y + d.1)))
-            .collect();
+        let corners: Vec<_> = corners.iter().map(|d| self.pixel((x + d.0, y + d.1))).collect();
         Ok(self.area.draw(&Polygon::new(corners, color.filled()))?)
     }
 
@@ -110,22 +100,9 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
     }
 
     /// Writes a text of at most `size` and `width`, centred vertically on `at`.
-    pub(super) fn text(
-        &self,
-        text: &str,
-        at: Point,
-        size: f64,
-        anchor: HPos,
-        width: f64,
-    ) -> Outcome {
+    pub(super) fn text(&self, text: &str, at: Point, size: f64, anchor: HPos, width: f64) -> Outcome {
         let size = self.fit(text, size, width);
-        self.write(
-            text,
-            (at.0, at.1 + self.drop(size)),
-            size,
-            anchor,
-            FontTransform::None,
-        )
+        self.write(text, (at.0, at.1 + self.drop(size)), size, anchor, FontTransform::None)
     }
 
     /// Writes a text upwards, centred on `at`.
@@ -144,17 +121,8 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
         size * if self.raster { 0.2 } else { 0.06 }
     }
 
-    fn write(
-        &self,
-        text: &str,
-        at: Point,
-        size: f64,
-        anchor: HPos,
-        turn: FontTransform,
-    ) -> Outcome {
-        let font = ("sans-serif", size * self.scale)
-            .into_font()
-            .transform(turn);
+    fn write(&self, text: &str, at: Point, size: f64, anchor: HPos, turn: FontTransform) -> Outcome {
+        let font = ("sans-serif", size * self.scale).into_font().transform(turn);
         let style = font.color(&BLACK).pos(Pos::new(anchor, VPos::Center));
         Ok(self.area.draw_text(text, &style, self.pixel(at))?)
     }
@@ -266,9 +234,7 @@ pub(super) fn average(pixels: &[u8], width: usize, scale: usize) -> Vec<u8> {
         for row in band.chunks_exact(3 * width * scale) {
             for (sum, cell) in sums.chunks_exact_mut(3).zip(row.chunks_exact(3 * scale)) {
                 for pixel in cell.chunks_exact(3) {
-                    sum.iter_mut()
-                        .zip(pixel)
-                        .for_each(|(s, p)| *s += usize::from(*p));
+                    sum.iter_mut().zip(pixel).for_each(|(s, p)| *s += usize::from(*p));
                 }
             }
         }
