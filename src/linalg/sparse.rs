@@ -1,6 +1,6 @@
 //! Compressed sparse columns with complex values: the one storage of structural matrices.
 
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_extend, try_push, try_vec};
 use num_complex::Complex64;
 
 /// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
@@ -82,6 +82,23 @@ impl Csc {
             }
         }
         Self::from_triplets(n, n, entries)
+    }
+
+    /// A copy whose memory is asked for fallibly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        const WHAT: &str = "a sparse matrix";
+        let mut copy = Self {
+            rows: self.rows,
+            cols: self.cols,
+            ..Self::default()
+        };
+        try_extend(&mut copy.col_ptr, &self.col_ptr, WHAT)?;
+        try_extend(&mut copy.row_idx, &self.row_idx, WHAT)?;
+        try_extend(&mut copy.values, &self.values, WHAT)?;
+        Ok(copy)
     }
 
     /// Entries of column `j` as (row, value).
