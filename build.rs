@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 6] = ["types", "boundary", "model", "contact", "solve", "results"];
+const SOURCES: [&str; 7] = ["types", "boundary", "model", "contact", "solve", "results", "residual"];
 
 fn main() {
     for path in ["build.rs", "cbindgen.toml", "Cargo.toml", "src/capi", "include/hbvib.h"] {

@@ -669,37 +669,6 @@ hbvib_status hbvib_forced_response(const hbvib_model *model,
                                    const hbvib_hooks *hooks,
                                    hbvib_branch **out);
 
-/// Residual R_h = (K - h^2 omega^2 M + i h omega C) X_h + f_h - F_h of harmonic balance at a point
-/// of the caller, for hosts with a continuation of their own and for tests. Nothing is removed:
-/// harmonics 0 .. H of all degrees of freedom, harmonic after harmonic.
-///
-/// solver       options, of which harmonics and samples count; NULL: the defaults.
-/// omega        angular frequency, >= 0.
-/// x            (H + 1) x ndof complex numbers; the imaginary part of the mean is no unknown.
-/// x_len        complex numbers in it.
-/// r            receives as many; the imaginary part of the mean's rows is that of x.
-/// r_len        complex numbers in it.
-/// jac          receives d R / d X over the pairs (re, im), real, column-major of order
-///              2 (H + 1) ndof; or NULL.
-/// jac_len      doubles in it; 0 with NULL.
-/// d_omega      receives d R / d omega, complex like r; or NULL.
-/// d_omega_len  complex numbers in it; 0 with NULL.
-/// Errors: HBVIB_E_DIMENSION (a length, with the one needed), HBVIB_E_NOT_FINITE,
-/// HBVIB_E_ARGUMENT (options, omega, overlapping arrays, a force beyond the harmonics),
-/// HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
-/// Threads: any number on one model.
-hbvib_status hbvib_forced_residual(const hbvib_model *model,
-                                   const hbvib_solver_options *solver,
-                                   double omega,
-                                   const double *x,
-                                   int64_t x_len,
-                                   double *r,
-                                   int64_t r_len,
-                                   double *jac,
-                                   int64_t jac_len,
-                                   double *d_omega,
-                                   int64_t d_omega_len);
-
 /// Fills a view with nothing in it.
 ///
 /// v          the struct; untouched on error.
@@ -823,6 +792,37 @@ hbvib_status hbvib_branch_at(const hbvib_branch *branch,
 /// out  receives the numbers; fill it by hbvib_reduction_init before; untouched on error.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
 hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
+
+/// Residual R_h = (K - h^2 omega^2 M + i h omega C) X_h + f_h - F_h of harmonic balance at a point
+/// of the caller, for hosts with a continuation of their own and for tests. Nothing is removed:
+/// harmonics 0 .. H of all degrees of freedom, harmonic after harmonic.
+///
+/// solver       options, of which harmonics and samples count; NULL: the defaults.
+/// omega        angular frequency, >= 0.
+/// x            (H + 1) x ndof complex numbers; the imaginary part of the mean is no unknown.
+/// x_len        complex numbers in it.
+/// r            receives as many; the imaginary part of the mean's rows is that of x.
+/// r_len        complex numbers in it.
+/// jac          receives d R / d X over the pairs (re, im), real, column-major of order
+///              2 (H + 1) ndof; or NULL.
+/// jac_len      doubles in it; 0 with NULL.
+/// d_omega      receives d R / d omega, complex like r; or NULL.
+/// d_omega_len  complex numbers in it; 0 with NULL.
+/// Errors: HBVIB_E_DIMENSION (a length, with the one needed), HBVIB_E_NOT_FINITE,
+/// HBVIB_E_ARGUMENT (options, omega, overlapping arrays, a force beyond the harmonics),
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number on one model.
+hbvib_status hbvib_forced_residual(const hbvib_model *model,
+                                   const hbvib_solver_options *solver,
+                                   double omega,
+                                   const double *x,
+                                   int64_t x_len,
+                                   double *r,
+                                   int64_t r_len,
+                                   double *jac,
+                                   int64_t jac_len,
+                                   double *d_omega,
+                                   int64_t d_omega_len);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -97,7 +97,10 @@ fn quiet_panics() {
                     Some(place) => write!(text, "{}:{}: ", place.file(), place.line()),
                     None => Ok(()),
                 };
-                let _ = text.write_str(info.payload_as_str().unwrap_or("panic"));
+                let payload = info.payload();
+                let said = payload.downcast_ref::<&str>().copied();
+                let said = said.or_else(|| payload.downcast_ref::<String>().map(String::as_str));
+                let _ = text.write_str(said.unwrap_or("panic"));
             });
         }));
     });

@@ -14,6 +14,7 @@ pub mod boundary;
 pub mod contact;
 mod handles;
 pub mod model;
+pub mod residual;
 pub mod results;
 mod sized;
 pub mod solve;

@@ -89,6 +89,7 @@ unsafe fn with_matrix<T>(
 }
 
 unsafe fn matrix_view(a: &hbvib_matrix, n: usize, argument: i32) -> Result<MatrixView<'_>> {
+    const NAME: &str = "hbvib_matrix: values";
     check_reserved(a.reserved, argument, "hbvib_matrix")?;
     if usize::try_from(a.rows) != Ok(n) || usize::try_from(a.cols) != Ok(n) {
         return fail!(
@@ -137,7 +138,6 @@ unsafe fn matrix_view(a: &hbvib_matrix, n: usize, argument: i32) -> Result<Matri
             );
         }
     };
-    const NAME: &str = "hbvib_matrix: values";
     let values = match a.scalar {
         0 => Values::Real(unsafe { input(a.values, len, argument, NAME) }?),
         1 => Values::Complex(unsafe { input(a.values.cast(), len, argument, NAME) }?),

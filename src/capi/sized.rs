@@ -85,7 +85,7 @@ pub(super) unsafe fn load<T: Described>(p: *const T, argument: i32) -> Result<T>
     unsafe {
         (&raw mut value)
             .cast::<u8>()
-            .copy_from_nonoverlapping(bytes, size.min(known))
+            .copy_from_nonoverlapping(bytes, size.min(known));
     };
     Ok(value)
 }

@@ -55,9 +55,12 @@ impl Model {
     pub fn try_clone(&self) -> Result<Self> {
         let mut contacts = Vec::new();
         try_extend(&mut contacts, &self.contacts, "the contacts")?;
+        let mut springs = Vec::new();
+        try_extend(&mut springs, &self.springs, "the springs")?;
         Ok(Self {
             structure: self.structure.try_clone()?,
             contacts,
+            springs,
             excitation: self.excitation.try_clone()?,
         })
     }
