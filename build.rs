@@ -5,7 +5,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 7] = ["types", "boundary", "model", "contact", "solve", "results", "residual"];
+const SOURCES: [&str; 8] = [
+    "types", "boundary", "matrix", "model", "contact", "solve", "results", "residual",
+];
 
 fn main() {
     for path in ["build.rs", "cbindgen.toml", "Cargo.toml", "src/capi", "include/hbvib.h"] {

@@ -268,6 +268,16 @@ pub fn try_vec<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
     Ok(v)
 }
 
+/// Whether memory for `len` values could be had at this moment, asked before code that does not
+/// ask fallibly by itself.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn check_memory<T>(len: usize, what: &str) -> Result<()> {
+    let mut v = Vec::<T>::new();
+    v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))
+}
+
 /// Appends `value`, asking fallibly for memory.
 ///
 /// # Errors

@@ -13,6 +13,7 @@
 pub mod boundary;
 pub mod contact;
 mod handles;
+pub mod matrix;
 pub mod model;
 pub mod residual;
 pub mod results;

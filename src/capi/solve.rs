@@ -8,7 +8,7 @@ use super::types::{
     hbvib_solver_options, hbvib_status,
 };
 use crate::analysis;
-use crate::error::{Result, Status, TEXT_CAPACITY, fail};
+use crate::error::{Result, TEXT_CAPACITY, fail};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};

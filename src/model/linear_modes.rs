@@ -3,7 +3,7 @@
 use super::Model;
 use super::spring::Wave;
 use super::structure::MatrixKind;
-use crate::error::{Result, fail};
+use crate::error::{Result, check_memory, fail};
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
 use crate::linalg::sparse::Csc;
@@ -30,6 +30,9 @@ pub struct LinearModes {
 
 /// Degrees of freedom up to which all modes are found by dense algebra.
 const DENSE_UP_TO: usize = 600;
+
+/// Most square matrices that [`eigen::generalised`] holds at a time.
+const EIGEN_COPIES: usize = 8;
 
 impl Model {
     /// The `count` lowest undamped natural modes; see [`Self::linear_modes`]. Large structures are
@@ -63,6 +66,8 @@ impl Model {
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
         let n = self.ndof();
         let (stiffness, mass) = self.pencil(diameter, contacts)?;
+        // The eigensolver's matrices are nalgebra's, which ends the process where memory ends.
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
         let dense = |a: &Csc| {
             let mut d = DMatrix::<Complex64>::zeros(n, n);
             a.add_to_dense(Complex64::ONE, d.as_mut_slice());
