@@ -59,6 +59,12 @@ static TABLE: Mutex<Table> = Mutex::new(Table {
     free: NONE,
 });
 
+/// Where the generations of a slot begin: another number in each copy of the library that a process
+/// has loaded, so that a handle of one copy is none of the other's.
+fn first_generation() -> u32 {
+    1 + ((&raw const TABLE).addr() >> 12 & 0x3F_FFFF) as u32
+}
+
 fn table() -> MutexGuard<'static, Table> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -132,7 +138,7 @@ pub(super) fn insert<T: Kept>(object: T) -> Result<*mut T::Opaque> {
             return Err(Error::out_of_memory("another handle"));
         }
         let slot = Slot {
-            generation: 1,
+            generation: first_generation(),
             users: 0,
             object: Object::Free { next: NONE },
         };
