@@ -4,7 +4,7 @@
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, Reduction};
-use crate::error::{Result, Status, fail, try_extend, try_push, try_vec};
+use crate::error::{Error, Result, Status, fail, try_extend, try_push, try_vec};
 use num_complex::Complex64;
 
 /// A solution beside the curve: a peak, a fold, or one at a frequency asked for.
@@ -38,6 +38,7 @@ pub struct Branch {
     harmonics_used: Vec<f64>,
     slip_fraction: Vec<f64>,
     motion: Vec<f64>,
+    response: Vec<Complex64>,
     peaks: Vec<Special>,
     folds: Vec<Special>,
     at: Vec<Vec<Special>>,
@@ -52,6 +53,8 @@ pub struct Record<'a> {
     pub motion: &'a [f64],
     /// Complex fundamental of the response degree of freedom, in the solver's units.
     pub amplitude: Complex64,
+    /// Carried harmonics of the response degree of freedom, in the solver's units.
+    pub response: &'a [Complex64],
     /// Relative residual.
     pub residual: f64,
     /// Newton iterations.
@@ -85,6 +88,7 @@ impl Branch {
             harmonics_used: Vec::new(),
             slip_fraction: Vec::new(),
             motion: Vec::new(),
+            response: Vec::new(),
             peaks: Vec::new(),
             folds: Vec::new(),
             at: Vec::new(),
@@ -100,19 +104,24 @@ impl Branch {
         let contacts = self.condensed.contacts();
         self.slip_fraction
             .try_reserve(contacts)
-            .map_err(|_| crate::error::Error::out_of_memory(WHAT))?;
+            .map_err(|_| Error::out_of_memory(WHAT))?;
         for v in [
             &mut self.amplitude,
             &mut self.residual,
             &mut self.iterations,
             &mut self.harmonics_used,
         ] {
-            v.try_reserve(1).map_err(|_| crate::error::Error::out_of_memory(WHAT))?;
+            v.try_reserve(1).map_err(|_| Error::out_of_memory(WHAT))?;
         }
+        self.response
+            .try_reserve(record.response.len())
+            .map_err(|_| Error::out_of_memory(WHAT))?;
         try_extend(&mut self.motion, record.motion, WHAT)?;
         // The frequency goes last: it counts the points.
         try_push(&mut self.omega, record.omega, WHAT)?;
         self.amplitude.push(record.amplitude.norm() * self.condensed.length());
+        let length = self.condensed.length();
+        self.response.extend(record.response.iter().map(|x| x * length));
         self.residual.push(record.residual);
         self.iterations.push(record.iterations as f64);
         let highest = self.condensed.set().numbers().last().copied().unwrap_or(0);
@@ -270,6 +279,14 @@ impl Branch {
     #[must_use]
     pub fn reduction(&self) -> &Reduction {
         &self.reduction
+    }
+
+    /// Harmonics of the response degree of freedom at a stored point, one per number in
+    /// [`Self::carried`]; they are at hand without recovering the whole structure.
+    #[must_use]
+    pub fn response_at(&self, point: usize) -> Option<&[Complex64]> {
+        let carried = self.carried().len();
+        self.response.get(point * carried..(point + 1) * carried)
     }
 
     /// Harmonics 0 ..= H of all degrees of freedom at a stored point: (H + 1) × ndof, harmonic by

@@ -89,6 +89,28 @@ impl Status {
         }
     }
 
+    /// What a status without an error says to the user; empty for success and for errors, whose
+    /// sentence is their own.
+    #[must_use]
+    pub const fn sentence(self) -> &'static str {
+        match self {
+            Self::StoppedByCaller => {
+                "stopped by the progress hook or the cancel flag; the points found so far are kept"
+            }
+            Self::StoppedStepTooSmall => {
+                "the step fell below step_min; the points found so far are kept; lower step_min or raise max_newton"
+            }
+            Self::StoppedMaxPoints => "max_points was reached; the points found so far are kept; raise max_points",
+            Self::StoppedMaxHarmonics => {
+                "max_harmonics was reached above the tolerance; the points found so far are kept; raise max_harmonics"
+            }
+            Self::StoppedStalled => {
+                "round-off stopped the residual above tol_residual, or the branch came back to where it began; all points are kept"
+            }
+            _ => "",
+        }
+    }
+
     /// All values, for tables and for turning an integer back into a status.
     pub const ALL: [Self; 23] = [
         Self::Ok,
@@ -244,6 +266,16 @@ pub fn try_vec<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
     v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))?;
     v.resize(len, value);
     Ok(v)
+}
+
+/// Whether memory for `len` values could be had at this moment, asked before code that does not
+/// ask fallibly by itself.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn check_memory<T>(len: usize, what: &str) -> Result<()> {
+    let mut v = Vec::<T>::new();
+    v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))
 }
 
 /// Appends `value`, asking fallibly for memory.

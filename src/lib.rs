@@ -13,9 +13,12 @@
 //! Units are the caller's, consistent; angular frequencies in rad per time unit; amplitudes are
 //! peak values.
 
+#![deny(unsafe_code)]
+
 pub mod aft;
 pub mod analysis;
 pub mod branch;
+pub mod capi;
 pub mod condense;
 pub mod contact;
 pub mod continuation;

@@ -37,6 +37,8 @@ pub struct Evaluation {
     pub offset: Vec<f64>,
     /// Share of the period that is spent slipping, 0 for a stuck contact.
     pub slip_fraction: f64,
+    /// Whether the law is linear at this motion: one piece without anchor, F = k X.
+    pub stuck: bool,
 }
 
 impl Evaluation {
@@ -51,6 +53,7 @@ impl Evaluation {
             jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
             offset: try_vec(m, 0.0, "a contact force")?,
             slip_fraction: 0.0,
+            stuck: false,
         })
     }
 }
@@ -120,6 +123,7 @@ impl Assembly {
         out.jacobian.fill(0.0);
         out.offset.fill(0.0);
         out.slip_fraction = 0.0;
+        out.stuck = false;
     }
 
     /// Adds a piece whose transforms tₙ = (1/2π)∫ e^{−inτ} dτ are given for the n of the
@@ -140,6 +144,7 @@ impl Assembly {
             }
         }
         if piece.offset == 0.0 && anchor.is_none() {
+            out.stuck = transform[0].re > 1.0 - 1e-12;
             return;
         }
         let mean = usize::from(set.has_mean());

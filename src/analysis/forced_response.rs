@@ -3,16 +3,18 @@
 use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
+use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::events::{Event, Locator};
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
-use crate::continuation::{Advance, Continuation, Point, Settings};
+use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel, Progress};
+use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
+use crate::problem::Problem;
 use crate::problem::forced::Forced;
-use crate::problem::{Linearisation, Problem};
 use num_complex::Complex64;
 
 /// Follows the periodic response of `model` to its forces from `range.omega_start` to
@@ -50,7 +52,13 @@ pub fn forced_response(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let mut problem = Forced::new(&condensed, response, solver.samples, given)?;
+    let mut problem = Forced::new(
+        &condensed,
+        response,
+        (range.omega_start, range.omega_stop),
+        solver.samples,
+        given,
+    )?;
     let reduction = condensed.reduction(model, solver);
     let branch = Branch::new(condensed.clone(), reduction, solver.samples, solver.harmonics, response);
     let mut follower = Follower {
@@ -59,7 +67,8 @@ pub fn forced_response(
         range: *range,
         max_points: solver.max_points,
         specials: Vec::new(),
-        scratch: Linearisation::new(problem.size())?,
+        corrector: Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?,
+        response: try_vec(condensed.blocks().len(), Complex64::ZERO, "the response")?,
         stalled: false,
     };
     let status = follower.run(&mut problem, hooks)?;
@@ -72,8 +81,9 @@ struct Follower<'a> {
     settings: Settings,
     range: ForcedOptions<'a>,
     max_points: usize,
-    specials: Vec<(SpecialKind, Point, Vec<f64>)>,
-    scratch: Linearisation,
+    specials: Vec<Kept>,
+    corrector: Corrector,
+    response: Vec<Complex64>,
     stalled: bool,
 }
 
@@ -125,7 +135,9 @@ impl Follower<'_> {
     /// Stores a point of the curve; the problem was last evaluated there.
     fn keep(&mut self, problem: &Forced<'_>, point: &Point) -> Result<()> {
         self.stalled |= point.stalled;
-        self.branch.push_curve(&record(point, problem.slip_fractions()))
+        problem.response(point.unknowns(), &mut self.response);
+        self.branch
+            .push_curve(&record(point, &self.response, problem.slip_fractions()))
     }
 
     fn report(&self, hooks: &mut Hooks<'_>, point: &Point) -> bool {
@@ -195,17 +207,47 @@ impl Follower<'_> {
         Ok(())
     }
 
-    fn keep_special(&mut self, problem: &mut Forced<'_>, kind: SpecialKind, point: Point) -> Result<()> {
-        // The contact state is that of the point last evaluated.
-        problem.evaluate(point.unknowns(), point.parameter(), &mut self.scratch)?;
-        let shares = problem.slip_fractions().to_vec();
-        try_push(&mut self.specials, (kind, point, shares), "the special points")
+    /// Keeps a special point, solved once more at its frequency with the flexibility factorised
+    /// there: along the sweep it may have been interpolated.
+    fn keep_special(&mut self, problem: &mut Forced<'_>, kind: SpecialKind, mut point: Point) -> Result<()> {
+        let n = point.unknowns().len();
+        let p = point.parameter();
+        let metric = Metric::along(norm(point.unknowns()), &self.settings);
+        let mut row = try_vec(n + 1, 0.0, "the special points")?;
+        row[n] = 1.0;
+        let mut v = point.v.clone();
+        // At a fold the solution at a fixed frequency is not isolated.
+        let outcome = if matches!(kind, SpecialKind::Fold) {
+            Ok(Outcome::Failed)
+        } else {
+            problem.set_pointwise(true);
+            let outcome = self.corrector.correct(problem, &mut v, &row, metric, true, None);
+            problem.set_pointwise(false);
+            outcome
+        };
+        if let Outcome::Converged(corrected) = outcome? {
+            v[n] = p;
+            point.v = v;
+            point.amplitude = corrected.amplitude;
+            point.residual = corrected.residual;
+        } else {
+            self.corrector.evaluate(problem, &point.v)?;
+        }
+        problem.response(point.unknowns(), &mut self.response);
+        let kept = Kept {
+            kind,
+            response: self.response.clone(),
+            slip_fractions: problem.slip_fractions().to_vec(),
+            point,
+        };
+        try_push(&mut self.specials, kept, "the special points")
     }
 
     /// Numbers the special points after the curve.
     fn finish(mut self, status: Status) -> Result<Branch> {
-        for (kind, point, shares) in &self.specials {
-            self.branch.push_special(*kind, &record(point, shares))?;
+        for kept in &self.specials {
+            let record = record(&kept.point, &kept.response, &kept.slip_fractions);
+            self.branch.push_special(kept.kind, &record)?;
         }
         let stalled = status == Status::Ok && self.stalled;
         self.branch
@@ -214,11 +256,20 @@ impl Follower<'_> {
     }
 }
 
-fn record<'a>(point: &'a Point, slip_fractions: &'a [f64]) -> Record<'a> {
+/// A special point until the curve is complete.
+struct Kept {
+    kind: SpecialKind,
+    point: Point,
+    response: Vec<Complex64>,
+    slip_fractions: Vec<f64>,
+}
+
+fn record<'a>(point: &'a Point, response: &'a [Complex64], slip_fractions: &'a [f64]) -> Record<'a> {
     Record {
         omega: point.parameter(),
         motion: point.unknowns(),
         amplitude: point.amplitude,
+        response,
         residual: point.residual,
         iterations: point.iterations,
         slip_fractions,

@@ -4,9 +4,10 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use super::Condensed;
-use crate::error::{Result, try_vec};
-use crate::linalg::lu::Lu;
+use super::{Condensed, HarmonicBlock};
+use crate::error::{Result, fail, try_push, try_vec};
+use crate::linalg::factor::Factor;
+use crate::linalg::sparse::Csc;
 use crate::model::spring::Row;
 use num_complex::Complex64;
 
@@ -37,7 +38,9 @@ impl Table {
 
 /// Memory for factorising Z_κ of one harmonic after the other.
 pub struct Workspace {
-    lu: Lu<Complex64>,
+    factor: Factor,
+    /// Z_κ per harmonic.
+    z: Vec<Csc>,
     response: Option<usize>,
     /// Z⁻¹ B, ndof rows.
     columns: Vec<Complex64>,
@@ -55,11 +58,19 @@ impl Workspace {
     pub fn new(condensed: &Condensed, response: Option<usize>) -> Result<Self> {
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
+        let mut z = Vec::new();
+        for block in condensed.blocks() {
+            try_push(&mut z, block.reference.clone(), "the dynamic stiffness")?;
+        }
+        let Some(first) = condensed.blocks().first() else {
+            return fail!(Internal, "no harmonic is carried");
+        };
         Ok(Self {
-            lu: Lu::new(n)?,
+            factor: Factor::new(&first.reference, outputs)?,
+            z,
             response,
             columns: try_vec(n.saturating_mul(outputs), Complex64::ZERO, "the contact flexibility")?,
-            rows: try_vec(n.saturating_mul(outputs), Complex64::ZERO, "the contact flexibility")?,
+            rows: Vec::new(),
             product: try_vec(n, Complex64::ZERO, "the contact flexibility")?,
             table: Table::new(condensed.coordinates())?,
         })
@@ -68,28 +79,17 @@ impl Workspace {
     /// Factors Z_κ of the i-th carried harmonic at `omega`.
     fn factor(&mut self, condensed: &Condensed, i: usize, omega: f64) -> Result<()> {
         let block = &condensed.blocks()[i];
-        let n = condensed.ndof();
         let hw = block.number as f64 * omega;
-        let z = self.lu.matrix();
-        z.fill(Complex64::ZERO);
-        block.stiffness.add_to_dense(Complex64::ONE, z);
-        block.mass.add_to_dense((-hw * hw).into(), z);
-        block.damping.add_to_dense(Complex64::new(0.0, hw), z);
-        for (c, row) in block.rows.iter().enumerate() {
-            let kappa = condensed.kappa(c, i);
-            for &(p, a) in row.iter().flatten() {
-                for &(q, b) in row.iter().flatten() {
-                    z[q * n + p] += a.conj() * kappa * b;
-                }
-            }
+        let z = &mut self.z[i];
+        let terms = block.reference.values.iter().zip(&block.damping).zip(&block.mass);
+        for (z, ((k, c), m)) in z.values.iter_mut().zip(terms) {
+            *z = k + Complex64::new(-hw * c.im, hw * c.re) - hw * hw * m;
         }
-        self.lu
-            .factor()
-            .map_err(|e| e.at(format_args!("harmonic {} at angular frequency {omega}", block.number)))
+        self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega))
     }
 
     /// Fills the columns Z⁻¹ B.
-    fn solve_columns(&mut self, condensed: &Condensed, i: usize) {
+    fn solve_columns(&mut self, condensed: &Condensed, i: usize, omega: f64) -> Result<()> {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let coordinates = condensed.coordinates();
@@ -100,44 +100,66 @@ impl Workspace {
             }
         }
         self.columns[coordinates * n..].copy_from_slice(&block.force);
-        for column in self.columns.chunks_exact_mut(n) {
-            self.lu.solve(column);
-        }
+        self.factor
+            .solve(&mut self.columns, false)
+            .map_err(|e| at_harmonic(e, block, omega))
     }
 
-    /// Evaluates H and ∂H/∂ω of the i-th carried harmonic at `omega`.
+    /// Evaluates H of the i-th carried harmonic at `omega`, and ∂H/∂ω where `slopes` are wanted.
     ///
     /// # Errors
     /// `Singular` naming the harmonic, at an undamped resonance that no contact feels.
-    pub fn evaluate(&mut self, condensed: &Condensed, i: usize, omega: f64) -> Result<&Table> {
+    pub fn evaluate(&mut self, condensed: &Condensed, i: usize, omega: f64, slopes: bool) -> Result<&Table> {
         self.factor(condensed, i, omega)?;
-        self.solve_columns(condensed, i);
+        self.solve_columns(condensed, i, omega)?;
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
         let response: Row = [self.response.map(|dof| (dof, Complex64::ONE)), None];
-        self.rows.fill(Complex64::ZERO);
         let rows = block.rows.iter().chain(core::iter::once(&response));
-        for (column, row) in self.rows.chunks_exact_mut(n).zip(rows.clone()) {
+        for (column, table) in self
+            .columns
+            .chunks_exact(n)
+            .zip(self.table.value.chunks_exact_mut(outputs))
+        {
+            for (value, row) in table.iter_mut().zip(rows.clone()) {
+                *value = row.iter().flatten().map(|&(p, a)| a * column[p]).sum();
+            }
+        }
+        if !slopes {
+            self.table.slope.fill(Complex64::ZERO);
+            return Ok(&self.table);
+        }
+        if self.rows.is_empty() {
+            self.rows = try_vec(self.columns.len(), Complex64::ZERO, "the contact flexibility")?;
+        }
+        self.rows.fill(Complex64::ZERO);
+        for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
             for &(p, a) in row.iter().flatten() {
                 column[p] += a;
             }
-            self.lu.solve_transposed(column);
         }
+        self.factor
+            .solve(&mut self.rows, true)
+            .map_err(|e| at_harmonic(e, block, omega))?;
         let h = block.number as f64;
-        for (j, column) in self.columns.chunks_exact(n).enumerate() {
+        for (column, table) in self
+            .columns
+            .chunks_exact(n)
+            .zip(self.table.slope.chunks_exact_mut(outputs))
+        {
             self.product.fill(Complex64::ZERO);
-            block
-                .mass
-                .multiply_add((-2.0 * h * h * omega).into(), column, &mut self.product);
-            block
-                .damping
-                .multiply_add(Complex64::new(0.0, h), column, &mut self.product);
-            for (k, (row, solved)) in rows.clone().zip(self.rows.chunks_exact(n)).enumerate() {
-                let at = j * outputs + k;
-                self.table.value[at] = row.iter().flatten().map(|&(p, a)| a * column[p]).sum();
-                let slope: Complex64 = solved.iter().zip(&self.product).map(|(a, b)| a * b).sum();
-                self.table.slope[at] = -slope;
+            let pattern = &block.reference;
+            for (j, &x) in column.iter().enumerate() {
+                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                    let (c, m) = (block.damping[at], block.mass[at]);
+                    let slope = Complex64::new(-h * c.im, h * c.re) - 2.0 * h * h * omega * m;
+                    self.product[pattern.row_idx[at]] += slope * x;
+                }
+            }
+            for (slope, solved) in table.iter_mut().zip(self.rows.chunks_exact(n)) {
+                let sum: Complex64 = solved.iter().zip(&self.product).map(|(a, b)| a * b).sum();
+                *slope = -sum;
             }
         }
         Ok(&self.table)
@@ -172,7 +194,10 @@ impl Workspace {
                 x[p] -= a.conj() * w;
             }
         }
-        self.lu.solve(x);
-        Ok(())
+        self.factor.solve(x, false).map_err(|e| at_harmonic(e, block, omega))
     }
+}
+
+fn at_harmonic(e: crate::error::Error, block: &HarmonicBlock, omega: f64) -> crate::error::Error {
+    e.at(format_args!("harmonic {} at angular frequency {omega}", block.number))
 }

@@ -10,12 +10,14 @@
 //! are singular. The whole motion follows as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
 pub mod flexibility;
+pub mod interpolation;
+pub mod tables;
 
 use crate::contact::Law;
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, Wave, relative_row};
 use crate::model::structure::MatrixKind;
@@ -23,17 +25,40 @@ use crate::options::SolverOptions;
 use flexibility::Workspace;
 use num_complex::Complex64;
 
+/// Unknowns above which it pays to look at the contacts from the stuck structure.
+const STUCK_ABOVE: usize = 64;
+
+/// The reference stiffness κ of the contacts. Solutions do not depend on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reference {
+    /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, damped structure or not.
+    Complex,
+    /// kt: contacts that stick drop out of Newton's method. The poles are the resonances of the
+    /// stuck structure, so this is for damped structures.
+    Stuck,
+}
+
+impl Reference {
+    fn kappa(self, stiffness: f64, number: usize) -> Complex64 {
+        match self {
+            Self::Stuck => stiffness.into(),
+            Self::Complex if number == 0 => (0.5 * stiffness).into(),
+            Self::Complex => Complex64::new(0.5 * stiffness, 0.5 * stiffness),
+        }
+    }
+}
+
 /// What one harmonic sees of the structure.
 #[derive(Clone, Debug)]
 pub struct HarmonicBlock {
     /// Harmonic number h.
     pub number: usize,
-    /// K_h, with the springs of contacts that never slip.
-    pub stiffness: Csc,
-    /// C_h
-    pub damping: Csc,
-    /// M_h
-    pub mass: Csc,
+    /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
+    pub reference: Csc,
+    /// C_h at the entries of the pattern.
+    pub damping: Vec<Complex64>,
+    /// M_h at the entries of the pattern.
+    pub mass: Vec<Complex64>,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Rows of W, one per relative coordinate.
@@ -60,7 +85,9 @@ pub struct Condensed {
     length: f64,
     blocks: Vec<HarmonicBlock>,
     laws: Vec<PlacedLaw>,
-    reference: Vec<f64>,
+    /// Sum of the contact stiffnesses per coordinate.
+    stiffness: Vec<f64>,
+    reference: Reference,
     contacts: usize,
     never_slipping: usize,
     inert: usize,
@@ -137,14 +164,21 @@ impl Condensed {
             options.keep_even_harmonics,
         )?;
         let (coordinate_of, representatives) = gather(model, &active)?;
+        let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
+        for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
+            stiffness[coordinate] += model.contacts()[contact].kt;
+        }
+        let unknowns = representatives.len() * set.packed_len();
+        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() {
+            Reference::Stuck
+        } else {
+            Reference::Complex
+        };
         let mut blocks = Vec::new();
         for &number in set.numbers() {
-            let block = harmonic_block(model, number, &never_slipping, &representatives)?;
+            let kappa = |c: usize| reference.kappa(stiffness[c], number);
+            let block = harmonic_block(model, number, &never_slipping, &representatives, kappa)?;
             try_push(&mut blocks, block, "the matrices per harmonic")?;
-        }
-        let mut reference = try_vec(representatives.len(), 0.0, "the contacts")?;
-        for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
-            reference[coordinate] += model.contacts()[contact].kt;
         }
         let mut condensed = Self {
             set,
@@ -152,6 +186,7 @@ impl Condensed {
             length: 1.0,
             blocks,
             laws: Vec::new(),
+            stiffness,
             reference,
             contacts: model.contacts().len(),
             never_slipping: never_slipping.len(),
@@ -176,7 +211,7 @@ impl Condensed {
         let mut workspace = Workspace::new(self, None)?;
         let mut motion = 0.0_f64;
         for i in 0..self.blocks.len() {
-            workspace.evaluate(self, i, omega)?;
+            workspace.evaluate(self, i, omega, false)?;
             motion = motion.max(workspace.largest_motion());
         }
         let scale = power_of_two(motion);
@@ -234,7 +269,7 @@ impl Condensed {
     /// Number of relative coordinates.
     #[must_use]
     pub fn coordinates(&self) -> usize {
-        self.reference.len()
+        self.stiffness.len()
     }
 
     /// Number of contacts in the model, the removed ones included.
@@ -246,8 +281,13 @@ impl Condensed {
     /// Reference stiffness κ of a coordinate in the i-th carried harmonic.
     #[must_use]
     pub fn kappa(&self, coordinate: usize, i: usize) -> Complex64 {
-        let half = 0.5 * self.reference[coordinate];
-        Complex64::new(half, if self.blocks[i].number == 0 { 0.0 } else { half })
+        self.reference.kappa(self.stiffness[coordinate], self.blocks[i].number)
+    }
+
+    /// The reference stiffness that was chosen.
+    #[must_use]
+    pub fn reference(&self) -> Reference {
+        self.reference
     }
 
     /// What was removed.
@@ -298,6 +338,7 @@ fn harmonic_block(
     number: usize,
     never_slipping: &[usize],
     representatives: &[usize],
+    kappa: impl Fn(usize) -> Complex64,
 ) -> Result<HarmonicBlock> {
     let structure = model.structure();
     let n = model.ndof();
@@ -309,11 +350,33 @@ fn harmonic_block(
         let phase = structure.phase(number, contact.sector_offset);
         *r = relative_row(contact.dof_a, contact.dof_b, phase);
     }
+    let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
+    let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
+    let mut references = Vec::new();
+    for (c, row) in rows.iter().enumerate() {
+        for &(p, a) in row.iter().flatten() {
+            for &(q, b) in row.iter().flatten() {
+                try_push(&mut references, (p, q, a.conj() * kappa(c) * b), "the contacts")?;
+            }
+        }
+    }
+    let references = Csc::from_triplets(n, n, references)?;
+    // Zero factors add the pattern alone.
+    let (one, zero) = (Complex64::ONE, Complex64::ZERO);
+    let reference = Csc::sum(
+        n,
+        &[
+            (one, &stiffness, Form::Plain),
+            (one, &references, Form::Plain),
+            (zero, &damping, Form::Plain),
+            (zero, &mass, Form::Plain),
+        ],
+    )?;
     Ok(HarmonicBlock {
         number,
-        stiffness,
-        damping: structure.wave_matrix(MatrixKind::Damping, number)?,
-        mass: structure.wave_matrix(MatrixKind::Mass, number)?,
+        damping: damping.aligned(&reference)?,
+        mass: mass.aligned(&reference)?,
+        reference,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         rows,
     })

@@ -23,6 +23,8 @@ pub struct Corrected {
     pub slope: Complex64,
     /// Unit tangent in the metric used, given in unscaled numbers, pointing along the row.
     pub tangent: Vec<f64>,
+    /// Whether det [J r; tangentᵀ] is positive.
+    pub positive: bool,
 }
 
 /// How a correction ended.
@@ -104,7 +106,7 @@ impl Corrector {
             }
             self.newton_step();
             let size = norm(&self.step);
-            let round_off = size <= ROUND_OFF * (1.0 + metric.norm(v));
+            let round_off = self.is_round_off(v, metric);
             if residual <= self.tolerance || round_off {
                 return Ok(Outcome::Converged(self.finish(problem, v, metric, iteration, residual)));
             }
@@ -127,17 +129,37 @@ impl Corrector {
         Ok(Outcome::Failed)
     }
 
+    /// Evaluates the problem at `v`, so that what it tells of itself holds there.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn evaluate(&mut self, problem: &mut dyn Problem, v: &[f64]) -> Result<()> {
+        let n = v.len() - 1;
+        problem.evaluate(&v[..n], v[n], &mut self.at)
+    }
+
     /// ‖R‖ over the problem's scale; 0 where both vanish.
     fn relative_residual(&self) -> f64 {
         let r = norm(&self.at.residual);
         if r == 0.0 { 0.0 } else { r / self.at.scale }
     }
 
+    /// Whether the Newton step at hand is round-off of `v`. The metric does not measure that: its
+    /// unit may be far above unknowns that were large elsewhere on the branch.
+    fn is_round_off(&self, v: &[f64], metric: Metric) -> bool {
+        let n = v.len() - 1;
+        norm(&self.step[..n]) * metric.u <= ROUND_OFF * norm(&v[..n])
+            && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p)
+    }
+
     fn factor(&mut self, metric: Metric, row: &[f64]) -> Result<bool> {
-        tolerate(
-            self.lu
-                .factor(&self.at.jacobian, &self.at.d_parameter, metric.u, metric.p, row),
-        )
+        tolerate(self.lu.factor(
+            &self.at.jacobian,
+            &self.at.d_parameter,
+            &self.at.active,
+            (metric.u, metric.p),
+            row,
+        ))
     }
 
     /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns.
@@ -196,14 +218,7 @@ impl Corrector {
         metric.unscale(&mut tangent);
         let (at_residual, correction) = problem.observe(&v[..n], &tangent);
         metric.add(v, 1.0, &self.step);
-        self.step.fill(0.0);
-        self.step[n] = 1.0;
-        self.lu.solve(&mut self.step);
-        let length = norm(&self.step);
-        for (t, s) in tangent.iter_mut().zip(&self.step) {
-            *t = s / length;
-        }
-        metric.unscale(&mut tangent);
+        self.tangent(metric, &mut tangent);
         let (_, slope) = problem.observe(&v[..n], &tangent);
         Corrected {
             iterations,
@@ -212,7 +227,43 @@ impl Corrector {
             amplitude: at_residual + correction,
             slope,
             tangent,
+            positive: self.lu.is_positive(),
         }
+    }
+
+    /// Unit tangent from the factors at hand, in unscaled numbers.
+    fn tangent(&mut self, metric: Metric, tangent: &mut [f64]) {
+        let n = self.step.len() - 1;
+        self.step.fill(0.0);
+        self.step[n] = 1.0;
+        self.lu.solve(&mut self.step);
+        let length = norm(&self.step);
+        for (t, s) in tangent.iter_mut().zip(&self.step) {
+            *t = s / length;
+        }
+        metric.unscale(tangent);
+    }
+
+    /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled
+    /// into `tangent`, pointing along the row. Returns whether det [J r; tangentᵀ] is positive;
+    /// `None` where the matrix is singular.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn direction_at(
+        &mut self,
+        problem: &mut dyn Problem,
+        v: &[f64],
+        row: &[f64],
+        metric: Metric,
+        tangent: &mut [f64],
+    ) -> Result<Option<bool>> {
+        let n = v.len() - 1;
+        if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? || !self.factor(metric, row)? {
+            return Ok(None);
+        }
+        self.tangent(metric, tangent);
+        Ok(Some(self.lu.is_positive()))
     }
 }
 

@@ -103,6 +103,8 @@ pub struct Point {
     pub step: f64,
     /// Round-off stopped the residual above the tolerance.
     pub stalled: bool,
+    /// Whether det [J r; tangentᵀ] is positive: the sense of a branch, which corners keep.
+    pub positive: bool,
 }
 
 impl Point {
@@ -118,6 +120,7 @@ impl Point {
             iterations: corrected.iterations,
             step,
             stalled: corrected.stalled,
+            positive: corrected.positive,
         }
     }
 
@@ -138,6 +141,7 @@ impl Point {
             *t = -*t;
         }
         self.slope = -self.slope;
+        self.positive = !self.positive;
     }
 }
 
@@ -190,6 +194,12 @@ pub struct Continuation {
 
 /// Cosine of the largest turn of the branch within one step.
 const STRAIGHT: f64 = 0.5;
+
+/// Step below which a failure counts as a corner of the branch.
+const CORNER_STEP: f64 = 1e-6;
+
+/// Least cosine between the branch beyond a corner and its direction as predicted there.
+const ALONG: f64 = 0.9;
 
 /// Motions below this share of the largest met so far no longer refine the metric.
 const FLOOR: f64 = 1e-2;
@@ -278,12 +288,68 @@ impl Continuation {
                     }
                 }
                 Attempt::Failed => {
+                    if length <= CORNER_STEP {
+                        if let Some(point) = self.turn_corner(problem, metric, length, cancelled)? {
+                            return Ok(self.accept(point, None));
+                        }
+                    }
                     if !self.steps.failed() {
                         return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
                     }
                 }
             }
         }
+    }
+
+    /// The next point beyond a corner of the branch that lies within `step`.
+    ///
+    /// Where a contact begins to slip the residual has a kink, and the branch may turn there by any
+    /// angle, back in the parameter too. The Jacobian just beyond gives the new direction, and the
+    /// sign of the bordered determinant, which a path through a piecewise smooth map keeps, its
+    /// sense (Allgower & Georg, ch. 15).
+    fn turn_corner(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        step: f64,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>> {
+        let n = self.row.len() - 1;
+        let mut v = self.current.v.clone();
+        metric.unit(&self.current.tangent, &mut self.row);
+        metric.add(&mut v, step, &self.row);
+        let found = self
+            .corrector
+            .direction_at(problem, &v, &self.row, metric, &mut self.scratch)?;
+        let Some(positive) = found else { return Ok(None) };
+        metric.unit(&self.scratch, &mut self.row);
+        if positive != self.current.positive {
+            for r in &mut self.row {
+                *r = -*r;
+            }
+        }
+        for factor in [2.0, 8.0, 32.0] {
+            let length = factor * step;
+            v.copy_from_slice(&self.current.v);
+            metric.add(&mut v, length, &self.row);
+            let outcome = self
+                .corrector
+                .correct(problem, &mut v, &self.row, metric, false, cancelled)?;
+            let Outcome::Converged(corrected) = outcome else {
+                continue;
+            };
+            let mut point = Point::new(v.clone(), corrected, length);
+            if point.positive != self.current.positive {
+                point.reverse();
+            }
+            metric.unit(&point.tangent, &mut self.scratch);
+            let along: f64 = self.scratch.iter().zip(&self.row).map(|(a, b)| a * b).sum();
+            let near = metric.distance(&point.v, &self.current.v) <= 3.0 * length;
+            if along >= ALONG && near && self.overshoot(point.v[n]).is_none() {
+                return Ok(Some(point));
+            }
+        }
+        Ok(None)
     }
 
     fn accept(&mut self, point: Point, fixed: Option<f64>) -> Advance {

@@ -1,13 +1,26 @@
 //! The bordered system [J r; tᵀ] of arc-length continuation: one factorisation serves the Newton
 //! step and the next tangent.
+//!
+//! Unknowns whose column of J is that of the identity (contacts that stick, seen from the stuck
+//! structure) are eliminated first: x_t = b_t − J_ta x_a − r_t x_p. What remains couples the others
+//! and the parameter.
 
 use super::lu::Lu;
-use crate::error::Result;
+use crate::error::{Result, try_vec};
 
 /// LU factors of the (n + 1) × (n + 1) matrix [J r; tᵀ].
-#[derive(Clone, Debug)]
 pub struct Bordered {
     lu: Lu<f64>,
+    n: usize,
+    /// Unknowns that are solved for; the others have identity columns.
+    active: Vec<usize>,
+    eliminated: Vec<usize>,
+    /// Rows of the eliminated unknowns over the active ones and the parameter.
+    rest: Vec<f64>,
+    /// Border of the eliminated unknowns.
+    border: Vec<f64>,
+    u_scale: f64,
+    reduced: Vec<f64>,
 }
 
 impl Bordered {
@@ -16,32 +29,137 @@ impl Bordered {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
-        Ok(Self { lu: Lu::new(n + 1)? })
+        const WHAT: &str = "the bordered system";
+        // Eliminated times active unknowns is at most (n/2)·(n/2 + 1).
+        let rest = (n / 2 + 1).saturating_mul(n / 2 + 2);
+        let mut bordered = Self {
+            lu: Lu::new(n + 1, 1)?,
+            n,
+            active: try_vec(n, 0, WHAT)?,
+            eliminated: try_vec(n, 0, WHAT)?,
+            rest: try_vec(rest, 0.0, WHAT)?,
+            border: try_vec(n, 0.0, WHAT)?,
+            u_scale: 1.0,
+            reduced: try_vec(n + 1, 0.0, WHAT)?,
+        };
+        bordered.rest.clear();
+        Ok(bordered)
     }
 
     /// Factors [J·u_scale, r·p_scale; row] with J (n × n, column-major) and the column r.
+    /// `is_active` says of each unknown whether its column of J differs from the identity's.
     ///
     /// # Errors
     /// `Singular`.
-    pub fn factor(&mut self, jacobian: &[f64], column: &[f64], u_scale: f64, p_scale: f64, row: &[f64]) -> Result<()> {
-        let m = self.lu.order();
-        let n = m - 1;
-        let a = self.lu.matrix();
-        for j in 0..n {
-            for i in 0..n {
-                a[j * m + i] = jacobian[j * n + i] * u_scale;
+    pub fn factor(
+        &mut self,
+        jacobian: &[f64],
+        column: &[f64],
+        is_active: &[bool],
+        (u_scale, p_scale): (f64, f64),
+        row: &[f64],
+    ) -> Result<()> {
+        let n = self.n;
+        self.active.clear();
+        self.eliminated.clear();
+        for (k, &active) in is_active.iter().enumerate() {
+            if active {
+                self.active.push(k);
+            } else {
+                self.eliminated.push(k);
             }
-            a[j * m + n] = row[j];
         }
-        for i in 0..n {
-            a[n * m + i] = column[i] * p_scale;
+        self.u_scale = u_scale;
+        let m = self.active.len() + 1;
+        self.lu.set_order(m);
+        let a = self.lu.matrix();
+        self.border.clear();
+        self.border.extend(self.eliminated.iter().map(|&t| row[t]));
+        self.rest.clear();
+        for (j, &q) in self.active.iter().enumerate() {
+            let from = &jacobian[q * n..(q + 1) * n];
+            let to = &mut a[j * m..(j + 1) * m];
+            for (x, &p) in to.iter_mut().zip(&self.active) {
+                *x = from[p] * u_scale;
+            }
+            let begin = self.rest.len();
+            self.rest.extend(self.eliminated.iter().map(|&t| from[t] * u_scale));
+            to[m - 1] = row[q] - dot(&self.border, &self.rest[begin..]) / u_scale;
         }
-        a[n * m + n] = row[n];
+        let to = &mut a[(m - 1) * m..];
+        for (x, &p) in to.iter_mut().zip(&self.active) {
+            *x = column[p] * p_scale;
+        }
+        let begin = self.rest.len();
+        self.rest.extend(self.eliminated.iter().map(|&t| column[t] * p_scale));
+        to[m - 1] = row[n] - dot(&self.border, &self.rest[begin..]) / u_scale;
         self.lu.factor()
     }
 
+    /// Whether the determinant of the factored matrix is positive. With t the solution for
+    /// (0, …, 0, 1) that of [J r; tᵀ] has the same sign.
+    #[must_use]
+    pub fn is_positive(&self) -> bool {
+        self.lu.is_positive()
+    }
+
     /// Solves in place for a right-hand side of n + 1 numbers.
-    pub fn solve(&self, b: &mut [f64]) {
-        self.lu.solve(b);
+    pub fn solve(&mut self, b: &mut [f64]) {
+        let n = self.n;
+        let m = self.active.len() + 1;
+        let x = &mut self.reduced[..m];
+        for (x, &p) in x.iter_mut().zip(&self.active) {
+            *x = b[p];
+        }
+        let known: f64 = self.border.iter().zip(&self.eliminated).map(|(r, &t)| r * b[t]).sum();
+        x[m - 1] = b[n] - known / self.u_scale;
+        self.lu.solve(x);
+        let count = self.eliminated.len();
+        for (j, &xj) in x.iter().enumerate() {
+            for (&t, r) in self.eliminated.iter().zip(&self.rest[j * count..(j + 1) * count]) {
+                b[t] -= r * xj;
+            }
+        }
+        for &t in &self.eliminated {
+            b[t] /= self.u_scale;
+        }
+        for (&xj, &p) in x.iter().zip(&self.active) {
+            b[p] = xj;
+        }
+        b[n] = x[m - 1];
+    }
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(x, y)| x * y).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eliminating_identity_columns_changes_nothing() {
+        let n = 5;
+        let is_active = [true, false, true, false, false];
+        let mut jacobian: Vec<f64> = (0..n * n).map(|k| (k as f64 * 1.7 + 0.3).sin()).collect();
+        for (k, _) in is_active.iter().enumerate().filter(|(_, a)| !**a) {
+            for i in 0..n {
+                jacobian[k * n + i] = f64::from(u8::from(i == k));
+            }
+        }
+        let column: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5).cos()).collect();
+        let row: Vec<f64> = (0..=n).map(|k| (k as f64 * 0.9 + 0.2).cos()).collect();
+        let rhs: Vec<f64> = (0..=n).map(|k| (k as f64 * 2.1).sin() + 1.0).collect();
+        let solve = |active: &[bool]| {
+            let mut bordered = Bordered::new(n).unwrap();
+            bordered.factor(&jacobian, &column, active, (0.7, 3.0), &row).unwrap();
+            let mut b = rhs.clone();
+            bordered.solve(&mut b);
+            b
+        };
+        for (a, b) in solve(&is_active).iter().zip(solve(&[true; 5])) {
+            assert!((a - b).abs() < 1e-13);
+        }
     }
 }

@@ -1,11 +1,18 @@
 //! LU factorisation with partial pivoting, in place and without allocation, real or complex.
+//!
+//! Small matrices use plain loops, which the compiler vectorises and which need no set-up; larger
+//! ones faer's blocked kernels.
 
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Error, Result, fail, try_vec};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::lu::partial_pivoting::{factor, solve};
+use faer::perm::PermRef;
+use faer::{Conj, MatMut, MatRef, Par};
 use nalgebra::ComplexField;
 use num_complex::Complex64;
 
 /// Scalars that occur: `f64` and [`Complex64`].
-pub trait Scalar: ComplexField<RealField = f64> + Copy {
+pub trait Scalar: ComplexField<RealField = f64> + faer::traits::ComplexField + Copy {
     /// |re| + |im|: as good as the modulus for choosing a pivot, and cheaper.
     fn size(self) -> f64;
 }
@@ -22,27 +29,57 @@ impl Scalar for Complex64 {
     }
 }
 
+/// Order above which the blocked kernels are quicker.
+const BLOCKED_ABOVE: usize = 32;
+
+const WHAT: &str = "an LU factorisation";
+
+/// Memory that the blocked kernels want.
+struct Blocked {
+    forward: Vec<usize>,
+    backward: Vec<usize>,
+    scratch: MemBuffer,
+}
+
 /// Factors P A = L U of a square column-major matrix, with the memory to hold them.
-#[derive(Clone, Debug)]
 pub struct Lu<T> {
     n: usize,
     a: Vec<T>,
     pivots: Vec<usize>,
+    blocked: Option<Blocked>,
 }
 
 impl<T: Scalar> Lu<T> {
-    /// Memory for factors of n × n matrices.
+    /// Memory for factors of n × n matrices, and for solving up to `columns` right-hand sides at a
+    /// time.
     ///
     /// # Errors
     /// `OutOfMemory`, also when n² overflows.
-    pub fn new(n: usize) -> Result<Self> {
+    pub fn new(n: usize, columns: usize) -> Result<Self> {
         let Some(nn) = n.checked_mul(n) else {
             return fail!(OutOfMemory, "a dense factorisation of {n} unknowns cannot be stored");
         };
+        let blocked = if n > BLOCKED_ABOVE {
+            let need = factor::lu_in_place_scratch::<usize, T>(n, n, Par::Seq, faer::Spec::default())
+                .or(solve::solve_in_place_scratch::<usize, T>(n, columns, Par::Seq))
+                .or(solve::solve_transpose_in_place_scratch::<usize, T>(
+                    n,
+                    columns,
+                    Par::Seq,
+                ));
+            Some(Blocked {
+                forward: try_vec(n, 0, WHAT)?,
+                backward: try_vec(n, 0, WHAT)?,
+                scratch: MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(WHAT))?,
+            })
+        } else {
+            None
+        };
         Ok(Self {
             n,
-            a: try_vec(nn, T::zero(), "an LU factorisation")?,
-            pivots: try_vec(n, 0, "an LU factorisation")?,
+            a: try_vec(nn, <T as nalgebra::ComplexField>::from_real(0.0), WHAT)?,
+            pivots: try_vec(n, 0, WHAT)?,
+            blocked,
         })
     }
 
@@ -54,7 +91,12 @@ impl<T: Scalar> Lu<T> {
 
     /// The matrix to fill, column-major, before [`Self::factor`].
     pub fn matrix(&mut self) -> &mut [T] {
-        &mut self.a
+        &mut self.a[..self.n * self.n]
+    }
+
+    /// Changes the order of the matrix, up to the one that memory was asked for.
+    pub fn set_order(&mut self, n: usize) {
+        self.n = n.min(self.pivots.len());
     }
 
     /// Factors the matrix that was filled in.
@@ -63,6 +105,9 @@ impl<T: Scalar> Lu<T> {
     /// `Singular` naming the pivot that is exactly zero or not finite.
     pub fn factor(&mut self) -> Result<()> {
         let n = self.n;
+        if n > BLOCKED_ABOVE {
+            return self.factor_blocked();
+        }
         for j in 0..n {
             let (left, right) = self.a.split_at_mut(j * n);
             let column = &mut right[..n];
@@ -73,7 +118,7 @@ impl<T: Scalar> Lu<T> {
             }
             for k in 0..j {
                 let factor = column[k];
-                if !factor.is_zero() {
+                if factor.size() != 0.0 {
                     let l = &left[k * n + k + 1..(k + 1) * n];
                     for (c, &l) in column[k + 1..].iter_mut().zip(l) {
                         *c -= factor * l;
@@ -88,14 +133,11 @@ impl<T: Scalar> Lu<T> {
             }
             let size = column[pivot].size();
             if size == 0.0 || !size.is_finite() {
-                return fail!(
-                    Singular,
-                    "a linear system of {n} unknowns is singular: pivot {j} is {size}"
-                );
+                return singular(n, j, size);
             }
             self.pivots[j] = pivot;
             column.swap(j, pivot);
-            let inverse = T::one() / column[j];
+            let inverse = <T as nalgebra::ComplexField>::from_real(1.0) / column[j];
             for c in &mut column[j + 1..] {
                 *c *= inverse;
             }
@@ -104,6 +146,52 @@ impl<T: Scalar> Lu<T> {
                     left.swap(k * n + j, k * n + pivot);
                 }
             }
+        }
+        Ok(())
+    }
+
+    fn factor_blocked(&mut self) -> Result<()> {
+        let n = self.n;
+        if self.a[..n * n].iter().any(|x| !x.size().is_finite()) {
+            return singular(n, 0, f64::NAN);
+        }
+        let Some(blocked) = &mut self.blocked else {
+            return Ok(());
+        };
+        factor::lu_in_place::<usize, T>(
+            MatMut::from_column_major_slice_mut(&mut self.a[..n * n], n, n),
+            &mut blocked.forward[..n],
+            &mut blocked.backward[..n],
+            Par::Seq,
+            MemStack::new(&mut blocked.scratch),
+            faer::Spec::default(),
+        );
+        for j in 0..n {
+            let size = self.a[j * n + j].size();
+            if size == 0.0 || !size.is_finite() {
+                return singular(n, j, size);
+            }
+        }
+        // The permutation as interchanges: position k takes row forward[k] from where it has got
+        // to. `backward` is borrowed as the map from rows to positions and restored after.
+        let (rows, position) = (&mut self.pivots[..n], &mut blocked.backward[..n]);
+        for (k, p) in position.iter_mut().enumerate() {
+            *p = k;
+        }
+        // rows[k] holds which row stands at k until its interchange is known.
+        for (k, r) in rows.iter_mut().enumerate() {
+            *r = k;
+        }
+        for k in 0..n {
+            let wanted = blocked.forward[k];
+            let from = position[wanted];
+            let displaced = rows[k];
+            rows[from] = displaced;
+            position[displaced] = from;
+            rows[k] = from;
+        }
+        for (k, &row) in blocked.forward[..n].iter().enumerate() {
+            position[row] = k;
         }
         Ok(())
     }
@@ -145,6 +233,48 @@ impl<T: Scalar> Lu<T> {
             b.swap(k, self.pivots[k]);
         }
     }
+
+    /// Solves A X = B (or Aᵀ X = B) in place for the columns of `b`.
+    pub fn solve_columns(&mut self, b: &mut [T], transposed: bool) {
+        let n = self.n;
+        let Some(blocked) = self.blocked.as_mut().filter(|_| n > BLOCKED_ABOVE) else {
+            for column in b.chunks_exact_mut(n) {
+                if transposed {
+                    self.solve_transposed(column);
+                } else {
+                    self.solve(column);
+                }
+            }
+            return;
+        };
+        let factors = MatRef::from_column_major_slice(&self.a[..n * n], n, n);
+        let rows = PermRef::new_checked(&blocked.forward[..n], &blocked.backward[..n], n);
+        let columns = b.len() / n;
+        let b = MatMut::from_column_major_slice_mut(b, n, columns);
+        let scratch = MemStack::new(&mut blocked.scratch);
+        if transposed {
+            solve::solve_transpose_in_place_with_conj(factors, factors, rows, Conj::No, b, Par::Seq, scratch);
+        } else {
+            solve::solve_in_place_with_conj(factors, factors, rows, Conj::No, b, Par::Seq, scratch);
+        }
+    }
+}
+
+fn singular(n: usize, pivot: usize, size: f64) -> Result<()> {
+    fail!(
+        Singular,
+        "a linear system of {n} unknowns is singular: pivot {pivot} is {size}"
+    )
+}
+
+impl Lu<f64> {
+    /// Whether the determinant of the factored matrix is positive.
+    #[must_use]
+    pub fn is_positive(&self) -> bool {
+        let swaps = self.pivots.iter().enumerate().filter(|&(k, &p)| k != p).count();
+        let negative = (0..self.n).filter(|&k| self.a[k * self.n + k] < 0.0).count();
+        (swaps + negative) % 2 == 0
+    }
 }
 
 #[cfg(test)]
@@ -152,26 +282,36 @@ mod tests {
     use super::*;
 
     #[test]
-    fn solves_a_system_and_its_transpose() {
-        let n = 7;
-        let a: Vec<f64> = (0..n * n).map(|k| ((k * k + 3 * k) as f64 * 0.37).sin()).collect();
-        let mut lu = Lu::<f64>::new(n).unwrap();
-        lu.matrix().copy_from_slice(&a);
-        lu.factor().unwrap();
-        let x: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
-        let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[j * n + i] * x[j]).sum()).collect();
-        lu.solve(&mut b);
-        let mut bt: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[i * n + j] * x[j]).sum()).collect();
-        lu.solve_transposed(&mut bt);
-        for i in 0..n {
-            assert!((b[i] - x[i]).abs() < 1e-13 && (bt[i] - x[i]).abs() < 1e-13);
+    fn solves_a_system_and_its_transpose_by_either_kernel() {
+        for n in [1, 7, BLOCKED_ABOVE, BLOCKED_ABOVE + 9] {
+            let a: Vec<f64> = (0..n * n).map(|k| ((k * k + 3 * k + 2) as f64 * 0.37).sin()).collect();
+            let mut lu = Lu::<f64>::new(n, 2).unwrap();
+            lu.matrix().copy_from_slice(&a);
+            lu.factor().unwrap();
+            let x: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
+            let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[j * n + i] * x[j]).sum()).collect();
+            let mut bt: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[i * n + j] * x[j]).sum()).collect();
+            let (mut both, mut both_t) = ([b.clone(), b.clone()].concat(), [bt.clone(), bt.clone()].concat());
+            lu.solve(&mut b);
+            lu.solve_transposed(&mut bt);
+            lu.solve_columns(&mut both, false);
+            lu.solve_columns(&mut both_t, true);
+            for i in 0..n {
+                for found in [b[i], bt[i], both[i], both[n + i], both_t[i], both_t[n + i]] {
+                    assert!((found - x[i]).abs() < 1e-11, "n = {n}");
+                }
+            }
         }
     }
 
     #[test]
     fn a_singular_matrix_is_an_error() {
-        let mut lu = Lu::<f64>::new(2).unwrap();
-        lu.matrix().copy_from_slice(&[1.0, 1.0, 1.0, 1.0]);
-        assert!(lu.factor().is_err());
+        for n in [2, BLOCKED_ABOVE + 9] {
+            let mut lu = Lu::<f64>::new(n, 1).unwrap();
+            lu.matrix().fill(1.0);
+            assert!(lu.factor().is_err());
+            lu.matrix().fill(f64::NAN);
+            assert!(lu.factor().is_err());
+        }
     }
 }

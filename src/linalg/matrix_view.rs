@@ -207,7 +207,8 @@ impl<'a> MatrixView<'a> {
         for j in 0..self.cols {
             let range = (col_ptr[j] - base) as usize..(col_ptr[j + 1] - base) as usize;
             for (k, &given) in range.clone().zip(&row_idx[range]) {
-                let row = given - base;
+                // Wraps for the lowest i64 alone, and then to a row that no matrix has.
+                let row = given.wrapping_sub(base);
                 if row < 0 || row >= self.rows as i64 {
                     return fail!(
                         Index,

@@ -2,6 +2,8 @@
 
 pub mod bordered;
 pub mod eigen;
+pub mod factor;
+pub mod lanczos;
 pub mod lu;
 pub mod matrix_view;
 pub mod sparse;

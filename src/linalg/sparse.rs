@@ -1,6 +1,6 @@
 //! Compressed sparse columns with complex values: the one storage of structural matrices.
 
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_extend, try_push, try_vec};
 use num_complex::Complex64;
 
 /// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
@@ -84,6 +84,23 @@ impl Csc {
         Self::from_triplets(n, n, entries)
     }
 
+    /// A copy whose memory is asked for fallibly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        const WHAT: &str = "a sparse matrix";
+        let mut copy = Self {
+            rows: self.rows,
+            cols: self.cols,
+            ..Self::default()
+        };
+        try_extend(&mut copy.col_ptr, &self.col_ptr, WHAT)?;
+        try_extend(&mut copy.row_idx, &self.row_idx, WHAT)?;
+        try_extend(&mut copy.values, &self.values, WHAT)?;
+        Ok(copy)
+    }
+
     /// Entries of column `j` as (row, value).
     pub fn column(&self, j: usize) -> impl Iterator<Item = (usize, Complex64)> + '_ {
         let range = self.col_ptr[j]..self.col_ptr[j + 1];
@@ -110,6 +127,24 @@ impl Csc {
                 dense[j * self.rows + i] += c * v;
             }
         }
+    }
+
+    /// The values of this matrix at the places of `pattern`, which must hold all of its own.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn aligned(&self, pattern: &Self) -> Result<Vec<Complex64>> {
+        let mut values = try_vec(pattern.values.len(), Complex64::ZERO, "a sparse matrix")?;
+        for j in 0..pattern.cols {
+            let mut at = pattern.col_ptr[j];
+            for (i, v) in self.column(j) {
+                while pattern.row_idx[at] < i {
+                    at += 1;
+                }
+                values[at] = v;
+            }
+        }
+        Ok(values)
     }
 
     /// Whether no entry is stored.

@@ -1,6 +1,6 @@
 //! Forces per degree of freedom and harmonic.
 
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, fail, try_extend, try_push};
 use crate::options::MAX_HARMONIC;
 use num_complex::Complex64;
 
@@ -46,6 +46,13 @@ impl Excitation {
             );
         }
         try_push(&mut self.forces, Force { dof, harmonic, value }, "the forces")
+    }
+
+    /// A copy whose memory is asked for fallibly.
+    pub(super) fn try_clone(&self) -> Result<Self> {
+        let mut copy = Self::default();
+        try_extend(&mut copy.forces, &self.forces, "the forces")?;
+        Ok(copy)
     }
 
     /// Removes all forces.

@@ -3,8 +3,10 @@
 use super::Model;
 use super::spring::Wave;
 use super::structure::MatrixKind;
-use crate::error::{Result, fail};
-use crate::linalg::eigen;
+use crate::error::{Result, check_memory, fail};
+use crate::linalg::eigen::{self, Pairs};
+use crate::linalg::lanczos;
+use crate::linalg::sparse::Csc;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
@@ -26,16 +28,57 @@ pub struct LinearModes {
     pub shapes: Vec<Complex64>,
 }
 
+/// Degrees of freedom up to which all modes are found by dense algebra.
+const DENSE_UP_TO: usize = 600;
+
+/// Most square matrices that [`eigen::generalised`] holds at a time.
+const EIGEN_COPIES: usize = 8;
+
 impl Model {
-    /// Undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave
+    /// The `count` lowest undamped natural modes; see [`Self::linear_modes`]. Large structures are
+    /// treated by shift-invert Lanczos.
+    ///
+    /// # Errors
+    /// As [`Self::linear_modes`]; `Argument` for a count of 0.
+    pub fn lowest_modes(&self, diameter: usize, contacts: ContactState, count: usize) -> Result<LinearModes> {
+        if count == 0 {
+            return fail!(Argument, "count = 0, needs at least 1");
+        }
+        let n = self.ndof();
+        if n <= DENSE_UP_TO || count > n / 4 {
+            let mut modes = self.linear_modes(diameter, contacts)?;
+            modes.omega.truncate(count);
+            modes.shapes.truncate(modes.omega.len() * n);
+            return Ok(modes);
+        }
+        let (stiffness, mass) = self.pencil(diameter, contacts)?;
+        Ok(LinearModes::from(lanczos::lowest(&stiffness, &mass, count)?))
+    }
+
+    /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave
     /// whose sector s + 1 lags. Motion without mass has no mode, so a singular mass matrix gives
-    /// fewer modes than degrees of freedom.
+    /// fewer modes than degrees of freedom. Dense algebra: meant for up to a few hundred degrees of
+    /// freedom; [`Self::lowest_modes`] is for more.
     ///
     /// # Errors
     /// `Argument` for a diameter out of range, `NotHermitian` when K is not, and those of
     /// [`eigen::generalised`].
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
         let n = self.ndof();
+        let (stiffness, mass) = self.pencil(diameter, contacts)?;
+        // The eigensolver's matrices are nalgebra's, which ends the process where memory ends.
+        check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
+        let dense = |a: &Csc| {
+            let mut d = DMatrix::<Complex64>::zeros(n, n);
+            a.add_to_dense(Complex64::ONE, d.as_mut_slice());
+            d
+        };
+        let pairs = eigen::generalised(&dense(&stiffness), &dense(&mass))?;
+        Ok(LinearModes::from(pairs))
+    }
+
+    /// K and M of a nodal diameter, checked.
+    fn pencil(&self, diameter: usize, contacts: ContactState) -> Result<(Csc, Csc)> {
         let structure = self.structure();
         if diameter > structure.sectors() / 2 {
             return fail!(
@@ -57,16 +100,15 @@ impl Model {
                 "natural modes need a Hermitian stiffness, but stiffness[{i},{j}] and its mirror differ by {gap:.3e}"
             );
         }
-        let mass = structure.diameter_matrix(MatrixKind::Mass, diameter)?;
-        let dense = |a: &crate::linalg::sparse::Csc| {
-            let mut d = DMatrix::<Complex64>::zeros(n, n);
-            a.add_to_dense(Complex64::ONE, d.as_mut_slice());
-            d
-        };
-        let pairs = eigen::generalised(&dense(&stiffness), &dense(&mass))?;
-        Ok(LinearModes {
+        Ok((stiffness, structure.diameter_matrix(MatrixKind::Mass, diameter)?))
+    }
+}
+
+impl From<Pairs> for LinearModes {
+    fn from(pairs: Pairs) -> Self {
+        Self {
             omega: pairs.values.iter().map(|&x| x.max(0.0).sqrt()).collect(),
             shapes: pairs.vectors.as_slice().to_vec(),
-        })
+        }
     }
 }

@@ -48,6 +48,23 @@ impl Model {
         })
     }
 
+    /// A copy whose memory is asked for fallibly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        let mut contacts = Vec::new();
+        try_extend(&mut contacts, &self.contacts, "the contacts")?;
+        let mut springs = Vec::new();
+        try_extend(&mut springs, &self.springs, "the springs")?;
+        Ok(Self {
+            structure: self.structure.try_clone()?,
+            contacts,
+            springs,
+            excitation: self.excitation.try_clone()?,
+        })
+    }
+
     /// Sets the (sector's own) mass, damping or stiffness matrix, ndof × ndof. M must be symmetric
     /// or Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General).
     /// Complex entries act on all harmonics above zero; the mean sees the real part.

@@ -1,7 +1,7 @@
 //! The linear structure: sector blocks of mass, damping and stiffness, or their matrices per nodal
 //! diameter.
 
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::Csc;
 
@@ -45,6 +45,22 @@ pub(super) struct Blocks {
     pub diameters: Vec<Option<Csc>>,
 }
 
+impl Blocks {
+    fn try_clone(&self) -> Result<Self> {
+        let copy = |a: &Option<Csc>| a.as_ref().map(Csc::try_clone).transpose();
+        let mut diameters = Vec::new();
+        for a in &self.diameters {
+            try_push(&mut diameters, copy(a)?, "the matrices per diameter")?;
+        }
+        Ok(Self {
+            own: copy(&self.own)?,
+            next: copy(&self.next)?,
+            previous: copy(&self.previous)?,
+            diameters,
+        })
+    }
+}
+
 /// Matrices of a structure, plain (one sector) or cyclic.
 #[derive(Clone, Debug)]
 pub struct Structure {
@@ -69,6 +85,23 @@ impl Structure {
             engine_order: 0,
             blocks: Default::default(),
             rayleigh: (0.0, 0.0),
+        })
+    }
+
+    /// Whether any damping was given.
+    #[must_use]
+    pub fn is_damped(&self) -> bool {
+        let b = &self.blocks[MatrixKind::Damping as usize];
+        let given = [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters);
+        self.rayleigh != (0.0, 0.0) || given.flatten().any(|a| !a.is_empty())
+    }
+
+    /// A copy whose memory is asked for fallibly.
+    pub(super) fn try_clone(&self) -> Result<Self> {
+        let [mass, damping, stiffness] = &self.blocks;
+        Ok(Self {
+            blocks: [mass.try_clone()?, damping.try_clone()?, stiffness.try_clone()?],
+            ..*self
         })
     }
 

@@ -7,8 +7,8 @@
 
 use super::{Linearisation, Problem, Start};
 use crate::aft::{Evaluation, Evaluator};
-use crate::condense::Condensed;
-use crate::condense::flexibility::{Table, Workspace};
+use crate::condense::tables::Tables;
+use crate::condense::{Condensed, Reference};
 use crate::contact::Law;
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::norm;
@@ -28,16 +28,14 @@ enum Parameter {
 pub struct Forced<'a> {
     condensed: &'a Condensed,
     evaluator: Evaluator,
-    workspace: Workspace,
-    tables: Vec<Table>,
-    /// Frequency at which the tables hold.
-    tabulated: Option<f64>,
+    tables: Tables,
     parameter: Parameter,
     factor: f64,
     laws: Vec<Law>,
     law: Evaluation,
-    /// Per coordinate: sums over its laws.
+    /// Per coordinate: sums over its laws, and whether all of them stick.
     sums: Vec<Evaluation>,
+    stuck: Vec<bool>,
     slip_fractions: Vec<f64>,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
@@ -45,18 +43,21 @@ pub struct Forced<'a> {
 }
 
 impl<'a> Forced<'a> {
-    /// A problem on `condensed`, observing degree of freedom `response` in its lowest carried
-    /// harmonic above zero. `samples` = 0 locates events exactly; `given` is a packed start.
+    /// A problem on `condensed` for frequencies in `range`, observing degree of freedom `response`
+    /// in its lowest carried harmonic above zero. `samples` = 0 locates events exactly; `given` is
+    /// a packed start.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &'a Condensed, response: usize, samples: usize, given: Option<Vec<f64>>) -> Result<Self> {
+    pub fn new(
+        condensed: &'a Condensed,
+        response: usize,
+        range: (f64, f64),
+        samples: usize,
+        given: Option<Vec<f64>>,
+    ) -> Result<Self> {
         let set = condensed.set();
         let coordinates = condensed.coordinates();
-        let mut tables = Vec::new();
-        for _ in condensed.blocks() {
-            try_push(&mut tables, Table::new(coordinates)?, "the contact flexibility")?;
-        }
         let mut sums = Vec::new();
         for _ in 0..coordinates {
             try_push(&mut sums, Evaluation::new(set)?, "the contact forces")?;
@@ -70,15 +71,14 @@ impl<'a> Forced<'a> {
             condensed,
             // A linear problem has no contact to evaluate, and its harmonics need not be a comb.
             evaluator: Evaluator::new(&comb(condensed)?, if nonlinear { samples } else { 0 })?,
-            workspace: Workspace::new(condensed, Some(response))?,
-            tables,
-            tabulated: None,
+            tables: Tables::new(condensed, response, range)?,
             parameter: Parameter::Omega,
             factor: 1.0,
             slip_fractions: try_vec(laws.len(), 0.0, "the contacts")?,
             laws,
             law: Evaluation::new(&comb(condensed)?)?,
             sums,
+            stuck: try_vec(coordinates, false, "the contacts")?,
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
         })
@@ -105,16 +105,17 @@ impl<'a> Forced<'a> {
         set.get(&self.sums[coordinate].force, i) - self.condensed.kappa(coordinate, i) * y
     }
 
-    fn tabulate(&mut self, omega: f64) -> Result<()> {
-        if self.tabulated == Some(omega) {
-            return Ok(());
+    /// Harmonics of the response degree of freedom at the point last evaluated, in the order in
+    /// which they are carried.
+    pub fn response(&self, u: &[f64], x: &mut [Complex64]) {
+        for (i, (x, table)) in x.iter_mut().zip(self.tables.current()).enumerate() {
+            let coordinates = self.condensed.coordinates();
+            let outputs = coordinates + 1;
+            *x = table.value[coordinates * outputs + coordinates];
+            for c in 0..coordinates {
+                *x -= table.value[c * outputs + coordinates] * self.force_minus_reference(u, c, i);
+            }
         }
-        self.tabulated = None;
-        for (i, table) in self.tables.iter_mut().enumerate() {
-            table.clone_from(self.workspace.evaluate(self.condensed, i, omega)?);
-        }
-        self.tabulated = Some(omega);
-        Ok(())
     }
 
     /// Evaluates all laws at the packed motions `u`.
@@ -126,6 +127,7 @@ impl<'a> Forced<'a> {
             sum.jacobian.fill(0.0);
             sum.offset.fill(0.0);
         }
+        self.stuck.fill(true);
         let mut prepared = usize::MAX;
         for (k, placed) in self.condensed.laws().iter().enumerate() {
             let c = placed.coordinate;
@@ -136,11 +138,17 @@ impl<'a> Forced<'a> {
             }
             self.evaluator.evaluate(&self.laws[k], set, motion, &mut self.law);
             self.slip_fractions[k] = self.law.slip_fraction;
+            self.stuck[c] &= self.law.stuck;
             let sum = &mut self.sums[c];
             add(&mut sum.force, &self.law.force);
             add(&mut sum.jacobian, &self.law.jacobian);
             add(&mut sum.offset, &self.law.offset);
         }
+    }
+
+    /// Whether a coordinate sticks and its reference stiffness is that of the stuck contact.
+    fn drops_out(&self, coordinate: usize) -> bool {
+        self.stuck[coordinate] && self.condensed.reference() == Reference::Stuck
     }
 
     fn ease(&mut self, factor: f64) {
@@ -185,7 +193,7 @@ impl Problem for Forced<'_> {
                 omega
             }
         };
-        self.tabulate(omega)?;
+        self.tables.tabulate(self.condensed, omega)?;
         self.evaluate_laws(u);
         let set = self.condensed.set();
         let (m, n) = (set.packed_len(), u.len());
@@ -198,7 +206,7 @@ impl Problem for Forced<'_> {
             out.jacobian[k * n + k] = 1.0;
         }
         let mut linear = 0.0_f64;
-        for (i, table) in self.tables.iter().enumerate() {
+        for (i, table) in self.tables.current().iter().enumerate() {
             let at = set.offset(i);
             let mean = set.numbers()[i] == 0;
             for row in 0..coordinates {
@@ -211,6 +219,10 @@ impl Problem for Forced<'_> {
                 }
             }
             for column in 0..coordinates {
+                if self.drops_out(column) {
+                    // f = κ y: nothing couples back.
+                    continue;
+                }
                 let w = self.force_minus_reference(u, column, i);
                 let eased = set.get(&self.sums[column].offset, i);
                 let kappa = self.condensed.kappa(column, i);
@@ -246,6 +258,9 @@ impl Problem for Forced<'_> {
                 }
             }
         }
+        for column in 0..coordinates {
+            out.active[column * m..(column + 1) * m].fill(!self.drops_out(column));
+        }
         out.scale = norm(u) + linear.sqrt();
         Ok(())
     }
@@ -256,7 +271,7 @@ impl Problem for Forced<'_> {
         let coordinates = self.condensed.coordinates();
         let outputs = coordinates + 1;
         let i = self.observed;
-        let table = &self.tables[i];
+        let table = &self.tables.current()[i];
         let at = set.offset(i);
         let along_p = direction[u.len()];
         let rate = |z: Complex64| match self.parameter {
@@ -266,7 +281,7 @@ impl Problem for Forced<'_> {
         let excited = coordinates * outputs + coordinates;
         let mut z = table.value[excited];
         let mut dz = rate(table.slope[excited]);
-        for c in 0..coordinates {
+        for c in (0..coordinates).filter(|&c| !self.drops_out(c)) {
             let w = self.force_minus_reference(u, c, i);
             let g = table.value[c * outputs + coordinates];
             let sum = &self.sums[c];
@@ -302,7 +317,7 @@ impl Problem for Forced<'_> {
                 let evaluated = self.evaluate(u, f64::INFINITY, &mut at);
                 self.parameter = Parameter::Omega;
                 evaluated?;
-                let mut lu = crate::linalg::lu::Lu::new(u.len())?;
+                let mut lu = crate::linalg::lu::Lu::new(u.len(), 1)?;
                 lu.matrix().copy_from_slice(&at.jacobian);
                 if lu.factor().is_err() {
                     return Ok(false);
@@ -314,11 +329,11 @@ impl Problem for Forced<'_> {
                 Ok(u.iter().all(|x| x.is_finite()))
             }
             Start::Reference => {
-                self.tabulate(p)?;
+                self.tables.tabulate(self.condensed, p)?;
                 let set = self.condensed.set();
                 let m = set.packed_len();
                 let coordinates = self.condensed.coordinates();
-                for (i, table) in self.tables.iter().enumerate() {
+                for (i, table) in self.tables.current().iter().enumerate() {
                     for c in 0..coordinates {
                         let y = table.value[coordinates * (coordinates + 1) + c];
                         set.set(&mut u[c * m..(c + 1) * m], i, y);
@@ -349,6 +364,10 @@ impl Problem for Forced<'_> {
     fn end_homotopy(&mut self) {
         self.parameter = Parameter::Omega;
         self.ease(1.0);
+    }
+
+    fn set_pointwise(&mut self, pointwise: bool) {
+        self.tables.set_pointwise(pointwise);
     }
 }
 

@@ -15,6 +15,8 @@ pub struct Linearisation {
     pub jacobian: Vec<f64>,
     /// ∂R/∂p
     pub d_parameter: Vec<f64>,
+    /// Per unknown: whether its column of the Jacobian differs from that of the identity.
+    pub active: Vec<bool>,
     /// Size against which the residual is measured.
     pub scale: f64,
 }
@@ -29,6 +31,7 @@ impl Linearisation {
             residual: try_vec(n, 0.0, "the residual")?,
             jacobian: try_vec(n.saturating_mul(n), 0.0, "the Jacobian")?,
             d_parameter: try_vec(n, 0.0, "the residual")?,
+            active: try_vec(n, true, "the residual")?,
             scale: 0.0,
         })
     }
@@ -74,4 +77,8 @@ pub trait Problem {
 
     /// Ends the homotopy.
     fn end_homotopy(&mut self);
+
+    /// Asks for the most accurate evaluation there is, at the parameter values that follow, rather
+    /// than the one that is quick along a branch. Derivatives by the parameter may then be zero.
+    fn set_pointwise(&mut self, _pointwise: bool) {}
 }

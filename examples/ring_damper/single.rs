@@ -1,0 +1,221 @@
+//! One response as the flags describe it: a summary on the screen and, if wanted, a JSON file.
+
+use std::error::Error;
+use std::io::Write;
+use std::path::PathBuf;
+
+use hbvib::options::SolverOptions;
+use serde_json::{Map, Value};
+
+use crate::flags::{self, Flag, Flags};
+use crate::json::{number, write_json};
+use crate::model::{DOFS, Parameters};
+use crate::progress::Bar;
+use crate::response::{Point, Range, Response};
+
+/// The flags of the program.
+pub const FLAGS: [Flag; 14] = [
+    flag("--force", "N", "amplitude of the force on each forced mass (5)"),
+    flag("--ring-mass", "kg", "mass of the ring per sector (0.03)"),
+    flag(
+        "--rpm",
+        "n",
+        "speed that sets the normal load, may be fractional (3000)",
+    ),
+    flag("--engine-order", "k", "engine order of the force, any integer (2)"),
+    flag("--kt", "N/m", "tangential stiffness of the contact (5e7)"),
+    flag("--beta", "s", "damping C = beta K, without the contact (1.5e-6)"),
+    flag("--tip-only", "", "force on b2 alone instead of b2 and b1"),
+    flag("--harmonics", "H", "highest harmonic number (9)"),
+    flag(
+        "--samples",
+        "N",
+        "samples per period (without: exact stick-slip events)",
+    ),
+    flag(
+        "--from",
+        "Hz",
+        "begin of the range (below the resonance, 207 in the base case)",
+    ),
+    flag(
+        "--to",
+        "Hz",
+        "end of the range (above the resonance, 211 in the base case)",
+    ),
+    Flag {
+        repeatable: true,
+        ..flag(
+            "--at-hz",
+            "f",
+            "list the solutions at exactly this frequency; repeatable",
+        )
+    },
+    flag("--json", "FILE", "write the response to this file"),
+    flag("--help", "", "show this text"),
+];
+
+const fn flag(name: &'static str, value: &'static str, help: &'static str) -> Flag {
+    Flag {
+        name,
+        value,
+        repeatable: false,
+        help,
+    }
+}
+
+/// The text of `--help`.
+pub fn help() -> String {
+    format!(
+        "Forced response of a bladed disk with a friction ring damper.\n\n\
+         Without flags: figures 4 to 7 of the paper, as CSV, SVG and PNG under target/ring_damper/.\n\
+         With flags: one response; what is not given has the value of the base case.\n\n{}",
+        flags::table(&FLAGS)
+    )
+}
+
+/// One response that was asked for.
+#[derive(Clone, Debug)]
+pub struct Request {
+    parameters: Parameters,
+    solver: SolverOptions,
+    range: Range,
+    json: Option<PathBuf>,
+}
+
+impl Request {
+    /// Understands the flags.
+    ///
+    /// # Errors
+    ///
+    /// A sentence naming the flag whose value cannot be used.
+    pub fn new(flags: &Flags) -> Result<Self, String> {
+        let positive = |name: &str| flags.value(name, "a finite number above 0", |x: &f64| x.is_finite() && *x > 0.0);
+        let amount = |name: &str, default: f64| {
+            let value = flags.value(name, "a finite number of at least 0", |x: &f64| {
+                x.is_finite() && *x >= 0.0
+            })?;
+            Ok::<f64, String>(value.unwrap_or(default))
+        };
+        let base = Parameters::default();
+        let parameters = Parameters {
+            force: amount("--force", base.force)?,
+            tip_only: flags.has("--tip-only"),
+            ring_mass: amount("--ring-mass", base.ring_mass)?,
+            rpm: amount("--rpm", base.rpm)?,
+            engine_order: flags
+                .value("--engine-order", "an integer", |_| true)?
+                .unwrap_or(base.engine_order),
+            kt: amount("--kt", base.kt)?,
+            beta: amount("--beta", base.beta)?,
+        };
+        let mut solver = SolverOptions::default();
+        if let Some(highest) = flags.value("--harmonics", "an integer of at least 1", |h: &usize| *h >= 1)? {
+            solver.harmonics = highest;
+        }
+        if let Some(samples) = flags.value("--samples", "an integer of at least 1", |n: &usize| *n >= 1)? {
+            solver.samples = samples;
+        }
+        solver.check().map_err(|e| format!("--harmonics, --samples: {e}"))?;
+        let (from, to) = (positive("--from")?, positive("--to")?);
+        let at = flags.values("--at-hz", "a finite number above 0", |x: &f64| {
+            x.is_finite() && *x > 0.0
+        })?;
+        let range = complete(&parameters, from, to, at)?;
+        Ok(Self {
+            parameters,
+            solver,
+            range,
+            json: flags.path("--json"),
+        })
+    }
+
+    /// Computes the response, shows its peak and the solutions asked for, and writes the file.
+    ///
+    /// # Errors
+    ///
+    /// If the response cannot be computed to its end or the file cannot be written.
+    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+        let mut bar = Bar::new("response", 100);
+        let response = Response::follow(&self.parameters, &self.solver, &self.range, |share| bar.set(share))?;
+        bar.finish();
+        if response.stalled {
+            eprintln!("note: rounding kept the residual of some points above the solver's tolerance");
+        }
+        if let Some(path) = &self.json {
+            write_json(path, &to_json(&response)?)?;
+        }
+        let mut screen = std::io::stdout().lock();
+        let (from, to) = (self.range.from, self.range.to);
+        writeln!(screen, "{} points from {from} Hz to {to} Hz", response.points.len())?;
+        show(&mut screen, "peak", &response.peak)?;
+        for point in &response.at {
+            show(&mut screen, "at", point)?;
+        }
+        if let Some(path) = &self.json {
+            writeln!(screen, "written to {}", path.display())?;
+        }
+        Ok(())
+    }
+}
+
+fn show(screen: &mut impl Write, what: &str, point: &Point) -> std::io::Result<()> {
+    let (frequency, amplitude) = (point.frequency, point.amplitude());
+    writeln!(screen, "{what:<5}{frequency:.9} Hz   |X_1| of b2 {amplitude:.9e} m")
+}
+
+/// Fills in the ends of the range that are not given, and checks the whole.
+fn complete(parameters: &Parameters, from: Option<f64>, to: Option<f64>, at: Vec<f64>) -> Result<Range, String> {
+    let (low, high) = match (from, to) {
+        (Some(from), Some(to)) => (from, to),
+        _ => parameters
+            .resonance_range()
+            .map_err(|e| format!("no range of frequency can be chosen ({e}); give --from and --to"))?,
+    };
+    let range = Range {
+        from: from.unwrap_or(low),
+        to: to.unwrap_or(high),
+        at,
+    };
+    // A downward sweep must be meant: it takes both ends.
+    if (from.is_none() || to.is_none()) && range.from >= range.to {
+        let (given, other) = if from.is_some() {
+            ("--from", "--to")
+        } else {
+            ("--to", "--from")
+        };
+        return Err(format!(
+            "{given} lies outside of the default range of {low} to {high} Hz; give {other} as well"
+        ));
+    }
+    let (low, high) = (range.from.min(range.to), range.from.max(range.to));
+    match range.at.iter().find(|f| **f < low || **f > high) {
+        Some(f) => Err(format!("--at-hz {f}: needs a frequency within {low} to {high} Hz")),
+        None => Ok(range),
+    }
+}
+
+fn to_json(response: &Response) -> Result<Value, Box<dyn Error>> {
+    let list = |points: &[Point]| points.iter().map(point_to_json).collect::<Result<Vec<_>, _>>();
+    let mut object = Map::new();
+    object.insert("points".into(), list(&response.points)?.into());
+    object.insert("peak".into(), point_to_json(&response.peak)?);
+    object.insert("at".into(), list(&response.at)?.into());
+    Ok(object.into())
+}
+
+fn point_to_json(point: &Point) -> Result<Value, Box<dyn Error>> {
+    let mut harmonics = Map::new();
+    for (dof, name) in DOFS.into_iter().enumerate() {
+        let mut of_dof = Map::new();
+        for (p, x) in &point.harmonics {
+            let pair = vec![number(x[dof].re)?, number(x[dof].im)?];
+            of_dof.insert(p.to_string(), pair.into());
+        }
+        harmonics.insert(name.into(), of_dof.into());
+    }
+    let mut object = Map::new();
+    object.insert("frequency_hz".into(), number(point.frequency)?);
+    object.insert("amplitude_b2_m".into(), number(point.amplitude())?);
+    object.insert("harmonics".into(), harmonics.into());
+    Ok(object.into())
+}

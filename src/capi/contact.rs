@@ -1,0 +1,209 @@
+//! Contacts of a model, and a law on a motion of the caller's.
+
+use super::boundary::{Blame, Range, call, check_pointer, count, disjoint, index, input, output};
+use super::handles::write;
+use super::sized::{Described, init, load};
+use super::types::{hbvib_contact, hbvib_contact_kind, hbvib_model, hbvib_special_dof, hbvib_status};
+use crate::analysis;
+use crate::contact::{Contact, ContactKind};
+use crate::error::{Result, Status, fail};
+use crate::model::Model;
+
+const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
+const JENKINS: i32 = hbvib_contact_kind::HBVIB_JENKINS as i32;
+
+unsafe impl Described for hbvib_contact {
+    const NAME: &'static str = "hbvib_contact";
+    const FIRST: usize = 104;
+
+    fn filled() -> Self {
+        Self {
+            struct_size: 0,
+            kind: 0,
+            dof_a: [GROUND; 3],
+            dof_b: [GROUND; 3],
+            sector_offset: 0,
+            kt: 0.0,
+            kn: 0.0,
+            mu: 0.0,
+            preload: 0.0,
+            gap: 0.0,
+        }
+    }
+}
+
+/// A description without its degrees of freedom, which need a model to make sense.
+fn law(c: &hbvib_contact) -> Result<Contact> {
+    let kind = match c.kind {
+        JENKINS => ContactKind::Jenkins,
+        other => return fail!(Argument, "hbvib_contact: kind = {other}, needs HBVIB_JENKINS = 1"),
+    };
+    for (name, value) in [("kn", c.kn), ("gap", c.gap)] {
+        if value != 0.0 {
+            return fail!(Argument, "hbvib_contact: {name} = {value}, needs 0 for HBVIB_JENKINS");
+        }
+    }
+    Ok(Contact {
+        kind,
+        dof_a: None,
+        dof_b: None,
+        sector_offset: c.sector_offset,
+        kt: c.kt,
+        mu: c.mu,
+        preload: c.preload,
+    })
+}
+
+/// One side of a contact that acts in one direction.
+fn side(dofs: [i64; 3], ndof: usize, name: &str) -> Result<Option<usize>> {
+    if let Some(other) = dofs[1..].iter().find(|&&dof| dof != GROUND) {
+        return fail!(
+            Argument,
+            "hbvib_contact: {name} has {other} in its second or third place, needs HBVIB_GROUND = -1 there for HBVIB_JENKINS"
+        );
+    }
+    match dofs[0] {
+        GROUND => Ok(None),
+        dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
+        dof => fail!(
+            Index,
+            "hbvib_contact: {name}[0] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
+            ndof - 1
+        ),
+    }
+}
+
+/// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
+/// Set kind, dof_a, kt, mu and preload at least.
+///
+/// c          the struct; untouched on error.
+/// size_of_c  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_contact_init(c: *mut hbvib_contact, size_of_c: usize) -> hbvib_status {
+    call(|| unsafe { init(c, size_of_c) })
+}
+
+/// Adds a contact. Equal contacts add up.
+///
+/// c   the description.
+/// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (kind, constants out of range, both
+/// sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_model_add_contact(
+    model: *mut hbvib_model,
+    c: *const hbvib_contact,
+    id: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let c = unsafe { load(c, 2) }?;
+        if !id.is_null() {
+            check_pointer(id, 3, "id")?;
+        }
+        let contact = Contact {
+            dof_a: side(c.dof_a, model.ndof(), "dof_a").blame(2)?,
+            dof_b: side(c.dof_b, model.ndof(), "dof_b").blame(2)?,
+            ..law(&c).blame(2)?
+        };
+        let number = model.add_contact(&contact).blame(2)?;
+        if !id.is_null() {
+            unsafe { id.write(number as i64) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Changes the normal load of a contact.
+///
+/// id       number from hbvib_model_add_contact.
+/// preload  force, >= 0; infinite sticks for ever.
+/// Errors: HBVIB_E_INDEX (id), HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_model_set_preload(model: *mut hbvib_model, id: i64, preload: f64) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let id = index(id, model.contacts().len(), 2, "id")?;
+        model.set_preload(id, preload).blame(3)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Force of one contact law on a prescribed relative motion y(t) = Re sum Y_h exp(i h omega t),
+/// once it has become periodic, and its Jacobian. Degrees of freedom in the description are not
+/// looked at.
+///
+/// c           the law and its constants.
+/// harmonics   highest harmonic number H, 0 .. 100000.
+/// samples     0: events are located exactly; else samples per period, at least 2H + 1.
+/// motion      H + 1 complex numbers Y_0 .. Y_H; the imaginary part of Y_0 has no effect.
+/// motion_len  complex numbers in it, H + 1.
+/// force       receives H + 1 complex numbers F_0 .. F_H.
+/// force_len   complex numbers in it, H + 1.
+/// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 (H + 1);
+///             or NULL.
+/// jac_len     doubles in it, (2 (H + 1))^2; 0 with NULL.
+/// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, overlapping arrays),
+/// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_contact_evaluate(
+    c: *const hbvib_contact,
+    harmonics: i64,
+    samples: i64,
+    motion: *const f64,
+    motion_len: i64,
+    force: *mut f64,
+    force_len: i64,
+    jac: *mut f64,
+    jac_len: i64,
+) -> hbvib_status {
+    call(|| {
+        let contact = law(&unsafe { load(c, 1) }?).blame(1)?;
+        contact.check_constants().blame(1)?;
+        let (harmonics, samples) = super::solve::harmonics_and_samples(harmonics, samples, (2, 3))?;
+        let needed = harmonics + 1;
+        let motion_len = exact_len(motion_len, needed, 5, "motion_len = harmonics + 1")?;
+        let force_len = exact_len(force_len, needed, 7, "force_len = harmonics + 1")?;
+        let jac_len = if jac.is_null() && jac_len == 0 {
+            0
+        } else {
+            exact_len(
+                jac_len,
+                (2 * needed).saturating_mul(2 * needed),
+                9,
+                "jac_len = (2 (harmonics + 1))^2",
+            )?
+        };
+        check_pointer(motion, 4, "motion")?;
+        check_pointer(force, 6, "force")?;
+        disjoint(
+            &[Range::new(motion, 2 * motion_len, 4, "motion")?],
+            &[
+                Range::new(force, 2 * force_len, 6, "force")?,
+                Range::new(jac, jac_len, 8, "jac")?,
+            ],
+        )?;
+        let motion = unsafe { input(motion.cast(), motion_len, 4, "motion") }?;
+        let force = unsafe { output(force.cast(), force_len, 6, "force") }?;
+        let jac = match jac_len {
+            0 => None,
+            len => Some(unsafe { output(jac, len, 8, "jac") }?),
+        };
+        analysis::contact_evaluate(&contact, harmonics, samples, motion, force, jac).blame(4)?;
+        Ok(Status::Ok)
+    })
+}
+
+/// A length of the caller that must be `needed`.
+pub(super) fn exact_len(len: i64, needed: usize, argument: i32, name: &str) -> Result<usize> {
+    match count(len, argument, name) {
+        Ok(len) if len == needed => Ok(len),
+        _ => fail!(Dimension, "length = {len}, needs {name} = {needed}").blame(argument),
+    }
+}

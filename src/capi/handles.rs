@@ -1,0 +1,309 @@
+//! Handles: numbers in a pointer's clothes. A handle says in which slot of the one table its object
+//! lies, of which generation and type it is, and it is looked up before anything is read, so that
+//! a freed, foreign or random handle is an error and never an access to memory.
+//!
+//! The table is locked for the look-up alone. While a call works on an object, the slot counts its
+//! readers or notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
+
+use super::types::{hbvib_branch, hbvib_model};
+use crate::branch::Branch;
+use crate::error::{Error, Result, Status, try_push};
+use crate::model::Model;
+use core::ops::{Deref, DerefMut};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+#[cfg(not(target_pointer_width = "64"))]
+compile_error!("handles need pointers of 64 bits");
+
+/// Bits of a handle from the top: 12 magic, 4 type, 24 generation, 24 slot. The magic makes it an
+/// address that no process can have.
+const MAGIC: u64 = 0xB5A;
+const SLOT_BITS: u32 = 24;
+const GENERATION_BITS: u32 = 24;
+const MAX_SLOTS: usize = 1 << SLOT_BITS;
+const MAX_GENERATION: u32 = (1 << GENERATION_BITS) - 1;
+
+/// Number of readers that stands for one writer.
+const WRITER: u32 = u32::MAX;
+
+/// End of the list of free slots.
+const NONE: u32 = u32::MAX;
+
+/// A branch with what its queries need besides.
+pub(super) struct KeptBranch {
+    pub branch: Branch,
+    /// Number of frequencies that were asked for.
+    pub wanted: usize,
+}
+
+/// What a slot holds. The one-element vectors are boxes whose memory can be asked for fallibly.
+pub(super) enum Object {
+    Free { next: u32 },
+    Model(Vec<Model>),
+    Branch(Vec<KeptBranch>),
+}
+
+struct Slot {
+    generation: u32,
+    users: u32,
+    object: Object,
+}
+
+struct Table {
+    slots: Vec<Slot>,
+    free: u32,
+}
+
+static TABLE: Mutex<Table> = Mutex::new(Table {
+    slots: Vec::new(),
+    free: NONE,
+});
+
+/// Where the generations of a slot begin: another number in each copy of the library that a process
+/// has loaded, so that a handle of one copy is none of the other's.
+fn first_generation() -> u32 {
+    1 + ((&raw const TABLE).addr() >> 12 & 0x3F_FFFF) as u32
+}
+
+fn table() -> MutexGuard<'static, Table> {
+    TABLE.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A type that handles can stand for.
+pub(super) trait Kept: Sized {
+    /// The opaque type of the header.
+    type Opaque;
+    /// Type bits of the handle.
+    const TAG: u64;
+    /// "model"
+    const NAME: &'static str;
+    /// Puts the object into a slot.
+    fn wrap(object: Vec<Self>) -> Object;
+    /// The object of a slot, where it is of this type.
+    fn pick(object: &mut Object) -> Option<*mut Self>;
+    /// Whether the slot has an object of this type.
+    fn holds(object: &Object) -> bool;
+}
+
+impl Kept for Model {
+    type Opaque = hbvib_model;
+    const TAG: u64 = 1;
+    const NAME: &'static str = "model";
+
+    fn wrap(object: Vec<Self>) -> Object {
+        Object::Model(object)
+    }
+
+    fn pick(object: &mut Object) -> Option<*mut Self> {
+        match object {
+            Object::Model(one) => Some(one.as_mut_ptr()),
+            _ => None,
+        }
+    }
+
+    fn holds(object: &Object) -> bool {
+        matches!(object, Object::Model(_))
+    }
+}
+
+impl Kept for KeptBranch {
+    type Opaque = hbvib_branch;
+    const TAG: u64 = 2;
+    const NAME: &'static str = "branch";
+
+    fn wrap(object: Vec<Self>) -> Object {
+        Object::Branch(object)
+    }
+
+    fn pick(object: &mut Object) -> Option<*mut Self> {
+        match object {
+            Object::Branch(one) => Some(one.as_mut_ptr()),
+            _ => None,
+        }
+    }
+
+    fn holds(object: &Object) -> bool {
+        matches!(object, Object::Branch(_))
+    }
+}
+
+/// Puts an object into the table and returns its handle.
+pub(super) fn insert<T: Kept>(object: T) -> Result<*mut T::Opaque> {
+    let mut one = Vec::new();
+    one.try_reserve_exact(1).map_err(|_| Error::out_of_memory(T::NAME))?;
+    one.push(object);
+    let mut table = table();
+    if table.free == NONE {
+        if table.slots.len() >= MAX_SLOTS {
+            return Err(Error::out_of_memory("another handle"));
+        }
+        let slot = Slot {
+            generation: first_generation(),
+            users: 0,
+            object: Object::Free { next: NONE },
+        };
+        try_push(&mut table.slots, slot, "another handle")?;
+        table.free = (table.slots.len() - 1) as u32;
+    }
+    let number = table.free;
+    let slot = &mut table.slots[number as usize];
+    let generation = slot.generation;
+    if let Object::Free { next } = core::mem::replace(&mut slot.object, T::wrap(one)) {
+        table.free = next;
+    }
+    let bits = MAGIC << 52 | T::TAG << 48 | u64::from(generation) << SLOT_BITS | u64::from(number);
+    Ok(core::ptr::without_provenance_mut(bits as usize))
+}
+
+impl Table {
+    /// The slot of a live handle.
+    fn find<T: Kept>(&mut self, handle: *const T::Opaque, argument: i32) -> Result<&mut Slot> {
+        let bits = handle.addr() as u64;
+        let refuse = |why: &str| {
+            Err(Error::new(
+                Status::Handle,
+                format_args!("argument {argument} is not the handle of a {}: {why}", T::NAME),
+            )
+            .in_argument(argument))
+        };
+        if handle.is_null() {
+            return refuse("it is NULL");
+        }
+        if bits >> 52 != MAGIC {
+            return refuse("it was never returned by this library");
+        }
+        if bits >> 48 & 0xF != T::TAG {
+            return refuse("it is of another type");
+        }
+        let number = bits as usize & (MAX_SLOTS - 1);
+        let generation = (bits >> SLOT_BITS) as u32 & MAX_GENERATION;
+        match self.slots.get_mut(number) {
+            Some(slot) if slot.generation == generation && T::holds(&slot.object) => Ok(slot),
+            _ => refuse("it was freed, or never returned by this library"),
+        }
+    }
+
+    /// The slot of a handle that was found before and cannot have been freed since.
+    fn again(&mut self, handle: usize) -> Option<&mut Slot> {
+        self.slots.get_mut(handle & (MAX_SLOTS - 1))
+    }
+}
+
+fn busy<T: Kept, R>(argument: i32) -> Result<R> {
+    Err(Error::new(
+        Status::Busy,
+        format_args!(
+            "the {} is in use by a running call; wait until that call has returned",
+            T::NAME
+        ),
+    )
+    .in_argument(argument))
+}
+
+/// An object borrowed for reading; others may read it too.
+pub(super) struct Reading<T> {
+    handle: usize,
+    object: *const T,
+}
+
+/// Borrows an object for reading.
+pub(super) fn read<T: Kept>(handle: *const T::Opaque, argument: i32) -> Result<Reading<T>> {
+    let mut table = table();
+    let slot = table.find::<T>(handle, argument)?;
+    if slot.users >= WRITER - 1 {
+        return busy::<T, _>(argument);
+    }
+    let Some(object) = T::pick(&mut slot.object) else {
+        return busy::<T, _>(argument);
+    };
+    slot.users += 1;
+    Ok(Reading {
+        handle: handle.addr(),
+        object,
+    })
+}
+
+impl<T> Deref for Reading<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        // The counted reader keeps the object from being freed or changed.
+        unsafe { &*self.object }
+    }
+}
+
+impl<T> Drop for Reading<T> {
+    fn drop(&mut self) {
+        if let Some(slot) = table().again(self.handle) {
+            slot.users -= 1;
+        }
+    }
+}
+
+/// An object borrowed for changing; nobody else may touch it.
+pub(super) struct Writing<T> {
+    handle: usize,
+    object: *mut T,
+}
+
+/// Borrows an object for changing.
+pub(super) fn write<T: Kept>(handle: *mut T::Opaque, argument: i32) -> Result<Writing<T>> {
+    let mut table = table();
+    let slot = table.find::<T>(handle, argument)?;
+    if slot.users != 0 {
+        return busy::<T, _>(argument);
+    }
+    let Some(object) = T::pick(&mut slot.object) else {
+        return busy::<T, _>(argument);
+    };
+    slot.users = WRITER;
+    Ok(Writing {
+        handle: handle.addr(),
+        object,
+    })
+}
+
+impl<T> Deref for Writing<T> {
+    type Target = T;
+
+    fn deref(&self) -> &T {
+        unsafe { &*self.object }
+    }
+}
+
+impl<T> DerefMut for Writing<T> {
+    fn deref_mut(&mut self) -> &mut T {
+        // The noted writer keeps everybody else out.
+        unsafe { &mut *self.object }
+    }
+}
+
+impl<T> Drop for Writing<T> {
+    fn drop(&mut self) {
+        if let Some(slot) = table().again(self.handle) {
+            slot.users = 0;
+        }
+    }
+}
+
+/// Frees an object; NULL is nothing to free.
+pub(super) fn free<T: Kept>(handle: *mut T::Opaque, argument: i32) -> Result<()> {
+    if handle.is_null() {
+        return Ok(());
+    }
+    let mut guard = table();
+    let free = guard.free;
+    let slot = guard.find::<T>(handle, argument)?;
+    if slot.users != 0 {
+        return busy::<T, _>(argument);
+    }
+    let object = core::mem::replace(&mut slot.object, Object::Free { next: free });
+    slot.generation += 1;
+    // A slot whose generations are used up is never used again.
+    if slot.generation < MAX_GENERATION {
+        guard.free = (handle.addr() & (MAX_SLOTS - 1)) as u32;
+    }
+    drop(guard);
+    drop(object);
+    Ok(())
+}

@@ -1,0 +1,165 @@
+//! The matrix view of the header, checked and turned into the library's own.
+
+use super::boundary::{Blame, call, input};
+use super::sized::{Described, check_reserved, init, load};
+use super::types::{hbvib_matrix, hbvib_matrix_kind, hbvib_part, hbvib_scalar, hbvib_status, hbvib_storage};
+use crate::error::{Result, fail};
+use crate::linalg::matrix_view::{MatrixView, Part, Storage, Values};
+use crate::model::structure::MatrixKind;
+use core::ptr;
+
+unsafe impl Described for hbvib_matrix {
+    const NAME: &'static str = "hbvib_matrix";
+    const FIRST: usize = 72;
+
+    fn filled() -> Self {
+        Self {
+            struct_size: 0,
+            storage: hbvib_storage::HBVIB_COL_MAJOR as i32,
+            scalar: hbvib_scalar::HBVIB_REAL as i32,
+            part: hbvib_part::HBVIB_FULL as i32,
+            rows: 0,
+            cols: 0,
+            ld: 0,
+            values: ptr::null(),
+            col_ptr: ptr::null(),
+            row_idx: ptr::null(),
+            index_base: 0,
+            reserved: 0,
+        }
+    }
+}
+
+const COL_MAJOR: i32 = hbvib_storage::HBVIB_COL_MAJOR as i32;
+const ROW_MAJOR: i32 = hbvib_storage::HBVIB_ROW_MAJOR as i32;
+const CSC: i32 = hbvib_storage::HBVIB_CSC as i32;
+
+/// One of M, C, K by its number.
+pub(super) fn matrix_kind(which: i32) -> Result<MatrixKind> {
+    const MASS: i32 = hbvib_matrix_kind::HBVIB_MASS as i32;
+    const DAMPING: i32 = hbvib_matrix_kind::HBVIB_DAMPING as i32;
+    const STIFFNESS: i32 = hbvib_matrix_kind::HBVIB_STIFFNESS as i32;
+    match which {
+        MASS => Ok(MatrixKind::Mass),
+        DAMPING => Ok(MatrixKind::Damping),
+        STIFFNESS => Ok(MatrixKind::Stiffness),
+        _ => fail!(
+            Argument,
+            "which = {which}, needs HBVIB_MASS = 0, HBVIB_DAMPING = 1 or HBVIB_STIFFNESS = 2"
+        ),
+    }
+    .blame(2)
+}
+
+fn part(value: i32) -> Result<Part> {
+    const FULL: i32 = hbvib_part::HBVIB_FULL as i32;
+    const LOWER: i32 = hbvib_part::HBVIB_LOWER as i32;
+    const UPPER: i32 = hbvib_part::HBVIB_UPPER as i32;
+    const GENERAL: i32 = hbvib_part::HBVIB_GENERAL as i32;
+    match value {
+        FULL => Ok(Part::Full),
+        LOWER => Ok(Part::Lower),
+        UPPER => Ok(Part::Upper),
+        GENERAL => Ok(Part::General),
+        _ => fail!(
+            Argument,
+            "hbvib_matrix: part = {value}, needs HBVIB_FULL = 0 .. HBVIB_GENERAL = 3"
+        ),
+    }
+}
+
+/// Hands the matrix at `p`, of order `n`, to `then`; errors blame `argument`.
+///
+/// # Safety
+/// The caller of the C function states that the arrays of the view are as long as it says.
+pub(super) unsafe fn with_matrix<T>(
+    p: *const hbvib_matrix,
+    argument: i32,
+    n: usize,
+    then: impl FnOnce(&MatrixView<'_>) -> Result<T>,
+) -> Result<T> {
+    let a = unsafe { load(p, argument) }?;
+    let view = unsafe { matrix_view(&a, n, argument) }.blame(argument)?;
+    then(&view).blame(argument)
+}
+
+unsafe fn matrix_view(a: &hbvib_matrix, n: usize, argument: i32) -> Result<MatrixView<'_>> {
+    const NAME: &str = "hbvib_matrix: values";
+    check_reserved(a.reserved, argument, "hbvib_matrix")?;
+    if usize::try_from(a.rows) != Ok(n) || usize::try_from(a.cols) != Ok(n) {
+        return fail!(
+            Dimension,
+            "hbvib_matrix: rows x cols = {} x {}, needs {n} x {n}",
+            a.rows,
+            a.cols
+        );
+    }
+    let index_base = match a.index_base {
+        0 => 0,
+        1 => 1,
+        other => return fail!(Argument, "hbvib_matrix: index_base = {other}, needs 0 or 1"),
+    };
+    let (len, storage) = match a.storage {
+        COL_MAJOR | ROW_MAJOR => {
+            let ld = usize::try_from(a.ld).unwrap_or(0);
+            if a.ld < 0 || (ld > 0 && ld < n) {
+                return fail!(
+                    Dimension,
+                    "hbvib_matrix: ld = {}, needs at least {n}, or 0 for a packed matrix",
+                    a.ld
+                );
+            }
+            let distance = if ld == 0 { n } else { ld };
+            let len = (n - 1).checked_mul(distance).and_then(|l| l.checked_add(n));
+            let storage = if a.storage == COL_MAJOR {
+                Storage::ColMajor { ld }
+            } else {
+                Storage::RowMajor { ld }
+            };
+            (len.unwrap_or(usize::MAX), storage)
+        }
+        CSC => {
+            let col_ptr = unsafe { input(a.col_ptr, n + 1, argument, "hbvib_matrix: col_ptr") }?;
+            // Offsets that make no sense are refused, with their place, before an entry is read.
+            let stored = col_ptr[n].checked_sub(index_base as i64);
+            let stored = stored.and_then(|s| usize::try_from(s).ok()).unwrap_or(0);
+            let row_idx = unsafe { input(a.row_idx, stored, argument, "hbvib_matrix: row_idx") }?;
+            (stored, Storage::Csc { col_ptr, row_idx })
+        }
+        other => {
+            return fail!(
+                Argument,
+                "hbvib_matrix: storage = {other}, needs HBVIB_COL_MAJOR = 0, HBVIB_ROW_MAJOR = 1 or HBVIB_CSC = 2"
+            );
+        }
+    };
+    let values = match a.scalar {
+        0 => Values::Real(unsafe { input(a.values, len, argument, NAME) }?),
+        1 => Values::Complex(unsafe { input(a.values.cast(), len, argument, NAME) }?),
+        other => {
+            return fail!(
+                Argument,
+                "hbvib_matrix: scalar = {other}, needs HBVIB_REAL = 0 or HBVIB_COMPLEX = 1"
+            );
+        }
+    };
+    Ok(MatrixView {
+        rows: n,
+        cols: n,
+        storage,
+        values,
+        part: part(a.part)?,
+        index_base,
+    })
+}
+
+/// Fills a matrix description: struct_size, dense column-major, real, symmetric in full, the rest
+/// zero. Set rows, cols and values at least.
+///
+/// a          the struct; untouched on error.
+/// size_of_a  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_matrix_init(a: *mut hbvib_matrix, size_of_a: usize) -> hbvib_status {
+    call(|| unsafe { init(a, size_of_a) })
+}

@@ -1,0 +1,116 @@
+//! The rules by which structs cross the border: they begin with their size, grow at their end only,
+//! and a field that one side does not know is its default there.
+
+use super::boundary::check_pointer;
+use crate::error::{Error, Result, Status};
+
+/// A struct that begins with its size in bytes, so that it can grow at its end.
+///
+/// # Safety
+/// `repr(C)`, begins with a `u32`, no padding, any bits are a value.
+pub(super) unsafe trait Described: Copy {
+    /// Name in the header.
+    const NAME: &'static str;
+    /// Size of its first version.
+    const FIRST: usize;
+    /// The struct as `_init` fills it; its size is set by the caller of this.
+    fn filled() -> Self;
+}
+
+/// Larger sizes are garbage, not a newer header.
+const LARGEST: usize = 4096;
+
+/// Checks a stated size.
+fn check_size<T: Described>(size: usize, argument: i32) -> Result<()> {
+    if size >= T::FIRST && size <= LARGEST && size.is_multiple_of(8) {
+        return Ok(());
+    }
+    Err(Error::new(
+        Status::StructSize,
+        format_args!(
+            "{}: struct_size = {size}, needs {} = sizeof; fill the struct by {}_init",
+            T::NAME,
+            size_of::<T>(),
+            T::NAME
+        ),
+    )
+    .in_argument(argument))
+}
+
+/// Fills a struct of the caller with its defaults; `size` is its size there.
+///
+/// # Safety
+/// The caller of the C function states that `size` writable bytes lie at `p`.
+pub(super) unsafe fn init<T: Described>(p: *mut T, size: usize) -> Result<Status> {
+    check_pointer(p, 1, T::NAME)?;
+    check_size::<T>(size, 2)?;
+    unsafe { store(p, size, T::filled()) };
+    Ok(Status::Ok)
+}
+
+/// Writes as much of `value` as the caller's struct holds, and zeros beyond what is known here.
+unsafe fn store<T: Described>(p: *mut T, size: usize, value: T) {
+    unsafe {
+        let bytes = p.cast::<u8>();
+        bytes.write_bytes(0, size);
+        bytes.copy_from_nonoverlapping((&raw const value).cast(), size.min(size_of::<T>()));
+        p.cast::<u32>().write(size as u32);
+    }
+}
+
+/// Reads a struct of the caller. Fields that it does not have take their defaults; fields that
+/// are not known here must be zero.
+///
+/// # Safety
+/// The caller of the C function states that a struct of its stated size lies at `p`.
+pub(super) unsafe fn load<T: Described>(p: *const T, argument: i32) -> Result<T> {
+    check_pointer(p, argument, T::NAME)?;
+    let size = unsafe { p.cast::<u32>().read() } as usize;
+    check_size::<T>(size, argument)?;
+    let known = size_of::<T>();
+    let bytes = p.cast::<u8>();
+    for i in known..size.max(known) {
+        if unsafe { bytes.add(i).read() } != 0 {
+            return Err(Error::new(
+                Status::StructSize,
+                format_args!(
+                    "{}: struct_size = {size}, but only {known} bytes are known here and byte {i} is not 0; use a newer library",
+                    T::NAME
+                ),
+            )
+            .in_argument(argument));
+        }
+    }
+    let mut value = T::filled();
+    unsafe {
+        (&raw mut value)
+            .cast::<u8>()
+            .copy_from_nonoverlapping(bytes, size.min(known));
+    };
+    Ok(value)
+}
+
+/// Checks a struct for results, whose size the caller has stated.
+///
+/// # Safety
+/// As [`load`].
+pub(super) unsafe fn check_out<T: Described>(p: *const T, argument: i32) -> Result<()> {
+    check_pointer(p, argument, T::NAME)?;
+    check_size::<T>(unsafe { p.cast::<u32>().read() } as usize, argument)
+}
+
+/// Writes a struct of results that [`check_out`] has checked.
+///
+/// # Safety
+/// As [`load`].
+pub(super) unsafe fn fill_out<T: Described>(p: *mut T, value: T) {
+    unsafe { store(p, p.cast::<u32>().read() as usize, value) };
+}
+
+/// Refuses reserved fields that are not zero.
+pub(super) fn check_reserved(value: i32, argument: i32, name: &str) -> Result<()> {
+    if value == 0 {
+        return Ok(());
+    }
+    Err(Error::new(Status::Argument, format_args!("{name}: reserved = {value}, needs 0")).in_argument(argument))
+}

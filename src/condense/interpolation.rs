@@ -1,0 +1,267 @@
+//! The flexibility of a large structure along a sweep: Chebyshev panels instead of a factorisation
+//! per iteration.
+//!
+//! H(ω) is analytic off the damped resonances, so on a panel that is short against its distance
+//! from them the Chebyshev series converges geometrically (Trefethen, Approximation Theory and
+//! Approximation Practice, 2013, ch. 8). Panels are laid where the sweep goes, as wide as the tail
+//! of the series allows; the derivative is that of the series.
+
+use super::flexibility::Table;
+use crate::error::{Result, try_push, try_vec};
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// Samples per panel.
+const NODES: usize = 18;
+
+/// Attempts at one panel before it is taken as good as rounding allows, or given up.
+const MAX_ATTEMPTS: usize = 24;
+
+/// Tail up to which a panel that rounding keeps from converging is accepted.
+const NOISE: f64 = 1e-8;
+
+/// One interval with its series.
+struct Panel {
+    low: f64,
+    high: f64,
+    /// NODES × table size, degree by degree.
+    coefficients: Vec<Complex64>,
+}
+
+/// The panels of one harmonic.
+pub struct Interpolation {
+    outputs: usize,
+    tolerance: f64,
+    /// Width that the next panel tries.
+    width: f64,
+    /// Width of the panel laid last.
+    last_width: f64,
+    rising: bool,
+    panels: Vec<Panel>,
+    samples: Vec<Complex64>,
+    /// cos(πm/(2N)) for m in one turn.
+    cosines: [f64; 4 * NODES],
+    /// Factorisations used.
+    evaluations: usize,
+}
+
+impl Interpolation {
+    /// For tables of `coordinates` contacts along a sweep from `start` to `end`, with a relative
+    /// error of `tolerance`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(coordinates: usize, start: f64, end: f64, tolerance: f64) -> Result<Self> {
+        let outputs = coordinates + 1;
+        let size = NODES.saturating_mul(outputs.saturating_mul(outputs));
+        Ok(Self {
+            outputs,
+            tolerance,
+            width: (end - start).abs(),
+            last_width: 0.0,
+            rising: end >= start,
+            panels: Vec::new(),
+            samples: try_vec(size, Complex64::ZERO, "the interpolated flexibility")?,
+            cosines: core::array::from_fn(|m| (PI * m as f64 / (2 * NODES) as f64).cos()),
+            evaluations: 0,
+        })
+    }
+
+    /// Factorisations used so far.
+    #[must_use]
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// Fills `table` at `omega`; `sample` evaluates H by factorisation. `false`: no panel of
+    /// sensible width converged here.
+    ///
+    /// # Errors
+    /// What `sample` reports, `OutOfMemory`.
+    pub fn evaluate(
+        &mut self,
+        omega: f64,
+        table: &mut Table,
+        mut sample: impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<bool> {
+        let found = self.panels.iter().rposition(|p| p.low <= omega && omega <= p.high);
+        let index = match found {
+            Some(index) => index,
+            None => match self.lay(omega, &mut sample)? {
+                Some(panel) => {
+                    try_push(&mut self.panels, panel, "the interpolated flexibility")?;
+                    self.panels.len() - 1
+                }
+                None => return Ok(false),
+            },
+        };
+        self.panels[index].evaluate(omega, table);
+        Ok(true)
+    }
+
+    /// Lays a panel over `omega`, beside its neighbours.
+    fn lay(
+        &mut self,
+        omega: f64,
+        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<Option<Panel>> {
+        let below = self
+            .panels
+            .iter()
+            .map(|p| p.high)
+            .filter(|&x| x < omega)
+            .fold(0.0, f64::max);
+        let above = self
+            .panels
+            .iter()
+            .map(|p| p.low)
+            .filter(|&x| x > omega)
+            .fold(f64::INFINITY, f64::min);
+        let mut last_tail = f64::INFINITY;
+        for _ in 0..MAX_ATTEMPTS {
+            // A little room behind, should the corrector step back.
+            let back = 0.05 * self.width;
+            let (low, high) = if self.rising {
+                let low = below.max(omega - back);
+                (low, (low + self.width).min(above).max(omega))
+            } else {
+                let high = above.min(omega + back);
+                ((high - self.width).max(below).min(omega), high)
+            };
+            if high - low <= 1e-9 * omega {
+                return Ok(None);
+            }
+            let tail = self.transform(low, high, sample)?;
+            let stalled = tail > 0.3 * last_tail && tail < NOISE;
+            if tail <= self.tolerance || stalled {
+                let mut coefficients = try_vec(self.samples.len(), Complex64::ZERO, "the interpolated flexibility")?;
+                coefficients.copy_from_slice(&self.samples);
+                // On the way to a resonance each panel is shorter than the one before, and longer
+                // on the way from it.
+                let width = high - low;
+                let trend = if self.last_width > 0.0 {
+                    width / self.last_width
+                } else {
+                    1.0
+                };
+                self.width = width * trend.clamp(0.3, 3.0) * self.factor(tail).clamp(0.5, 2.0);
+                self.last_width = width;
+                return Ok(Some(Panel {
+                    low,
+                    high,
+                    coefficients,
+                }));
+            }
+            last_tail = tail;
+            self.width = (high - low) * self.factor(tail).clamp(0.1, 0.6);
+        }
+        Ok(None)
+    }
+
+    /// How much wider a panel may be, from the geometric convergence of the series.
+    fn factor(&self, tail: f64) -> f64 {
+        0.9 * (self.tolerance / tail.max(1e-16)).powf(1.0 / (NODES - 1) as f64)
+    }
+
+    /// Samples a panel, turns the samples into coefficients in place, and returns the relative
+    /// size of the last ones: the largest over contact flexibility, contact motion, response row
+    /// and response, each against its own largest value.
+    fn transform(
+        &mut self,
+        low: f64,
+        high: f64,
+        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<f64> {
+        let size = self.outputs * self.outputs;
+        for (j, values) in self.samples.chunks_exact_mut(size).enumerate() {
+            let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
+            sample(0.5 * (low + high) + 0.5 * (high - low) * x, values)?;
+            self.evaluations += 1;
+        }
+        let (mut largest, mut tail) = ([0.0_f64; 4], [0.0_f64; 4]);
+        for entry in 0..size {
+            let group = usize::from(entry % self.outputs == self.outputs - 1)
+                + 2 * usize::from(entry / self.outputs == self.outputs - 1);
+            let mut values = [Complex64::ZERO; NODES];
+            for (j, v) in values.iter_mut().enumerate() {
+                *v = self.samples[j * size + entry];
+                largest[group] = largest[group].max(v.norm());
+            }
+            for k in 0..NODES {
+                let mut sum = Complex64::ZERO;
+                for (j, v) in values.iter().enumerate() {
+                    // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
+                    sum += v * self.cosines[(k * (2 * j + 1)) % (4 * NODES)];
+                }
+                sum *= if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
+                self.samples[k * size + entry] = sum;
+                if k + 2 >= NODES {
+                    tail[group] = tail[group].max(sum.norm());
+                }
+            }
+        }
+        Ok((0..4)
+            .filter(|&g| largest[g] > 0.0)
+            .fold(0.0, |worst, g| worst.max(tail[g] / largest[g])))
+    }
+}
+
+impl Panel {
+    /// Σ cₖ Tₖ(x) and its derivative, T′ₖ = k Uₖ₋₁.
+    fn evaluate(&self, omega: f64, table: &mut Table) {
+        let x = (2.0 * omega - self.low - self.high) / (self.high - self.low);
+        let stretch = 2.0 / (self.high - self.low);
+        table.value.fill(Complex64::ZERO);
+        table.slope.fill(Complex64::ZERO);
+        let size = table.value.len();
+        let (mut t, mut t_next) = (1.0, x);
+        let (mut u_before, mut u) = (0.0, 1.0);
+        for (k, coefficients) in self.coefficients.chunks_exact(size).enumerate() {
+            // uₖ₋₁ is in `u_before` shifted by one: U₋₁ = 0, U₀ = 1.
+            let slope = k as f64 * u_before * stretch;
+            for ((v, s), c) in table.value.iter_mut().zip(&mut table.slope).zip(coefficients) {
+                *v += t * c;
+                *s += slope * c;
+            }
+            (t, t_next) = (t_next, 2.0 * x * t_next - t);
+            (u_before, u) = (u, 2.0 * x * u - u_before);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sweep_over_a_sharp_resonance_is_reproduced_with_its_slope() {
+        // One mode with Q = 500: H = 1/(1 - w^2 + 0.002 i w), in both directions.
+        let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
+        let slope = |w: f64| -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
+        for (start, end) in [(0.9, 1.1), (1.1, 0.9)] {
+            let mut interpolation = Interpolation::new(0, start, end, 1e-11).unwrap();
+            let mut table = Table::new(0).unwrap();
+            for k in 0..=400 {
+                let w = start + (end - start) * f64::from(k) / 400.0;
+                let done = interpolation
+                    .evaluate(w, &mut table, |w, values| {
+                        values[0] = exact(w);
+                        Ok(())
+                    })
+                    .unwrap();
+                assert!(done);
+                assert!(
+                    (table.value[0] - exact(w)).norm() < 1e-9 * exact(w).norm(),
+                    "{w}: {:.2e}",
+                    (table.value[0] - exact(w)).norm() / exact(w).norm()
+                );
+                assert!(
+                    (table.slope[0] - slope(w)).norm() < 1e-6 * slope(w).norm(),
+                    "{w}: {:.2e}",
+                    (table.slope[0] - slope(w)).norm() / slope(w).norm()
+                );
+            }
+            assert!(interpolation.evaluations() < 600, "{}", interpolation.evaluations());
+        }
+    }
+}

@@ -1,0 +1,25 @@
+/* The header alone, as C99 to C17 and C++11 to C++20: twice, and every constant in an expression. */
+#include "hbvib.h"
+#include "hbvib.h"
+
+int32_t header_check(int32_t status);
+
+/* Negative constants bind as numbers do. */
+int32_t header_check(int32_t status)
+{
+    hbvib_contact contact;
+    hbvib_hooks hooks;
+    hbvib_cancel_flag flag = 0;
+    contact.struct_size = (uint32_t)sizeof contact;
+    contact.dof_a[0] = 3 - HBVIB_GROUND;
+    contact.kind = HBVIB_JENKINS;
+    hooks.cancel = &flag;
+    flag = 1;
+    switch (status) {
+    case HBVIB_OK: return (int32_t)contact.dof_a[0];
+    case HBVIB_E_NULL: return 2 * HBVIB_E_NULL;
+    case HBVIB_E_INTERNAL: return 1 - HBVIB_E_INTERNAL;
+    case HBVIB_STOPPED_BY_CALLER: return *hooks.cancel + (int32_t)contact.struct_size + contact.kind;
+    default: return status < HBVIB_OK ? -HBVIB_E_NULL : HBVIB_VERSION_MAJOR + HBVIB_VERSION_MINOR + HBVIB_VERSION_PATCH;
+    }
+}

@@ -1,0 +1,120 @@
+/* What comes out: names and versions, special points, harmonics, views, modes, residuals. */
+#include "common.h"
+
+static void names(void)
+{
+    char version[32];
+    int32_t status;
+    snprintf(version, sizeof version, "%d.%d.%d", HBVIB_VERSION_MAJOR, HBVIB_VERSION_MINOR, HBVIB_VERSION_PATCH);
+    EXPECT("names", strcmp(hbvib_version_string(), version) == 0);
+    EXPECT("names", strcmp(hbvib_status_name(HBVIB_OK), "HBVIB_OK") == 0);
+    EXPECT("names", strcmp(hbvib_status_name(HBVIB_E_SINGULAR), "HBVIB_E_SINGULAR") == 0);
+    for (status = HBVIB_E_NOT_POSITIVE_DEFINITE; status <= HBVIB_STOPPED_STALLED; status++)
+        EXPECT("names", strncmp(hbvib_status_name(status), "HBVIB_", 6) == 0 &&
+                            strstr(hbvib_status_name(status), "UNKNOWN") == NULL);
+    EXPECT("names", strcmp(hbvib_status_name(12345), "HBVIB_UNKNOWN_STATUS") == 0);
+    EXPECT("names", strcmp(hbvib_status_name(INT32_MIN), "HBVIB_UNKNOWN_STATUS") == 0);
+}
+
+static void special_points(hbvib_branch *branch, const double *at)
+{
+    double omega = 0, amplitude = 0, x[80], part[20];
+    int64_t point = -1, count = -1, points = hbvib_branch_points(branch), h;
+    hbvib_view view;
+    size_t i;
+
+    WORKS("peak", hbvib_branch_peaks(branch, 1, &omega, &amplitude, &point, &count));
+    EXPECT("peak", count == 1 && point >= points && omega > at[0] && omega < at[1]);
+    WORKS("peak", hbvib_branch_harmonics(branch, point, 0, NDOF, x, 40));
+    EXPECT("peak", fabs(hypot(x[2 * NDOF], x[2 * NDOF + 1]) / amplitude - 1) < 1e-12);
+    /* A range of degrees of freedom is that part of the whole; even harmonics are zero. */
+    WORKS("peak", hbvib_branch_harmonics(branch, point, 2, 1, part, 10));
+    for (h = 0; h < 10; h++) {
+        EXPECT("peak", part[2 * h] == x[2 * (NDOF * h + 2)] && part[2 * h + 1] == x[2 * (NDOF * h + 2) + 1]);
+        EXPECT("peak", (part[2 * h] == 0) == (h % 2 == 0));
+    }
+    WORKS("folds", hbvib_branch_folds(branch, 0, NULL, NULL, NULL, &count));
+    EXPECT("folds", count == 0);
+    for (i = 0; i < 2; i++) {
+        WORKS("at", hbvib_branch_at(branch, (int64_t)i, 1, &amplitude, &point, &count));
+        EXPECT("at", count == 1 && point >= points);
+        WORKS("at", hbvib_branch_harmonics(branch, point, 0, 1, part, 10));
+        EXPECT("at", fabs(hypot(part[2], part[3]) / amplitude - 1) < 1e-12);
+    }
+    for (i = 0; i < 10; i++) {
+        hbvib_status status;
+        WORKS("views", hbvib_view_init(&view, sizeof view));
+        status = hbvib_branch_field(branch, (int32_t)i, &view);
+        if (i == 2 || i == 3 || i == 4 || i == 7) {
+            EXPECT("views", status == HBVIB_E_ARGUMENT);
+            continue;
+        }
+        EXPECT("views", status == HBVIB_OK && view.shape[0] == points && view.scalar == HBVIB_REAL);
+        EXPECT("views", view.rank == (i == HBVIB_SLIP_FRACTION ? 2 : 1) && view.stride[0] == 1 && view.data != NULL);
+        for (h = 0; h < points; h++) EXPECT("views", view.data[h * view.stride[0]] >= 0);
+    }
+}
+
+/* The residual vanishes where the branch says that it is solved. */
+static void residual(hbvib_model *model, hbvib_branch *branch, const double *at)
+{
+    enum { SIZE = 80 };
+    double x[SIZE], r[SIZE], d_omega[SIZE], largest = 0, slope = 0, amplitude, step, r2[SIZE];
+    double *jac = malloc(SIZE * SIZE * sizeof *jac);
+    int64_t point, count;
+    int i, j;
+    if (jac == NULL) abort();
+    WORKS("residual", hbvib_branch_at(branch, 0, 1, &amplitude, &point, &count));
+    WORKS("residual", hbvib_branch_harmonics(branch, point, 0, NDOF, x, 40));
+    WORKS("residual", hbvib_forced_residual(model, NULL, at[0], x, 40, r, 40, jac, SIZE * SIZE, d_omega, 40));
+    for (i = 0; i < SIZE; i++) largest = fmax(largest, fabs(r[i]));
+    EXPECT("residual", largest < 1e-7 * 5); /* of the force of 5 N */
+    WORKS("residual", hbvib_forced_residual(model, NULL, at[0] * (1 + 1e-6), x, 40, r2, 40, NULL, 0, NULL, 0));
+    for (i = 0; i < SIZE; i++) slope = fmax(slope, fabs((r2[i] - r[i]) / (1e-6 * at[0]) - d_omega[i]));
+    for (largest = 0, i = 0; i < SIZE; i++) largest = fmax(largest, fabs(d_omega[i]));
+    EXPECT("residual", slope < 1e-4 * largest);
+    /* Column-major: a step in one unknown moves the residual along its column. */
+    j = 2 * NDOF + 4; /* Re X_1 of the disk */
+    step = 1e-7 * amplitude;
+    x[j] += step;
+    WORKS("residual", hbvib_forced_residual(model, NULL, at[0], x, 40, r2, 40, NULL, 0, NULL, 0));
+    for (slope = largest = 0, i = 0; i < SIZE; i++) {
+        slope = fmax(slope, fabs((r2[i] - r[i]) / step - jac[j * SIZE + i]));
+        largest = fmax(largest, fabs(jac[j * SIZE + i]));
+    }
+    EXPECT("residual", slope < 1e-4 * largest);
+    free(jac);
+}
+
+static void modes(hbvib_model *model)
+{
+    double omega[NDOF], stuck[NDOF], shapes[2 * NDOF * NDOF], norm;
+    int i, k;
+    WORKS("modes", hbvib_linear_modes(model, 2, HBVIB_CONTACTS_FREE, NDOF, omega, shapes));
+    WORKS("modes", hbvib_linear_modes(model, 2, HBVIB_CONTACTS_STUCK, NDOF, stuck, NULL));
+    REFUSED("modes", hbvib_linear_modes(model, 2, 2, NDOF, omega, NULL), HBVIB_E_ARGUMENT, 3, "contacts = 2");
+    for (k = 0; k < NDOF; k++) {
+        for (norm = 0, i = 0; i < 2 * NDOF; i++) norm += MASS[5 * (i / 2)] * shapes[2 * NDOF * k + i] * shapes[2 * NDOF * k + i];
+        EXPECT("modes", fabs(norm - 1) < 1e-12 && omega[k] <= stuck[k] * (1 + 1e-14));
+        EXPECT("modes", k == 0 || omega[k] >= omega[k - 1]);
+    }
+}
+
+int main(void)
+{
+    const double at[2] = {2 * PI * 208.5, 2 * PI * 209.5};
+    hbvib_forced_options o = frequencies(207, 211);
+    hbvib_solver_options s = solver_options();
+    hbvib_branch *branch = NULL;
+    begin();
+    names();
+    o.at = at;
+    o.at_len = 2;
+    WORKS("solve", hbvib_forced_response(the_model, &s, &o, NULL, &branch));
+    special_points(branch, at);
+    residual(the_model, branch, at);
+    modes(the_model);
+    WORKS("free", hbvib_branch_free(branch));
+    WORKS("free", hbvib_model_free(the_model));
+    return verdict(100);
+}

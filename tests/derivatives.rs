@@ -1,0 +1,502 @@
+//! Every derivative against finite differences on random inputs. These are identities of the
+//! same-H equations; no solution is needed.
+//!
+//! Tolerance. Where the slope is monotone in [x − h, x + h], its middle value lies between the
+//! one-sided differences, within half their gap of the central one. The gap is O(h) on smooth
+//! stretches; across the onset of a slip the slope jumps, and may overshoot next to the jump, so
+//! the whole gap is allowed. Round-off adds about 1e-15/h = 1e-9 of the scale; 1e-7 leaves room
+//! for cancellation in long sums.
+
+mod common;
+
+use hbvib::analysis::harmonic_residual::{contact_evaluate, forced_residual};
+use hbvib::condense::Condensed;
+use hbvib::contact::{Contact, Law};
+use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::problem::forced::Forced;
+use hbvib::problem::{Linearisation, Problem, Start};
+use num_complex::Complex64;
+use proptest::prelude::*;
+use proptest::test_runner::{Config, RngSeed, TestCaseError};
+use std::f64::consts::TAU;
+
+type Checked = Result<(), TestCaseError>;
+
+/// Inputs are random but the same in every run, so that a failure can be looked at.
+fn config(cases: u32) -> Config {
+    Config {
+        cases,
+        failure_persistence: None,
+        rng_seed: RngSeed::Fixed(20_031_125),
+        ..Config::default()
+    }
+}
+
+/// Values of a function at x − h, x and x + h.
+struct Stencil {
+    below: Vec<f64>,
+    here: Vec<f64>,
+    above: Vec<f64>,
+    h: f64,
+}
+
+impl Stencil {
+    fn of(h: f64, mut f: impl FnMut(f64) -> Vec<f64>) -> Self {
+        Self {
+            below: f(-h),
+            here: f(0.0),
+            above: f(h),
+            h,
+        }
+    }
+
+    /// Compares with an analytic slope; `scale` is the size of the slopes that are summed in it.
+    fn check(&self, name: &str, slope: &[f64], scale: f64) -> Checked {
+        prop_assert_eq!(slope.len(), self.here.len());
+        for (i, s) in slope.iter().enumerate() {
+            let (a, b, c) = (self.below[i], self.here[i], self.above[i]);
+            let central = (c - a) / (2.0 * self.h);
+            let gap = (a - 2.0 * b + c).abs() / self.h;
+            let tolerance = gap + 1e-7 * scale;
+            prop_assert!(
+                (s - central).abs() <= tolerance,
+                "{name}[{i}]: {s:e} but differences give {central:e} ± {tolerance:.1e}"
+            );
+        }
+        Ok(())
+    }
+}
+
+fn parts(x: &[Complex64]) -> Vec<f64> {
+    x.iter().flat_map(|z| [z.re, z.im]).collect()
+}
+
+fn pairs(x: &[f64]) -> Vec<Complex64> {
+    x.chunks_exact(2).map(|p| Complex64::new(p[0], p[1])).collect()
+}
+
+/// Half the range of a motion: extremes of dense samples, each refined by the parabola through its
+/// neighbours, to about 1e-9 of the motion.
+fn half_range(motion: &[Complex64]) -> f64 {
+    let n = 512 * motion.len();
+    let x: Vec<f64> = (0..n)
+        .map(|j| {
+            let tau = TAU * j as f64 / n as f64;
+            let terms = motion.iter().enumerate();
+            terms.map(|(h, x)| (x * Complex64::cis(h as f64 * tau)).re).sum()
+        })
+        .collect();
+    let highest = |sign: f64| {
+        let at = (0..n).max_by(|&i, &j| (sign * x[i]).total_cmp(&(sign * x[j]))).unwrap();
+        let (a, b, c) = (x[(at + n - 1) % n], x[at], x[(at + 1) % n]);
+        let curvature = a - 2.0 * b + c;
+        let beyond = if curvature == 0.0 {
+            0.0
+        } else {
+            (c - a).powi(2) / (8.0 * curvature)
+        };
+        sign * (b - beyond)
+    };
+    0.5 * (highest(1.0) + highest(-1.0))
+}
+
+/// A motion whose harmonics fall off, from random numbers in −1 .. 1.
+fn motion(numbers: &[f64]) -> Vec<Complex64> {
+    pairs(numbers)
+        .iter()
+        .enumerate()
+        .map(|(h, z)| if h == 0 { z.re.into() } else { z / h as f64 })
+        .collect()
+}
+
+/// Force coefficients as pairs, and their Jacobian.
+fn law(contact: &Contact, x: &[Complex64], jacobian: Option<&mut [f64]>) -> Vec<f64> {
+    let mut f = vec![Complex64::ZERO; x.len()];
+    contact_evaluate(contact, x.len() - 1, 0, x, &mut f, jacobian).unwrap();
+    parts(&f)
+}
+
+/// Every column of the law's Jacobian at x, or only its action along given directions.
+fn check_law(x: &[Complex64], limit: f64, directions: Option<&[Vec<f64>]>) -> Checked {
+    let contact = Contact::jenkins(0, None, 1.0, 1.0, limit);
+    let order = 2 * x.len();
+    let mut jacobian = vec![0.0; order * order];
+    law(&contact, x, Some(&mut jacobian));
+    let units: Vec<Vec<f64>> = (0..order)
+        .map(|c| (0..order).map(|i| f64::from(u8::from(i == c))).collect())
+        .collect();
+    for d in directions.unwrap_or(&units) {
+        let mut slope = vec![0.0; order];
+        for (column, d) in jacobian.chunks_exact(order).zip(d) {
+            for (s, j) in slope.iter_mut().zip(column) {
+                *s += j * d;
+            }
+        }
+        let stencil = Stencil::of(1e-6, |h| {
+            let moved: Vec<f64> = parts(x).iter().zip(d).map(|(x, d)| x + h * d).collect();
+            law(&contact, &pairs(&moved), None)
+        });
+        stencil.check("contact Jacobian", &slope, 1.0)?;
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(config(200))]
+
+    #[test]
+    fn the_jacobian_of_the_law_on_random_motions(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 20),
+        highest in 0_usize..=9,
+        exponent in -2.0..0.2_f64,
+    ) {
+        let x = motion(&numbers[..2 * (highest + 1)]);
+        // From far beyond the slip limit to below it; without oscillation the mean sets the scale.
+        let size = half_range(&x).max(if highest == 0 { x[0].norm() } else { 0.0 });
+        check_law(&x, size * 10.0_f64.powf(exponent), None)?;
+    }
+
+    #[test]
+    fn the_jacobian_of_the_law_near_the_onset_of_slip(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 20),
+        highest in 1_usize..=9,
+        beyond in prop::sample::select(vec![-1e-2, -1e-4, 1e-4, 1e-3, 1e-2, 0.1]),
+    ) {
+        let x = motion(&numbers[..2 * (highest + 1)]);
+        check_law(&x, half_range(&x) / (1.0 + beyond), None)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(config(40))]
+
+    #[test]
+    fn the_jacobian_of_the_law_at_many_harmonics(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 2 * 61),
+        directions in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 2 * 61), 4),
+        highest in 38_usize..=60,
+        exponent in -2.0..0.2_f64,
+    ) {
+        let order = 2 * (highest + 1);
+        let x = motion(&numbers[..order]);
+        let directions: Vec<Vec<f64>> = directions
+            .iter()
+            .map(|d| d[..order].iter().map(|v| v / (order as f64).sqrt()).collect())
+            .collect();
+        check_law(&x, half_range(&x) * 10.0_f64.powf(exponent), Some(&directions))?;
+    }
+}
+
+/// Degrees of freedom and sectors of the random models.
+const N: usize = 3;
+const SECTORS: usize = 5;
+
+/// Deals out random numbers in −1 .. 1, over and over.
+struct Feed<'a> {
+    numbers: &'a [f64],
+    next: usize,
+}
+
+impl Feed<'_> {
+    fn real(&mut self) -> f64 {
+        self.next += 1;
+        // Each round through the numbers is scaled differently, so that no two arrays are equal.
+        let round = 1.0 + (self.next / self.numbers.len()) as f64;
+        self.numbers[self.next % self.numbers.len()] * round.sqrt().fract().max(0.3)
+    }
+
+    fn complex(&mut self) -> Complex64 {
+        Complex64::new(self.real(), self.real())
+    }
+
+    fn block(&mut self, size: f64) -> Vec<f64> {
+        (0..N * N).map(|_| size * self.real()).collect()
+    }
+
+    fn complex_block(&mut self, size: f64) -> Vec<Complex64> {
+        (0..N * N).map(|_| size * self.complex()).collect()
+    }
+}
+
+/// A Hermitian (symmetric, for real parts alone) matrix with a strong diagonal.
+fn hermitian(a: &[Complex64], diagonal: f64) -> Vec<Complex64> {
+    let mut b = vec![Complex64::ZERO; N * N];
+    for i in 0..N {
+        for j in 0..N {
+            b[j * N + i] = 0.5 * (a[j * N + i] + a[i * N + j].conj());
+        }
+        b[i * N + i] += diagonal;
+    }
+    b
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Shape {
+    /// Plain, general real C and K.
+    General,
+    /// Plain, general complex C and K.
+    GeneralComplex,
+    /// Plain, complex Hermitian M, C, K.
+    Hermitian,
+    /// Sectors coupled to the next and the previous one, a contact across.
+    Cyclic,
+}
+
+fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
+    let mut model = Model::cyclic(N, if shape == Shape::Cyclic { SECTORS } else { 1 }).unwrap();
+    let symmetric: Vec<Complex64> = feed.block(0.2).into_iter().map(Complex64::from).collect();
+    let mass: Vec<f64> = hermitian(&symmetric, 1.0).iter().map(|z| z.re).collect();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &mass))
+        .unwrap();
+    for (which, diagonal) in [(MatrixKind::Damping, 0.5), (MatrixKind::Stiffness, 8.0)] {
+        match shape {
+            Shape::General | Shape::Cyclic => {
+                let mut a = feed.block(1.0);
+                for i in 0..N {
+                    a[i * N + i] += diagonal;
+                }
+                let view = MatrixView::dense(N, &a).part(Part::General);
+                model.set_matrix(which, &view).unwrap();
+            }
+            Shape::GeneralComplex => {
+                let mut a = feed.complex_block(1.0);
+                for i in 0..N {
+                    a[i * N + i] += diagonal;
+                }
+                let view = MatrixView::dense_complex(N, &a).part(Part::General);
+                model.set_matrix(which, &view).unwrap();
+            }
+            Shape::Hermitian => {
+                let a = hermitian(&feed.complex_block(1.0), diagonal);
+                model.set_matrix(which, &MatrixView::dense_complex(N, &a)).unwrap();
+            }
+        }
+    }
+    if shape == Shape::Hermitian {
+        let mass = hermitian(&feed.complex_block(0.2), 1.0);
+        model
+            .set_matrix(MatrixKind::Mass, &MatrixView::dense_complex(N, &mass))
+            .unwrap();
+    }
+    if shape == Shape::Cyclic {
+        for which in [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness] {
+            let next = feed.block(0.1);
+            model.set_coupling(which, &MatrixView::dense(N, &next)).unwrap();
+            if which != MatrixKind::Mass {
+                let previous = feed.block(0.1);
+                model
+                    .set_coupling_previous(which, &MatrixView::dense(N, &previous))
+                    .unwrap();
+            }
+        }
+        model.set_wave(engine_order);
+    }
+    model.set_rayleigh(0.02, 0.01).unwrap();
+    let mut across = Contact::jenkins(2, Some(0), 1.5, 0.5, 0.2 + 0.1 * feed.real());
+    across.sector_offset = if shape == Shape::Cyclic { 1 } else { 0 };
+    for contact in [
+        Contact::jenkins(0, Some(1), 2.0, 0.5, 0.3 + 0.2 * feed.real()),
+        across,
+        // Two laws on one coordinate add up.
+        Contact {
+            kt: 0.7,
+            preload: 0.1,
+            ..across
+        },
+        Contact::jenkins(1, None, 1.0, 0.4, 0.5),
+    ] {
+        model.add_contact(&contact).unwrap();
+    }
+    for dof in 0..N {
+        let value = feed.complex();
+        model.add_force(dof, 1, value).unwrap();
+    }
+    model
+}
+
+fn shapes() -> impl Strategy<Value = Shape> {
+    prop::sample::select(vec![
+        Shape::General,
+        Shape::GeneralComplex,
+        Shape::Hermitian,
+        Shape::Cyclic,
+    ])
+}
+
+fn numbers() -> impl Strategy<Value = Vec<f64>> {
+    prop::collection::vec(-1.0..1.0_f64, 97)
+}
+
+/// Residual as pairs.
+fn residual(model: &Model, highest: usize, omega: f64, x: &[f64]) -> Vec<f64> {
+    let mut r = vec![Complex64::ZERO; x.len() / 2];
+    let solver = common::harmonics(highest);
+    forced_residual(model, &solver, omega, &pairs(x), &mut r, None, None).unwrap();
+    parts(&r)
+}
+
+/// Size of the entries of a matrix.
+fn size(a: &[f64]) -> f64 {
+    a.iter().fold(1.0, |m, x| m.max(x.abs()))
+}
+
+proptest! {
+    #![proptest_config(config(60))]
+
+    #[test]
+    fn the_jacobian_and_frequency_derivative_of_the_whole_residual(
+        numbers in numbers(),
+        shape in shapes(),
+        engine_order in -7_i64..=7,
+        highest in 1_usize..=4,
+        omega in 0.5..4.0_f64,
+    ) {
+        let mut feed = Feed { numbers: &numbers, next: 0 };
+        let model = random_model(shape, engine_order, &mut feed);
+        let count = (highest + 1) * N;
+        let x: Vec<Complex64> = (0..count).map(|_| feed.complex()).collect();
+        let order = 2 * count;
+        let mut r = vec![Complex64::ZERO; count];
+        let mut jacobian = vec![0.0; order * order];
+        let mut d_omega = vec![Complex64::ZERO; count];
+        let solver = common::harmonics(highest);
+        forced_residual(&model, &solver, omega, &x, &mut r, Some(&mut jacobian), Some(&mut d_omega)).unwrap();
+        let x = parts(&x);
+        let scale = size(&jacobian);
+        for (c, column) in jacobian.chunks_exact(order).enumerate() {
+            let stencil = Stencil::of(1e-6, |h| {
+                let mut moved = x.clone();
+                moved[c] += h;
+                residual(&model, highest, omega, &moved)
+            });
+            stencil.check("Jacobian of the residual", column, scale)?;
+        }
+        let d_omega = parts(&d_omega);
+        let stencil = Stencil::of(1e-4, |h| residual(&model, highest, omega + h, &x));
+        // A parabola in ω: central differences are exact up to round-off.
+        for (i, d) in d_omega.iter().enumerate() {
+            let central = (stencil.above[i] - stencil.below[i]) / (2.0 * stencil.h);
+            prop_assert!((d - central).abs() < 1e-10 * size(&d_omega).max(scale), "{d:e} {central:e}");
+        }
+    }
+}
+
+/// A condensed problem at a random point, with a random direction (parameter last).
+struct Condensation {
+    u: Vec<f64>,
+    p: f64,
+    direction: Vec<f64>,
+}
+
+/// All derivatives of the problem as it stands: R by u and p, and the observed amplitude.
+fn check_problem(problem: &mut Forced<'_>, at: &Condensation, play: f64) -> Checked {
+    let n = at.u.len();
+    let mut out = Linearisation::new(n).unwrap();
+    problem.evaluate(&at.u, at.p, &mut out).unwrap();
+    let (jacobian, d_parameter) = (out.jacobian.clone(), out.d_parameter.clone());
+    let (_, dz) = problem.observe(&at.u, &at.direction);
+    let scale = size(&jacobian);
+    // Everything is measured in units of the play, the length at which the laws change.
+    for (c, column) in jacobian.chunks_exact(n).enumerate() {
+        let stencil = Stencil::of(1e-6 * play, |h| {
+            let mut u = at.u.clone();
+            u[c] += h;
+            problem.evaluate(&u, at.p, &mut out).unwrap();
+            out.residual.clone()
+        });
+        stencil.check("condensed Jacobian", column, scale)?;
+    }
+    let stencil = Stencil::of(1e-6, |h| {
+        problem.evaluate(&at.u, at.p + h, &mut out).unwrap();
+        out.residual.clone()
+    });
+    let largest = at.u.iter().fold(play, |m, x| m.max(x.abs()));
+    stencil.check("derivative by the parameter", &d_parameter, scale * largest)?;
+    let stencil = Stencil::of(1e-6, |h| {
+        let u: Vec<f64> = at.u.iter().zip(&at.direction).map(|(u, d)| u + h * d).collect();
+        let p = at.p + h * at.direction[n];
+        problem.evaluate(&u, p, &mut out).unwrap();
+        let (z, _) = problem.observe(&u, &at.direction);
+        vec![z.re, z.im]
+    });
+    stencil.check("observed amplitude", &[dz.re, dz.im], scale * largest)
+}
+
+/// The model condensed, at a motion of a few times the play of its contacts.
+fn condensed_case(
+    model: &Model,
+    highest: usize,
+    omega: f64,
+    keep_even: bool,
+    feed: &mut Feed<'_>,
+) -> (Condensed, f64, Vec<f64>, Vec<f64>) {
+    let solver = hbvib::options::SolverOptions {
+        keep_even_harmonics: keep_even,
+        ..common::harmonics(highest)
+    };
+    let condensed = Condensed::new(model, &solver, omega).unwrap();
+    let play = condensed
+        .laws()
+        .iter()
+        .map(|placed| match placed.law {
+            Law::Jenkins(law) => law.limit / law.stiffness,
+        })
+        .fold(f64::INFINITY, f64::min);
+    let n = condensed.coordinates() * condensed.set().packed_len();
+    let u = (0..n).map(|_| 4.0 * play * feed.real()).collect();
+    let mut direction: Vec<f64> = (0..n).map(|_| play * feed.real()).collect();
+    direction.push(feed.real());
+    (condensed, play, u, direction)
+}
+
+proptest! {
+    #![proptest_config(config(80))]
+
+    #[test]
+    fn the_derivatives_of_the_condensed_problem(
+        numbers in numbers(),
+        shape in shapes(),
+        engine_order in -7_i64..=7,
+        highest in 1_usize..=5,
+        omega in 0.5..4.0_f64,
+        keep_even in any::<bool>(),
+        response in 0_usize..N,
+    ) {
+        let mut feed = Feed { numbers: &numbers, next: 0 };
+        let model = random_model(shape, engine_order, &mut feed);
+        let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
+        let mut problem = Forced::new(&condensed, response, (1.0, 1.0), 0, None).unwrap();
+        check_problem(&mut problem, &Condensation { u, p: omega, direction }, play)?;
+    }
+
+    #[test]
+    fn the_derivatives_of_the_homotopy_in_the_slip_limit(
+        numbers in numbers(),
+        shape in shapes(),
+        engine_order in -7_i64..=7,
+        highest in 1_usize..=5,
+        omega in 0.5..4.0_f64,
+        keep_even in any::<bool>(),
+        share in 0.0..1.0_f64,
+    ) {
+        let mut feed = Feed { numbers: &numbers, next: 0 };
+        let model = random_model(shape, engine_order, &mut feed);
+        let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
+        let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), 0, None).unwrap();
+        let mut stuck = vec![0.0; u.len()];
+        prop_assert!(problem.start(Start::Stuck, omega, &mut stuck).unwrap());
+        // The stuck motion must slip for a homotopy to exist; a larger one always does.
+        for x in &mut stuck {
+            *x *= 1e3;
+        }
+        let begin = problem.begin_homotopy(omega, &stuck);
+        prop_assert!(begin.is_some());
+        // λ in a range in which the limits vary from those given to ten times that.
+        let p = share * 10.0_f64.ln();
+        check_problem(&mut problem, &Condensation { u, p, direction }, play)?;
+        problem.end_homotopy();
+    }
+}

@@ -1,0 +1,156 @@
+//! Memory: a Newton iteration after the first asks for none, counted by the allocator itself.
+//!
+//! The one allowance is what an accepted point keeps: the corrector returns its tangent as a new
+//! vector, one allocation per solved point whatever the number of iterations, and the branch's
+//! arrays grow with the points (not measured here).
+
+mod common;
+
+use common::{BASE, harmonics};
+use hbvib::condense::Condensed;
+use hbvib::continuation::corrector::{Corrector, Outcome};
+use hbvib::continuation::step_control::StepControl;
+use hbvib::continuation::{Metric, Settings};
+use hbvib::linalg::norm;
+use hbvib::options::SolverOptions;
+use hbvib::problem::forced::Forced;
+use hbvib::problem::{Linearisation, Problem, Start};
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::f64::consts::TAU;
+
+/// Counts the allocations of each thread; tests run in threads of their own.
+struct Counting;
+
+thread_local! {
+    static COUNT: Cell<usize> = const { Cell::new(0) };
+}
+
+fn count() {
+    // A thread that is being torn down has no counter any more.
+    let _ = COUNT.try_with(|c| c.set(c.get() + 1));
+}
+
+// SAFETY: every call is passed on unchanged to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count();
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, memory: *mut u8, layout: Layout) {
+        unsafe { System.dealloc(memory, layout) }
+    }
+    unsafe fn realloc(&self, memory: *mut u8, layout: Layout, size: usize) -> *mut u8 {
+        count();
+        unsafe { System.realloc(memory, layout, size) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// Allocations that `work` makes.
+fn allocations<T>(work: impl FnOnce() -> T) -> (usize, T) {
+    let before = COUNT.get();
+    let result = work();
+    (COUNT.get() - before, result)
+}
+
+/// Every way of evaluating: exact events with a table of sines and with a transform, and samples.
+const WAYS: [(usize, usize); 5] = [(1, 0), (9, 0), (63, 0), (9, 64), (9, 1024)];
+
+fn options(highest: usize, samples: usize) -> SolverOptions {
+    SolverOptions {
+        samples,
+        ..harmonics(highest)
+    }
+}
+
+#[test]
+fn the_counter_counts() {
+    let (count, v) = allocations(|| vec![1.0_f64; 100]);
+    assert_eq!((count, v.len()), (1, 100));
+}
+
+#[test]
+fn an_evaluation_allocates_nothing() {
+    let model = BASE.sector();
+    for (highest, samples) in WAYS {
+        let options = options(highest, samples);
+        let omega = TAU * 208.85;
+        let condensed = Condensed::new(&model, &options, omega).unwrap();
+        let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
+        let n = problem.size();
+        let mut u = vec![0.0; n];
+        let mut at = Linearisation::new(n).unwrap();
+        assert!(problem.start(Start::Stuck, omega, &mut u).unwrap());
+        problem.evaluate(&u, omega, &mut at).unwrap();
+        for (name, factor) in [("the same", 1.0), ("another", 1.001)] {
+            let (count, ()) = allocations(|| {
+                for k in 0..5 {
+                    // The motion changes too: other reversals, other slips.
+                    u[k % n] *= 1.5;
+                    let factor = 1.0 + (factor - 1.0) * f64::from(k as u32 + 1);
+                    problem.evaluate(&u, omega * factor, &mut at).unwrap();
+                }
+            });
+            assert_eq!(
+                count, 0,
+                "H = {highest}, {samples} samples: 5 evaluations at {name} frequency"
+            );
+        }
+        let direction = vec![1.0; n + 1];
+        let (count, _) = allocations(|| problem.observe(&u, &direction));
+        assert_eq!(count, 0, "observing the amplitude");
+    }
+}
+
+#[test]
+fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
+    let model = BASE.sector();
+    for (highest, samples) in WAYS {
+        let options = options(highest, samples);
+        let omega = TAU * 208.85;
+        let condensed = Condensed::new(&model, &options, omega).unwrap();
+        let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
+        let n = problem.size();
+        let mut v = vec![0.0; n + 1];
+        assert!(problem.start(Start::Stuck, omega, &mut v[..n]).unwrap());
+        v[n] = omega;
+        let settings = Settings {
+            start: omega,
+            end: 1.05 * omega,
+            tolerance: options.tol_residual,
+            max_iterations: 50,
+            steps: StepControl::new(0.0, 0.0, 0.0),
+        };
+        let metric = Metric::along(norm(&v[..n]), &settings);
+        let mut row = vec![0.0; n + 1];
+        row[n] = 1.0;
+        let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations).unwrap();
+        // From the stuck start, damped; then again from a disturbed point at the same and at other
+        // frequencies, plain and damped.
+        let mut iterations = 0;
+        for (factor, damped) in [(1.0, true), (1.0, true), (1.0, false), (1.0005, true), (0.9995, true)] {
+            for x in &mut v[..n] {
+                *x *= 1.001;
+            }
+            v[n] = factor * omega;
+            let (count, outcome) = allocations(|| {
+                corrector
+                    .correct(&mut problem, &mut v, &row, metric, damped, None)
+                    .unwrap()
+            });
+            let Outcome::Converged(corrected) = outcome else {
+                panic!("H = {highest}, {samples} samples: not converged");
+            };
+            iterations += corrected.iterations;
+            assert!(
+                count <= 1,
+                "H = {highest}, {samples} samples: {count} allocations in {} iterations",
+                corrected.iterations
+            );
+        }
+        assert!(iterations >= 5, "only {iterations} iterations were seen");
+    }
+}
