@@ -133,7 +133,11 @@ impl Interpolation {
             }
             let tail = self.transform(low, high, sample)?;
             let stalled = tail > 0.3 * last_tail && tail < NOISE;
-            if tail <= self.tolerance || stalled {
+            if stalled {
+                // This is what rounding leaves of the factorisations: later panels need not try.
+                self.tolerance = self.tolerance.max(2.0 * tail);
+            }
+            if tail <= self.tolerance {
                 let mut coefficients = try_vec(self.samples.len(), Complex64::ZERO, "the interpolated flexibility")?;
                 coefficients.copy_from_slice(&self.samples);
                 // On the way to a resonance each panel is shorter than the one before, and longer
@@ -144,7 +148,7 @@ impl Interpolation {
                 } else {
                     1.0
                 };
-                self.width = width * trend.clamp(0.3, 3.0) * self.factor(tail).clamp(0.5, 2.0);
+                self.width = width * trend.clamp(0.3, 3.0) * self.factor(tail).clamp(0.7, 2.0);
                 self.last_width = width;
                 return Ok(Some(Panel {
                     low,
