@@ -167,7 +167,7 @@ fn a_linear_problem_is_followed_through_its_resonances() {
     assert_eq!(branch.peaks().len(), 3);
     for (peak, omega) in branch.peaks().iter().zip(&natural.omega) {
         // A peak lies within the half width of its mode, which is the modal damping ratio.
-        let damping = 0.5 * BASE.beta() * omega;
+        let damping = 0.5 * common::BETA * omega;
         assert!((peak.omega / omega - 1.0).abs() < damping);
     }
     assert!(branch.points() < 400, "{} points", branch.points());
