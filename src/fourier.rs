@@ -134,7 +134,8 @@ impl Reversals {
     pub fn find(&mut self, set: &HarmonicSet, packed: &[f64], found: &mut Vec<Extremum>) {
         found.clear();
         let bounds = Bounds::new(set, packed);
-        if bounds.bend == 0.0 {
+        // Also where a motion overflows: no bound would ever end the search.
+        if !(bounds.bend > 0.0 && bounds.bend.is_finite()) {
             return;
         }
         self.scan(set, packed);
