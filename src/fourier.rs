@@ -237,7 +237,12 @@ impl Bounds {
         Self {
             bend,
             noise: 4.0 * f64::EPSILON * turn,
-            finest: if bend > 0.0 { (1e-14 * size / bend).cbrt() } else { 0.0 },
+            // Motions that are zero or no longer finite are not searched: halving would never end.
+            finest: if bend > 0.0 && bend.is_finite() {
+                (1e-14 * (size / bend)).cbrt()
+            } else {
+                f64::INFINITY
+            },
         }
     }
 }
