@@ -9,6 +9,7 @@ use std::io::Write;
 use std::process::ExitCode;
 
 use flags::Flags;
+use progress::write_stderr;
 use single::Request;
 
 #[path = "support/csv.rs"]
@@ -50,13 +51,13 @@ fn main() -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("ring_damper: {error}");
+            write_stderr(&format!("ring_damper: {error}\n"));
             ExitCode::FAILURE
         }
     }
 }
 
 fn refuse(message: &str) -> ExitCode {
-    eprintln!("ring_damper: {message}\n(--help lists the flags)");
+    write_stderr(&format!("ring_damper: {message}\n(--help lists the flags)\n"));
     ExitCode::from(2)
 }

@@ -5,10 +5,10 @@
 //! Laxalde et al., European Journal of Mechanics A/Solids 26 (2007), 676-687, with the data of
 //! "Nonlinear Vibrational Analysis for Integrally Bladed Disk Using Frictional Ring Damper".
 
+use std::error::Error;
 use std::f64::consts::{PI, TAU};
 
 use hbvib::contact::Contact;
-use hbvib::error::Result;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::{ContactState, LinearModes};
@@ -81,7 +81,7 @@ impl Parameters {
     /// # Errors
     ///
     /// If a parameter is out of its range.
-    pub fn model(&self) -> Result<Model> {
+    pub fn model(&self) -> Result<Model, Box<dyn Error>> {
         let mut model = structure(Some(self.ring_mass))?;
         model.set_rayleigh(0.0, self.beta)?;
         model.set_wave(self.engine_order);
@@ -105,7 +105,7 @@ impl Parameters {
     /// # Errors
     ///
     /// If a parameter is out of its range.
-    pub fn resonance_range(&self) -> Result<(f64, f64)> {
+    pub fn resonance_range(&self) -> Result<(f64, f64), Box<dyn Error>> {
         let model = self.model()?;
         let diameter = model.structure().diameter_of(1);
         let free = modes_without_ring(diameter)?;
@@ -122,8 +122,8 @@ impl Parameters {
 /// # Errors
 ///
 /// If there is no such nodal diameter.
-pub fn modes_without_ring(diameter: usize) -> Result<LinearModes> {
-    structure(None)?.linear_modes(diameter, ContactState::Free)
+pub fn modes_without_ring(diameter: usize) -> Result<LinearModes, Box<dyn Error>> {
+    Ok(structure(None)?.linear_modes(diameter, ContactState::Free)?)
 }
 
 /// Natural modes of a nodal diameter with the ring stuck to the disk by its contact stiffness.
@@ -131,15 +131,15 @@ pub fn modes_without_ring(diameter: usize) -> Result<LinearModes> {
 /// # Errors
 ///
 /// If there is no such nodal diameter.
-pub fn modes_with_ring_stuck(parameters: &Parameters, diameter: usize) -> Result<LinearModes> {
-    parameters.model()?.linear_modes(diameter, ContactState::Stuck)
+pub fn modes_with_ring_stuck(parameters: &Parameters, diameter: usize) -> Result<LinearModes, Box<dyn Error>> {
+    Ok(parameters.model()?.linear_modes(diameter, ContactState::Stuck)?)
 }
 
 /// The largest nodal diameter.
 pub const LARGEST_DIAMETER: usize = SECTORS / 2;
 
 /// Masses and springs of a sector, with the ring if it has a mass.
-fn structure(ring_mass: Option<f64>) -> Result<Model> {
+fn structure(ring_mass: Option<f64>) -> Result<Model, Box<dyn Error>> {
     let n = if ring_mass.is_some() { RING + 1 } else { RING };
     let mut mass = vec![0.0; n * n];
     let mut stiffness = vec![0.0; n * n];

@@ -10,7 +10,7 @@ use serde_json::{Map, Value};
 use crate::flags::{self, Flag, Flags};
 use crate::json::{number, write_json};
 use crate::model::{DOFS, Parameters};
-use crate::progress::Bar;
+use crate::progress::{Bar, write_stderr};
 use crate::response::{Point, Range, Response};
 
 /// The flags of the program.
@@ -135,11 +135,11 @@ impl Request {
     ///
     /// If the response cannot be computed to its end or the file cannot be written.
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
-        let mut bar = Bar::new("response", 100);
+        let mut bar = Bar::new("Response, percent", 100);
         let response = Response::follow(&self.parameters, &self.solver, &self.range, |share| bar.set(share))?;
         bar.finish();
         if response.stalled {
-            eprintln!("note: rounding kept the residual of some points above the solver's tolerance");
+            write_stderr("note: rounding kept the residual of some points above the solver's tolerance\n");
         }
         if let Some(path) = &self.json {
             write_json(path, &to_json(&response)?)?;

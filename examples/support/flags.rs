@@ -44,7 +44,9 @@ impl Flags {
             let value = if flag.value.is_empty() {
                 OsString::new()
             } else {
-                let value = arguments.next().filter(|v| known.iter().all(|k| v != k.name));
+                let value = arguments
+                    .next()
+                    .filter(|v| !v.is_empty() && known.iter().all(|k| v != k.name));
                 value.ok_or_else(|| format!("{} needs a value: {} {}", flag.name, flag.name, flag.value))?
             };
             given.push((flag.name, value));

@@ -74,7 +74,7 @@ impl Bar {
 }
 
 /// Writes to standard error; that it is closed is no reason to stop the program.
-fn write_stderr(text: &str) {
+pub fn write_stderr(text: &str) {
     let mut stderr = std::io::stderr().lock();
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());
 }

@@ -288,10 +288,10 @@ impl Continuation {
                     }
                 }
                 Attempt::Failed => {
-                    if length <= CORNER_STEP {
-                        if let Some(point) = self.turn_corner(problem, metric, length, cancelled)? {
-                            return Ok(self.accept(point, None));
-                        }
+                    if length <= CORNER_STEP
+                        && let Some(point) = self.turn_corner(problem, metric, length, cancelled)?
+                    {
+                        return Ok(self.accept(point, None));
                     }
                     if !self.steps.failed() {
                         return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
