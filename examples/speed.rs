@@ -83,7 +83,11 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("  H    events   points  iterations  ms/point  time/default  peak error  at same H");
         let exact = peak(&branches[3]);
         for (((harmonics, samples), time), branch) in WAYS.iter().zip(times).zip(&branches) {
-            let events = if *samples == 0 { "exact".into() } else { format!("N={samples}") };
+            let events = if *samples == 0 {
+                "exact".into()
+            } else {
+                format!("N={samples}")
+            };
             let iterations: f64 = branch.newton_iterations().iter().sum();
             let same = if *samples == 0 {
                 String::new()
