@@ -56,6 +56,14 @@ fn compare_frequencies(sector: &Sector, interface: Interface, state: ContactStat
         assert_eq!(found.len(), expected.len());
         for (omega, f) in found.iter().zip(expected) {
             let found = omega / TAU;
+            if std::env::var("SHOW").is_ok() && (f < 20.0 || (found / f - 1.0).abs() > 1e-9) {
+                println!(
+                    "{} {key} {diameter}: {found} ref {f} rel {:.1e}",
+                    sector.size.name(),
+                    found / f - 1.0
+                );
+                continue;
+            }
             if f == 0.0 {
                 assert!(found < 1e-3, "{key}, diameter {diameter}: rigid motion at {found} Hz");
             } else {
@@ -81,7 +89,6 @@ fn natural_frequencies_of_the_reduced_sector_agree() {
 }
 
 #[test]
-#[ignore = "needs natural modes of large sparse models"]
 fn natural_frequencies_of_the_full_sector_agree() {
     compare_all_frequencies(Size::Full);
 }

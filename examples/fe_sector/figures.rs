@@ -177,9 +177,11 @@ fn slip_map(sector: &Sector, response: &Response, force: f64, folder: &Path, scr
     // Contacts 2p and 2p + 1 are pair p along θ and along z.
     let along = |pair: usize, direction: usize| shares[2 * pair + direction];
     let mut order: Vec<usize> = (0..sector.pairs.len()).collect();
+    // Rows of the mesh differ by rounding only within themselves.
+    let micrometres = |p: usize| (1e6 * sector.pairs[p].z).round();
     order.sort_by(|&i, &j| {
-        let (a, b) = (&sector.pairs[i], &sector.pairs[j]);
-        (b.z.total_cmp(&a.z)).then(a.theta.total_cmp(&b.theta))
+        let rows = micrometres(j).total_cmp(&micrometres(i));
+        rows.then(sector.pairs[i].theta.total_cmp(&sector.pairs[j].theta))
     });
     let mut rows = Vec::new();
     for &p in &order {

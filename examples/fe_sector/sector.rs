@@ -176,9 +176,7 @@ pub fn natural_frequencies(
     state: ContactState,
     count: usize,
 ) -> hbvib::error::Result<Vec<f64>> {
-    let mut omega = model.linear_modes(diameter, state)?.omega;
-    omega.truncate(count);
-    Ok(omega)
+    Ok(model.lowest_modes(diameter, state, count)?.omega)
 }
 
 fn give(model: &mut Model, which: MatrixKind, coupling: bool, view: &MatrixView<'_>) -> hbvib::error::Result<()> {

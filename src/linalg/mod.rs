@@ -6,6 +6,7 @@ pub mod factor;
 pub mod lanczos;
 pub mod lu;
 pub mod matrix_view;
+pub mod quadratic;
 pub mod sparse;
 
 /// Euclidean norm that neither overflows nor underflows.

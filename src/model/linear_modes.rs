@@ -6,6 +6,7 @@ use super::structure::MatrixKind;
 use crate::error::{Result, check_memory, fail};
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
+use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::Csc;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -28,8 +29,9 @@ pub struct LinearModes {
     pub shapes: Vec<Complex64>,
 }
 
-/// Degrees of freedom up to which all modes are found by dense algebra.
-const DENSE_UP_TO: usize = 600;
+/// Degrees of freedom up to which all modes are found by dense algebra, whose rounding is relative
+/// to the highest frequency: on finer meshes too coarse for the lowest ones.
+const DENSE_UP_TO: usize = 100;
 
 /// Most square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
@@ -52,7 +54,13 @@ impl Model {
             return Ok(modes);
         }
         let (stiffness, mass) = self.pencil(diameter, contacts)?;
-        Ok(LinearModes::from(lanczos::lowest(&stiffness, &mass, count)?))
+        let mut pairs = lanczos::lowest(&stiffness, &mass, count)?;
+        // The eigenvalue is stationary in the vector, so that its quotient is far more exact; only
+        // this tells a rigid motion of a stiff structure from a slow one.
+        for (value, shape) in pairs.values.iter_mut().zip(pairs.vectors.column_iter()) {
+            *value = quadratic(&stiffness, shape.as_slice()) / quadratic(&mass, shape.as_slice());
+        }
+        Ok(LinearModes::from(pairs))
     }
 
     /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave
