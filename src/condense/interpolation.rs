@@ -200,7 +200,7 @@ impl Interpolation {
                 *v = self.samples[j * size + entry];
                 largest[group] = largest[group].max(v.norm());
             }
-            for k in 0..NODES {
+            for (k, sizes) in sizes.iter_mut().enumerate() {
                 let mut sum = Complex64::ZERO;
                 for (j, v) in values.iter().enumerate() {
                     // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
@@ -208,7 +208,7 @@ impl Interpolation {
                 }
                 sum *= if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
                 self.samples[k * size + entry] = sum;
-                sizes[k][group] = sizes[k][group].max(sum.norm());
+                sizes[group] = sizes[group].max(sum.norm());
             }
         }
         for (decay, sizes) in self.decay.iter_mut().zip(sizes) {
