@@ -79,12 +79,10 @@ fn name_library() {
         let root = variable("CARGO_MANIFEST_DIR");
         // OUT_DIR is <target>/<profile>/build/<package>/out.
         if let (true, Some(profile)) = (out.starts_with(root), out.ancestors().nth(3)) {
-            for folder in [profile.to_path_buf(), profile.join("deps")] {
-                let link = folder.join(&soname);
-                if folder.is_dir() && fs::symlink_metadata(&link).is_err() {
-                    // A missing link is told by the loader; it is no reason to fail here.
-                    let _ = std::os::unix::fs::symlink("libhbvib.so", link);
-                }
+            let link = profile.join(&soname);
+            if fs::symlink_metadata(&link).is_err() {
+                // A missing link is told by the loader; it is no reason to fail here.
+                let _ = std::os::unix::fs::symlink("libhbvib.so", link);
             }
         }
     }

@@ -208,8 +208,8 @@ typedef struct {
   int64_t cols;
   /// Dense: distance of columns (rows, if row-major) in numbers; 0 = packed.
   int64_t ld;
-  /// The numbers: ld * (cols - 1) + rows of them if column-major, col_ptr[cols] - index_base if
-  /// sparse; each is two doubles if complex.
+  /// The numbers: ld * (cols - 1) + rows of them if column-major, as many as the last of col_ptr
+  /// says if sparse; each is two doubles if complex.
   const double *values;
   /// Sparse only: cols + 1 offsets, the first equal to index_base.
   const int64_t *col_ptr;

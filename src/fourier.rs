@@ -134,7 +134,8 @@ impl Reversals {
     pub fn find(&mut self, set: &HarmonicSet, packed: &[f64], found: &mut Vec<Extremum>) {
         found.clear();
         let bounds = Bounds::new(set, packed);
-        if bounds.bend == 0.0 {
+        // Also where a motion overflows: no bound would ever end the search.
+        if !(bounds.bend > 0.0 && bounds.bend.is_finite()) {
             return;
         }
         self.scan(set, packed);
@@ -236,7 +237,12 @@ impl Bounds {
         Self {
             bend,
             noise: 4.0 * f64::EPSILON * turn,
-            finest: if bend > 0.0 { (1e-14 * size / bend).cbrt() } else { 0.0 },
+            // Motions that are zero or no longer finite are not searched: halving would never end.
+            finest: if bend > 0.0 && bend.is_finite() {
+                (1e-14 * (size / bend)).cbrt()
+            } else {
+                f64::INFINITY
+            },
         }
     }
 }

@@ -53,7 +53,8 @@ fn workshop(test: &str) -> PathBuf {
 }
 
 fn run(command: &mut Command) -> Output {
-    let output = command.output().unwrap_or_else(|error| {
+    // Cargo's search path has the library of the last `cargo build`, which may be an older one.
+    let output = command.env_remove("LD_LIBRARY_PATH").output().unwrap_or_else(|error| {
         panic!("{command:?} could not be started: {error}. The C interface is NOT tested without it; install gcc and binutils")
     });
     let text = String::from_utf8_lossy(&output.stderr);

@@ -1,15 +1,12 @@
-//! Every derivative against finite differences on random inputs. These are identities of the
-//! same-H equations; no solution is needed.
-//!
-//! Tolerance. Where the slope is monotone in [x − h, x + h], its middle value lies between the
-//! one-sided differences, within half their gap of the central one. The gap is O(h) on smooth
-//! stretches; across the onset of a slip the slope jumps, and may overshoot next to the jump, so
-//! the whole gap is allowed. Round-off adds about 1e-15/h = 1e-9 of the scale; 1e-7 leaves room
-//! for cancellation in long sums.
+//! Every derivative of the equations against finite differences on random models: Jacobian, frequency
+//! derivative, homotopy, observed amplitude, cyclic phases. These are identities of the same-H
+//! equations; no solution is needed.
 
 mod common;
+#[path = "common/stencil.rs"]
+mod stencil;
 
-use hbvib::analysis::harmonic_residual::{contact_evaluate, forced_residual};
+use hbvib::analysis::harmonic_residual::forced_residual;
 use hbvib::condense::Condensed;
 use hbvib::contact::{Contact, Law};
 use hbvib::linalg::matrix_view::{MatrixView, Part};
@@ -19,175 +16,7 @@ use hbvib::problem::forced::Forced;
 use hbvib::problem::{Linearisation, Problem, Start};
 use num_complex::Complex64;
 use proptest::prelude::*;
-use proptest::test_runner::{Config, RngSeed, TestCaseError};
-use std::f64::consts::TAU;
-
-type Checked = Result<(), TestCaseError>;
-
-/// Inputs are random but the same in every run, so that a failure can be looked at.
-fn config(cases: u32) -> Config {
-    Config {
-        cases,
-        failure_persistence: None,
-        rng_seed: RngSeed::Fixed(20_031_125),
-        ..Config::default()
-    }
-}
-
-/// Values of a function at x − h, x and x + h.
-struct Stencil {
-    below: Vec<f64>,
-    here: Vec<f64>,
-    above: Vec<f64>,
-    h: f64,
-}
-
-impl Stencil {
-    fn of(h: f64, mut f: impl FnMut(f64) -> Vec<f64>) -> Self {
-        Self {
-            below: f(-h),
-            here: f(0.0),
-            above: f(h),
-            h,
-        }
-    }
-
-    /// Compares with an analytic slope; `scale` is the size of the slopes that are summed in it.
-    fn check(&self, name: &str, slope: &[f64], scale: f64) -> Checked {
-        prop_assert_eq!(slope.len(), self.here.len());
-        for (i, s) in slope.iter().enumerate() {
-            let (a, b, c) = (self.below[i], self.here[i], self.above[i]);
-            let central = (c - a) / (2.0 * self.h);
-            let gap = (a - 2.0 * b + c).abs() / self.h;
-            let tolerance = gap + 1e-7 * scale;
-            prop_assert!(
-                (s - central).abs() <= tolerance,
-                "{name}[{i}]: {s:e} but differences give {central:e} ± {tolerance:.1e}"
-            );
-        }
-        Ok(())
-    }
-}
-
-fn parts(x: &[Complex64]) -> Vec<f64> {
-    x.iter().flat_map(|z| [z.re, z.im]).collect()
-}
-
-fn pairs(x: &[f64]) -> Vec<Complex64> {
-    x.chunks_exact(2).map(|p| Complex64::new(p[0], p[1])).collect()
-}
-
-/// Half the range of a motion: extremes of dense samples, each refined by the parabola through its
-/// neighbours, to about 1e-9 of the motion.
-fn half_range(motion: &[Complex64]) -> f64 {
-    let n = 512 * motion.len();
-    let x: Vec<f64> = (0..n)
-        .map(|j| {
-            let tau = TAU * j as f64 / n as f64;
-            let terms = motion.iter().enumerate();
-            terms.map(|(h, x)| (x * Complex64::cis(h as f64 * tau)).re).sum()
-        })
-        .collect();
-    let highest = |sign: f64| {
-        let at = (0..n).max_by(|&i, &j| (sign * x[i]).total_cmp(&(sign * x[j]))).unwrap();
-        let (a, b, c) = (x[(at + n - 1) % n], x[at], x[(at + 1) % n]);
-        let curvature = a - 2.0 * b + c;
-        let beyond = if curvature == 0.0 {
-            0.0
-        } else {
-            (c - a).powi(2) / (8.0 * curvature)
-        };
-        sign * (b - beyond)
-    };
-    0.5 * (highest(1.0) + highest(-1.0))
-}
-
-/// A motion whose harmonics fall off, from random numbers in −1 .. 1.
-fn motion(numbers: &[f64]) -> Vec<Complex64> {
-    pairs(numbers)
-        .iter()
-        .enumerate()
-        .map(|(h, z)| if h == 0 { z.re.into() } else { z / h as f64 })
-        .collect()
-}
-
-/// Force coefficients as pairs, and their Jacobian.
-fn law(contact: &Contact, x: &[Complex64], jacobian: Option<&mut [f64]>) -> Vec<f64> {
-    let mut f = vec![Complex64::ZERO; x.len()];
-    contact_evaluate(contact, x.len() - 1, 0, x, &mut f, jacobian).unwrap();
-    parts(&f)
-}
-
-/// Every column of the law's Jacobian at x, or only its action along given directions.
-fn check_law(x: &[Complex64], limit: f64, directions: Option<&[Vec<f64>]>) -> Checked {
-    let contact = Contact::jenkins(0, None, 1.0, 1.0, limit);
-    let order = 2 * x.len();
-    let mut jacobian = vec![0.0; order * order];
-    law(&contact, x, Some(&mut jacobian));
-    let units: Vec<Vec<f64>> = (0..order)
-        .map(|c| (0..order).map(|i| f64::from(u8::from(i == c))).collect())
-        .collect();
-    for d in directions.unwrap_or(&units) {
-        let mut slope = vec![0.0; order];
-        for (column, d) in jacobian.chunks_exact(order).zip(d) {
-            for (s, j) in slope.iter_mut().zip(column) {
-                *s += j * d;
-            }
-        }
-        let stencil = Stencil::of(1e-6, |h| {
-            let moved: Vec<f64> = parts(x).iter().zip(d).map(|(x, d)| x + h * d).collect();
-            law(&contact, &pairs(&moved), None)
-        });
-        stencil.check("contact Jacobian", &slope, 1.0)?;
-    }
-    Ok(())
-}
-
-proptest! {
-    #![proptest_config(config(200))]
-
-    #[test]
-    fn the_jacobian_of_the_law_on_random_motions(
-        numbers in prop::collection::vec(-1.0..1.0_f64, 20),
-        highest in 0_usize..=9,
-        exponent in -2.0..0.2_f64,
-    ) {
-        let x = motion(&numbers[..2 * (highest + 1)]);
-        // From far beyond the slip limit to below it; without oscillation the mean sets the scale.
-        let size = half_range(&x).max(if highest == 0 { x[0].norm() } else { 0.0 });
-        check_law(&x, size * 10.0_f64.powf(exponent), None)?;
-    }
-
-    #[test]
-    fn the_jacobian_of_the_law_near_the_onset_of_slip(
-        numbers in prop::collection::vec(-1.0..1.0_f64, 20),
-        highest in 1_usize..=9,
-        beyond in prop::sample::select(vec![-1e-2, -1e-4, 1e-4, 1e-3, 1e-2, 0.1]),
-    ) {
-        let x = motion(&numbers[..2 * (highest + 1)]);
-        check_law(&x, half_range(&x) / (1.0 + beyond), None)?;
-    }
-}
-
-proptest! {
-    #![proptest_config(config(40))]
-
-    #[test]
-    fn the_jacobian_of_the_law_at_many_harmonics(
-        numbers in prop::collection::vec(-1.0..1.0_f64, 2 * 61),
-        directions in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 2 * 61), 4),
-        highest in 38_usize..=60,
-        exponent in -2.0..0.2_f64,
-    ) {
-        let order = 2 * (highest + 1);
-        let x = motion(&numbers[..order]);
-        let directions: Vec<Vec<f64>> = directions
-            .iter()
-            .map(|d| d[..order].iter().map(|v| v / (order as f64).sqrt()).collect())
-            .collect();
-        check_law(&x, half_range(&x) * 10.0_f64.powf(exponent), Some(&directions))?;
-    }
-}
+use stencil::{Checked, Stencil, config, pairs, parts};
 
 /// Degrees of freedom and sectors of the random models.
 const N: usize = 3;
@@ -296,7 +125,7 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
     }
     model.set_rayleigh(0.02, 0.01).unwrap();
     let mut across = Contact::jenkins(2, Some(0), 1.5, 0.5, 0.2 + 0.1 * feed.real());
-    across.sector_offset = if shape == Shape::Cyclic { 1 } else { 0 };
+    across.sector_offset = i64::from(shape == Shape::Cyclic);
     for contact in [
         Contact::jenkins(0, Some(1), 2.0, 0.5, 0.3 + 0.2 * feed.real()),
         across,

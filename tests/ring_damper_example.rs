@@ -76,6 +76,22 @@ fn amplitude(point: &Value) -> f64 {
     point["amplitude_b2_m"].as_f64().unwrap()
 }
 
+/// Checks that two points are one solution at one frequency. Each may have been solved on its own, so
+/// their motions agree to rounding and not to the last bit.
+fn check_same(a: &Value, b: &Value) {
+    assert_eq!(frequency(a).to_bits(), frequency(b).to_bits());
+    for dof in DOFS {
+        let (x, y) = (&a["harmonics"][dof], &b["harmonics"][dof]);
+        assert_eq!(x.as_object().unwrap().len(), y.as_object().unwrap().len());
+        for (p, pair) in x.as_object().unwrap() {
+            for part in 0..2 {
+                let difference = pair[part].as_f64().unwrap() - y[p][part].as_f64().unwrap();
+                assert!(difference.abs() < 1e-12 * amplitude(a), "{dof} {p}: {difference}");
+            }
+        }
+    }
+}
+
 /// Checks the layout of a point against the harmonics that it should carry.
 fn check_point(point: &Value, carried: &[&str]) {
     assert_eq!(point.as_object().unwrap().len(), 3);
@@ -115,8 +131,8 @@ fn json_has_the_points_the_peak_and_the_solutions_asked_for_in_order() {
     assert_eq!(frequency(&points[points.len() - 1]).to_bits(), 210.7_f64.to_bits());
     let order: Vec<f64> = at.iter().map(frequency).collect();
     assert_eq!(order, [209.9, 208.1, 209.9, 207.3]);
-    assert_eq!(at[0], at[2]);
-    assert_eq!(at[3], points[0]);
+    check_same(&at[0], &at[2]);
+    check_same(&at[3], &points[0]);
     assert!(frequency(peak) > 207.3 && frequency(peak) < 210.7);
 }
 
@@ -139,10 +155,10 @@ fn a_downward_sweep_finds_the_same_response() {
 fn the_peak_is_an_end_of_the_range_if_the_response_is_largest_there() {
     let value = response(&folder("end"), &["--from", "207", "--to", "208"]);
     let last = value["points"].as_array().unwrap().last().unwrap();
-    assert_eq!(&value["peak"], last);
+    check_same(&value["peak"], last);
     let single = response(&folder("single"), &["--from", "208", "--to", "208", "--at-hz", "208"]);
     assert_eq!(single["points"].as_array().unwrap().len(), 1);
-    assert_eq!(single["at"][0], single["peak"]);
+    check_same(&single["at"][0], &single["peak"]);
 }
 
 #[test]

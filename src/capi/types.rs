@@ -185,8 +185,8 @@ pub struct hbvib_matrix {
     pub cols: i64,
     /// Dense: distance of columns (rows, if row-major) in numbers; 0 = packed.
     pub ld: i64,
-    /// The numbers: ld * (cols - 1) + rows of them if column-major, col_ptr[cols] - index_base if
-    /// sparse; each is two doubles if complex.
+    /// The numbers: ld * (cols - 1) + rows of them if column-major, as many as the last of col_ptr
+    /// says if sparse; each is two doubles if complex.
     pub values: *const f64,
     /// Sparse only: cols + 1 offsets, the first equal to index_base.
     pub col_ptr: *const i64,

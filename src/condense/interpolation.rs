@@ -12,7 +12,7 @@ use num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// Samples per panel.
-const NODES: usize = 18;
+const NODES: usize = 24;
 
 /// Attempts at one panel before it is taken as good as rounding allows, or given up.
 const MAX_ATTEMPTS: usize = 24;
@@ -39,6 +39,8 @@ pub struct Interpolation {
     rising: bool,
     panels: Vec<Panel>,
     samples: Vec<Complex64>,
+    /// Relative size of the coefficients of each degree on the panel tried last.
+    decay: [f64; NODES],
     /// cos(πm/(2N)) for m in one turn.
     cosines: [f64; 4 * NODES],
     /// Factorisations used.
@@ -62,6 +64,7 @@ impl Interpolation {
             rising: end >= start,
             panels: Vec::new(),
             samples: try_vec(size, Complex64::ZERO, "the interpolated flexibility")?,
+            decay: [0.0; NODES],
             cosines: core::array::from_fn(|m| (PI * m as f64 / (2 * NODES) as f64).cos()),
             evaluations: 0,
         })
@@ -131,20 +134,24 @@ impl Interpolation {
             if high - low <= 1e-9 * omega {
                 return Ok(None);
             }
-            let tail = self.transform(low, high, sample)?;
+            self.transform(low, high, sample)?;
+            let tail = self.decay[NODES - 2].max(self.decay[NODES - 1]);
             let stalled = tail > 0.3 * last_tail && tail < NOISE;
-            if tail <= self.tolerance || stalled {
+            if stalled {
+                // This is what rounding leaves of the factorisations: later panels need not try.
+                self.tolerance = self.tolerance.max(2.0 * tail);
+            }
+            if tail <= self.tolerance {
                 let mut coefficients = try_vec(self.samples.len(), Complex64::ZERO, "the interpolated flexibility")?;
                 coefficients.copy_from_slice(&self.samples);
-                // On the way to a resonance each panel is shorter than the one before, and longer
-                // on the way from it.
+                // On the way to a resonance each panel is shorter than the one before.
                 let width = high - low;
                 let trend = if self.last_width > 0.0 {
                     width / self.last_width
                 } else {
                     1.0
                 };
-                self.width = width * trend.clamp(0.3, 3.0) * self.factor(tail).clamp(0.5, 2.0);
+                self.width = width * trend.clamp(0.3, 1.0) * self.room().clamp(0.7, 4.0);
                 self.last_width = width;
                 return Ok(Some(Panel {
                     low,
@@ -153,32 +160,38 @@ impl Interpolation {
                 }));
             }
             last_tail = tail;
-            self.width = (high - low) * self.factor(tail).clamp(0.1, 0.6);
+            let factor = 0.9 * (self.tolerance / tail).powf(1.0 / (NODES - 1) as f64);
+            self.width = (high - low) * factor.clamp(0.1, 0.6);
         }
         Ok(None)
     }
 
-    /// How much wider a panel may be, from the geometric convergence of the series.
-    fn factor(&self, tail: f64) -> f64 {
-        0.9 * (self.tolerance / tail.max(1e-16)).powf(1.0 / (NODES - 1) as f64)
+    /// How much wider a panel could have been. Its series reached the tolerance t at degree k, so
+    /// it converges like t^(1/k) per degree, and about as much slower as a panel is wider.
+    fn room(&self) -> f64 {
+        let last = self.decay.iter().rposition(|d| *d > 3.0 * self.tolerance);
+        let needed = last.unwrap_or(0) + 2;
+        let spare = 1.0 / needed as f64 - 1.0 / (NODES - 2) as f64;
+        0.9 * self.tolerance.powf(-spare)
     }
 
-    /// Samples a panel, turns the samples into coefficients in place, and returns the relative
-    /// size of the last ones: the largest over contact flexibility, contact motion, response row
-    /// and response, each against its own largest value.
+    /// Samples a panel, turns the samples into coefficients in place, and notes their relative
+    /// size: the largest over contact flexibility, contact motion, response row and response, each
+    /// against its own largest value.
     fn transform(
         &mut self,
         low: f64,
         high: f64,
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<f64> {
+    ) -> Result<()> {
         let size = self.outputs * self.outputs;
         for (j, values) in self.samples.chunks_exact_mut(size).enumerate() {
             let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
             sample(0.5 * (low + high) + 0.5 * (high - low) * x, values)?;
             self.evaluations += 1;
         }
-        let (mut largest, mut tail) = ([0.0_f64; 4], [0.0_f64; 4]);
+        let mut largest = [0.0_f64; 4];
+        let mut sizes = [[0.0_f64; 4]; NODES];
         for entry in 0..size {
             let group = usize::from(entry % self.outputs == self.outputs - 1)
                 + 2 * usize::from(entry / self.outputs == self.outputs - 1);
@@ -187,7 +200,7 @@ impl Interpolation {
                 *v = self.samples[j * size + entry];
                 largest[group] = largest[group].max(v.norm());
             }
-            for k in 0..NODES {
+            for (k, sizes) in sizes.iter_mut().enumerate() {
                 let mut sum = Complex64::ZERO;
                 for (j, v) in values.iter().enumerate() {
                     // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
@@ -195,14 +208,15 @@ impl Interpolation {
                 }
                 sum *= if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
                 self.samples[k * size + entry] = sum;
-                if k + 2 >= NODES {
-                    tail[group] = tail[group].max(sum.norm());
-                }
+                sizes[group] = sizes[group].max(sum.norm());
             }
         }
-        Ok((0..4)
-            .filter(|&g| largest[g] > 0.0)
-            .fold(0.0, |worst, g| worst.max(tail[g] / largest[g])))
+        for (decay, sizes) in self.decay.iter_mut().zip(sizes) {
+            *decay = (0..4)
+                .filter(|&g| largest[g] > 0.0)
+                .fold(0.0, |worst, g| worst.max(sizes[g] / largest[g]));
+        }
+        Ok(())
     }
 }
 

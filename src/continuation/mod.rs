@@ -447,15 +447,19 @@ impl Continuation {
         let chord = metric.distance(&point.v, &here.v);
         let along = metric.dot(&point.v, &here.tangent) - metric.dot(&here.v, &here.tangent);
         let cosine = |dot: f64, a: f64, b: f64| if a * b > 0.0 { dot / (a * b) } else { 1.0 };
-        let turned = cosine(
+        let kept = cosine(
             metric.dot(&point.tangent, &here.tangent),
             metric.norm(&point.tangent),
             metric.norm(&here.tangent),
-        ) < STRAIGHT;
+        );
+        let turned = kept < STRAIGHT;
+        // A change of sense is a jump over corners. Only where other branches cross this one does
+        // it belong to the way straight on, however short the step.
+        let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < ALONG);
         let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
         let far = chord > 3.0 * step;
         let error = self.prediction_error(&predicted, &point, amplitude);
-        if turned || back || far {
+        if turned || jumped || back || far {
             return Ok(Attempt::Failed);
         }
         if !self.steps.accepts(error) {

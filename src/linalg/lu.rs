@@ -271,7 +271,11 @@ impl Lu<f64> {
     /// Whether the determinant of the factored matrix is positive.
     #[must_use]
     pub fn is_positive(&self) -> bool {
-        let swaps = self.pivots.iter().enumerate().filter(|&(k, &p)| k != p).count();
+        let swaps = self.pivots[..self.n]
+            .iter()
+            .enumerate()
+            .filter(|&(k, &p)| k != p)
+            .count();
         let negative = (0..self.n).filter(|&k| self.a[k * self.n + k] < 0.0).count();
         (swaps + negative) % 2 == 0
     }

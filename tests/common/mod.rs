@@ -75,9 +75,10 @@ pub const BASE: Blisk = Blisk {
     load_factor: 1.0,
 };
 
-/// Radius of the ring and stiffness-proportional damping, which the reference data fix.
+/// Radius of the ring, which the reference data fix.
 const RADIUS: f64 = 0.165;
-const BETA: f64 = 1.5e-6;
+/// Factor of the stiffness-proportional damping, a time: no unit of mass or length changes it.
+pub const BETA: f64 = 1.5e-6;
 
 /// Matrices of one sector, column-major, n = 4 (3 without ring).
 pub struct SectorMatrices {
@@ -125,7 +126,7 @@ impl Blisk {
     }
 
     /// Friction coefficient.
-    pub fn mu(&self) -> f64 {
+    pub fn mu() -> f64 {
         number(&data("model.json")["mu"])
     }
 
@@ -139,14 +140,9 @@ impl Blisk {
         self.load_factor * self.force / self.units.2
     }
 
-    /// Factor of stiffness-proportional damping, a time: no unit changes it.
-    pub fn beta(&self) -> f64 {
-        BETA
-    }
-
     /// The contact between disk and ring.
     pub fn contact(&self) -> Contact {
-        Contact::jenkins(D, Some(R), self.kt(), self.mu(), self.preload())
+        Contact::jenkins(D, Some(R), self.kt(), Self::mu(), self.preload())
     }
 
     /// One sector under the engine order, without contact.
@@ -162,7 +158,7 @@ impl Blisk {
         model
             .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(a.n, &a.next))
             .unwrap();
-        model.set_rayleigh(0.0, self.beta()).unwrap();
+        model.set_rayleigh(0.0, BETA).unwrap();
         model.set_wave(self.engine_order);
         for dof in [B2, B1] {
             model.add_force(dof, 1, self.force_value().into()).unwrap();
@@ -185,7 +181,7 @@ impl Blisk {
         let mut wheel = Wheel::new(a.n, SECTORS);
         wheel.set(MatrixKind::Mass, &a.mass, None, None);
         wheel.set(MatrixKind::Stiffness, &a.own, Some(&a.next), None);
-        wheel.model.set_rayleigh(0.0, self.beta()).unwrap();
+        wheel.model.set_rayleigh(0.0, BETA).unwrap();
         wheel.add_contact(&self.contact());
         for dof in [B2, B1] {
             wheel.add_force(dof, 1, self.force_value().into(), self.engine_order);
