@@ -1,16 +1,27 @@
-//! What a response cost: where the time went, and the memory.
+//! What a response cost: where the time went, against which yardsticks, and the memory.
 
+use std::error::Error;
+use std::f64::consts::TAU;
 use std::io::Write;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+use hbvib::condense::Condensed;
+use hbvib::condense::flexibility::Workspace;
+use hbvib::linalg::lu::Lu;
+use hbvib::model::Model;
+use hbvib::options::SolverOptions;
 
 use crate::response::Response;
+
+/// Repetitions of a measurement; the quickest counts.
+const REPEATS: usize = 5;
 
 /// Shows the time of every part of a response, and the most memory that the program has used.
 ///
 /// # Errors
 ///
-/// If the screen cannot be written to.
-pub fn show(screen: &mut impl Write, read: Duration, response: &Response) -> std::io::Result<()> {
+/// If the screen cannot be written to, or a measurement fails.
+pub fn show(screen: &mut impl Write, read: Duration, model: &Model, response: &Response) -> Result<(), Box<dyn Error>> {
     let reduction = response.branch.reduction();
     let times = &response.times;
     let iterations = response.iterations();
@@ -33,10 +44,59 @@ pub fn show(screen: &mut impl Write, read: Duration, response: &Response) -> std
         "  {iterations} Newton iterations on the curve, {:.2} ms each with all that goes with them",
         1e3 * per_iteration
     )?;
-    match peak_memory() {
-        Some(mebibytes) => writeln!(screen, "  peak memory {mebibytes:.0} MiB"),
-        None => Ok(()),
+    let lu = dense_lu(reduction.unknowns)?.as_secs_f64();
+    writeln!(
+        screen,
+        "  one dense LU of {} unknowns takes {:.3} ms: the whole is {:.1} of them per iteration",
+        reduction.unknowns,
+        1e3 * lu,
+        per_iteration / lu
+    )?;
+    let solver = SolverOptions {
+        harmonics: reduction.harmonics_asked,
+        ..SolverOptions::default()
+    };
+    let direct = factorisation(model, &solver, response.peak.frequency * TAU)?.as_secs_f64();
+    writeln!(
+        screen,
+        "  flexibility by factorisation: {:.2} ms per frequency for {} harmonics",
+        1e3 * direct,
+        reduction.harmonics_carried
+    )?;
+    if let Some(mebibytes) = peak_memory() {
+        writeln!(screen, "  peak memory {mebibytes:.0} MiB")?;
     }
+    Ok(())
+}
+
+/// Time of one dense real LU factorisation, the unit in which an iteration can be read.
+fn dense_lu(n: usize) -> Result<Duration, Box<dyn Error>> {
+    let mut lu = Lu::<f64>::new(n, 1)?;
+    let mut best = Duration::MAX;
+    for _ in 0..REPEATS {
+        for (k, x) in lu.matrix().iter_mut().enumerate() {
+            *x = (k as f64 * 0.37).sin() + if k % (n + 1) == 0 { 4.0 } else { 0.0 };
+        }
+        let begin = Instant::now();
+        lu.factor()?;
+        best = best.min(begin.elapsed());
+    }
+    Ok(best)
+}
+
+/// Time of factorising the dynamic stiffness and solving for every contact, all harmonics.
+fn factorisation(model: &Model, solver: &SolverOptions, omega: f64) -> Result<Duration, Box<dyn Error>> {
+    let condensed = Condensed::new(model, solver, omega)?;
+    let mut workspace = Workspace::new(&condensed, None)?;
+    let mut best = Duration::MAX;
+    for _ in 0..REPEATS {
+        let begin = Instant::now();
+        for i in 0..condensed.blocks().len() {
+            workspace.evaluate(&condensed, i, omega, false)?;
+        }
+        best = best.min(begin.elapsed());
+    }
+    Ok(best)
 }
 
 /// The most memory that this process has occupied, in MiB, where the system tells (Linux).
