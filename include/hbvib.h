@@ -277,7 +277,7 @@ typedef struct {
   /// Cap on the number of points.
   int64_t max_points;
   /// Degree of freedom whose fundamental defines amplitude and peaks; -1: the forced one that
-  /// moves most in the stuck response at the start.
+  /// moves most at the lower end of the range, contacts at their reference stiffness.
   int64_t response_dof;
   /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
   int32_t keep_even_harmonics;

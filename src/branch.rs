@@ -6,6 +6,7 @@ use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail, try_extend, try_push, try_vec};
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// A solution beside the curve: a peak, a fold, or one at a frequency asked for.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +25,7 @@ pub struct Special {
 /// folds and the solutions asked for have the numbers after that.
 #[derive(Debug)]
 pub struct Branch {
-    condensed: Condensed,
+    condensed: Arc<Condensed>,
     reduction: Reduction,
     samples: usize,
     harmonics: usize,
@@ -67,7 +68,7 @@ impl Branch {
     /// An empty branch of a condensed model.
     #[must_use]
     pub fn new(
-        condensed: Condensed,
+        condensed: Arc<Condensed>,
         reduction: Reduction,
         samples: usize,
         harmonics: usize,

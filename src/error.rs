@@ -285,6 +285,16 @@ pub fn check_memory<T>(len: usize, what: &str) -> Result<()> {
     v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))
 }
 
+/// A copy of `values` whose memory is asked for fallibly.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn try_copy<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
+    let mut v = Vec::new();
+    try_extend(&mut v, values, what)?;
+    Ok(v)
+}
+
 /// Appends `value`, asking fallibly for memory.
 ///
 /// # Errors

@@ -29,7 +29,7 @@ pub struct SolverOptions {
     /// Cap on the number of accepted points.
     pub max_points: usize,
     /// Degree of freedom whose fundamental defines amplitude and peaks; `None`: the forced one
-    /// that moves most in the stuck response at the start.
+    /// that moves most at the lower end of the range, contacts at their reference stiffness.
     pub response_dof: Option<usize>,
     /// Carry the mean and the even harmonics even where symmetry makes them zero.
     pub keep_even_harmonics: bool,

@@ -8,7 +8,7 @@ use crate::continuation::events::{Event, Locator};
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
-use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::linalg::norm;
 use crate::model::Model;
@@ -16,6 +16,7 @@ use crate::options::{ForcedOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::forced::Forced;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Follows the periodic response of `model` to its forces from `range.omega_start` to
 /// `range.omega_stop` by harmonic balance and arc-length continuation.
@@ -36,10 +37,11 @@ pub fn forced_response(
     if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
-    let condensed = Condensed::new(model, solver, range.omega_start)?;
+    let condensed = Arc::new(Condensed::new(model, solver, range.omega_start)?);
     let response = match solver.response_dof {
         Some(dof) => dof,
-        None => forced_dof_that_moves_most(model, &condensed, range.omega_start)?,
+        // At the lower end, so that both directions follow the same one.
+        None => forced_dof_that_moves_most(model, &condensed, range.omega_start.min(range.omega_stop))?,
     };
     let given = match range.guess {
         Some(guess) => Some(relative_motion(&condensed, guess)?),
@@ -60,7 +62,13 @@ pub fn forced_response(
         given,
     )?;
     let reduction = condensed.reduction(model, solver);
-    let branch = Branch::new(condensed.clone(), reduction, solver.samples, solver.harmonics, response);
+    let branch = Branch::new(
+        Arc::clone(&condensed),
+        reduction,
+        solver.samples,
+        solver.harmonics,
+        response,
+    );
     let mut follower = Follower {
         branch,
         settings,
@@ -102,7 +110,7 @@ impl Follower<'_> {
         let single = self.settings.start.to_bits() == self.settings.end.to_bits();
         if single {
             for i in 0..self.range.at.len() {
-                self.keep_special(problem, SpecialKind::At(i), first.clone())?;
+                self.keep_special(problem, SpecialKind::At(i), first.try_clone()?)?;
             }
             return Ok(Status::Ok);
         }
@@ -178,7 +186,7 @@ impl Follower<'_> {
             None
         };
         if let Some(fold) = &fold {
-            self.keep_special(problem, SpecialKind::Fold, fold.clone())?;
+            self.keep_special(problem, SpecialKind::Fold, fold.try_clone()?)?;
             self.wanted(problem, locator, a, fold, false)?;
             self.wanted(problem, locator, fold, b, last)
         } else {
@@ -215,7 +223,7 @@ impl Follower<'_> {
         let metric = Metric::along(norm(point.unknowns()), &self.settings);
         let mut row = try_vec(n + 1, 0.0, "the special points")?;
         row[n] = 1.0;
-        let mut v = point.v.clone();
+        let mut v = try_copy(&point.v, "the special points")?;
         // At a fold the solution at a fixed frequency is not isolated.
         let outcome = if matches!(kind, SpecialKind::Fold) {
             Ok(Outcome::Failed)
@@ -236,8 +244,8 @@ impl Follower<'_> {
         problem.response(point.unknowns(), &mut self.response);
         let kept = Kept {
             kind,
-            response: self.response.clone(),
-            slip_fractions: problem.slip_fractions().to_vec(),
+            response: try_copy(&self.response, "the special points")?,
+            slip_fractions: try_copy(problem.slip_fractions(), "the special points")?,
             point,
         };
         try_push(&mut self.specials, kept, "the special points")

@@ -258,7 +258,7 @@ pub struct hbvib_solver_options {
     /// Cap on the number of points.
     pub max_points: i64,
     /// Degree of freedom whose fundamental defines amplitude and peaks; -1: the forced one that
-    /// moves most in the stuck response at the start.
+    /// moves most at the lower end of the range, contacts at their reference stiffness.
     pub response_dof: i64,
     /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
     pub keep_even_harmonics: i32,

@@ -60,7 +60,7 @@ impl Workspace {
         let outputs = condensed.coordinates() + 1;
         let mut z = Vec::new();
         for block in condensed.blocks() {
-            try_push(&mut z, block.reference.clone(), "the dynamic stiffness")?;
+            try_push(&mut z, block.reference.try_clone()?, "the dynamic stiffness")?;
         }
         let Some(first) = condensed.blocks().first() else {
             return fail!(Internal, "no harmonic is carried");

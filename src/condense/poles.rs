@@ -42,7 +42,7 @@ pub fn near(condensed: &Condensed, workspace: &mut Workspace, i: usize, range: (
         n,
         &[(half, reference, Form::Plain), (half, &transposed, Form::Conjugated)],
     )?;
-    let mut mass = reference.clone();
+    let mut mass = reference.try_clone()?;
     mass.values.copy_from_slice(&block.mass);
     let modes = match lanczos::lowest(&hermitian, &mass, MODES) {
         Ok(modes) => modes,

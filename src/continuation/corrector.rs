@@ -2,7 +2,7 @@
 //! continuation, and with damping the solver of the first point.
 
 use super::Metric;
-use crate::error::{Result, Status, try_vec};
+use crate::error::{Result, Status, try_copy, try_vec};
 use crate::linalg::bordered::Bordered;
 use crate::linalg::norm;
 use crate::problem::{Linearisation, Problem};
@@ -108,7 +108,9 @@ impl Corrector {
             let size = norm(&self.step);
             let round_off = self.is_round_off(v, metric);
             if residual <= self.tolerance || round_off {
-                return Ok(Outcome::Converged(self.finish(problem, v, metric, iteration, residual)));
+                return Ok(Outcome::Converged(
+                    self.finish(problem, v, metric, iteration, residual)?,
+                ));
             }
             if iteration == self.max_iterations || (!damped && size > last_size) {
                 break;
@@ -212,15 +214,15 @@ impl Corrector {
         metric: Metric,
         iterations: usize,
         residual: f64,
-    ) -> Corrected {
+    ) -> Result<Corrected> {
         let n = v.len() - 1;
-        let mut tangent = self.step.clone();
+        let mut tangent = try_copy(&self.step, "Newton's method")?;
         metric.unscale(&mut tangent);
         let (at_residual, correction) = problem.observe(&v[..n], &tangent);
         metric.add(v, 1.0, &self.step);
         self.tangent(metric, &mut tangent);
         let (_, slope) = problem.observe(&v[..n], &tangent);
-        Corrected {
+        Ok(Corrected {
             iterations,
             residual,
             stalled: residual > self.tolerance,
@@ -228,7 +230,7 @@ impl Corrector {
             slope,
             tangent,
             positive: self.lu.is_positive(),
-        }
+        })
     }
 
     /// Unit tangent from the factors at hand, in unscaled numbers.

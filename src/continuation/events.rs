@@ -4,7 +4,7 @@
 use super::corrector::{Corrector, Outcome};
 use super::predictor::Cubic;
 use super::{Metric, Point, Settings};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, try_copy, try_vec};
 use crate::linalg::norm;
 use crate::problem::Problem;
 
@@ -53,6 +53,8 @@ pub struct Locator {
     derivative: Vec<f64>,
 }
 
+const WHAT: &str = "the search for events";
+
 /// Cap on the evaluations of one search.
 const MAX_EVALUATIONS: usize = 60;
 
@@ -71,8 +73,8 @@ impl Locator {
         Ok(Self {
             corrector: Corrector::new(n, settings.tolerance, settings.max_iterations)?,
             settings,
-            row: try_vec(n + 1, 0.0, "the search for events")?,
-            derivative: try_vec(n + 1, 0.0, "the search for events")?,
+            row: try_vec(n + 1, 0.0, WHAT)?,
+            derivative: try_vec(n + 1, 0.0, WHAT)?,
         })
     }
 
@@ -90,7 +92,7 @@ impl Locator {
         let (mut low, mut high) = ((0.0, value(a)), (1.0, value(b)));
         let mut best: Option<Point> = None;
         if high.1 == 0.0 {
-            return Ok(Some(b.clone()));
+            return Ok(Some(b.try_clone()?));
         }
         let mut side = 0;
         for _ in 0..MAX_EVALUATIONS {
@@ -139,15 +141,15 @@ impl Locator {
     pub fn at_parameter(&mut self, problem: &mut dyn Problem, a: &Point, b: &Point, p: f64) -> Result<Option<Point>> {
         for end in [a, b] {
             if end.parameter().to_bits() == p.to_bits() {
-                return Ok(Some(end.clone()));
+                return Ok(Some(end.try_clone()?));
             }
         }
         // Where the cubic is too poor a guess, a point of the branch near `p` halves the arc.
-        let mut arc = (a.clone(), b.clone());
+        let mut arc = (a.try_clone()?, b.try_clone()?);
         for _ in 0..MAX_HALVINGS {
             let (a, b) = (&arc.0, &arc.1);
             let metric = self.metric(a, b);
-            let s = self.where_at(a, b, metric, p);
+            let s = self.where_at(a, b, metric, p)?;
             if let Some(found) = self.solve_between(problem, metric, a, b, s, Some(p))? {
                 return Ok(Some(found));
             }
@@ -161,10 +163,10 @@ impl Locator {
     }
 
     /// Where on the arc from `a` to `b` the cubic has parameter `p`.
-    fn where_at(&mut self, a: &Point, b: &Point, metric: Metric, p: f64) -> f64 {
+    fn where_at(&mut self, a: &Point, b: &Point, metric: Metric, p: f64) -> Result<f64> {
         let n = a.v.len() - 1;
         let cubic = Cubic::new(a, b, metric);
-        let mut v = a.v.clone();
+        let mut v = try_copy(&a.v, WHAT)?;
         let (mut low, mut high) = (0.0, 1.0);
         let rising = b.parameter() > a.parameter();
         for _ in 0..50 {
@@ -176,7 +178,7 @@ impl Locator {
                 high = s;
             }
         }
-        0.5 * (low + high)
+        Ok(0.5 * (low + high))
     }
 
     /// Solves in the plane across the cubic at s, or at a fixed parameter.
@@ -191,7 +193,7 @@ impl Locator {
     ) -> Result<Option<Point>> {
         let n = a.v.len() - 1;
         let cubic = Cubic::new(a, b, metric);
-        let mut v = a.v.clone();
+        let mut v = try_copy(&a.v, WHAT)?;
         cubic.at(s, &mut v, &mut self.derivative);
         if let Some(p) = fixed {
             v[n] = p;
@@ -200,7 +202,7 @@ impl Locator {
         } else {
             metric.unit(&self.derivative, &mut self.row);
         }
-        let guess = v.clone();
+        let guess = try_copy(&v, WHAT)?;
         let outcome = self.corrector.correct(problem, &mut v, &self.row, metric, true, None)?;
         let Outcome::Converged(corrected) = outcome else {
             return Ok(None);

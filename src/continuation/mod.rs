@@ -14,7 +14,7 @@ pub mod predictor;
 pub mod start;
 pub mod step_control;
 
-use crate::error::{Result, Status, try_vec};
+use crate::error::{Result, Status, try_copy, try_vec};
 use crate::linalg::norm;
 use crate::problem::Problem;
 use corrector::{Corrector, Outcome};
@@ -71,6 +71,8 @@ pub struct Continuation {
     scratch: Vec<f64>,
 }
 
+const WHAT: &str = "the continuation";
+
 /// Cosine of the largest turn of the branch within one step.
 const STRAIGHT: f64 = 0.5;
 
@@ -108,8 +110,8 @@ impl Continuation {
             largest: (norm(first.unknowns()), first.amplitude.norm()),
             previous: None,
             current: first,
-            row: try_vec(n + 1, 0.0, "the continuation")?,
-            scratch: try_vec(n + 1, 0.0, "the continuation")?,
+            row: try_vec(n + 1, 0.0, WHAT)?,
+            scratch: try_vec(n + 1, 0.0, WHAT)?,
         })
     }
 
@@ -135,14 +137,14 @@ impl Continuation {
         let order = if self.previous.is_some() { 4.0 } else { 2.0 };
         loop {
             let step = self.steps.step();
-            let (v, amplitude) = self.predict(metric, step);
+            let (v, amplitude) = self.predict(metric, step)?;
             let (fixed, length) = match self.overshoot(v[n]) {
                 None => (None, step),
                 Some((bound, share)) => (Some(bound), share * step),
             };
             let attempt = if let Some(bound) = fixed {
                 // The range ends here: predict just so far, and solve at the end exactly.
-                let (mut v, amplitude) = self.predict(metric, length);
+                let (mut v, amplitude) = self.predict(metric, length)?;
                 v[n] = bound;
                 self.try_point(problem, metric, v, amplitude, length, true, cancelled)?
             } else {
@@ -159,7 +161,7 @@ impl Continuation {
                         continue;
                     }
                     self.steps.accepted(length, error, order, point.iterations);
-                    return Ok(self.accept(point, fixed));
+                    return self.accept(point, fixed);
                 }
                 Attempt::Poor { error } => {
                     if !self.steps.rejected(error, order) {
@@ -170,7 +172,7 @@ impl Continuation {
                     if length <= CORNER_STEP
                         && let Some(point) = self.turn_corner(problem, metric, length, cancelled)?
                     {
-                        return Ok(self.accept(point, None));
+                        return self.accept(point, None);
                     }
                     if !self.steps.failed() {
                         return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
@@ -194,7 +196,7 @@ impl Continuation {
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Option<Point>> {
         let n = self.row.len() - 1;
-        let mut v = self.current.v.clone();
+        let mut v = try_copy(&self.current.v, WHAT)?;
         metric.unit(&self.current.tangent, &mut self.row);
         metric.add(&mut v, step, &self.row);
         let found = self
@@ -217,7 +219,7 @@ impl Continuation {
             let Outcome::Converged(corrected) = outcome else {
                 continue;
             };
-            let mut point = Point::new(v.clone(), corrected, length);
+            let mut point = Point::new(try_copy(&v, WHAT)?, corrected, length);
             if point.positive != self.current.positive {
                 point.reverse();
             }
@@ -231,15 +233,15 @@ impl Continuation {
         Ok(None)
     }
 
-    fn accept(&mut self, point: Point, fixed: Option<f64>) -> Advance {
+    fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
         self.largest.0 = self.largest.0.max(norm(point.unknowns()));
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
-        self.previous = Some(core::mem::replace(&mut self.current, point.clone()));
-        match fixed {
+        self.previous = Some(core::mem::replace(&mut self.current, point.try_clone()?));
+        Ok(match fixed {
             Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
             Some(_) => Advance::Accepted { point, last: true },
             None => Advance::Accepted { point, last: false },
-        }
+        })
     }
 
     /// Units for the step that starts at the current point.
@@ -251,26 +253,29 @@ impl Continuation {
     }
 
     /// Predicted point and amplitude a step ahead; leaves the tangent as the row of the plane.
-    fn predict(&mut self, metric: Metric, step: f64) -> (Vec<f64>, Complex64) {
+    fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
         let here = &self.current;
         metric.unit(&here.tangent, &mut self.row);
         let reach = step / metric.norm(&here.tangent);
-        let tangent: Vec<f64> = here.v.iter().zip(&here.tangent).map(|(v, t)| v + reach * t).collect();
+        let mut tangent = try_copy(&here.v, WHAT)?;
+        for (v, t) in tangent.iter_mut().zip(&here.tangent) {
+            *v += reach * t;
+        }
         let straight = (tangent, here.amplitude + here.slope * reach);
         let Some(previous) = &self.previous else {
-            return straight;
+            return Ok(straight);
         };
         let cubic = Cubic::new(previous, here, metric);
         if cubic.chord == 0.0 {
-            return straight;
+            return Ok(straight);
         }
         let s = 1.0 + step / cubic.chord;
-        let mut v = here.v.clone();
+        let mut v = try_copy(&here.v, WHAT)?;
         cubic.at(s, &mut v, &mut self.scratch);
         if metric.distance(&v, &straight.0) > 0.5 * step {
-            return straight;
+            return Ok(straight);
         }
-        (v, cubic.amplitude(s))
+        Ok((v, cubic.amplitude(s)))
     }
 
     /// The bound of the range that a parameter value lies beyond, and the share of the way to it.
@@ -300,7 +305,7 @@ impl Continuation {
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Attempt> {
         let n = v.len() - 1;
-        let predicted = v.clone();
+        let predicted = try_copy(&v, WHAT)?;
         if keep_parameter {
             self.row.fill(0.0);
             self.row[n] = 1.0;

@@ -1,6 +1,7 @@
 //! A solved point of a branch with its tangent.
 
 use super::corrector::Corrected;
+use crate::error::{Result, try_copy};
 use num_complex::Complex64;
 
 /// A point of a branch.
@@ -41,6 +42,18 @@ impl Point {
             stalled: corrected.stalled,
             positive: corrected.positive,
         }
+    }
+
+    /// A copy whose memory is asked for fallibly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        Ok(Self {
+            v: try_copy(&self.v, "a point of the branch")?,
+            tangent: try_copy(&self.tangent, "a point of the branch")?,
+            ..*self
+        })
     }
 
     /// The parameter.

@@ -6,7 +6,7 @@
 use super::corrector::{Corrector, Outcome};
 use super::step_control::StepControl;
 use super::{Advance, Continuation, Metric, Point, Settings};
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::linalg::norm;
 use crate::problem::{Problem, Start};
 
@@ -18,6 +18,8 @@ pub enum First {
     /// On the caller's wish.
     Cancelled,
 }
+
+const WHAT: &str = "the start";
 
 /// Most points that the homotopy may take.
 const MAX_HOMOTOPY_POINTS: usize = 2_000;
@@ -31,7 +33,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
     let n = problem.size();
     let p = settings.start;
     let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations)?;
-    let mut v = try_vec(n + 1, 0.0, "the start")?;
+    let mut v = try_vec(n + 1, 0.0, WHAT)?;
     let mut stuck: Option<Vec<f64>> = None;
     for kind in [Start::Given, Start::Stuck, Start::Reference] {
         if !problem.start(kind, p, &mut v[..n])? {
@@ -50,7 +52,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
         }
         v[n] = p;
         if kind == Start::Stuck {
-            stuck = Some(v[..n].to_vec());
+            stuck = Some(try_copy(&v[..n], WHAT)?);
         }
         match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
             Outcome::Converged(corrected) => {
@@ -76,7 +78,7 @@ fn at_fixed(
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Outcome> {
     let n = v.len() - 1;
-    let mut row = try_vec(n + 1, 0.0, "the start")?;
+    let mut row = try_vec(n + 1, 0.0, WHAT)?;
     row[n] = 1.0;
     let metric = Metric::along(norm(&v[..n]), settings);
     corrector.correct(problem, v, &row, metric, true, cancelled)
@@ -124,8 +126,8 @@ fn follow(
     corrector: &mut Corrector,
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Option<Vec<f64>>> {
-    let mut v = u.to_vec();
-    v.push(settings.start);
+    let mut v = try_copy(u, WHAT)?;
+    try_push(&mut v, settings.start, WHAT)?;
     let Outcome::Converged(corrected) = at_fixed(problem, settings, corrector, &mut v, cancelled)? else {
         return Ok(None);
     };
