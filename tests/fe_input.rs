@@ -125,8 +125,8 @@ const ROW: &str = "0,0,1,2,3,4,5,0.1,0.02,1e8,2e8,0.3,10";
 fn small_sector(name: &str) -> PathBuf {
     let folder = folder(name);
     let diagonal = |value: f64| {
-        let entries: String = (1..=6).map(|i| format!("{i} {i} {value}\n")).collect();
-        real("symmetric", &format!("6 6 6\n{entries}"))
+        let entries: Vec<String> = (1..=6).map(|i| format!("{i} {i} {value}\n")).collect();
+        real("symmetric", &format!("6 6 6\n{}", entries.concat()))
     };
     let coupling = |value: f64| real("general", &format!("6 6 2\n1 2 {value}\n4 3 {value}\n"));
     for (part, text) in [

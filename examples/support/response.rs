@@ -131,8 +131,8 @@ impl Response {
         let first_point = first.unwrap_or(solved);
         response.times = Times {
             first_point,
-            curve: solved - first_point,
-            recovery: begin.elapsed() - solved,
+            curve: solved.saturating_sub(first_point),
+            recovery: begin.elapsed().saturating_sub(solved),
         };
         Ok(response)
     }
