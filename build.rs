@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 8] = [
-    "types", "boundary", "matrix", "model", "contact", "solve", "results", "residual",
+const SOURCES: [&str; 9] = [
+    "types", "boundary", "matrix", "model", "contact", "tables", "solve", "results", "residual",
 ];
 
 fn main() {

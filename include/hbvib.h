@@ -627,6 +627,44 @@ hbvib_status hbvib_contact_evaluate(const hbvib_contact *c,
                                     double *jac,
                                     int64_t jac_len);
 
+/// Adds many Jenkins contacts from arrays; entry i of each array describes one. All of them are
+/// checked before any is added.
+///
+/// n              number of contacts, >= 0.
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND; n each.
+/// sector_offset  sector of side b counted from that of side a, n numbers; NULL: all 0.
+/// kt, mu, preload  tangential stiffness, friction coefficient, normal load; n each.
+/// first_id       receives the number of the first contact, the others follow; may be NULL.
+/// Errors: as hbvib_model_add_contact, naming the entry; HBVIB_E_DIMENSION (n).
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_jenkins(hbvib_model *model,
+                                     int64_t n,
+                                     const int64_t *dof_a,
+                                     const int64_t *dof_b,
+                                     const int64_t *sector_offset,
+                                     const double *kt,
+                                     const double *mu,
+                                     const double *preload,
+                                     int64_t *first_id);
+
+/// Adds many linear springs from arrays; they take no part in Rayleigh damping. All of them are
+/// checked before any is added.
+///
+/// n              number of springs, >= 0.
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND; n each.
+/// sector_offset  sector of side b counted from that of side a, n numbers; NULL: all 0.
+/// stiffness      force per length, of any sign; n numbers.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (both sides the same, sector_offset in a
+/// plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_DIMENSION (n), HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY, naming the entry.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_springs(hbvib_model *model,
+                                     int64_t n,
+                                     const int64_t *dof_a,
+                                     const int64_t *dof_b,
+                                     const int64_t *sector_offset,
+                                     const double *stiffness);
+
 /// Fills solver options with their defaults: harmonics = 9, exact events, automatic steps.
 ///
 /// o          the struct; untouched on error.

@@ -128,6 +128,11 @@ fn results_are_what_they_say() {
 }
 
 #[test]
+fn many_contacts_and_springs_are_added_at_once() {
+    silent("tables", |_| vec![]);
+}
+
+#[test]
 fn handles_cannot_be_mistaken() {
     silent("handles", |_| vec![]);
 }

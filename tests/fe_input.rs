@@ -16,6 +16,7 @@ mod response;
 #[path = "../examples/fe_sector/sector.rs"]
 mod sector;
 #[path = "../examples/fe_sector/single.rs"]
+#[allow(dead_code, reason = "the reader of flags alone is needed here")]
 mod single;
 #[path = "../examples/support/table.rs"]
 mod table;

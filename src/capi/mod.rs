@@ -19,4 +19,5 @@ pub mod residual;
 pub mod results;
 mod sized;
 pub mod solve;
+pub mod tables;
 pub mod types;

@@ -1,0 +1,138 @@
+//! Many contacts or springs in one call, from arrays.
+
+use super::boundary::{Blame, call, check_pointer, count, input};
+use super::handles::write;
+use super::types::{hbvib_model, hbvib_special_dof, hbvib_status};
+use crate::contact::Contact;
+use crate::error::{Error, Result, Status, fail, try_push};
+use crate::model::Model;
+use crate::model::spring::Spring;
+
+const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
+
+/// Entry `i` of an array of degrees of freedom.
+fn side(dofs: &[i64], i: usize, ndof: usize, argument: i32, name: &str) -> Result<Option<usize>> {
+    match dofs[i] {
+        GROUND => Ok(None),
+        dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
+        dof => fail!(
+            Index,
+            "{name}[{i}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
+            ndof - 1
+        )
+        .blame(argument),
+    }
+}
+
+/// Which array an error in the constants of an entry is about.
+fn blame_constant(e: Error, arrays: &[(&str, i32)]) -> Error {
+    let found = arrays.iter().find(|(name, _)| e.message().contains(name));
+    e.in_argument(found.map_or(0, |&(_, argument)| argument))
+}
+
+/// Adds many Jenkins contacts from arrays; entry i of each array describes one. All of them are
+/// checked before any is added.
+///
+/// n              number of contacts, >= 0.
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND; n each.
+/// sector_offset  sector of side b counted from that of side a, n numbers; NULL: all 0.
+/// kt, mu, preload  tangential stiffness, friction coefficient, normal load; n each.
+/// first_id       receives the number of the first contact, the others follow; may be NULL.
+/// Errors: as hbvib_model_add_contact, naming the entry; HBVIB_E_DIMENSION (n).
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_model_add_jenkins(
+    model: *mut hbvib_model,
+    n: i64,
+    dof_a: *const i64,
+    dof_b: *const i64,
+    sector_offset: *const i64,
+    kt: *const f64,
+    mu: *const f64,
+    preload: *const f64,
+    first_id: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let n = count(n, 2, "n")?;
+        let a = unsafe { input(dof_a, n, 3, "dof_a") }?;
+        let b = unsafe { input(dof_b, n, 4, "dof_b") }?;
+        let offsets = if sector_offset.is_null() {
+            None
+        } else {
+            Some(unsafe { input(sector_offset, n, 5, "sector_offset") }?)
+        };
+        let kt = unsafe { input(kt, n, 6, "kt") }?;
+        let mu = unsafe { input(mu, n, 7, "mu") }?;
+        let preload = unsafe { input(preload, n, 8, "preload") }?;
+        if !first_id.is_null() {
+            check_pointer(first_id, 9, "first_id")?;
+        }
+        let mut contacts = Vec::new();
+        for i in 0..n {
+            let mut contact = Contact::jenkins(0, None, kt[i], mu[i], preload[i]);
+            contact.dof_a = side(a, i, model.ndof(), 3, "dof_a")?;
+            contact.dof_b = side(b, i, model.ndof(), 4, "dof_b")?;
+            contact.sector_offset = offsets.map_or(0, |o| o[i]);
+            try_push(&mut contacts, contact, "the contacts")?;
+        }
+        let first = model.add_contacts(&contacts).map_err(|e| {
+            let arrays = [("kt", 6), ("mu", 7), ("preload", 8), ("sector_offset", 5), ("dof_a", 3)];
+            blame_constant(e, &arrays)
+        })?;
+        if !first_id.is_null() {
+            unsafe { first_id.write(first as i64) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Adds many linear springs from arrays; they take no part in Rayleigh damping. All of them are
+/// checked before any is added.
+///
+/// n              number of springs, >= 0.
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND; n each.
+/// sector_offset  sector of side b counted from that of side a, n numbers; NULL: all 0.
+/// stiffness      force per length, of any sign; n numbers.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (both sides the same, sector_offset in a
+/// plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_DIMENSION (n), HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY, naming the entry.
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_model_add_springs(
+    model: *mut hbvib_model,
+    n: i64,
+    dof_a: *const i64,
+    dof_b: *const i64,
+    sector_offset: *const i64,
+    stiffness: *const f64,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let n = count(n, 2, "n")?;
+        let a = unsafe { input(dof_a, n, 3, "dof_a") }?;
+        let b = unsafe { input(dof_b, n, 4, "dof_b") }?;
+        let offsets = if sector_offset.is_null() {
+            None
+        } else {
+            Some(unsafe { input(sector_offset, n, 5, "sector_offset") }?)
+        };
+        let stiffness = unsafe { input(stiffness, n, 6, "stiffness") }?;
+        let mut springs = Vec::new();
+        for (i, &stiffness) in stiffness.iter().enumerate() {
+            let spring = Spring {
+                dof_a: side(a, i, model.ndof(), 3, "dof_a")?,
+                dof_b: side(b, i, model.ndof(), 4, "dof_b")?,
+                sector_offset: offsets.map_or(0, |o| o[i]),
+                stiffness,
+            };
+            try_push(&mut springs, spring, "the springs")?;
+        }
+        model.add_springs(&springs).map_err(|e| {
+            let arrays = [("stiffness", 6), ("sector_offset", 5), ("dof_a", 3)];
+            blame_constant(e, &arrays)
+        })?;
+        Ok(Status::Ok)
+    })
+}
