@@ -1,7 +1,9 @@
 //! What a response cost: where the time went, and the memory.
 
 use std::io::Write;
-use std::time::Duration;
+use std::time::{Duration, Instant};
+
+use hbvib::linalg::lu::Lu;
 
 use crate::response::Response;
 
@@ -33,10 +35,41 @@ pub fn show(screen: &mut impl Write, read: Duration, response: &Response) -> std
         "  {iterations} Newton iterations on the curve, {:.2} ms each with all that goes with them",
         1e3 * per_iteration
     )?;
+    if let Some(solve) = dense_solve(reduction.unknowns) {
+        let solves = solve.as_secs_f64() * iterations.max(1) as f64;
+        let sweep = (times.first_point + times.curve).as_secs_f64();
+        writeln!(
+            screen,
+            "  {:.1} times as long as so many dense solves of that order, {:.2} ms each",
+            sweep / solves,
+            1e3 * solve.as_secs_f64()
+        )?;
+    }
     match peak_memory() {
         Some(mebibytes) => writeln!(screen, "  peak memory {mebibytes:.0} MiB"),
         None => Ok(()),
     }
+}
+
+/// The quickest of several factorisations of a full real matrix of order `n`, each with one solution.
+fn dense_solve(n: usize) -> Option<Duration> {
+    let mut lu: Lu<f64> = Lu::new(n, 1).ok()?;
+    let mut b = vec![1.0; n];
+    let once = |_| {
+        for (i, a) in lu.matrix().iter_mut().enumerate() {
+            let (row, column) = (i % n, i / n);
+            *a = if row == column {
+                n as f64
+            } else {
+                ((row * 31 + column * 17) % 101) as f64 * 0.01
+            };
+        }
+        let begin = Instant::now();
+        lu.factor().ok()?;
+        lu.solve(&mut b);
+        Some(begin.elapsed())
+    };
+    (0..7).filter_map(once).min()
 }
 
 /// The most memory that this process has occupied, in MiB, where the system tells (Linux).
