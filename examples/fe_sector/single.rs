@@ -1,5 +1,4 @@
 //! One response as the flags describe it: a summary on the screen and, if wanted, a JSON file.
-#![allow(dead_code, reason = "the tests use a part of this module")]
 
 use std::error::Error;
 use std::io::Write;
