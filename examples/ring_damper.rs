@@ -26,7 +26,7 @@ mod model;
 mod plot;
 #[path = "support/progress.rs"]
 mod progress;
-#[path = "ring_damper/response.rs"]
+#[path = "support/response.rs"]
 mod response;
 #[path = "ring_damper/single.rs"]
 mod single;

@@ -56,8 +56,10 @@ typedef enum {
   HBVIB_STOPPED_MAX_POINTS = 3,
   /// More harmonics were needed than max_harmonics.
   HBVIB_STOPPED_MAX_HARMONICS = 4,
-  /// Round-off stopped the residual above tol_residual, or the branch ended where it began.
+  /// Round-off stopped the residual above tol_residual.
   HBVIB_STOPPED_STALLED = 5,
+  /// The branch turned back and left the range where it began.
+  HBVIB_STOPPED_LEFT_RANGE = 6,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.

@@ -22,6 +22,8 @@ pub enum Status {
     StoppedMaxHarmonics = 4,
     /// The residual stopped falling above the wanted tolerance (round-off); all points are kept.
     StoppedStalled = 5,
+    /// The branch turned back and left the range where it began; all points are kept.
+    StoppedLeftRange = 6,
     /// A required pointer is NULL.
     Null = -1,
     /// An argument has a value outside its range.
@@ -69,6 +71,7 @@ impl Status {
             Self::StoppedMaxPoints => c"HBVIB_STOPPED_MAX_POINTS",
             Self::StoppedMaxHarmonics => c"HBVIB_STOPPED_MAX_HARMONICS",
             Self::StoppedStalled => c"HBVIB_STOPPED_STALLED",
+            Self::StoppedLeftRange => c"HBVIB_STOPPED_LEFT_RANGE",
             Self::Null => c"HBVIB_E_NULL",
             Self::Argument => c"HBVIB_E_ARGUMENT",
             Self::Dimension => c"HBVIB_E_DIMENSION",
@@ -105,20 +108,24 @@ impl Status {
                 "max_harmonics was reached above the tolerance; the points found so far are kept; raise max_harmonics"
             }
             Self::StoppedStalled => {
-                "round-off stopped the residual above tol_residual, or the branch came back to where it began; all points are kept"
+                "round-off stopped the residual above tol_residual; all points are kept; raise tol_residual"
+            }
+            Self::StoppedLeftRange => {
+                "the branch turned back and left the range where it began; all points are kept; start elsewhere or from the other end"
             }
             _ => "",
         }
     }
 
     /// All values, for tables and for turning an integer back into a status.
-    pub const ALL: [Self; 23] = [
+    pub const ALL: [Self; 24] = [
         Self::Ok,
         Self::StoppedByCaller,
         Self::StoppedStepTooSmall,
         Self::StoppedMaxPoints,
         Self::StoppedMaxHarmonics,
         Self::StoppedStalled,
+        Self::StoppedLeftRange,
         Self::Null,
         Self::Argument,
         Self::Dimension,

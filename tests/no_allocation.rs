@@ -7,11 +7,15 @@
 mod common;
 
 use common::{BASE, harmonics};
-use hbvib::condense::Condensed;
+use hbvib::condense::{Condensed, Reference};
+use hbvib::contact::Contact;
 use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Metric, Settings};
+use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::linalg::norm;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;
 use hbvib::problem::forced::Forced;
 use hbvib::problem::{Linearisation, Problem, Start};
@@ -103,6 +107,68 @@ fn an_evaluation_allocates_nothing() {
         let (count, _) = allocations(|| problem.observe(&u, &direction));
         assert_eq!(count, 0, "observing the amplitude");
     }
+}
+
+#[test]
+fn many_contacts_along_a_sweep_allocate_only_where_a_panel_is_laid() {
+    // A chain of 48 masses, each rubbing on the ground: the flexibility is interpolated, contacts
+    // that stick drop out of Newton's equations.
+    let n = 48;
+    let mut model = Model::new(n).unwrap();
+    let mut stiffness = vec![0.0; n * n];
+    let mut mass = vec![0.0; n * n];
+    for i in 0..n {
+        mass[i * n + i] = 1.0;
+        stiffness[i * n + i] = 2.0;
+        if i > 0 {
+            stiffness[i * n + i - 1] = -1.0;
+            stiffness[(i - 1) * n + i] = -1.0;
+        }
+        model.add_contact(&Contact::jenkins(i, None, 0.5, 0.1, 1.0)).unwrap();
+    }
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
+        .unwrap();
+    model.set_rayleigh(0.0, 0.02).unwrap();
+    model.add_force(0, 1, 1.0.into()).unwrap();
+    let options = options(3, 0);
+    let condensed = Condensed::new(&model, &options, 0.8).unwrap();
+    assert_eq!(condensed.reference(), Reference::Stuck);
+    let mut problem = Forced::new(&condensed, 0, (0.8, 0.9), 0, None).unwrap();
+    let size = problem.size();
+    let mut v = vec![0.0; size + 1];
+    assert!(problem.start(Start::Stuck, 0.8, &mut v[..size]).unwrap());
+    let settings = Settings {
+        start: 0.8,
+        end: 0.9,
+        tolerance: options.tol_residual,
+        max_iterations: 50,
+        steps: StepControl::new(0.0, 0.0, 0.0),
+    };
+    let metric = Metric::along(norm(&v[..size]), &settings);
+    let mut row = vec![0.0; size + 1];
+    row[size] = 1.0;
+    let mut corrector = Corrector::new(size, settings.tolerance, settings.max_iterations).unwrap();
+    let mut iterations = 0;
+    for (k, omega) in [0.8, 0.801, 0.802, 0.803].into_iter().enumerate() {
+        v[size] = omega;
+        let (count, outcome) = allocations(|| {
+            corrector
+                .correct(&mut problem, &mut v, &row, metric, true, None)
+                .unwrap()
+        });
+        let Outcome::Converged(corrected) = outcome else {
+            panic!("no solution at {omega}");
+        };
+        let slipping = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
+        assert!(slipping > 0 && slipping < n, "{slipping} contacts slip");
+        iterations += corrected.iterations;
+        assert!(k == 0 || count == 1, "{count} allocations at {omega}");
+    }
+    assert!(iterations > 8, "{iterations} iterations");
 }
 
 #[test]

@@ -133,7 +133,7 @@ fn responses(sector: &Sector, read: Duration, folder: &Path, screen: &mut impl W
                 peak.amplitude(),
                 peak.frequency
             )?;
-            cost::show(screen, read, &response)?;
+            cost::show(screen, read, &model, &response)?;
             for p in &response.points {
                 let x = p.fundamental();
                 rows.push(vec![force, harmonics as f64, p.frequency, p.amplitude(), x.re, x.im]);

@@ -149,7 +149,7 @@ impl Request {
         for point in &response.at {
             show(screen, "at", point)?;
         }
-        cost::show(screen, read, &response)?;
+        cost::show(screen, read, &model, &response)?;
         if let Some(path) = &self.json {
             writeln!(screen, "written to {}", path.display())?;
         }

@@ -9,7 +9,7 @@ use std::time::Instant;
 use hbvib::options::SolverOptions;
 
 use crate::csv::write_csv;
-use crate::model::{LARGEST_DIAMETER, Parameters, modes_with_ring_stuck, modes_without_ring};
+use crate::model::{LARGEST_DIAMETER, Parameters, WANTED, modes_with_ring_stuck, modes_without_ring};
 use crate::plot::{Figure, Series, Style};
 use crate::progress::Bar;
 use crate::response::{Range, Response};
@@ -159,7 +159,9 @@ impl Study {
         for (i, &value) in self.values.iter().enumerate() {
             let begin = Instant::now();
             let progress = |share: f64| bar.set((i as f64 + share) / count as f64);
-            let response = Response::follow(&(self.case)(value), &solver, &range, progress)
+            let response = (self.case)(value)
+                .model()
+                .and_then(|model| Response::follow(&model, &solver, &range, &WANTED, progress))
                 .map_err(|e| format!("{} = {value}: {e}", self.parameter))?;
             cases.push((value, response, begin.elapsed().as_secs_f64()));
         }

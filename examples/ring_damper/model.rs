@@ -17,6 +17,8 @@ use num_complex::Complex64;
 
 /// Degrees of freedom of a sector, in this order.
 pub const DOFS: [&str; 4] = ["b2", "b1", "d", "r"];
+/// Their numbers: a response lists all and follows the first.
+pub const WANTED: [usize; DOFS.len()] = [B2, B1, DISK, RING];
 /// The blade tip, whose motion is followed.
 pub const B2: usize = 0;
 const B1: usize = 1;

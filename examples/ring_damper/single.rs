@@ -5,11 +5,10 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use hbvib::options::SolverOptions;
-use serde_json::{Map, Value};
 
 use crate::flags::{self, Flag, Flags};
-use crate::json::{number, write_json};
-use crate::model::{DOFS, Parameters};
+use crate::json::write_json;
+use crate::model::{DOFS, Parameters, WANTED};
 use crate::progress::{Bar, write_stderr};
 use crate::response::{Point, Range, Response};
 
@@ -136,13 +135,14 @@ impl Request {
     /// If the response cannot be computed to its end or the file cannot be written.
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let mut bar = Bar::new("Response, percent", 100);
-        let response = Response::follow(&self.parameters, &self.solver, &self.range, |share| bar.set(share))?;
+        let model = self.parameters.model()?;
+        let response = Response::follow(&model, &self.solver, &self.range, &WANTED, |share| bar.set(share))?;
         bar.finish();
         if response.stalled {
             write_stderr("note: rounding kept the residual of some points above the solver's tolerance\n");
         }
         if let Some(path) = &self.json {
-            write_json(path, &to_json(&response)?)?;
+            write_json(path, &response.to_json("amplitude_b2_m", &DOFS)?)?;
         }
         let mut screen = std::io::stdout().lock();
         let (from, to) = (self.range.from, self.range.to);
@@ -192,30 +192,4 @@ fn complete(parameters: &Parameters, from: Option<f64>, to: Option<f64>, at: Vec
         Some(f) => Err(format!("--at-hz {f}: needs a frequency within {low} to {high} Hz")),
         None => Ok(range),
     }
-}
-
-fn to_json(response: &Response) -> Result<Value, Box<dyn Error>> {
-    let list = |points: &[Point]| points.iter().map(point_to_json).collect::<Result<Vec<_>, _>>();
-    let mut object = Map::new();
-    object.insert("points".into(), list(&response.points)?.into());
-    object.insert("peak".into(), point_to_json(&response.peak)?);
-    object.insert("at".into(), list(&response.at)?.into());
-    Ok(object.into())
-}
-
-fn point_to_json(point: &Point) -> Result<Value, Box<dyn Error>> {
-    let mut harmonics = Map::new();
-    for (dof, name) in DOFS.into_iter().enumerate() {
-        let mut of_dof = Map::new();
-        for (p, x) in &point.harmonics {
-            let pair = vec![number(x[dof].re)?, number(x[dof].im)?];
-            of_dof.insert(p.to_string(), pair.into());
-        }
-        harmonics.insert(name.into(), of_dof.into());
-    }
-    let mut object = Map::new();
-    object.insert("frequency_hz".into(), number(point.frequency)?);
-    object.insert("amplitude_b2_m".into(), number(point.amplitude())?);
-    object.insert("harmonics".into(), harmonics.into());
-    Ok(object.into())
 }

@@ -197,14 +197,22 @@ impl Response {
 }
 
 fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Result<Point, Box<dyn Error>> {
-    let n = branch.ndof();
-    let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
-    branch.harmonics_at(number, &mut all)?;
-    let of = |p: usize| wanted.iter().map(|dof| all[p * n + dof]).collect();
+    let carried = branch.carried().iter().copied();
+    let harmonics = match branch.response_at(number) {
+        // The response degree of freedom is at hand; others are recovered with the whole structure.
+        Some(response) if wanted == [branch.response_dof()] => carried.zip(response.iter().map(|&x| vec![x])).collect(),
+        _ => {
+            let n = branch.ndof();
+            let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
+            branch.harmonics_at(number, &mut all)?;
+            let of = |p: usize| wanted.iter().map(|dof| all[p * n + dof]).collect();
+            carried.map(|p| (p, of(p))).collect()
+        }
+    };
     Ok(Point {
         number,
         frequency,
-        harmonics: branch.carried().iter().map(|&p| (p, of(p))).collect(),
+        harmonics,
     })
 }
 

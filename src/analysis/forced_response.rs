@@ -115,7 +115,7 @@ impl Follower<'_> {
             }
             let (point, end) = match continuation.advance(problem, cancelled)? {
                 Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
-                Advance::LeftAtStart { point } => (point, Some(Status::StoppedStalled)),
+                Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
                 Advance::Stopped(status) => return Ok(status),
             };
             self.keep(problem, &point)?;

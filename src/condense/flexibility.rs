@@ -78,14 +78,52 @@ impl Workspace {
 
     /// Factors Z_κ of the i-th carried harmonic at `omega`.
     fn factor(&mut self, condensed: &Condensed, i: usize, omega: f64) -> Result<()> {
+        self.factor_at(condensed, i, omega.into())
+    }
+
+    /// The same at a complex frequency.
+    fn factor_at(&mut self, condensed: &Condensed, i: usize, omega: Complex64) -> Result<()> {
         let block = &condensed.blocks()[i];
         let hw = block.number as f64 * omega;
+        let (ihw, hw2) = (Complex64::I * hw, hw * hw);
         let z = &mut self.z[i];
         let terms = block.reference.values.iter().zip(&block.damping).zip(&block.mass);
         for (z, ((k, c), m)) in z.values.iter_mut().zip(terms) {
-            *z = k + Complex64::new(-hw * c.im, hw * c.re) - hw * hw * m;
+            *z = k + ihw * c - hw2 * m;
         }
-        self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega))
+        self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega.re))
+    }
+
+    /// right ← Z⁻¹ Z′ right and left ← Z⁻ᵀ Z′ᵀ left at a complex frequency, each scaled to size 1.
+    pub(super) fn inverse_step(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: Complex64,
+        left: &mut [Complex64],
+        right: &mut [Complex64],
+    ) -> Result<()> {
+        self.factor_at(condensed, i, omega)?;
+        let block = &condensed.blocks()[i];
+        let h = block.number as f64;
+        let pattern = &block.reference;
+        for (v, transposed) in [(right, false), (left, true)] {
+            self.product.fill(Complex64::ZERO);
+            for j in 0..v.len() {
+                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                    let k = pattern.row_idx[at];
+                    let (to, from) = if transposed { (j, k) } else { (k, j) };
+                    self.product[to] += entry(block, at, h, omega, true) * v[from];
+                }
+            }
+            v.copy_from_slice(&self.product);
+            self.factor.solve(v, transposed)?;
+            let size = v.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
+            for z in v.iter_mut() {
+                *z /= size;
+            }
+        }
+        Ok(())
     }
 
     /// Fills the columns Z⁻¹ B.
@@ -195,6 +233,37 @@ impl Workspace {
             }
         }
         self.factor.solve(x, false).map_err(|e| at_harmonic(e, block, omega))
+    }
+}
+
+/// left·Z right, or left·(∂Z/∂ω) right, at a complex frequency; nothing is conjugated.
+pub(super) fn product(
+    condensed: &Condensed,
+    i: usize,
+    omega: Complex64,
+    left: &[Complex64],
+    right: &[Complex64],
+    slope: bool,
+) -> Complex64 {
+    let block = &condensed.blocks()[i];
+    let h = block.number as f64;
+    let mut sum = Complex64::ZERO;
+    let pattern = &block.reference;
+    for (j, x) in right.iter().enumerate() {
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            sum += left[pattern.row_idx[at]] * entry(block, at, h, omega, slope) * x;
+        }
+    }
+    sum
+}
+
+/// An entry of Z_κ or of ∂Z/∂ω.
+fn entry(block: &HarmonicBlock, at: usize, h: f64, omega: Complex64, slope: bool) -> Complex64 {
+    let (c, m) = (block.damping[at], block.mass[at]);
+    if slope {
+        Complex64::I * h * c - 2.0 * h * h * omega * m
+    } else {
+        block.reference.values[at] + Complex64::I * h * omega * c - h * h * omega * omega * m
     }
 }
 

@@ -1,7 +1,8 @@
 //! The flexibility of a large structure along a sweep: Chebyshev panels instead of a factorisation
 //! per iteration.
 //!
-//! H(ω) is analytic off the damped resonances, so on a panel that is short against its distance
+//! What is interpolated is d(ω)·H(ω) with d = Π(ω − pₖ) over the resonances pₖ near the range, so
+//! that they are no obstacle. That is analytic off the other resonances, so on a panel that is short against its distance
 //! from them the Chebyshev series converges geometrically (Trefethen, Approximation Theory and
 //! Approximation Practice, 2013, ch. 8). Panels are laid where the sweep goes, as wide as the tail
 //! of the series allows; the derivative is that of the series.
@@ -32,6 +33,7 @@ struct Panel {
 pub struct Interpolation {
     outputs: usize,
     tolerance: f64,
+    resonances: Vec<Complex64>,
     /// Width that the next panel tries.
     width: f64,
     /// Width of the panel laid last.
@@ -48,18 +50,21 @@ pub struct Interpolation {
 }
 
 impl Interpolation {
-    /// For tables of `coordinates` contacts along a sweep from `start` to `end`, with a relative
-    /// error of `tolerance`.
+    /// For tables of `coordinates` contacts along a sweep over `range` = (start, end) with the
+    /// given `resonances` near it, with a relative error of `tolerance`.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(coordinates: usize, start: f64, end: f64, tolerance: f64) -> Result<Self> {
+    pub fn new(coordinates: usize, range: (f64, f64), resonances: Vec<Complex64>, tolerance: f64) -> Result<Self> {
+        let (start, end) = range;
         let outputs = coordinates + 1;
         let size = NODES.saturating_mul(outputs.saturating_mul(outputs));
         Ok(Self {
             outputs,
             tolerance,
-            width: (end - start).abs(),
+            resonances,
+            // One panel over all of it, with the room that lies behind its start.
+            width: 1.1 * (end - start).abs(),
             last_width: 0.0,
             rising: end >= start,
             panels: Vec::new(),
@@ -99,7 +104,24 @@ impl Interpolation {
             },
         };
         self.panels[index].evaluate(omega, table);
+        let (d, d_slope) = self.denominator(omega);
+        for (value, slope) in table.value.iter_mut().zip(&mut table.slope) {
+            *value /= d;
+            *slope = (*slope - d_slope * *value) / d;
+        }
         Ok(true)
+    }
+
+    /// d(ω), its factors scaled by the size of their resonances, and d′(ω).
+    fn denominator(&self, omega: f64) -> (Complex64, Complex64) {
+        let (mut d, mut slope) = (Complex64::ONE, Complex64::ZERO);
+        for p in &self.resonances {
+            let scale = 1.0 / p.norm();
+            let factor = (omega - p) * scale;
+            slope = slope * factor + d * scale;
+            d *= factor;
+        }
+        (d, slope)
     }
 
     /// Lays a panel over `omega`, beside its neighbours.
@@ -185,9 +207,15 @@ impl Interpolation {
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
     ) -> Result<()> {
         let size = self.outputs * self.outputs;
-        for (j, values) in self.samples.chunks_exact_mut(size).enumerate() {
+        for j in 0..NODES {
             let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
-            sample(0.5 * (low + high) + 0.5 * (high - low) * x, values)?;
+            let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
+            let (d, _) = self.denominator(omega);
+            let values = &mut self.samples[j * size..(j + 1) * size];
+            sample(omega, values)?;
+            for v in values {
+                *v *= d;
+            }
             self.evaluations += 1;
         }
         let mut largest = [0.0_f64; 4];
@@ -253,7 +281,7 @@ mod tests {
         let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
         let slope = |w: f64| -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
         for (start, end) in [(0.9, 1.1), (1.1, 0.9)] {
-            let mut interpolation = Interpolation::new(0, start, end, 1e-11).unwrap();
+            let mut interpolation = Interpolation::new(0, (start, end), Vec::new(), 1e-11).unwrap();
             let mut table = Table::new(0).unwrap();
             for k in 0..=400 {
                 let w = start + (end - start) * f64::from(k) / 400.0;
@@ -277,5 +305,25 @@ mod tests {
             }
             assert!(interpolation.evaluations() < 600, "{}", interpolation.evaluations());
         }
+    }
+
+    #[test]
+    fn a_resonance_that_is_known_costs_a_single_panel() {
+        let pole = (Complex64::new(4.0 - 0.002_f64.powi(2), 0.0).sqrt() + Complex64::new(0.0, 0.002)) * 0.5;
+        let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
+        let mut interpolation = Interpolation::new(0, (0.9, 1.1), vec![pole], 1e-11).unwrap();
+        let mut table = Table::new(0).unwrap();
+        for k in 0..=100 {
+            let w = 0.9 + 0.002 * f64::from(k);
+            let sample = |w: f64, values: &mut [Complex64]| {
+                values[0] = exact(w);
+                Ok(())
+            };
+            assert!(interpolation.evaluate(w, &mut table, sample).unwrap());
+            assert!((table.value[0] - exact(w)).norm() < 1e-11 * exact(w).norm());
+            let slope = -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
+            assert!((table.slope[0] - slope).norm() < 1e-9 * slope.norm());
+        }
+        assert_eq!(interpolation.evaluations(), NODES);
     }
 }

@@ -11,6 +11,7 @@
 
 pub mod flexibility;
 pub mod interpolation;
+pub mod poles;
 pub mod tables;
 
 use crate::contact::Law;

@@ -4,6 +4,7 @@
 use super::Condensed;
 use super::flexibility::{Table, Workspace};
 use super::interpolation::Interpolation;
+use super::poles;
 use crate::error::{Result, try_push};
 
 /// Degrees of freedom above which a sweep interpolates.
@@ -32,17 +33,19 @@ impl Tables {
         let coordinates = condensed.coordinates();
         let (start, end) = range;
         let sweep = start.to_bits() != end.to_bits();
+        let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
         let mut interpolations = Vec::new();
-        for _ in condensed.blocks() {
+        for i in 0..condensed.blocks().len() {
             try_push(&mut tables, Table::new(coordinates)?, WHAT)?;
             if sweep && condensed.ndof() > INTERPOLATE_ABOVE {
-                let interpolation = Interpolation::new(coordinates, start, end, TOLERANCE)?;
+                let resonances = poles::near(condensed, &mut workspace, i, range)?;
+                let interpolation = Interpolation::new(coordinates, range, resonances, TOLERANCE)?;
                 try_push(&mut interpolations, interpolation, WHAT)?;
             }
         }
         Ok(Self {
-            workspace: Workspace::new(condensed, Some(response))?,
+            workspace,
             current: tables,
             interpolations,
             tabulated: None,

@@ -56,6 +56,9 @@ pub struct Locator {
 /// Cap on the evaluations of one search.
 const MAX_EVALUATIONS: usize = 60;
 
+/// Cap on the halvings of an arc in search of a parameter.
+const MAX_HALVINGS: usize = 12;
+
 /// Width of the bracket, as a share of the step, at which an event counts as found.
 const WIDTH: f64 = 1e-11;
 
@@ -139,7 +142,26 @@ impl Locator {
                 return Ok(Some(end.clone()));
             }
         }
-        let metric = self.metric(a, b);
+        // Where the cubic is too poor a guess, a point of the branch near `p` halves the arc.
+        let mut arc = (a.clone(), b.clone());
+        for _ in 0..MAX_HALVINGS {
+            let (a, b) = (&arc.0, &arc.1);
+            let metric = self.metric(a, b);
+            let s = self.where_at(a, b, metric, p);
+            if let Some(found) = self.solve_between(problem, metric, a, b, s, Some(p))? {
+                return Ok(Some(found));
+            }
+            let Some(middle) = self.solve_between(problem, metric, a, b, s.clamp(0.1, 0.9), None)? else {
+                return Ok(None);
+            };
+            let before = (middle.parameter() < p) == (b.parameter() > a.parameter());
+            arc = if before { (middle, arc.1) } else { (arc.0, middle) };
+        }
+        Ok(None)
+    }
+
+    /// Where on the arc from `a` to `b` the cubic has parameter `p`.
+    fn where_at(&mut self, a: &Point, b: &Point, metric: Metric, p: f64) -> f64 {
         let n = a.v.len() - 1;
         let cubic = Cubic::new(a, b, metric);
         let mut v = a.v.clone();
@@ -154,7 +176,7 @@ impl Locator {
                 high = s;
             }
         }
-        self.solve_between(problem, metric, a, b, 0.5 * (low + high), Some(p))
+        0.5 * (low + high)
     }
 
     /// Solves in the plane across the cubic at s, or at a fixed parameter.

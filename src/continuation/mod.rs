@@ -8,6 +8,8 @@
 
 pub mod corrector;
 pub mod events;
+pub mod metric;
+pub mod point;
 pub mod predictor;
 pub mod start;
 pub mod step_control;
@@ -15,135 +17,12 @@ pub mod step_control;
 use crate::error::{Result, Status, try_vec};
 use crate::linalg::norm;
 use crate::problem::Problem;
-use corrector::{Corrected, Corrector, Outcome};
+use corrector::{Corrector, Outcome};
+pub use metric::Metric;
 use num_complex::Complex64;
+pub use point::Point;
 use predictor::Cubic;
 use step_control::StepControl;
-
-/// Units in which the unknowns and the parameter are measured.
-#[derive(Clone, Copy, Debug)]
-pub struct Metric {
-    /// Unit of the unknowns.
-    pub u: f64,
-    /// Unit of the parameter.
-    pub p: f64,
-}
-
-impl Metric {
-    /// Norm of a vector (u, p).
-    #[must_use]
-    pub fn norm(self, v: &[f64]) -> f64 {
-        let (u, p) = v.split_at(v.len() - 1);
-        (norm(u) / self.u).hypot(p[0] / self.p)
-    }
-
-    /// Distance of two points.
-    #[must_use]
-    pub fn distance(self, a: &[f64], b: &[f64]) -> f64 {
-        self.dot_with(a, b, |x, y| (x - y) * (x - y)).sqrt()
-    }
-
-    /// Inner product.
-    #[must_use]
-    pub fn dot(self, a: &[f64], b: &[f64]) -> f64 {
-        self.dot_with(a, b, |x, y| x * y)
-    }
-
-    fn dot_with(self, a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
-        let n = a.len() - 1;
-        let u: f64 = a[..n].iter().zip(&b[..n]).map(|(x, y)| f(x / self.u, y / self.u)).sum();
-        u + f(a[n] / self.p, b[n] / self.p)
-    }
-
-    /// v += factor·step, the step in scaled unknowns.
-    pub fn add(self, v: &mut [f64], factor: f64, step: &[f64]) {
-        let n = v.len() - 1;
-        for (v, s) in v[..n].iter_mut().zip(step) {
-            *v += factor * self.u * s;
-        }
-        v[n] += factor * self.p * step[n];
-    }
-
-    /// Turns scaled into unscaled numbers.
-    pub fn unscale(self, v: &mut [f64]) {
-        let n = v.len() - 1;
-        for x in &mut v[..n] {
-            *x *= self.u;
-        }
-        v[n] *= self.p;
-    }
-
-    /// Turns a direction in unscaled numbers into a scaled vector of length 1.
-    fn unit(self, direction: &[f64], row: &mut [f64]) {
-        let n = row.len() - 1;
-        let length = self.norm(direction);
-        for i in 0..n {
-            row[i] = direction[i] / self.u / length;
-        }
-        row[n] = direction[n] / self.p / length;
-    }
-}
-
-/// A point of a branch.
-#[derive(Clone, Debug)]
-pub struct Point {
-    /// Unknowns and parameter.
-    pub v: Vec<f64>,
-    /// Direction of the branch, in the sense in which it is followed.
-    pub tangent: Vec<f64>,
-    /// Observed amplitude.
-    pub amplitude: Complex64,
-    /// Its derivative along the tangent.
-    pub slope: Complex64,
-    /// Relative residual.
-    pub residual: f64,
-    /// Newton iterations.
-    pub iterations: usize,
-    /// Arc length of the step.
-    pub step: f64,
-    /// Round-off stopped the residual above the tolerance.
-    pub stalled: bool,
-    /// Whether det [J r; tangentᵀ] is positive: the sense of a branch, which corners keep.
-    pub positive: bool,
-}
-
-impl Point {
-    /// A corrected point, its tangent pointing as found.
-    #[must_use]
-    pub fn new(v: Vec<f64>, corrected: Corrected, step: f64) -> Self {
-        Self {
-            v,
-            tangent: corrected.tangent,
-            amplitude: corrected.amplitude,
-            slope: corrected.slope,
-            residual: corrected.residual,
-            iterations: corrected.iterations,
-            step,
-            stalled: corrected.stalled,
-            positive: corrected.positive,
-        }
-    }
-
-    /// The parameter.
-    #[must_use]
-    pub fn parameter(&self) -> f64 {
-        self.v[self.v.len() - 1]
-    }
-
-    /// The unknowns.
-    #[must_use]
-    pub fn unknowns(&self) -> &[f64] {
-        &self.v[..self.v.len() - 1]
-    }
-
-    fn reverse(&mut self) {
-        for t in &mut self.tangent {
-            *t = -*t;
-        }
-        self.slope = -self.slope;
-        self.positive = !self.positive;
-    }
-}
 
 /// How an attempt to advance ended.
 #[derive(Debug)]
@@ -482,21 +361,5 @@ impl Continuation {
             point.amplitude.norm().max(FLOOR * self.largest.1),
         );
         motion.max(observed)
-    }
-}
-
-impl Metric {
-    /// Units for unknowns of the given size and the range of `settings`.
-    #[must_use]
-    pub fn along(size: f64, settings: &Settings) -> Self {
-        let range = (settings.end - settings.start).abs();
-        Self {
-            u: if size > 0.0 { 10.0 * size } else { 1.0 },
-            p: if range > 0.0 {
-                range
-            } else {
-                settings.start.abs().max(1.0)
-            },
-        }
     }
 }

@@ -14,6 +14,11 @@ use crate::error::{Result, try_push, try_vec};
 use crate::linalg::norm;
 use num_complex::Complex64;
 
+/// Added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact
+/// does not resist a mean motion; where nothing else does, as for a ring free to turn, the mean is
+/// indeterminate and the matrix singular. With the floor it stays where it started.
+const MEAN_FLOOR: f64 = 1e-8;
+
 /// What the parameter means.
 #[derive(Clone, Copy, Debug)]
 enum Parameter {
@@ -250,6 +255,9 @@ impl Problem for Forced<'_> {
                     }
                     let diagonal = (column * m + at) * n + r;
                     out.jacobian[diagonal] -= gk.re;
+                    if mean && row == column {
+                        out.jacobian[diagonal] += MEAN_FLOOR;
+                    }
                     if !mean {
                         out.jacobian[diagonal + 1] -= gk.im;
                         out.jacobian[diagonal + n] += gk.im;

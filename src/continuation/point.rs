@@ -1,0 +1,65 @@
+//! A solved point of a branch with its tangent.
+
+use super::corrector::Corrected;
+use num_complex::Complex64;
+
+/// A point of a branch.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// Unknowns and parameter.
+    pub v: Vec<f64>,
+    /// Direction of the branch, in the sense in which it is followed.
+    pub tangent: Vec<f64>,
+    /// Observed amplitude.
+    pub amplitude: Complex64,
+    /// Its derivative along the tangent.
+    pub slope: Complex64,
+    /// Relative residual.
+    pub residual: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Arc length of the step.
+    pub step: f64,
+    /// Round-off stopped the residual above the tolerance.
+    pub stalled: bool,
+    /// Whether det [J r; tangentᵀ] is positive: the sense of a branch, which corners keep.
+    pub positive: bool,
+}
+
+impl Point {
+    /// A corrected point, its tangent pointing as found.
+    #[must_use]
+    pub fn new(v: Vec<f64>, corrected: Corrected, step: f64) -> Self {
+        Self {
+            v,
+            tangent: corrected.tangent,
+            amplitude: corrected.amplitude,
+            slope: corrected.slope,
+            residual: corrected.residual,
+            iterations: corrected.iterations,
+            step,
+            stalled: corrected.stalled,
+            positive: corrected.positive,
+        }
+    }
+
+    /// The parameter.
+    #[must_use]
+    pub fn parameter(&self) -> f64 {
+        self.v[self.v.len() - 1]
+    }
+
+    /// The unknowns.
+    #[must_use]
+    pub fn unknowns(&self) -> &[f64] {
+        &self.v[..self.v.len() - 1]
+    }
+
+    pub(super) fn reverse(&mut self) {
+        for t in &mut self.tangent {
+            *t = -*t;
+        }
+        self.slope = -self.slope;
+        self.positive = !self.positive;
+    }
+}
