@@ -177,10 +177,10 @@ fn slip_map(sector: &Sector, response: &Response, force: f64, folder: &Path, scr
     // Contacts 2p and 2p + 1 are pair p along θ and along z.
     let along = |pair: usize, direction: usize| shares[2 * pair + direction];
     let mut order: Vec<usize> = (0..sector.pairs.len()).collect();
-    // Rows of the mesh differ by rounding only within themselves.
-    let micrometres = |p: usize| (1e6 * sector.pairs[p].z).round();
+    // The mesher places the nodes of a row within a small tolerance of a plane.
+    let plane = |p: usize| (1e4 * sector.pairs[p].z).round();
     order.sort_by(|&i, &j| {
-        let rows = micrometres(j).total_cmp(&micrometres(i));
+        let rows = plane(j).total_cmp(&plane(i));
         rows.then(sector.pairs[i].theta.total_cmp(&sector.pairs[j].theta))
     });
     let mut rows = Vec::new();
@@ -198,15 +198,9 @@ fn slip_map(sector: &Sector, response: &Response, force: f64, folder: &Path, scr
             "  share of the period [%] that the pairs slip along {sign} at the peak; columns round the wheel"
         )?;
         for (i, &p) in order.iter().enumerate() {
-            let pair = &sector.pairs[p];
-            let new_row = i == 0 || pair.z.to_bits() != sector.pairs[order[i - 1]].z.to_bits();
-            if new_row {
-                write!(
-                    screen,
-                    "{}    z {:>4.1} mm",
-                    if i == 0 { "" } else { "\n" },
-                    1e3 * pair.z
-                )?;
+            if i == 0 || plane(p) < plane(order[i - 1]) {
+                let z = 0.1 * plane(p);
+                write!(screen, "{}    z {z:>4.1} mm", if i == 0 { "" } else { "\n" })?;
             }
             write!(screen, "{:>6.1}", 100.0 * along(p, direction))?;
         }
