@@ -22,6 +22,6 @@ need c++ g++
 need nm binutils
 need readelf binutils
 
-# The library first: the C programs link against it.
-cargo build --release
-cargo test --release
+# The library first: the C programs link against it; and the examples, which tests run.
+cargo build --release --lib --examples
+cargo test --release --lib --tests
