@@ -45,12 +45,6 @@ pub struct Hooks<'a> {
 }
 
 impl Hooks<'_> {
-    /// Whether the host has asked to stop.
-    #[must_use]
-    pub fn is_cancelled(&self) -> bool {
-        self.cancelled.is_some_and(|f| f())
-    }
-
     /// Reports a point; `true` when the host wants to stop.
     pub fn report(&mut self, progress: &Progress) -> bool {
         self.progress.as_mut().is_some_and(|f| f(progress))

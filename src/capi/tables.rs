@@ -10,17 +10,50 @@ use crate::model::spring::Spring;
 
 const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
 
-/// Entry `i` of an array of degrees of freedom.
-fn side(dofs: &[i64], i: usize, ndof: usize, argument: i32, name: &str) -> Result<Option<usize>> {
-    match dofs[i] {
-        GROUND => Ok(None),
-        dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
-        dof => fail!(
-            Index,
-            "{name}[{i}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
-            ndof - 1
-        )
-        .blame(argument),
+/// The sides of contacts or springs as the caller's arrays give them: arguments 3 to 5.
+struct Sides<'a> {
+    a: &'a [i64],
+    b: &'a [i64],
+    offsets: Option<&'a [i64]>,
+    ndof: usize,
+}
+
+impl Sides<'_> {
+    /// # Safety
+    /// As for [`input`]; `sector_offset` may be NULL.
+    unsafe fn new(
+        dof_a: *const i64,
+        dof_b: *const i64,
+        sector_offset: *const i64,
+        n: usize,
+        ndof: usize,
+    ) -> Result<Self> {
+        Ok(Self {
+            a: unsafe { input(dof_a, n, 3, "dof_a") }?,
+            b: unsafe { input(dof_b, n, 4, "dof_b") }?,
+            offsets: if sector_offset.is_null() {
+                None
+            } else {
+                Some(unsafe { input(sector_offset, n, 5, "sector_offset") }?)
+            },
+            ndof,
+        })
+    }
+
+    /// Side a, side b and sector offset of entry `i`.
+    fn entry(&self, i: usize) -> Result<(Option<usize>, Option<usize>, i64)> {
+        let side = |dofs: &[i64], argument, name: &str| match dofs[i] {
+            GROUND => Ok(None),
+            dof if (0..self.ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
+            dof => fail!(
+                Index,
+                "{name}[{i}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
+                self.ndof - 1
+            )
+            .blame(argument),
+        };
+        let offset = self.offsets.map_or(0, |o| o[i]);
+        Ok((side(self.a, 3, "dof_a")?, side(self.b, 4, "dof_b")?, offset))
     }
 }
 
@@ -56,13 +89,7 @@ pub unsafe extern "C" fn hbvib_model_add_jenkins(
     call(|| {
         let mut model = write::<Model>(model, 1)?;
         let n = count(n, 2, "n")?;
-        let a = unsafe { input(dof_a, n, 3, "dof_a") }?;
-        let b = unsafe { input(dof_b, n, 4, "dof_b") }?;
-        let offsets = if sector_offset.is_null() {
-            None
-        } else {
-            Some(unsafe { input(sector_offset, n, 5, "sector_offset") }?)
-        };
+        let sides = unsafe { Sides::new(dof_a, dof_b, sector_offset, n, model.ndof()) }?;
         let kt = unsafe { input(kt, n, 6, "kt") }?;
         let mu = unsafe { input(mu, n, 7, "mu") }?;
         let preload = unsafe { input(preload, n, 8, "preload") }?;
@@ -72,9 +99,7 @@ pub unsafe extern "C" fn hbvib_model_add_jenkins(
         let mut contacts = Vec::new();
         for i in 0..n {
             let mut contact = Contact::jenkins(0, None, kt[i], mu[i], preload[i]);
-            contact.dof_a = side(a, i, model.ndof(), 3, "dof_a")?;
-            contact.dof_b = side(b, i, model.ndof(), 4, "dof_b")?;
-            contact.sector_offset = offsets.map_or(0, |o| o[i]);
+            (contact.dof_a, contact.dof_b, contact.sector_offset) = sides.entry(i)?;
             try_push(&mut contacts, contact, "the contacts")?;
         }
         let first = model.add_contacts(&contacts).map_err(|e| {
@@ -111,20 +136,15 @@ pub unsafe extern "C" fn hbvib_model_add_springs(
     call(|| {
         let mut model = write::<Model>(model, 1)?;
         let n = count(n, 2, "n")?;
-        let a = unsafe { input(dof_a, n, 3, "dof_a") }?;
-        let b = unsafe { input(dof_b, n, 4, "dof_b") }?;
-        let offsets = if sector_offset.is_null() {
-            None
-        } else {
-            Some(unsafe { input(sector_offset, n, 5, "sector_offset") }?)
-        };
+        let sides = unsafe { Sides::new(dof_a, dof_b, sector_offset, n, model.ndof()) }?;
         let stiffness = unsafe { input(stiffness, n, 6, "stiffness") }?;
         let mut springs = Vec::new();
         for (i, &stiffness) in stiffness.iter().enumerate() {
+            let (dof_a, dof_b, sector_offset) = sides.entry(i)?;
             let spring = Spring {
-                dof_a: side(a, i, model.ndof(), 3, "dof_a")?,
-                dof_b: side(b, i, model.ndof(), 4, "dof_b")?,
-                sector_offset: offsets.map_or(0, |o| o[i]),
+                dof_a,
+                dof_b,
+                sector_offset,
                 stiffness,
             };
             try_push(&mut springs, spring, "the springs")?;

@@ -125,14 +125,6 @@ impl Law {
         }
     }
 
-    /// Stiffness of the contact before anything slips or opens.
-    #[must_use]
-    pub fn stuck_stiffness(&self) -> f64 {
-        match self {
-            Self::Jenkins(law) => law.stiffness,
-        }
-    }
-
     /// The same law with its slip limit multiplied by `factor`, the homotopy from stuck (large
     /// factor) to the law as given (1).
     #[must_use]
