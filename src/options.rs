@@ -125,6 +125,16 @@ impl SolverOptions {
     }
 }
 
+/// Artificial damping that keeps a nonlinear mode periodic.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DampingForm {
+    /// −2DωM ẋ.
+    #[default]
+    Mass,
+    /// −ζK ẋ with D = ζω/2 and K of the structure, springs and contacts excluded.
+    Stiffness,
+}
+
 /// Options of a forced response over a range of frequency.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ForcedOptions<'a> {

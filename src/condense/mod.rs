@@ -9,8 +9,10 @@
 //! move the contact, so that neither the free nor the stuck resonances of an undamped structure
 //! are singular. The whole motion follows as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
+pub mod dynamic;
 pub mod flexibility;
 pub mod interpolation;
+pub mod modal;
 pub mod poles;
 pub mod tables;
 
@@ -22,7 +24,7 @@ use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, Wave, relative_row};
 use crate::model::structure::MatrixKind;
-use crate::options::SolverOptions;
+use crate::options::{DampingForm, SolverOptions};
 use flexibility::Workspace;
 use num_complex::Complex64;
 
@@ -49,6 +51,17 @@ impl Reference {
     }
 }
 
+/// Matrix of the artificial damping of a nonlinear mode; see [`dynamic`].
+#[derive(Clone, Debug)]
+pub enum Artificial {
+    /// A forced response has none.
+    None,
+    /// M, which every harmonic has.
+    Mass,
+    /// K of the structure alone, at the entries of the pattern.
+    Stiffness(Vec<Complex64>),
+}
+
 /// What one harmonic sees of the structure.
 #[derive(Clone, Debug)]
 pub struct HarmonicBlock {
@@ -60,6 +73,8 @@ pub struct HarmonicBlock {
     pub damping: Vec<Complex64>,
     /// M_h at the entries of the pattern.
     pub mass: Vec<Complex64>,
+    /// The artificial damping.
+    pub artificial: Artificial,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Rows of W, one per relative coordinate.
@@ -122,25 +137,12 @@ pub struct Reduction {
 }
 
 impl Condensed {
-    /// Condenses a model under the given options, with the motion scaled for frequency `omega`.
+    /// Condenses a model under its forces, with the motion scaled for frequency `omega`.
     ///
     /// # Errors
     /// `Argument` for a force beyond the carried harmonics, `Unsupported` or `Argument` for missing
     /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`.
     pub fn new(model: &Model, options: &SolverOptions, omega: f64) -> Result<Self> {
-        let mut inert = 0;
-        let mut never_slipping = Vec::new();
-        let mut active = Vec::new();
-        for (i, contact) in model.contacts().iter().enumerate() {
-            let limit = contact.slip_limit();
-            if contact.kt == 0.0 || limit == 0.0 {
-                inert += 1;
-            } else if limit.is_infinite() {
-                try_push(&mut never_slipping, i, "the contacts")?;
-            } else {
-                try_push(&mut active, i, "the contacts")?;
-            }
-        }
         let mut forced = Vec::new();
         for force in model
             .excitation()
@@ -156,9 +158,69 @@ impl Condensed {
             // Without forces nothing moves; the fundamental carries the zero solution.
             forced.push(usize::from(options.harmonics > 0));
         }
+        let (mut condensed, contacts) = Self::unscaled(model, options, &forced, None)?;
+        // A power of two near the largest motion of the linear structure, so that nothing over- or
+        // underflows whatever the units.
+        let largest = model
+            .excitation()
+            .forces()
+            .iter()
+            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
+        let unit = power_of_two(largest);
+        for block in &mut condensed.blocks {
+            model.excitation().add_to(block.number, 1.0 / unit, &mut block.force);
+        }
+        let mut workspace = Workspace::new(&condensed, None)?;
+        let mut motion = 0.0_f64;
+        for i in 0..condensed.blocks.len() {
+            workspace.evaluate(&condensed, i, omega, false)?;
+            motion = motion.max(workspace.largest_motion());
+        }
+        let scale = power_of_two(motion);
+        for block in &mut condensed.blocks {
+            for f in &mut block.force {
+                *f /= scale;
+            }
+        }
+        condensed.set_length(model, unit * scale, &contacts)?;
+        Ok(condensed)
+    }
+
+    /// Condenses a model without its forces for a nonlinear mode with artificial damping of the
+    /// given form, whose contacts move by about `motion` per unit of amplitude.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn for_mode(model: &Model, options: &SolverOptions, form: DampingForm, motion: f64) -> Result<Self> {
+        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], Some(form))?;
+        condensed.set_length(model, power_of_two(motion), &contacts)?;
+        Ok(condensed)
+    }
+
+    /// All but the scale of lengths: no forces and no laws yet. Returns the coordinate of each
+    /// active contact as well.
+    fn unscaled(
+        model: &Model,
+        options: &SolverOptions,
+        forced: &[usize],
+        form: Option<DampingForm>,
+    ) -> Result<(Self, Vec<(usize, usize)>)> {
+        let mut inert = 0;
+        let mut never_slipping = Vec::new();
+        let mut active = Vec::new();
+        for (i, contact) in model.contacts().iter().enumerate() {
+            let limit = contact.slip_limit();
+            if contact.kt == 0.0 || limit == 0.0 {
+                inert += 1;
+            } else if limit.is_infinite() {
+                try_push(&mut never_slipping, i, "the contacts")?;
+            } else {
+                try_push(&mut active, i, "the contacts")?;
+            }
+        }
         let odd = active.iter().all(|&i| Law::new(&model.contacts()[i], 1.0).is_odd());
         let set = HarmonicSet::excited(
-            &forced,
+            forced,
             options.harmonics,
             !active.is_empty(),
             odd,
@@ -170,7 +232,8 @@ impl Condensed {
             stiffness[coordinate] += model.contacts()[contact].kt;
         }
         let unknowns = representatives.len() * set.packed_len();
-        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() {
+        // A mode is a resonance of the stuck structure while its contacts stick.
+        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && form.is_none() {
             Reference::Stuck
         } else {
             Reference::Complex
@@ -178,10 +241,22 @@ impl Condensed {
         let mut blocks = Vec::new();
         for &number in set.numbers() {
             let kappa = |c: usize| reference.kappa(stiffness[c], number);
-            let block = harmonic_block(model, number, &never_slipping, &representatives, kappa)?;
+            let mut block = harmonic_block(model, number, &never_slipping, &representatives, kappa)?;
+            block.artificial = match form {
+                None => Artificial::None,
+                Some(DampingForm::Mass) => Artificial::Mass,
+                Some(DampingForm::Stiffness) => {
+                    let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
+                    Artificial::Stiffness(structure.aligned(&block.reference)?)
+                }
+            };
             try_push(&mut blocks, block, "the matrices per harmonic")?;
         }
-        let mut condensed = Self {
+        let mut contacts = Vec::new();
+        for pair in active.into_iter().zip(coordinate_of) {
+            try_push(&mut contacts, pair, "the contacts")?;
+        }
+        let condensed = Self {
             set,
             ndof: model.ndof(),
             length: 1.0,
@@ -193,37 +268,14 @@ impl Condensed {
             never_slipping: never_slipping.len(),
             inert,
         };
-        condensed.set_length(model, omega, &coordinate_of, &active)?;
-        Ok(condensed)
+        Ok((condensed, contacts))
     }
 
-    /// Chooses the length scale, a power of two near the largest motion of the linear structure,
-    /// so that nothing over- or underflows whatever the units, and scales forces and limits.
-    fn set_length(&mut self, model: &Model, omega: f64, coordinate_of: &[usize], active: &[usize]) -> Result<()> {
-        let largest = model
-            .excitation()
-            .forces()
-            .iter()
-            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
-        let unit = power_of_two(largest);
-        for block in &mut self.blocks {
-            model.excitation().add_to(block.number, 1.0 / unit, &mut block.force);
-        }
-        let mut workspace = Workspace::new(self, None)?;
-        let mut motion = 0.0_f64;
-        for i in 0..self.blocks.len() {
-            workspace.evaluate(self, i, omega, false)?;
-            motion = motion.max(workspace.largest_motion());
-        }
-        let scale = power_of_two(motion);
-        self.length = unit * scale;
-        for block in &mut self.blocks {
-            for f in &mut block.force {
-                *f /= scale;
-            }
-        }
-        for (&coordinate, &contact) in coordinate_of.iter().zip(active) {
-            let law = Law::new(&model.contacts()[contact], self.length);
+    /// Sets the unit of lengths, and the laws in it for the (contact, coordinate) pairs.
+    fn set_length(&mut self, model: &Model, length: f64, contacts: &[(usize, usize)]) -> Result<()> {
+        self.length = length;
+        for &(contact, coordinate) in contacts {
+            let law = Law::new(&model.contacts()[contact], length);
             try_push(
                 &mut self.laws,
                 PlacedLaw {
@@ -378,6 +430,7 @@ fn harmonic_block(
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
         reference,
+        artificial: Artificial::None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         rows,
     })

@@ -3,6 +3,7 @@
 
 pub mod contact_forces;
 pub mod forced;
+pub mod mode;
 
 use crate::error::{Result, try_vec};
 use num_complex::Complex64;
