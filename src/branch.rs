@@ -8,6 +8,10 @@ use crate::error::{Error, Result, Status, fail, try_extend, try_push, try_vec};
 use num_complex::Complex64;
 use std::sync::Arc;
 
+mod energy;
+
+pub use energy::Energy;
+
 /// A solution beside the curve: a peak, a fold, or one at a frequency asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Special {

@@ -69,6 +69,8 @@ pub struct HarmonicBlock {
     pub number: usize,
     /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
     pub reference: Csc,
+    /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
+    pub stiffness: Vec<Complex64>,
     /// C_h at the entries of the pattern.
     pub damping: Vec<Complex64>,
     /// M_h at the entries of the pattern.
@@ -107,6 +109,8 @@ pub struct Condensed {
     contacts: usize,
     never_slipping: usize,
     inert: usize,
+    sectors: usize,
+    in_step: usize,
 }
 
 /// What the condensation removed from the problem, for the user to see.
@@ -267,6 +271,8 @@ impl Condensed {
             contacts: model.contacts().len(),
             never_slipping: never_slipping.len(),
             inert,
+            sectors: model.structure().sectors(),
+            in_step: model.structure().in_step(),
         };
         Ok((condensed, contacts))
     }
@@ -329,6 +335,18 @@ impl Condensed {
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.contacts
+    }
+
+    /// Sectors of the wheel; 1 for a plain structure.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.sectors
+    }
+
+    /// Harmonics in which all sectors move alike are the multiples of this number.
+    #[must_use]
+    pub fn in_step(&self) -> usize {
+        self.in_step
     }
 
     /// Reference stiffness κ of a coordinate in the i-th carried harmonic.
@@ -429,6 +447,7 @@ fn harmonic_block(
         number,
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
+        stiffness: stiffness.aligned(&reference)?,
         reference,
         artificial: Artificial::None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
