@@ -83,6 +83,19 @@ pub struct HarmonicBlock {
     pub rows: Vec<Row>,
 }
 
+impl HarmonicBlock {
+    /// y = M x
+    pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
+        y.fill(Complex64::ZERO);
+        let pattern = &self.reference;
+        for (j, x) in x.iter().enumerate() {
+            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                y[pattern.row_idx[at]] += self.mass[at] * x;
+            }
+        }
+    }
+}
+
 /// A law on one relative coordinate.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedLaw {
@@ -191,14 +204,25 @@ impl Condensed {
     }
 
     /// Condenses a model without its forces for a nonlinear mode with artificial damping of the
-    /// given form, whose contacts move by about `motion` per unit of amplitude.
+    /// given form, starting from a linear mode of the given shape. Returns the largest relative
+    /// motion of that shape at an active contact as well, in whose size lengths are measured.
     ///
     /// # Errors
     /// As [`Self::new`].
-    pub fn for_mode(model: &Model, options: &SolverOptions, form: DampingForm, motion: f64) -> Result<Self> {
+    pub fn for_mode(
+        model: &Model,
+        options: &SolverOptions,
+        form: DampingForm,
+        shape: &[Complex64],
+    ) -> Result<(Self, f64)> {
         let (mut condensed, contacts) = Self::unscaled(model, options, &[1], Some(form))?;
+        let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
+        let rows = fundamental.map_or(&[][..], |b| &b.rows);
+        let motion = rows
+            .iter()
+            .fold(0.0_f64, |m, row| m.max(modal::along(row, shape).norm()));
         condensed.set_length(model, power_of_two(motion), &contacts)?;
-        Ok(condensed)
+        Ok((condensed, motion))
     }
 
     /// All but the scale of lengths: no forces and no laws yet. Returns the coordinate of each

@@ -157,13 +157,7 @@ impl<'a> Mode<'a> {
                 self.weighted[p] += a.conj() * y;
             }
         } else {
-            let block = &self.condensed.blocks()[i];
-            let pattern = &block.reference;
-            for (j, x) in x.iter().enumerate() {
-                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                    self.weighted[pattern.row_idx[at]] += block.mass[at] * x;
-                }
-            }
+            self.condensed.blocks()[i].multiply_mass(x, &mut self.weighted);
         }
         for z in &mut self.weighted {
             *z *= length * length;
@@ -255,12 +249,7 @@ impl Problem for Mode<'_> {
                     (n - 2, rates.0, self.modal.by_omega()),
                     (n - 1, rates.1, self.modal.by_damping()),
                 ] {
-                    put(
-                        &mut out.jacobian[column * n..],
-                        position,
-                        mean,
-                        -rate * along(row, dx),
-                    );
+                    put(&mut out.jacobian[column * n..], position, mean, -rate * along(row, dx));
                 }
                 for c in 0..coordinates {
                     let g = along(row, self.modal.column(c));
