@@ -115,6 +115,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         multiplicity: chosen.multiplicity,
         multiple: chosen.multiple,
         reference_dof: gauge.reference_dof,
+        engine_order: model.structure().engine_order(),
         amplitude: range.amplitude,
         linear_up_to,
         stuck: chosen.stuck,
@@ -128,7 +129,8 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         solver.harmonics,
         response,
     );
-    branch.set_mode(ModeData::new(info, linear.clone(), gauge.clone(), problem.size()));
+    let ends = (range.log10_start, range.log10_stop);
+    branch.set_mode(ModeData::new(info, linear.clone(), gauge.clone(), ends, problem.size()));
     let carried = condensed.blocks().len();
     let unknowns = problem.size();
     let mut points = Points {
