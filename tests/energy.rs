@@ -86,15 +86,14 @@ fn a_mass_on_a_spring_has_the_energies_of_the_textbook() {
         close("potential, peak", e.potential_peak, potential, 1e-13);
         assert!(e.structural_loss.abs() < 1e-15 * potential && e.friction_loss == 0.0);
         // The wheel of a plain structure is the structure.
-        assert_eq!(
-            [
-                e.wheel_kinetic_mean,
-                e.wheel_kinetic_peak,
-                e.wheel_potential_mean,
-                e.wheel_potential_peak
-            ],
-            [e.kinetic_mean, e.kinetic_peak, e.potential_mean, e.potential_peak]
-        );
+        let whole = Energy {
+            wheel_kinetic_mean: e.kinetic_mean,
+            wheel_kinetic_peak: e.kinetic_peak,
+            wheel_potential_mean: e.potential_mean,
+            wheel_potential_peak: e.potential_peak,
+            ..e
+        };
+        assert_eq!(e, whole);
     }
 }
 
@@ -180,20 +179,19 @@ fn a_stuck_contact_and_a_structure_without_damping_take_nothing() {
     let mut blisk = BASE.sector();
     blisk.set_rayleigh(0.0, 0.0).unwrap();
     blisk.set_preload(0, 1e9).unwrap();
-    for model in [
-        blisk,
-        Skewed {
-            damped: false,
-            ..SKEWED
-        }
-        .sector(),
-    ] {
-        let branch = solve_at(&model, &harmonics(3), 1.3);
+    let skewed = Skewed {
+        damped: false,
+        ..SKEWED
+    }
+    .sector();
+    // The matrices that a wave sees of a skewed sector are Hermitian up to their own rounding.
+    for (model, omega, rounding) in [(blisk, TAU * 200.0, 1e-25), (skewed, 1.3, 1e-14)] {
+        let branch = solve_at(&model, &harmonics(3), omega);
         let e = energy(&branch);
         println!("{e:?}");
         assert!(slip(&branch, 0) == 0.0 && e.potential_mean > 0.0);
-        assert!(e.structural_loss.abs() < 1e-22 * e.potential_mean);
-        assert!(e.friction_loss.abs() < 1e-13 * e.potential_mean);
+        assert!(e.structural_loss.abs() < rounding * e.potential_mean);
+        assert!(e.friction_loss.abs() < 1e-14 * e.potential_mean);
     }
 }
 
