@@ -63,11 +63,14 @@ pub struct ComplexSum {
 }
 
 impl ComplexSum {
+    /// Adds a·b; an entry `a` without imaginary part, as most have none, costs half.
     fn add_product(&mut self, a: Complex64, b: Complex64) {
         self.re.add_product(a.re, b.re);
-        self.re.add_product(-a.im, b.im);
         self.im.add_product(a.re, b.im);
-        self.im.add_product(a.im, b.re);
+        if a.im != 0.0 {
+            self.re.add_product(-a.im, b.im);
+            self.im.add_product(a.im, b.re);
+        }
     }
 
     fn add_multiple(&mut self, a: Self, b: Complex64) {
@@ -94,7 +97,7 @@ pub fn form(pattern: &Csc, values: &[Complex64], x: &[Complex64]) -> Complex64 {
         for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
             // A pattern may hold several matrices, of which the mass is often diagonal.
             if values[at] != Complex64::ZERO {
-                column.add_product(x[pattern.row_idx[at]].conj(), values[at]);
+                column.add_product(values[at], x[pattern.row_idx[at]].conj());
             }
         }
         form.add_multiple(column, xj);

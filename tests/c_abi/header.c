@@ -9,12 +9,15 @@ int32_t header_check(int32_t status)
 {
     hbvib_contact contact;
     hbvib_hooks hooks;
+    hbvib_energy energy;
     hbvib_cancel_flag flag = 0;
     contact.struct_size = (uint32_t)sizeof contact;
     contact.dof_a[0] = 3 - HBVIB_GROUND;
     contact.kind = HBVIB_JENKINS;
     hooks.cancel = &flag;
     flag = 1;
+    energy.friction_loss = 0;
+    if (energy.friction_loss > 1) return -1;
     switch (status) {
     case HBVIB_OK: return (int32_t)contact.dof_a[0];
     case HBVIB_E_NULL: return 2 * HBVIB_E_NULL;
