@@ -21,7 +21,7 @@ impl Sum {
 
     fn add_product(&mut self, a: f64, b: f64) {
         let product = a * b;
-        self.error += a.mul_add(b, -product);
+        self.error += rounding_of(a, b, product);
         self.add(product);
     }
 
@@ -34,6 +34,20 @@ impl Sum {
     fn total(self) -> f64 {
         self.value + self.error
     }
+}
+
+/// a·b − product exactly, by halves of the factors (Dekker 1971, doi:10.1007/BF01397083). A fused
+/// multiply-add says the same, but is a slow call on processors that are not known to have one.
+fn rounding_of(a: f64, b: f64, product: f64) -> f64 {
+    let halves = |x: f64| {
+        let c = 134_217_729.0 * x;
+        let high = c - (c - x);
+        (high, x - high)
+    };
+    let ((ah, al), (bh, bl)) = (halves(a), halves(b));
+    let error = ((ah * bh - product) + ah * bl + al * bh) + al * bl;
+    // Numbers near the end of the range cannot be split.
+    if error.is_finite() { error } else { 0.0 }
 }
 
 /// xᴴ A x of a Hermitian matrix.
