@@ -225,14 +225,21 @@ fn a_model_without_forces_stays_at_rest() {
     assert!(all_harmonics(&branch, 0).iter().all(|z| *z == Complex64::ZERO));
 }
 
+/// Good options of a mode.
+const SIX_DECADES: ModeOptions<'static> = ModeOptions {
+    choice: ModeChoice::Index(0),
+    diameter: None,
+    amplitude: Amplitude::Modal,
+    log10_start: -6.0,
+    log10_stop: 0.0,
+    at: &[],
+    damping_form: DampingForm::Mass,
+    reference_dof: None,
+};
+
 #[test]
-fn every_bad_mode_option_is_refused_by_name() {
-    let good = ModeOptions {
-        log10_start: -6.0,
-        log10_stop: 0.0,
-        ..ModeOptions::default()
-    };
-    let zero = [Complex64::ZERO; 4];
+fn every_bad_range_of_a_mode_is_refused_by_name() {
+    let good = SIX_DECADES;
     let cases = [
         (
             ModeOptions::default(),
@@ -295,6 +302,25 @@ fn every_bad_mode_option_is_refused_by_name() {
             Status::Index,
             "reference_dof = 4, needs 0 .. 3",
         ),
+    ];
+    for (options, status, words) in cases {
+        refused(options.check(4, 2), status, &[words]);
+    }
+    let all = ModeOptions {
+        at: &[-6.0, 0.0],
+        reference_dof: Some(3),
+        amplitude: Amplitude::Contact(1),
+        ..good
+    };
+    all.check(4, 2).unwrap();
+    assert_eq!(all.damping_form, DampingForm::Mass);
+}
+
+#[test]
+fn every_bad_choice_of_a_mode_is_refused_by_name() {
+    let good = SIX_DECADES;
+    let zero = [Complex64::ZERO; 4];
+    let cases = [
         (
             ModeOptions {
                 amplitude: Amplitude::Contact(2),
@@ -331,12 +357,4 @@ fn every_bad_mode_option_is_refused_by_name() {
     for (options, status, words) in cases {
         refused(options.check(4, 2), status, &[words]);
     }
-    let all = ModeOptions {
-        at: &[-6.0, 0.0],
-        reference_dof: Some(3),
-        amplitude: Amplitude::Contact(1),
-        ..good
-    };
-    all.check(4, 2).unwrap();
-    assert_eq!(all.damping_form, DampingForm::Mass);
 }
