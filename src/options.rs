@@ -208,7 +208,6 @@ impl ModeChoice<'_> {
     /// `Argument`, `NotFinite` or `Dimension`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize) -> Result<()> {
         match *self {
-            Self::Index(_) => Ok(()),
             Self::Near(omega) if !omega.is_finite() => {
                 fail!(
                     NotFinite,
@@ -218,7 +217,7 @@ impl ModeChoice<'_> {
             Self::Near(omega) if omega <= 0.0 => {
                 fail!(Argument, "mode_frequency = {omega}, needs an angular frequency > 0")
             }
-            Self::Near(_) => Ok(()),
+            Self::Index(_) | Self::Near(_) => Ok(()),
             Self::Shape(shape) => {
                 if shape.len() != ndof {
                     return fail!(
