@@ -14,7 +14,7 @@ pub mod interpolation;
 pub mod poles;
 pub mod tables;
 
-use crate::contact::Law;
+use crate::contact::{ContactKind, Law, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
@@ -35,7 +35,7 @@ pub enum Reference {
     /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, damped structure or not.
     Complex,
     /// kt: contacts that stick drop out of Newton's method. The poles are the resonances of the
-    /// stuck structure, so this is for damped structures.
+    /// stuck structure, so this is for damped structures. Cubic springs never drop out.
     Stuck,
 }
 
@@ -86,7 +86,8 @@ pub struct Condensed {
     length: f64,
     blocks: Vec<HarmonicBlock>,
     laws: Vec<PlacedLaw>,
-    /// Sum of the contact stiffnesses per coordinate.
+    /// Stiffness per coordinate from which κ is made: the sum of kt of its contacts, or more where
+    /// one is a cubic spring.
     stiffness: Vec<f64>,
     reference: Reference,
     contacts: usize,
@@ -105,9 +106,9 @@ pub struct Reduction {
     pub coordinates: usize,
     /// Contacts in the model.
     pub contacts: usize,
-    /// Contacts that became linear springs (infinite slip limit).
+    /// Contacts that became linear springs (infinite slip limit, no cubic term).
     pub never_slipping: usize,
-    /// Contacts without force (no stiffness or no slip limit).
+    /// Contacts without force (no stiffness, or no slip limit).
     pub inert: usize,
     /// Highest harmonic number asked for.
     pub harmonics_asked: usize,
@@ -132,13 +133,10 @@ impl Condensed {
         let mut never_slipping = Vec::new();
         let mut active = Vec::new();
         for (i, contact) in model.contacts().iter().enumerate() {
-            let limit = contact.slip_limit();
-            if contact.kt == 0.0 || limit == 0.0 {
-                inert += 1;
-            } else if limit.is_infinite() {
-                try_push(&mut never_slipping, i, "the contacts")?;
-            } else {
-                try_push(&mut active, i, "the contacts")?;
+            match contact.role() {
+                Role::Inert => inert += 1,
+                Role::Spring => try_push(&mut never_slipping, i, "the contacts")?,
+                Role::Active => try_push(&mut active, i, "the contacts")?,
             }
         }
         let mut forced = Vec::new();
@@ -169,6 +167,14 @@ impl Condensed {
         for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
             stiffness[coordinate] += model.contacts()[contact].kt;
         }
+        raise_for_springs(
+            model,
+            omega,
+            &set,
+            &never_slipping,
+            (&active, &coordinate_of),
+            &mut stiffness,
+        )?;
         let unknowns = representatives.len() * set.packed_len();
         let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() {
             Reference::Stuck
@@ -285,6 +291,12 @@ impl Condensed {
         self.reference.kappa(self.stiffness[coordinate], self.blocks[i].number)
     }
 
+    /// Stiffness of a coordinate from which κ is made.
+    #[must_use]
+    pub fn stiffness(&self, coordinate: usize) -> f64 {
+        self.stiffness[coordinate]
+    }
+
     /// The reference stiffness that was chosen.
     #[must_use]
     pub fn reference(&self) -> Reference {
@@ -332,6 +344,35 @@ fn gather(model: &Model, active: &[usize]) -> Result<(Vec<usize>, Vec<usize>)> {
         coordinate_of[i] = representatives.len() - 1;
     }
     Ok((coordinate_of, representatives))
+}
+
+/// Raises the stiffness of coordinates with cubic springs, whose kt may be zero, to that of the
+/// structure where they act, so that κ moves the poles whatever kt is. For a structure without
+/// stiffness of its own the inertia at `omega` tells the size.
+fn raise_for_springs(
+    model: &Model,
+    omega: f64,
+    set: &HarmonicSet,
+    never_slipping: &[usize],
+    (active, coordinate_of): (&[usize], &[usize]),
+    stiffness: &mut [f64],
+) -> Result<()> {
+    let is_cubic = |i: usize| model.contacts()[i].kind == ContactKind::Cubic;
+    if !active.iter().any(|&i| is_cubic(i)) {
+        return Ok(());
+    }
+    let lowest = set.numbers().first().copied().unwrap_or(0);
+    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
+    let k = model.sprung_stiffness(Wave::Harmonic(lowest), stuck)?;
+    let m = model.structure().wave_matrix(MatrixKind::Mass, lowest)?;
+    for (&i, &coordinate) in active.iter().zip(coordinate_of).filter(|&(&i, _)| is_cubic(i)) {
+        let contact = &model.contacts()[i];
+        for p in [contact.dof_a, contact.dof_b].into_iter().flatten() {
+            let size = k.get(p, p).norm().max(omega * omega * m.get(p, p).norm());
+            stiffness[coordinate] = stiffness[coordinate].max(size);
+        }
+    }
+    Ok(())
 }
 
 fn harmonic_block(

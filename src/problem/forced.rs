@@ -358,8 +358,11 @@ impl Problem for Forced<'_> {
         let mut largest = 0.0_f64;
         for placed in self.condensed.laws() {
             let c = placed.coordinate;
-            self.evaluator.prepare(set, &u[c * m..(c + 1) * m]);
-            largest = largest.max(placed.law.sticking_factor(self.evaluator.half_range(set)));
+            let motion = &u[c * m..(c + 1) * m];
+            self.evaluator.prepare(set, motion);
+            let mean = if set.has_mean() { motion[0] } else { 0.0 };
+            let (range, reference) = (self.evaluator.half_range(set), self.condensed.stiffness(c));
+            largest = largest.max(placed.law.sticking_factor(range, mean, reference));
         }
         let start = (1.01 * largest).ln();
         if !(start > 0.0 && start.is_finite()) {
