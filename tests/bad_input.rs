@@ -200,44 +200,6 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
                 Status::Argument,
                 "preload = -2",
             ),
-            (
-                Contact {
-                    cubic: f64::INFINITY,
-                    ..Contact::cubic(2, Some(3), 1.0, 1.0)
-                },
-                Status::NotFinite,
-                "cubic = inf",
-            ),
-            (
-                Contact {
-                    cubic: f64::NAN,
-                    ..contact
-                },
-                Status::NotFinite,
-                "cubic = NaN",
-            ),
-            (
-                Contact { cubic: 2.0, ..contact },
-                Status::Argument,
-                "cubic = 2, needs 0 for a Jenkins contact",
-            ),
-            (
-                Contact {
-                    mu: 0.3,
-                    ..Contact::cubic(2, Some(3), 1.0, -1.0)
-                },
-                Status::Argument,
-                "mu = 0.3, needs 0 for a cubic spring",
-            ),
-            (
-                Contact {
-                    preload: f64::INFINITY,
-                    ..Contact::cubic(2, Some(3), 1.0, -1.0)
-                },
-                Status::Argument,
-                "preload = inf, needs 0 for a cubic spring",
-            ),
-            (Contact::cubic(2, Some(3), -1.0, 1.0), Status::Argument, "kt = -1"),
         ] {
             refused(model.add_contact(&bad), status, &[words]);
         }
@@ -247,13 +209,6 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             &["contact id = 1", "1 contacts"],
         );
         refused(model.set_preload(0, f64::NAN), Status::NotFinite, &["preload"]);
-        let mut sprung = model.try_clone().unwrap();
-        sprung.add_contact(&Contact::cubic(2, Some(3), 1.0, 1.0)).unwrap();
-        refused(
-            sprung.set_preload(1, 0.0),
-            Status::Argument,
-            &["preload", "id = 1", "cubic spring"],
-        );
         let one = Complex64::ONE;
         refused(model.add_force(4, 1, one), Status::Index, &["dof = 4", "0 .. 3"]);
         refused(
@@ -275,6 +230,60 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             model.linear_modes(13, ContactState::Stuck),
             Status::Argument,
             &["diameter = 13"],
+        );
+    });
+}
+
+#[test]
+fn a_refused_cubic_spring_leaves_the_model_as_it_was() {
+    unharmed(|model| {
+        let friction = BASE.contact();
+        let spring = Contact::cubic(2, Some(3), 1.0, -1.0);
+        for (bad, status, words) in [
+            (
+                Contact {
+                    cubic: f64::INFINITY,
+                    ..spring
+                },
+                Status::NotFinite,
+                "cubic = inf",
+            ),
+            (
+                Contact {
+                    cubic: f64::NAN,
+                    ..friction
+                },
+                Status::NotFinite,
+                "cubic = NaN",
+            ),
+            (
+                Contact { cubic: 2.0, ..friction },
+                Status::Argument,
+                "cubic = 2, needs 0 for a Jenkins contact",
+            ),
+            (
+                Contact { mu: 0.3, ..spring },
+                Status::Argument,
+                "mu = 0.3, needs 0 for a cubic spring",
+            ),
+            (
+                Contact {
+                    preload: f64::INFINITY,
+                    ..spring
+                },
+                Status::Argument,
+                "preload = inf, needs 0 for a cubic spring",
+            ),
+            (Contact { kt: -1.0, ..spring }, Status::Argument, "kt = -1"),
+        ] {
+            refused(model.add_contact(&bad), status, &[words]);
+        }
+        let mut sprung = model.try_clone().unwrap();
+        sprung.add_contact(&spring).unwrap();
+        refused(
+            sprung.set_preload(1, 0.0),
+            Status::Argument,
+            &["preload", "id = 1", "cubic spring"],
         );
     });
 }

@@ -11,8 +11,10 @@
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
 
-/// Share of the reference stiffness below which the cubic term counts as small.
-const SMALL: f64 = 1e-3;
+/// Share of the reference stiffness below which the cubic term counts as small. From here the
+/// homotopy may have to pass the resonance, at an amplitude Q times that of the linear structure,
+/// where the term is Q² times larger; it must not be felt there, up to Q of a million.
+const SMALL: f64 = 1e-12;
 
 /// Constants of a cubic spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
