@@ -5,8 +5,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 9] = [
-    "types", "boundary", "matrix", "model", "contact", "tables", "solve", "results", "residual",
+const SOURCES: [&str; 10] = [
+    "types", "boundary", "matrix", "model", "contact", "tables", "solve", "results", "energy", "residual",
 ];
 
 fn main() {

@@ -399,6 +399,41 @@ typedef struct {
   int32_t even_removed;
 } hbvib_reduction;
 
+/// Energies and losses of one point, in the caller's units. Fill it by hbvib_energy_init. In a
+/// plain model the sector is the whole. Kinetic energy is v'Mv/2. Potential energy is x'Kx/2 of the
+/// linear structure, with springs and contacts that never slip (infinite limit); contacts that may
+/// slip are left out. Sectors share evenly what couples them.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2 of a sector: twice its mean kinetic energy.
+  double twice_mean_kinetic;
+  /// Kinetic energy of a sector, mean over the period.
+  double kinetic_mean;
+  /// Kinetic energy of a sector, largest over the period.
+  double kinetic_peak;
+  /// Potential energy of a sector, mean over the period.
+  double potential_mean;
+  /// Potential energy of a sector, largest over the period.
+  double potential_peak;
+  /// Kinetic energy of the wheel, mean over the period.
+  double wheel_kinetic_mean;
+  /// Kinetic energy of the wheel, largest over the period.
+  double wheel_kinetic_peak;
+  /// Potential energy of the wheel, mean over the period.
+  double wheel_potential_mean;
+  /// Potential energy of the wheel, largest over the period.
+  double wheel_potential_peak;
+  /// Work per cycle and sector that damping, and stiffness without symmetry, take from the
+  /// motion.
+  double structural_loss;
+  /// Work per cycle and sector of the contacts that may slip. In a forced response both losses
+  /// make up the work of the forces.
+  double friction_loss;
+} hbvib_energy;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -839,6 +874,21 @@ hbvib_status hbvib_branch_at(const hbvib_branch *branch,
 /// out  receives the numbers; fill it by hbvib_reduction_init before; untouched on error.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
 hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
+
+/// Fills an energy with zeros.
+///
+/// e          the struct; untouched on error.
+/// size_of_e  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);
+
+/// Energies and losses of a stored point.
+///
+/// point  number of a point of the curve, or of a peak, fold or wanted frequency.
+/// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_energy(const hbvib_branch *branch, int64_t point, hbvib_energy *out);
 
 /// Residual R_h = (K - h^2 omega^2 M + i h omega C) X_h + f_h - F_h of harmonic balance at a point
 /// of the caller, for hosts with a continuation of their own and for tests. Nothing is removed:

@@ -8,7 +8,12 @@ use crate::error::{Error, Result, Status, fail, try_extend, try_push, try_vec};
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// A solution beside the curve: a peak, a fold, or one at a frequency asked for.
+mod energy;
+pub mod mode;
+
+pub use energy::Energy;
+
+/// A solution beside the curve: a peak, a fold, or one at a parameter value asked for.
 #[derive(Clone, Copy, Debug)]
 pub struct Special {
     /// Number of the point; it continues the numbering of the curve.
@@ -43,6 +48,7 @@ pub struct Branch {
     peaks: Vec<Special>,
     folds: Vec<Special>,
     at: Vec<Vec<Special>>,
+    mode: Option<mode::ModeData>,
 }
 
 /// Numbers that belong to one point.
@@ -93,7 +99,12 @@ impl Branch {
             peaks: Vec::new(),
             folds: Vec::new(),
             at: Vec::new(),
+            mode: None,
         }
+    }
+
+    pub(crate) fn set_mode(&mut self, data: mode::ModeData) {
+        self.mode = Some(data);
     }
 
     /// Stores a point and returns its number.
@@ -318,6 +329,7 @@ impl Branch {
         let motion = &self.motion[point * size..(point + 1) * size];
         let forces = self.contact_forces(motion)?;
         let mut workspace = Workspace::new(&self.condensed, None)?;
+        workspace.set_damping(self.damping_at(point));
         let mut w = try_vec(self.condensed.coordinates(), Complex64::ZERO, "the contact forces")?;
         let mut found = try_vec(needed, Complex64::ZERO, "the harmonics")?;
         for (i, &h) in set.numbers().iter().enumerate() {

@@ -7,7 +7,8 @@
 //!
 //! [`model`] (structure, contacts, excitation) → [`condense`] (relative coordinates) → [`problem`]
 //! (residual and Jacobian, with [`aft`] evaluating the [`contact`] laws) → [`continuation`]
-//! (predict, correct, accept) → [`branch`] (points, peaks, folds). [`analysis`] puts them together
+//! (predict, correct, accept) → [`branch`] (points, peaks, folds; [`postprocess`] makes energies of
+//! a point). [`analysis`] puts them together
 //! and [`capi`] hands them to C.
 //!
 //! Units are the caller's, consistent; angular frequencies in rad per time unit; amplitudes are
@@ -29,4 +30,5 @@ pub mod hooks;
 pub mod linalg;
 pub mod model;
 pub mod options;
+pub mod postprocess;
 pub mod problem;

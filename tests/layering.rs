@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Layer of each module of the crate. Within a layer modules do not know each other unless listed
 /// in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 15] = [
+const LAYERS: [(&str, u8); 16] = [
     ("error", 0),
     ("options", 0),
     ("hooks", 0),
@@ -19,18 +19,21 @@ const LAYERS: [(&str, u8); 15] = [
     ("condense", 3),
     ("problem", 4),
     ("continuation", 5),
+    ("postprocess", 6),
     ("branch", 6),
     ("analysis", 7),
     ("capi", 8),
 ];
 
 /// Imports inside one layer, (who, whom): options check their numbers with the error type, a
-/// series is packed as its harmonics say, a model has contacts.
-const SAME_LAYER: [(&str, &str); 4] = [
+/// series is packed as its harmonics say, a model has contacts, a branch tells what follows from a
+/// point.
+const SAME_LAYER: [(&str, &str); 5] = [
     ("options", "error"),
     ("hooks", "error"),
     ("fourier", "harmonics"),
     ("model", "contact"),
+    ("branch", "postprocess"),
 ];
 
 /// Modules that may import nothing but these, whatever their layer: the continuation never sees a

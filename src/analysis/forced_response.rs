@@ -1,15 +1,15 @@
 //! Forced response over a range of frequency.
 
+use super::follow::{Keeper, Task};
 use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::continuation::corrector::{Corrector, Outcome};
-use crate::continuation::events::{Event, Locator};
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
-use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
+use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
-use crate::hooks::{Hooks, LogLevel, Progress};
+use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
@@ -69,155 +69,65 @@ pub fn forced_response(
         solver.harmonics,
         response,
     );
-    let mut follower = Follower {
+    let first = match start::solve(&mut problem, &settings, hooks.cancelled)? {
+        First::Found(point) => Some(point),
+        First::Cancelled => None,
+    };
+    let mut points = Points {
+        corrector: Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?,
         branch,
         settings,
-        range: *range,
-        max_points: solver.max_points,
+        problem,
         specials: Vec::new(),
-        corrector: Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?,
         response: try_vec(condensed.blocks().len(), Complex64::ZERO, "the response")?,
         stalled: false,
     };
-    let status = follower.run(&mut problem, hooks)?;
-    follower.finish(status)
+    let task = Task {
+        settings,
+        range: (range.omega_start, range.omega_stop),
+        at: range.at,
+        max_points: solver.max_points,
+    };
+    let status = match first {
+        Some(first) => {
+            hooks.log(LogLevel::Info, "first point solved");
+            task.run(&mut points, first, hooks)?
+        }
+        None => Status::StoppedByCaller,
+    };
+    points.finish(status)
 }
 
 /// Collects the points of one run.
-struct Follower<'a> {
+struct Points<'a> {
     branch: Branch,
+    problem: Forced<'a>,
     settings: Settings,
-    range: ForcedOptions<'a>,
-    max_points: usize,
     specials: Vec<Kept>,
     corrector: Corrector,
     response: Vec<Complex64>,
     stalled: bool,
 }
 
-impl Follower<'_> {
-    fn run(&mut self, problem: &mut Forced<'_>, hooks: &mut Hooks<'_>) -> Result<Status> {
-        let cancelled = hooks.cancelled;
-        let first = match start::solve(problem, &self.settings, cancelled)? {
-            First::Found(point) => point,
-            First::Cancelled => return Ok(Status::StoppedByCaller),
-        };
-        hooks.log(LogLevel::Info, "first point solved");
-        self.keep(problem, &first)?;
-        if self.report(hooks, &first) {
-            return Ok(Status::StoppedByCaller);
-        }
-        let single = self.settings.start.to_bits() == self.settings.end.to_bits();
-        if single {
-            for i in 0..self.range.at.len() {
-                self.keep_special(problem, SpecialKind::At(i), first.try_clone()?)?;
-            }
-            return Ok(Status::Ok);
-        }
-        let n = first.unknowns().len();
-        let mut locator = Locator::new(n, self.settings)?;
-        let mut continuation = Continuation::new(self.settings, first)?;
-        loop {
-            if self.branch.points() >= self.max_points {
-                return Ok(Status::StoppedMaxPoints);
-            }
-            let (point, end) = match continuation.advance(problem, cancelled)? {
-                Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
-                Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
-                Advance::Stopped(status) => return Ok(status),
-            };
-            self.keep(problem, &point)?;
-            let stop = self.report(hooks, &point);
-            if let Some(before) = continuation.previous() {
-                self.events(problem, &mut locator, before, &point, end.is_some())?;
-            }
-            if stop {
-                return Ok(Status::StoppedByCaller);
-            }
-            if let Some(status) = end {
-                return Ok(status);
-            }
-        }
+impl Keeper for Points<'_> {
+    fn problem(&mut self) -> &mut dyn Problem {
+        &mut self.problem
     }
 
-    /// Stores a point of the curve; the problem was last evaluated there.
-    fn keep(&mut self, problem: &Forced<'_>, point: &Point) -> Result<()> {
+    fn branch(&self) -> &Branch {
+        &self.branch
+    }
+
+    fn keep(&mut self, point: &Point) -> Result<()> {
         self.stalled |= point.stalled;
-        problem.response(point.unknowns(), &mut self.response);
+        self.problem.response(point.unknowns(), &mut self.response);
         self.branch
-            .push_curve(&record(point, &self.response, problem.slip_fractions()))
+            .push_curve(&record(point, &self.response, self.problem.slip_fractions()))
     }
 
-    fn report(&self, hooks: &mut Hooks<'_>, point: &Point) -> bool {
-        let (start, end) = (self.settings.start, self.settings.end);
-        let range = end - start;
-        hooks.report(&Progress {
-            point: self.branch.points(),
-            parameter: point.parameter(),
-            amplitude: self.branch.amplitude().last().copied().unwrap_or(0.0),
-            residual: point.residual,
-            step: point.step,
-            fraction_done: if range == 0.0 {
-                1.0
-            } else {
-                ((point.parameter() - start) / range).clamp(0.0, 1.0)
-            },
-            newton_iterations: point.iterations,
-        })
-    }
-
-    /// Looks for folds, peaks and wanted frequencies between two neighbours.
-    fn events(
-        &mut self,
-        problem: &mut Forced<'_>,
-        locator: &mut Locator,
-        a: &Point,
-        b: &Point,
-        last: bool,
-    ) -> Result<()> {
-        if Event::Peak.between(a, b)
-            && let Some(peak) = locator.locate(problem, Event::Peak, a, b)?
-        {
-            self.keep_special(problem, SpecialKind::Peak, peak)?;
-        }
-        let fold = if Event::Fold.between(a, b) {
-            locator.locate(problem, Event::Fold, a, b)?
-        } else {
-            None
-        };
-        if let Some(fold) = &fold {
-            self.keep_special(problem, SpecialKind::Fold, fold.try_clone()?)?;
-            self.wanted(problem, locator, a, fold, false)?;
-            self.wanted(problem, locator, fold, b, last)
-        } else {
-            self.wanted(problem, locator, a, b, last)
-        }
-    }
-
-    /// Solves at the wanted frequencies on the arc from `a` (included) to `b` (with the last
-    /// point of the branch included), which has no fold inside.
-    fn wanted(
-        &mut self,
-        problem: &mut Forced<'_>,
-        locator: &mut Locator,
-        a: &Point,
-        b: &Point,
-        last: bool,
-    ) -> Result<()> {
-        for (i, &p) in self.range.at.iter().enumerate() {
-            let (pa, pb) = (a.parameter(), b.parameter());
-            let inside = (pa <= p && p < pb) || (pb < p && p <= pa);
-            let inside = inside || (last && p.to_bits() == pb.to_bits());
-            if inside && let Some(point) = locator.at_parameter(problem, a, b, p)? {
-                self.keep_special(problem, SpecialKind::At(i), point)?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Keeps a special point, solved once more at its frequency with the flexibility factorised
-    /// there: along the sweep it may have been interpolated.
-    fn keep_special(&mut self, problem: &mut Forced<'_>, kind: SpecialKind, mut point: Point) -> Result<()> {
+    /// The point is solved once more at its frequency with the flexibility factorised there: along
+    /// the sweep it may have been interpolated.
+    fn keep_special(&mut self, kind: SpecialKind, mut point: Point) -> Result<()> {
         let n = point.unknowns().len();
         let p = point.parameter();
         let metric = Metric::along(norm(point.unknowns()), &self.settings);
@@ -228,9 +138,11 @@ impl Follower<'_> {
         let outcome = if matches!(kind, SpecialKind::Fold) {
             Ok(Outcome::Failed)
         } else {
-            problem.set_pointwise(true);
-            let outcome = self.corrector.correct(problem, &mut v, &row, metric, true, None);
-            problem.set_pointwise(false);
+            self.problem.set_pointwise(true);
+            let outcome = self
+                .corrector
+                .correct(&mut self.problem, &mut v, &row, metric, true, None);
+            self.problem.set_pointwise(false);
             outcome
         };
         if let Outcome::Converged(corrected) = outcome? {
@@ -239,18 +151,20 @@ impl Follower<'_> {
             point.amplitude = corrected.amplitude;
             point.residual = corrected.residual;
         } else {
-            self.corrector.evaluate(problem, &point.v)?;
+            self.corrector.evaluate(&mut self.problem, &point.v)?;
         }
-        problem.response(point.unknowns(), &mut self.response);
+        self.problem.response(point.unknowns(), &mut self.response);
         let kept = Kept {
             kind,
             response: try_copy(&self.response, "the special points")?,
-            slip_fractions: try_copy(problem.slip_fractions(), "the special points")?,
+            slip_fractions: try_copy(self.problem.slip_fractions(), "the special points")?,
             point,
         };
         try_push(&mut self.specials, kept, "the special points")
     }
+}
 
+impl Points<'_> {
     /// Numbers the special points after the curve.
     fn finish(mut self, status: Status) -> Result<Branch> {
         for kept in &self.specials {

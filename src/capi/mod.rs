@@ -12,6 +12,7 @@
 
 pub mod boundary;
 pub mod contact;
+pub mod energy;
 mod handles;
 pub mod matrix;
 pub mod model;

@@ -4,10 +4,9 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use super::{Condensed, HarmonicBlock};
-use crate::error::{Result, fail, try_push, try_vec};
-use crate::linalg::factor::Factor;
-use crate::linalg::sparse::Csc;
+use super::Condensed;
+use super::dynamic::{By, DynamicStiffness, add_slope_product, product};
+use crate::error::{Result, try_vec};
 use crate::model::spring::Row;
 use num_complex::Complex64;
 
@@ -38,9 +37,8 @@ impl Table {
 
 /// Memory for factorising Z_κ of one harmonic after the other.
 pub struct Workspace {
-    factor: Factor,
-    /// Z_κ per harmonic.
-    z: Vec<Csc>,
+    dynamic: DynamicStiffness,
+    damping: f64,
     response: Option<usize>,
     /// Z⁻¹ B, ndof rows.
     columns: Vec<Complex64>,
@@ -58,16 +56,9 @@ impl Workspace {
     pub fn new(condensed: &Condensed, response: Option<usize>) -> Result<Self> {
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
-        let mut z = Vec::new();
-        for block in condensed.blocks() {
-            try_push(&mut z, block.reference.try_clone()?, "the dynamic stiffness")?;
-        }
-        let Some(first) = condensed.blocks().first() else {
-            return fail!(Internal, "no harmonic is carried");
-        };
         Ok(Self {
-            factor: Factor::new(&first.reference, outputs)?,
-            z,
+            dynamic: DynamicStiffness::new(condensed, outputs)?,
+            damping: 0.0,
             response,
             columns: try_vec(n.saturating_mul(outputs), Complex64::ZERO, "the contact flexibility")?,
             rows: Vec::new(),
@@ -76,22 +67,9 @@ impl Workspace {
         })
     }
 
-    /// Factors Z_κ of the i-th carried harmonic at `omega`.
-    fn factor(&mut self, condensed: &Condensed, i: usize, omega: f64) -> Result<()> {
-        self.factor_at(condensed, i, omega.into())
-    }
-
-    /// The same at a complex frequency.
-    fn factor_at(&mut self, condensed: &Condensed, i: usize, omega: Complex64) -> Result<()> {
-        let block = &condensed.blocks()[i];
-        let hw = block.number as f64 * omega;
-        let (ihw, hw2) = (Complex64::I * hw, hw * hw);
-        let z = &mut self.z[i];
-        let terms = block.reference.values.iter().zip(&block.damping).zip(&block.mass);
-        for (z, ((k, c), m)) in z.values.iter_mut().zip(terms) {
-            *z = k + ihw * c - hw2 * m;
-        }
-        self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega.re))
+    /// Sets the damping ratio of a nonlinear mode.
+    pub fn set_damping(&mut self, damping: f64) {
+        self.damping = damping;
     }
 
     /// right ← Z⁻¹ Z′ right and left ← Z⁻ᵀ Z′ᵀ left at a complex frequency, each scaled to size 1.
@@ -103,27 +81,33 @@ impl Workspace {
         left: &mut [Complex64],
         right: &mut [Complex64],
     ) -> Result<()> {
-        self.factor_at(condensed, i, omega)?;
-        let block = &condensed.blocks()[i];
-        let h = block.number as f64;
-        let pattern = &block.reference;
+        self.dynamic.factor(condensed, i, omega, 0.0)?;
         for (v, transposed) in [(right, false), (left, true)] {
             self.product.fill(Complex64::ZERO);
-            for j in 0..v.len() {
-                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                    let k = pattern.row_idx[at];
-                    let (to, from) = if transposed { (j, k) } else { (k, j) };
-                    self.product[to] += entry(block, at, h, omega, true) * v[from];
-                }
-            }
+            add_slope_product(condensed, i, (omega, 0.0), By::Omega, transposed, v, &mut self.product);
             v.copy_from_slice(&self.product);
-            self.factor.solve(v, transposed)?;
+            self.dynamic.solve(condensed, i, omega.re, v, transposed)?;
             let size = v.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
             for z in v.iter_mut() {
                 *z /= size;
             }
         }
         Ok(())
+    }
+
+    /// Newton step of a resonance: (left·Z right)/(left·Z′ right).
+    pub(super) fn resonance_step(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: Complex64,
+        left: &[Complex64],
+        right: &[Complex64],
+    ) -> Complex64 {
+        self.product.fill(Complex64::ZERO);
+        add_slope_product(condensed, i, (omega, 0.0), By::Omega, false, right, &mut self.product);
+        let slope: Complex64 = left.iter().zip(&self.product).map(|(a, b)| a * b).sum();
+        product(condensed, i, omega, left, right) / slope
     }
 
     /// Fills the columns Z⁻¹ B.
@@ -138,9 +122,7 @@ impl Workspace {
             }
         }
         self.columns[coordinates * n..].copy_from_slice(&block.force);
-        self.factor
-            .solve(&mut self.columns, false)
-            .map_err(|e| at_harmonic(e, block, omega))
+        self.dynamic.solve(condensed, i, omega, &mut self.columns, false)
     }
 
     /// Evaluates H of the i-th carried harmonic at `omega`, and ∂H/∂ω where `slopes` are wanted.
@@ -148,7 +130,7 @@ impl Workspace {
     /// # Errors
     /// `Singular` naming the harmonic, at an undamped resonance that no contact feels.
     pub fn evaluate(&mut self, condensed: &Condensed, i: usize, omega: f64, slopes: bool) -> Result<&Table> {
-        self.factor(condensed, i, omega)?;
+        self.dynamic.factor(condensed, i, omega.into(), self.damping)?;
         self.solve_columns(condensed, i, omega)?;
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
@@ -177,24 +159,15 @@ impl Workspace {
                 column[p] += a;
             }
         }
-        self.factor
-            .solve(&mut self.rows, true)
-            .map_err(|e| at_harmonic(e, block, omega))?;
-        let h = block.number as f64;
+        self.dynamic.solve(condensed, i, omega, &mut self.rows, true)?;
         for (column, table) in self
             .columns
             .chunks_exact(n)
             .zip(self.table.slope.chunks_exact_mut(outputs))
         {
             self.product.fill(Complex64::ZERO);
-            let pattern = &block.reference;
-            for (j, &x) in column.iter().enumerate() {
-                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                    let (c, m) = (block.damping[at], block.mass[at]);
-                    let slope = Complex64::new(-h * c.im, h * c.re) - 2.0 * h * h * omega * m;
-                    self.product[pattern.row_idx[at]] += slope * x;
-                }
-            }
+            let at = (omega.into(), self.damping);
+            add_slope_product(condensed, i, at, By::Omega, false, column, &mut self.product);
             for (slope, solved) in table.iter_mut().zip(self.rows.chunks_exact(n)) {
                 let sum: Complex64 = solved.iter().zip(&self.product).map(|(a, b)| a * b).sum();
                 *slope = -sum;
@@ -224,7 +197,7 @@ impl Workspace {
         contact_force: &[Complex64],
         x: &mut [Complex64],
     ) -> Result<()> {
-        self.factor(condensed, i, omega)?;
+        self.dynamic.factor(condensed, i, omega.into(), self.damping)?;
         let block = &condensed.blocks()[i];
         x.copy_from_slice(&block.force);
         for (row, w) in block.rows.iter().zip(contact_force) {
@@ -232,41 +205,6 @@ impl Workspace {
                 x[p] -= a.conj() * w;
             }
         }
-        self.factor.solve(x, false).map_err(|e| at_harmonic(e, block, omega))
+        self.dynamic.solve(condensed, i, omega, x, false)
     }
-}
-
-/// left·Z right, or left·(∂Z/∂ω) right, at a complex frequency; nothing is conjugated.
-pub(super) fn product(
-    condensed: &Condensed,
-    i: usize,
-    omega: Complex64,
-    left: &[Complex64],
-    right: &[Complex64],
-    slope: bool,
-) -> Complex64 {
-    let block = &condensed.blocks()[i];
-    let h = block.number as f64;
-    let mut sum = Complex64::ZERO;
-    let pattern = &block.reference;
-    for (j, x) in right.iter().enumerate() {
-        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-            sum += left[pattern.row_idx[at]] * entry(block, at, h, omega, slope) * x;
-        }
-    }
-    sum
-}
-
-/// An entry of Z_κ or of ∂Z/∂ω.
-fn entry(block: &HarmonicBlock, at: usize, h: f64, omega: Complex64, slope: bool) -> Complex64 {
-    let (c, m) = (block.damping[at], block.mass[at]);
-    if slope {
-        Complex64::I * h * c - 2.0 * h * h * omega * m
-    } else {
-        block.reference.values[at] + Complex64::I * h * omega * c - h * h * omega * omega * m
-    }
-}
-
-fn at_harmonic(e: crate::error::Error, block: &HarmonicBlock, omega: f64) -> crate::error::Error {
-    e.at(format_args!("harmonic {} at angular frequency {omega}", block.number))
 }

@@ -9,8 +9,10 @@
 //! move the contact, so that neither the free nor the stuck resonances of an undamped structure
 //! are singular. The whole motion follows as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
+pub mod dynamic;
 pub mod flexibility;
 pub mod interpolation;
+pub mod modal;
 pub mod poles;
 pub mod tables;
 
@@ -22,7 +24,7 @@ use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, Wave, relative_row};
 use crate::model::structure::MatrixKind;
-use crate::options::SolverOptions;
+use crate::options::{DampingForm, SolverOptions};
 use flexibility::Workspace;
 use num_complex::Complex64;
 
@@ -49,6 +51,17 @@ impl Reference {
     }
 }
 
+/// Matrix of the artificial damping of a nonlinear mode; see [`dynamic`].
+#[derive(Clone, Debug)]
+pub enum Artificial {
+    /// A forced response has none.
+    None,
+    /// M, which every harmonic has.
+    Mass,
+    /// K of the structure alone, at the entries of the pattern.
+    Stiffness(Vec<Complex64>),
+}
+
 /// What one harmonic sees of the structure.
 #[derive(Clone, Debug)]
 pub struct HarmonicBlock {
@@ -56,14 +69,31 @@ pub struct HarmonicBlock {
     pub number: usize,
     /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
     pub reference: Csc,
+    /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
+    pub stiffness: Vec<Complex64>,
     /// C_h at the entries of the pattern.
     pub damping: Vec<Complex64>,
     /// M_h at the entries of the pattern.
     pub mass: Vec<Complex64>,
+    /// The artificial damping.
+    pub artificial: Artificial,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Rows of W, one per relative coordinate.
     pub rows: Vec<Row>,
+}
+
+impl HarmonicBlock {
+    /// y = M x
+    pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
+        y.fill(Complex64::ZERO);
+        let pattern = &self.reference;
+        for (j, x) in x.iter().enumerate() {
+            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                y[pattern.row_idx[at]] += self.mass[at] * x;
+            }
+        }
+    }
 }
 
 /// A law on one relative coordinate.
@@ -93,6 +123,8 @@ pub struct Condensed {
     contacts: usize,
     never_slipping: usize,
     inert: usize,
+    sectors: usize,
+    in_step: usize,
 }
 
 /// What the condensation removed from the problem, for the user to see.
@@ -123,22 +155,12 @@ pub struct Reduction {
 }
 
 impl Condensed {
-    /// Condenses a model under the given options, with the motion scaled for frequency `omega`.
+    /// Condenses a model under its forces, with the motion scaled for frequency `omega`.
     ///
     /// # Errors
     /// `Argument` for a force beyond the carried harmonics, `Unsupported` or `Argument` for missing
     /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`.
     pub fn new(model: &Model, options: &SolverOptions, omega: f64) -> Result<Self> {
-        let mut inert = 0;
-        let mut never_slipping = Vec::new();
-        let mut active = Vec::new();
-        for (i, contact) in model.contacts().iter().enumerate() {
-            match contact.role() {
-                Role::Inert => inert += 1,
-                Role::Spring => try_push(&mut never_slipping, i, "the contacts")?,
-                Role::Active => try_push(&mut active, i, "the contacts")?,
-            }
-        }
         let mut forced = Vec::new();
         for force in model
             .excitation()
@@ -154,9 +176,79 @@ impl Condensed {
             // Without forces nothing moves; the fundamental carries the zero solution.
             forced.push(usize::from(options.harmonics > 0));
         }
+        let (mut condensed, contacts) = Self::unscaled(model, options, &forced, omega, None)?;
+        // A power of two near the largest motion of the linear structure, so that nothing over- or
+        // underflows whatever the units.
+        let largest = model
+            .excitation()
+            .forces()
+            .iter()
+            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
+        let unit = power_of_two(largest);
+        for block in &mut condensed.blocks {
+            model.excitation().add_to(block.number, 1.0 / unit, &mut block.force);
+        }
+        let mut workspace = Workspace::new(&condensed, None)?;
+        let mut motion = 0.0_f64;
+        for i in 0..condensed.blocks.len() {
+            workspace.evaluate(&condensed, i, omega, false)?;
+            motion = motion.max(workspace.largest_motion());
+        }
+        let scale = power_of_two(motion);
+        for block in &mut condensed.blocks {
+            for f in &mut block.force {
+                *f /= scale;
+            }
+        }
+        condensed.set_length(model, unit * scale, &contacts)?;
+        Ok(condensed)
+    }
+
+    /// Condenses a model without its forces for a nonlinear mode with artificial damping of the
+    /// given form, starting from a linear mode of the given shape. Returns the largest relative
+    /// motion of that shape at an active contact as well, in whose size lengths are measured.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn for_mode(
+        model: &Model,
+        options: &SolverOptions,
+        form: DampingForm,
+        shape: &[Complex64],
+    ) -> Result<(Self, f64)> {
+        // A mode has a linear frequency, so the structure holds its springs by stiffness.
+        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], 0.0, Some(form))?;
+        let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
+        let rows = fundamental.map_or(&[][..], |b| &b.rows);
+        let motion = rows
+            .iter()
+            .fold(0.0_f64, |m, row| m.max(modal::along(row, shape).norm()));
+        condensed.set_length(model, power_of_two(motion), &contacts)?;
+        Ok((condensed, motion))
+    }
+
+    /// All but the scale of lengths: no forces and no laws yet; `omega` tells the size of inertia. Returns the coordinate of each
+    /// active contact as well.
+    fn unscaled(
+        model: &Model,
+        options: &SolverOptions,
+        forced: &[usize],
+        omega: f64,
+        form: Option<DampingForm>,
+    ) -> Result<(Self, Vec<(usize, usize)>)> {
+        let mut inert = 0;
+        let mut never_slipping = Vec::new();
+        let mut active = Vec::new();
+        for (i, contact) in model.contacts().iter().enumerate() {
+            match contact.role() {
+                Role::Inert => inert += 1,
+                Role::Spring => try_push(&mut never_slipping, i, "the contacts")?,
+                Role::Active => try_push(&mut active, i, "the contacts")?,
+            }
+        }
         let odd = active.iter().all(|&i| Law::new(&model.contacts()[i], 1.0).is_odd());
         let set = HarmonicSet::excited(
-            &forced,
+            forced,
             options.harmonics,
             !active.is_empty(),
             odd,
@@ -176,7 +268,8 @@ impl Condensed {
             &mut stiffness,
         )?;
         let unknowns = representatives.len() * set.packed_len();
-        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() {
+        // A mode is a resonance of the stuck structure while its contacts stick.
+        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && form.is_none() {
             Reference::Stuck
         } else {
             Reference::Complex
@@ -184,10 +277,22 @@ impl Condensed {
         let mut blocks = Vec::new();
         for &number in set.numbers() {
             let kappa = |c: usize| reference.kappa(stiffness[c], number);
-            let block = harmonic_block(model, number, &never_slipping, &representatives, kappa)?;
+            let mut block = harmonic_block(model, number, &never_slipping, &representatives, kappa)?;
+            block.artificial = match form {
+                None => Artificial::None,
+                Some(DampingForm::Mass) => Artificial::Mass,
+                Some(DampingForm::Stiffness) => {
+                    let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
+                    Artificial::Stiffness(structure.aligned(&block.reference)?)
+                }
+            };
             try_push(&mut blocks, block, "the matrices per harmonic")?;
         }
-        let mut condensed = Self {
+        let mut contacts = Vec::new();
+        for pair in active.into_iter().zip(coordinate_of) {
+            try_push(&mut contacts, pair, "the contacts")?;
+        }
+        let condensed = Self {
             set,
             ndof: model.ndof(),
             length: 1.0,
@@ -198,38 +303,17 @@ impl Condensed {
             contacts: model.contacts().len(),
             never_slipping: never_slipping.len(),
             inert,
+            sectors: model.structure().sectors(),
+            in_step: model.structure().in_step(),
         };
-        condensed.set_length(model, omega, &coordinate_of, &active)?;
-        Ok(condensed)
+        Ok((condensed, contacts))
     }
 
-    /// Chooses the length scale, a power of two near the largest motion of the linear structure,
-    /// so that nothing over- or underflows whatever the units, and scales forces and limits.
-    fn set_length(&mut self, model: &Model, omega: f64, coordinate_of: &[usize], active: &[usize]) -> Result<()> {
-        let largest = model
-            .excitation()
-            .forces()
-            .iter()
-            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
-        let unit = power_of_two(largest);
-        for block in &mut self.blocks {
-            model.excitation().add_to(block.number, 1.0 / unit, &mut block.force);
-        }
-        let mut workspace = Workspace::new(self, None)?;
-        let mut motion = 0.0_f64;
-        for i in 0..self.blocks.len() {
-            workspace.evaluate(self, i, omega, false)?;
-            motion = motion.max(workspace.largest_motion());
-        }
-        let scale = power_of_two(motion);
-        self.length = unit * scale;
-        for block in &mut self.blocks {
-            for f in &mut block.force {
-                *f /= scale;
-            }
-        }
-        for (&coordinate, &contact) in coordinate_of.iter().zip(active) {
-            let law = Law::new(&model.contacts()[contact], self.length);
+    /// Sets the unit of lengths, and the laws in it for the (contact, coordinate) pairs.
+    fn set_length(&mut self, model: &Model, length: f64, contacts: &[(usize, usize)]) -> Result<()> {
+        self.length = length;
+        for &(contact, coordinate) in contacts {
+            let law = Law::new(&model.contacts()[contact], length);
             try_push(
                 &mut self.laws,
                 PlacedLaw {
@@ -283,6 +367,18 @@ impl Condensed {
     #[must_use]
     pub fn contacts(&self) -> usize {
         self.contacts
+    }
+
+    /// Sectors of the wheel; 1 for a plain structure.
+    #[must_use]
+    pub fn sectors(&self) -> usize {
+        self.sectors
+    }
+
+    /// Harmonics in which all sectors move alike are the multiples of this number.
+    #[must_use]
+    pub fn in_step(&self) -> usize {
+        self.in_step
     }
 
     /// Reference stiffness κ of a coordinate in the i-th carried harmonic.
@@ -418,7 +514,9 @@ fn harmonic_block(
         number,
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
+        stiffness: stiffness.aligned(&reference)?,
         reference,
+        artificial: Artificial::None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         rows,
     })

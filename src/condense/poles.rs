@@ -6,7 +6,7 @@
 //! (Ruhe 1973, Algorithms for the nonlinear eigenvalue problem, doi:10.1137/0710059).
 
 use super::Condensed;
-use super::flexibility::{Workspace, product};
+use super::flexibility::Workspace;
 use crate::error::{Result, Status, try_push};
 use crate::linalg::lanczos;
 use crate::linalg::sparse::{Csc, Form};
@@ -81,7 +81,7 @@ fn refine(
     let mut last = f64::INFINITY;
     for _ in 0..MAX_ITERATIONS {
         // `left` holds conj(y), so that yᴴ A x is a plain product.
-        let step = product(condensed, i, p, &left, &right, false) / product(condensed, i, p, &left, &right, true);
+        let step = workspace.resonance_step(condensed, i, p, &left, &right);
         if !step.is_finite() || step.norm() > 0.5 * p.norm() {
             return Ok(None);
         }

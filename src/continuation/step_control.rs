@@ -38,6 +38,12 @@ impl StepControl {
         self.step
     }
 
+    /// The largest step.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.max
+    }
+
     /// Whether a predictor error can be accepted.
     #[must_use]
     pub fn accepts(&self, error: f64) -> bool {

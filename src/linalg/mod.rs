@@ -1,6 +1,7 @@
 //! Algebra without mechanics: matrix input, sparse storage, LU factors, eigenvalues.
 
 pub mod bordered;
+pub mod definite;
 pub mod eigen;
 pub mod factor;
 pub mod lanczos;

@@ -1,11 +1,11 @@
-//! The form xᴴ A x, accurate though its terms cancel: for a motion that hardly strains a stiff
-//! structure it is smaller than the rounding of its largest term.
+//! The form xᴴ A x and the product A x, accurate though their terms cancel: for a motion that hardly
+//! strains a stiff structure they are smaller than the rounding of their largest term.
 
 use super::sparse::Csc;
 use num_complex::Complex64;
 
 /// A sum with its rounding errors kept apart (Ogita, Rump & Oishi 2005, doi:10.1137/030601818).
-#[derive(Clone, Copy, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     value: f64,
     error: f64,
@@ -23,6 +23,12 @@ impl Sum {
         let product = a * b;
         self.error += a.mul_add(b, -product);
         self.add(product);
+    }
+
+    /// Adds a·b of a sum a, to the precision of this one.
+    fn add_multiple(&mut self, a: Self, b: f64) {
+        self.add_product(a.value, b);
+        self.error += a.error * b;
     }
 
     fn total(self) -> f64 {
@@ -49,6 +55,64 @@ pub fn quadratic(a: &Csc, x: &[Complex64]) -> f64 {
     form.total()
 }
 
+/// Complex sum of [`product`].
+#[derive(Clone, Copy, Debug, Default)]
+pub struct ComplexSum {
+    re: Sum,
+    im: Sum,
+}
+
+impl ComplexSum {
+    fn add_product(&mut self, a: Complex64, b: Complex64) {
+        self.re.add_product(a.re, b.re);
+        self.re.add_product(-a.im, b.im);
+        self.im.add_product(a.re, b.im);
+        self.im.add_product(a.im, b.re);
+    }
+
+    fn add_multiple(&mut self, a: Self, b: Complex64) {
+        self.re.add_multiple(a.re, b.re);
+        self.re.add_multiple(a.im, -b.im);
+        self.im.add_multiple(a.re, b.im);
+        self.im.add_multiple(a.im, b.re);
+    }
+
+    /// The sum.
+    #[must_use]
+    pub fn total(self) -> Complex64 {
+        Complex64::new(self.re.total(), self.im.total())
+    }
+}
+
+/// xᴴ A x of any matrix, given by its values at the entries of a pattern. The imaginary part is
+/// what the skew part leaves: rounding of the squares of the numbers for a Hermitian matrix.
+#[must_use]
+pub fn form(pattern: &Csc, values: &[Complex64], x: &[Complex64]) -> Complex64 {
+    let mut form = ComplexSum::default();
+    for (j, &xj) in x.iter().enumerate() {
+        let mut column = ComplexSum::default();
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            // A pattern may hold several matrices, of which the mass is often diagonal.
+            if values[at] != Complex64::ZERO {
+                column.add_product(x[pattern.row_idx[at]].conj(), values[at]);
+            }
+        }
+        form.add_multiple(column, xj);
+    }
+    form.total()
+}
+
+/// y += A x of a matrix given by its values at the entries of a pattern.
+pub fn product(pattern: &Csc, values: &[Complex64], x: &[Complex64], y: &mut [ComplexSum]) {
+    for (j, &xj) in x.iter().enumerate() {
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            if values[at] != Complex64::ZERO {
+                y[pattern.row_idx[at]].add_product(values[at], xj);
+            }
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -70,5 +134,24 @@ mod tests {
             .collect();
         let stretch = (x[2] - x[1]).norm_sqr();
         assert!((quadratic(&a, &x) / (3e9 * stretch) - 1.0).abs() < 1e-9);
+        let whole = form(&a, &a.values, &x);
+        assert!((whole.re / (3e9 * stretch) - 1.0).abs() < 1e-9);
+        assert!(whole.im.abs() < 1e-30 * 1e15, "{:e}", whole.im);
+        let mut forces = [ComplexSum::default(); 4];
+        product(&a, &a.values, &x, &mut forces);
+        let expected = [0.0, -3e9, 3e9, 0.0].map(|k| k * (x[2] - x[1]));
+        for (force, expected) in forces.iter().zip(expected) {
+            assert!((force.total() - expected).norm() < 1e-15 * expected.norm().max(1e-300));
+        }
+    }
+
+    #[test]
+    fn the_form_of_a_matrix_without_symmetry_is_its_double_sum() {
+        let z = |k: i32| Complex64::new(f64::from(k), f64::from(k * k % 7));
+        let entries = [(0, 0, z(1)), (2, 0, z(2)), (1, 1, z(3)), (0, 2, z(4)), (1, 2, z(5))];
+        let a = Csc::from_triplets(3, 3, entries.to_vec()).unwrap();
+        let x = [z(6), z(8), z(9)];
+        let sum: Complex64 = entries.iter().map(|&(i, j, v)| x[i].conj() * v * x[j]).sum();
+        assert_eq!(form(&a, &a.values, &x), sum);
     }
 }

@@ -37,6 +37,17 @@ impl Structure {
         self.fold(self.residue(harmonic as i64) as i64).0
     }
 
+    /// The lowest harmonic above 0 in which all sectors move alike: n·EO is a multiple of N for its
+    /// multiples alone. 1 for a plain structure.
+    #[must_use]
+    pub fn in_step(&self) -> usize {
+        let (mut divisor, mut rest) = (self.sectors(), self.residue(1));
+        while rest != 0 {
+            (divisor, rest) = (rest, divisor % rest);
+        }
+        self.sectors() / divisor
+    }
+
     /// e^{−i·offset·hφ}: motion of sector s + offset over that of sector s, exact at the
     /// quarters of a turn.
     #[must_use]
@@ -158,5 +169,9 @@ mod tests {
         model.set_wave(12);
         assert_eq!(model.structure().diameter_of(1), 12);
         assert_eq!(model.structure().phase(1, 1), -Complex64::ONE);
+        for (engine_order, in_step) in [(0, 1), (2, 12), (-2, 12), (5, 24), (12, 2), (24, 1), (20, 6)] {
+            model.set_wave(engine_order);
+            assert_eq!(model.structure().in_step(), in_step);
+        }
     }
 }

@@ -37,6 +37,12 @@ const DENSE_UP_TO: usize = 100;
 /// Most square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
 
+/// K and M of a wave, checked to be Hermitian.
+pub(super) struct Pencil {
+    pub stiffness: Csc,
+    pub mass: Csc,
+}
+
 impl Model {
     /// The `count` lowest undamped natural modes; see [`Self::linear_modes`]. Large structures are
     /// treated by shift-invert Lanczos.
@@ -47,21 +53,7 @@ impl Model {
         if count == 0 {
             return fail!(Argument, "count = 0, needs at least 1");
         }
-        let n = self.ndof();
-        if n <= DENSE_UP_TO || count > n / 4 {
-            let mut modes = self.linear_modes(diameter, contacts)?;
-            modes.omega.truncate(count);
-            modes.shapes.truncate(modes.omega.len() * n);
-            return Ok(modes);
-        }
-        let (stiffness, mass) = self.pencil(diameter, contacts)?;
-        let mut pairs = lanczos::lowest(&stiffness, &mass, count)?;
-        // The eigenvalue is stationary in the vector, so that its quotient is far more exact; only
-        // this tells a rigid motion of a stiff structure from a slow one.
-        for (value, shape) in pairs.values.iter_mut().zip(pairs.vectors.column_iter()) {
-            *value = quadratic(&stiffness, shape.as_slice()) / quadratic(&mass, shape.as_slice());
-        }
-        Ok(LinearModes::from(pairs))
+        self.pencil(Wave::Diameter(diameter), contacts)?.lowest(count)
     }
 
     /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave
@@ -70,11 +62,78 @@ impl Model {
     /// freedom; [`Self::lowest_modes`] is for more.
     ///
     /// # Errors
-    /// `Argument` for a diameter out of range, `NotHermitian` when K is not, and those of
+    /// `Argument` for a diameter out of range, `NotHermitian` when K or M is not, and those of
     /// [`eigen::generalised`].
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
-        let n = self.ndof();
-        let (stiffness, mass) = self.pencil(diameter, contacts)?;
+        self.pencil(Wave::Diameter(diameter), contacts)?.all()
+    }
+
+    /// K of a wave with the springs, and with the contacts removed or stuck.
+    ///
+    /// # Errors
+    /// As [`Self::sprung_stiffness`].
+    pub fn stiffness_at_rest(&self, wave: Wave, contacts: ContactState) -> Result<Csc> {
+        let stuck = self
+            .contacts()
+            .iter()
+            .filter(|c| contacts == ContactState::Stuck && c.role() != Role::Inert);
+        self.sprung_stiffness(wave, stuck)
+    }
+
+    /// K and M of a wave, checked.
+    pub(super) fn pencil(&self, wave: Wave, contacts: ContactState) -> Result<Pencil> {
+        let structure = self.structure();
+        let highest = structure.sectors() / 2;
+        let mass = match wave {
+            Wave::Diameter(diameter) if diameter > highest => {
+                return fail!(
+                    Argument,
+                    "diameter = {diameter}, needs 0 .. {highest} for {} sectors",
+                    structure.sectors()
+                );
+            }
+            Wave::Diameter(diameter) => structure.diameter_matrix(MatrixKind::Mass, diameter)?,
+            Wave::Harmonic(harmonic) => structure.wave_matrix(MatrixKind::Mass, harmonic)?,
+        };
+        let stiffness = self.stiffness_at_rest(wave, contacts)?;
+        for (name, a) in [("stiffness", &stiffness), ("mass", &mass)] {
+            let (i, j, gap) = a.worst_hermitian_pair();
+            if gap > 1e-10 * a.max_abs() {
+                return fail!(
+                    NotHermitian,
+                    "natural modes need a Hermitian {name}, but {name}[{i},{j}] and its mirror differ by {gap:.3e}"
+                );
+            }
+        }
+        Ok(Pencil { stiffness, mass })
+    }
+}
+
+impl Pencil {
+    /// Whether dense algebra finds all modes anyway when `count` of them are wanted.
+    pub fn finds_all(&self, count: usize) -> bool {
+        let n = self.mass.rows;
+        n <= DENSE_UP_TO || count > n / 4
+    }
+
+    /// The `count` lowest modes, fewer if there are not so many.
+    pub fn lowest(&self, count: usize) -> Result<LinearModes> {
+        if self.finds_all(count) {
+            let mut modes = self.all()?;
+            modes.omega.truncate(count);
+            modes.shapes.truncate(modes.omega.len() * self.mass.rows);
+            return Ok(modes);
+        }
+        let mut pairs = lanczos::lowest(&self.stiffness, &self.mass, count)?;
+        for (value, shape) in pairs.values.iter_mut().zip(pairs.vectors.column_iter()) {
+            *value = self.quotient(shape.as_slice());
+        }
+        Ok(LinearModes::from(pairs))
+    }
+
+    /// All modes, by dense algebra.
+    fn all(&self) -> Result<LinearModes> {
+        let n = self.mass.rows;
         // The eigensolver's matrices are nalgebra's, which ends the process where memory ends.
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
         let dense = |a: &Csc| {
@@ -82,34 +141,14 @@ impl Model {
             a.add_to_dense(Complex64::ONE, d.as_mut_slice());
             d
         };
-        let pairs = eigen::generalised(&dense(&stiffness), &dense(&mass))?;
+        let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass))?;
         Ok(LinearModes::from(pairs))
     }
 
-    /// K and M of a nodal diameter, checked.
-    fn pencil(&self, diameter: usize, contacts: ContactState) -> Result<(Csc, Csc)> {
-        let structure = self.structure();
-        if diameter > structure.sectors() / 2 {
-            return fail!(
-                Argument,
-                "diameter = {diameter}, needs 0 .. {} for {} sectors",
-                structure.sectors() / 2,
-                structure.sectors()
-            );
-        }
-        let stuck = self
-            .contacts()
-            .iter()
-            .filter(|c| contacts == ContactState::Stuck && c.role() != Role::Inert);
-        let stiffness = self.sprung_stiffness(Wave::Diameter(diameter), stuck)?;
-        let (i, j, gap) = stiffness.worst_hermitian_pair();
-        if gap > 1e-10 * stiffness.max_abs() {
-            return fail!(
-                NotHermitian,
-                "natural modes need a Hermitian stiffness, but stiffness[{i},{j}] and its mirror differ by {gap:.3e}"
-            );
-        }
-        Ok((stiffness, structure.diameter_matrix(MatrixKind::Mass, diameter)?))
+    /// φᴴKφ / φᴴMφ. The eigenvalue is stationary in the vector, so that its quotient is far more
+    /// exact; only this tells a rigid motion of a stiff structure from a slow one.
+    pub fn quotient(&self, shape: &[Complex64]) -> f64 {
+        quadratic(&self.stiffness, shape) / quadratic(&self.mass, shape)
     }
 }
 

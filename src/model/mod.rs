@@ -1,9 +1,12 @@
 //! The model: structure, contacts, excitation. Matrices and contact data go in here.
 
 pub mod cyclic;
+pub mod damped_mode;
 pub mod excitation;
 pub mod linear_modes;
+pub mod repeated;
 pub mod spring;
+pub mod start_mode;
 pub mod structure;
 
 use crate::contact::{Contact, ContactKind};

@@ -5,19 +5,13 @@
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y), and in the
 //! homotopy ∂R/∂λ = G fc ∂f/∂fc.
 
-use super::{Linearisation, Problem, Start};
-use crate::aft::{Evaluation, Evaluator};
+use super::contact_forces::ContactForces;
+use super::{Linearisation, Problem, Start, put};
+use crate::condense::Condensed;
 use crate::condense::tables::Tables;
-use crate::condense::{Condensed, Reference};
-use crate::contact::Law;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::Result;
 use crate::linalg::norm;
 use num_complex::Complex64;
-
-/// Added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact
-/// does not resist a mean motion; where nothing else does, as for a ring free to turn, the mean is
-/// indeterminate and the matrix singular. With the floor it stays where it started.
-const MEAN_FLOOR: f64 = 1e-8;
 
 /// What the parameter means.
 #[derive(Clone, Copy, Debug)]
@@ -32,16 +26,9 @@ enum Parameter {
 /// The forced response of a condensed model.
 pub struct Forced<'a> {
     condensed: &'a Condensed,
-    evaluator: Evaluator,
+    forces: ContactForces<'a>,
     tables: Tables,
     parameter: Parameter,
-    factor: f64,
-    laws: Vec<Law>,
-    law: Evaluation,
-    /// Per coordinate: sums over its laws, and whether all of them stick.
-    sums: Vec<Evaluation>,
-    stuck: Vec<bool>,
-    slip_fractions: Vec<f64>,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
@@ -62,28 +49,11 @@ impl<'a> Forced<'a> {
         given: Option<Vec<f64>>,
     ) -> Result<Self> {
         let set = condensed.set();
-        let coordinates = condensed.coordinates();
-        let mut sums = Vec::new();
-        for _ in 0..coordinates {
-            try_push(&mut sums, Evaluation::new(set)?, "the contact forces")?;
-        }
-        let mut laws = Vec::new();
-        for placed in condensed.laws() {
-            try_push(&mut laws, placed.law, "the contacts")?;
-        }
-        let nonlinear = coordinates > 0;
         Ok(Self {
             condensed,
-            // A linear problem has no contact to evaluate, and its harmonics need not be a comb.
-            evaluator: Evaluator::new(&comb(condensed)?, if nonlinear { samples } else { 0 })?,
+            forces: ContactForces::new(condensed, samples)?,
             tables: Tables::new(condensed, response, range)?,
             parameter: Parameter::Omega,
-            factor: 1.0,
-            slip_fractions: try_vec(laws.len(), 0.0, "the contacts")?,
-            laws,
-            law: Evaluation::new(&comb(condensed)?)?,
-            sums,
-            stuck: try_vec(coordinates, false, "the contacts")?,
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
         })
@@ -92,22 +62,15 @@ impl<'a> Forced<'a> {
     /// Share of the period that each law slips, at the point last evaluated.
     #[must_use]
     pub fn slip_fractions(&self) -> &[f64] {
-        &self.slip_fractions
+        self.forces.slip_fractions()
     }
 
     /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
     /// evaluated.
     pub fn contact_force(&self, u: &[f64], i: usize, w: &mut [Complex64]) {
         for (c, w) in w.iter_mut().enumerate() {
-            *w = self.force_minus_reference(u, c, i);
+            *w = self.forces.minus_reference(u, c, i);
         }
-    }
-
-    fn force_minus_reference(&self, u: &[f64], coordinate: usize, i: usize) -> Complex64 {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let y = set.get(&u[coordinate * m..(coordinate + 1) * m], i);
-        set.get(&self.sums[coordinate].force, i) - self.condensed.kappa(coordinate, i) * y
     }
 
     /// Harmonics of the response degree of freedom at the point last evaluated, in the order in
@@ -118,67 +81,9 @@ impl<'a> Forced<'a> {
             let outputs = coordinates + 1;
             *x = table.value[coordinates * outputs + coordinates];
             for c in 0..coordinates {
-                *x -= table.value[c * outputs + coordinates] * self.force_minus_reference(u, c, i);
+                *x -= table.value[c * outputs + coordinates] * self.forces.minus_reference(u, c, i);
             }
         }
-    }
-
-    /// Evaluates all laws at the packed motions `u`.
-    fn evaluate_laws(&mut self, u: &[f64]) {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        for sum in &mut self.sums {
-            sum.force.fill(0.0);
-            sum.jacobian.fill(0.0);
-            sum.offset.fill(0.0);
-        }
-        self.stuck.fill(true);
-        let mut prepared = usize::MAX;
-        for (k, placed) in self.condensed.laws().iter().enumerate() {
-            let c = placed.coordinate;
-            let motion = &u[c * m..(c + 1) * m];
-            if prepared != c {
-                self.evaluator.prepare(set, motion);
-                prepared = c;
-            }
-            self.evaluator.evaluate(&self.laws[k], set, motion, &mut self.law);
-            self.slip_fractions[k] = self.law.slip_fraction;
-            self.stuck[c] &= self.law.stuck;
-            let sum = &mut self.sums[c];
-            add(&mut sum.force, &self.law.force);
-            add(&mut sum.jacobian, &self.law.jacobian);
-            add(&mut sum.offset, &self.law.offset);
-        }
-    }
-
-    /// Whether a coordinate sticks and its reference stiffness is that of the stuck contact.
-    fn drops_out(&self, coordinate: usize) -> bool {
-        self.stuck[coordinate] && self.condensed.reference() == Reference::Stuck
-    }
-
-    fn ease(&mut self, factor: f64) {
-        if self.factor.to_bits() == factor.to_bits() {
-            return;
-        }
-        self.factor = factor;
-        for (law, placed) in self.laws.iter_mut().zip(self.condensed.laws()) {
-            *law = placed.law.eased(factor);
-        }
-    }
-}
-
-fn add(sum: &mut [f64], term: &[f64]) {
-    for (s, t) in sum.iter_mut().zip(term) {
-        *s += t;
-    }
-}
-
-/// The harmonic set for evaluating laws; a stand-in where there are none.
-fn comb(condensed: &Condensed) -> Result<crate::harmonics::HarmonicSet> {
-    if condensed.coordinates() == 0 {
-        crate::harmonics::HarmonicSet::all(0)
-    } else {
-        Ok(condensed.set().clone())
     }
 }
 
@@ -190,16 +95,16 @@ impl Problem for Forced<'_> {
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
         let omega = match self.parameter {
             Parameter::Omega => {
-                self.ease(1.0);
+                self.forces.ease(1.0);
                 p
             }
             Parameter::Ease { omega } => {
-                self.ease(p.exp());
+                self.forces.ease(p.exp());
                 omega
             }
         };
         self.tables.tabulate(self.condensed, omega)?;
-        self.evaluate_laws(u);
+        self.forces.evaluate(u);
         let set = self.condensed.set();
         let (m, n) = (set.packed_len(), u.len());
         let coordinates = self.condensed.coordinates();
@@ -224,13 +129,12 @@ impl Problem for Forced<'_> {
                 }
             }
             for column in 0..coordinates {
-                if self.drops_out(column) {
+                if self.forces.drops_out(column) {
                     // f = κ y: nothing couples back.
                     continue;
                 }
-                let w = self.force_minus_reference(u, column, i);
-                let eased = set.get(&self.sums[column].offset, i);
-                let kappa = self.condensed.kappa(column, i);
+                let w = self.forces.minus_reference(u, column, i);
+                let eased = self.forces.by_ease(column, i);
                 for row in 0..coordinates {
                     let r = row * m + at;
                     let g = table.value[column * outputs + row];
@@ -241,46 +145,22 @@ impl Problem for Forced<'_> {
                         }
                         Parameter::Ease { .. } => put(&mut out.d_parameter, r, mean, g * eased),
                     }
-                    let gk = g * kappa;
-                    for q in 0..m {
-                        let j = &self.sums[column].jacobian[q * m..(q + 1) * m];
-                        let target = &mut out.jacobian[(column * m + q) * n..];
-                        if mean {
-                            target[r] += g.re * j[at];
-                        } else {
-                            let dz = g * Complex64::new(j[at], j[at + 1]);
-                            target[r] += dz.re;
-                            target[r + 1] += dz.im;
-                        }
-                    }
-                    let diagonal = (column * m + at) * n + r;
-                    out.jacobian[diagonal] -= gk.re;
-                    if mean && row == column {
-                        out.jacobian[diagonal] += MEAN_FLOOR;
-                    }
-                    if !mean {
-                        out.jacobian[diagonal + 1] -= gk.im;
-                        out.jacobian[diagonal + n] += gk.im;
-                        out.jacobian[diagonal + n + 1] -= gk.re;
-                    }
+                    self.forces.couple(i, (row, column), g, &mut out.jacobian, n);
                 }
             }
         }
         for column in 0..coordinates {
-            out.active[column * m..(column + 1) * m].fill(!self.drops_out(column));
+            out.active[column * m..(column + 1) * m].fill(!self.forces.drops_out(column));
         }
         out.scale = norm(u) + linear.sqrt();
         Ok(())
     }
 
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let set = self.condensed.set();
-        let m = set.packed_len();
         let coordinates = self.condensed.coordinates();
         let outputs = coordinates + 1;
         let i = self.observed;
         let table = &self.tables.current()[i];
-        let at = set.offset(i);
         let along_p = direction[u.len()];
         let rate = |z: Complex64| match self.parameter {
             Parameter::Omega => z * along_p,
@@ -289,20 +169,12 @@ impl Problem for Forced<'_> {
         let excited = coordinates * outputs + coordinates;
         let mut z = table.value[excited];
         let mut dz = rate(table.slope[excited]);
-        for c in (0..coordinates).filter(|&c| !self.drops_out(c)) {
-            let w = self.force_minus_reference(u, c, i);
+        for c in (0..coordinates).filter(|&c| !self.forces.drops_out(c)) {
+            let w = self.forces.minus_reference(u, c, i);
             let g = table.value[c * outputs + coordinates];
-            let sum = &self.sums[c];
-            let du = &direction[c * m..(c + 1) * m];
-            let mut dw = -self.condensed.kappa(c, i) * set.get(du, i);
-            for (column, d) in sum.jacobian.chunks_exact(m).zip(du) {
-                dw += match set.numbers()[i] {
-                    0 => Complex64::new(column[at], 0.0),
-                    _ => Complex64::new(column[at], column[at + 1]),
-                } * d;
-            }
+            let mut dw = self.forces.along(direction, c, i);
             if matches!(self.parameter, Parameter::Ease { .. }) {
-                dw += set.get(&sum.offset, i) * along_p;
+                dw += self.forces.by_ease(c, i) * along_p;
             }
             z -= g * w;
             dz -= g * dw + rate(table.slope[c * outputs + coordinates]) * w;
@@ -353,18 +225,7 @@ impl Problem for Forced<'_> {
     }
 
     fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<f64> {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let mut largest = 0.0_f64;
-        for placed in self.condensed.laws() {
-            let c = placed.coordinate;
-            let motion = &u[c * m..(c + 1) * m];
-            self.evaluator.prepare(set, motion);
-            let mean = if set.has_mean() { motion[0] } else { 0.0 };
-            let (range, reference) = (self.evaluator.half_range(set), self.condensed.stiffness(c));
-            largest = largest.max(placed.law.sticking_factor(range, mean, reference));
-        }
-        let start = (1.01 * largest).ln();
+        let start = (1.01 * self.forces.sticking_factor(u)).ln();
         if !(start > 0.0 && start.is_finite()) {
             return None;
         }
@@ -374,18 +235,10 @@ impl Problem for Forced<'_> {
 
     fn end_homotopy(&mut self) {
         self.parameter = Parameter::Omega;
-        self.ease(1.0);
+        self.forces.ease(1.0);
     }
 
     fn set_pointwise(&mut self, pointwise: bool) {
         self.tables.set_pointwise(pointwise);
-    }
-}
-
-/// Adds a complex number (the real part alone for the mean) at position `r` of a packed vector.
-fn put(packed: &mut [f64], r: usize, mean: bool, z: Complex64) {
-    packed[r] += z.re;
-    if !mean {
-        packed[r + 1] += z.im;
     }
 }

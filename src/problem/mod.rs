@@ -1,7 +1,9 @@
 //! The vocabulary between a mechanical problem and the continuation: R(u, p) = 0 with one
 //! parameter p. The continuation sees this trait and nothing else of mechanics.
 
+pub mod contact_forces;
 pub mod forced;
+pub mod mode;
 
 use crate::error::{Result, try_vec};
 use num_complex::Complex64;
@@ -81,4 +83,12 @@ pub trait Problem {
     /// Asks for the most accurate evaluation there is, at the parameter values that follow, rather
     /// than the one that is quick along a branch. Derivatives by the parameter may then be zero.
     fn set_pointwise(&mut self, _pointwise: bool) {}
+}
+
+/// Adds a complex number (the real part alone for the mean) at position `r` of a packed vector.
+fn put(packed: &mut [f64], r: usize, mean: bool, z: Complex64) {
+    packed[r] += z.re;
+    if !mean {
+        packed[r + 1] += z.im;
+    }
 }

@@ -100,6 +100,7 @@ static void struct_sizes(void)
     hbvib_solver_options s;
     hbvib_view view;
     hbvib_reduction reduction;
+    hbvib_energy energy;
     hbvib_hooks h;
     hbvib_branch *branch = NULL;
     size_t i;
@@ -116,6 +117,7 @@ static void struct_sizes(void)
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 40");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
     REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
+    REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     memset(&s, 0xAA, sizeof s);
     REFUSED("67", with(&s, &o, NULL), HBVIB_E_STRUCT_SIZE, 2, "hbvib_solver_options_init");
     memset(&o, 0xAA, sizeof o);
@@ -125,10 +127,12 @@ static void struct_sizes(void)
     REFUSED("67", with(NULL, &o, &h), HBVIB_E_STRUCT_SIZE, 4, "hbvib_hooks_init");
     memset(&view, 0xAA, sizeof view);
     memset(&reduction, 0xAA, sizeof reduction);
+    memset(&energy, 0xAA, sizeof energy);
     s = solver_options();
     WORKS("67", hbvib_forced_response(the_model, &s, &o, NULL, &branch));
     REFUSED("67", hbvib_branch_field(branch, HBVIB_OMEGA, &view), HBVIB_E_STRUCT_SIZE, 3, "hbvib_view_init");
     REFUSED("67", hbvib_branch_reduction(branch, &reduction), HBVIB_E_STRUCT_SIZE, 2, "hbvib_reduction_init");
+    REFUSED("67", hbvib_branch_energy(branch, 0, &energy), HBVIB_E_STRUCT_SIZE, 3, "hbvib_energy_init");
     WORKS("67", hbvib_reduction_init(&reduction, sizeof reduction));
     WORKS("67", hbvib_branch_reduction(branch, &reduction));
     EXPECT("67", reduction.sectors == 24 && reduction.degrees_of_freedom == 4 && reduction.coordinates == 1 &&

@@ -12,6 +12,7 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     hbvib_model *no_model = (hbvib_model *)&a, *kept_model = no_model;
     hbvib_branch *no_branch = (hbvib_branch *)&a, *kept_branch = no_branch;
     hbvib_reduction reduction;
+    hbvib_energy energy;
     hbvib_view view;
     double numbers[8 * NDOF * NDOF] = {0};
     int64_t count = 0;
@@ -23,6 +24,7 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     REFUSED("1", hbvib_hooks_init(NULL, sizeof(hbvib_hooks)), HBVIB_E_NULL, 1, "hbvib_hooks");
     REFUSED("1", hbvib_view_init(NULL, sizeof view), HBVIB_E_NULL, 1, "hbvib_view");
     REFUSED("1", hbvib_reduction_init(NULL, sizeof reduction), HBVIB_E_NULL, 1, "hbvib_reduction");
+    REFUSED("1", hbvib_energy_init(NULL, sizeof energy), HBVIB_E_NULL, 1, "hbvib_energy");
 
     /* Row 2: the out handle. */
     REFUSED("2", hbvib_model_new(4, NULL), HBVIB_E_NULL, 2, "out");
@@ -72,6 +74,9 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     WORKS("1", hbvib_reduction_init(&reduction, sizeof reduction));
     REFUSED("4", hbvib_branch_reduction(NULL, &reduction), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("1", hbvib_branch_reduction(branch, NULL), HBVIB_E_NULL, 2, "hbvib_reduction");
+    WORKS("1", hbvib_energy_init(&energy, sizeof energy));
+    REFUSED("4", hbvib_branch_energy(NULL, 0, &energy), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_branch_energy(branch, 0, NULL), HBVIB_E_NULL, 3, "hbvib_energy");
 
     REFUSED("4", hbvib_forced_residual(NULL, NULL, 1, numbers, 40, numbers, 40, NULL, 0, NULL, 0), HBVIB_E_HANDLE, 1,
             "NULL");
@@ -204,6 +209,7 @@ static void sizes(hbvib_model *model)
 
 static void buffers(hbvib_model *model, hbvib_branch *branch)
 {
+    hbvib_energy energy;
     hbvib_matrix a = matrix(NDOF, STIFFNESS);
     hbvib_contact c = ring_contact();
     double x[200] = {0}, r[200];
@@ -241,6 +247,7 @@ static void buffers(hbvib_model *model, hbvib_branch *branch)
     REFUSED("14", hbvib_branch_harmonics(branch, 0, 0, NDOF, misaligned(r), 40), HBVIB_E_ARGUMENT, 5, "misaligned");
     REFUSED("14", hbvib_branch_peaks(branch, 9, misaligned(r), NULL, NULL, &count), HBVIB_E_ARGUMENT, 3, "misaligned");
     REFUSED("14", hbvib_branch_peaks(branch, 9, NULL, NULL, NULL, misaligned(idx)), HBVIB_E_ARGUMENT, 6, "misaligned");
+    REFUSED("14", hbvib_branch_energy(branch, 0, (hbvib_energy *)misaligned(r)), HBVIB_E_ARGUMENT, 3, "misaligned");
     REFUSED("14", hbvib_model_add_contact(model, &c, misaligned(idx)), HBVIB_E_ARGUMENT, 3, "misaligned");
     REFUSED("14", hbvib_model_new(4, misaligned(idx)), HBVIB_E_ARGUMENT, 2, "misaligned");
 
@@ -316,6 +323,11 @@ static void buffers(hbvib_model *model, hbvib_branch *branch)
     REFUSED("39", hbvib_branch_harmonics(branch, -1, 0, NDOF, r, 40), HBVIB_E_INDEX, 2, "point = -1");
     REFUSED("39", hbvib_branch_harmonics(branch, 0, 4, NDOF, r, 40), HBVIB_E_INDEX, 3, "first_dof = 4");
     REFUSED("39", hbvib_branch_slip_fraction(branch, INT64_MAX, &shares, 1), HBVIB_E_INDEX, 2, "point");
+    WORKS("39", hbvib_energy_init(&energy, sizeof energy));
+    REFUSED("39", hbvib_branch_energy(branch, point + 1, &energy), HBVIB_E_INDEX, 2, "point");
+    REFUSED("39", hbvib_branch_energy(branch, -1, &energy), HBVIB_E_INDEX, 2, "point = -1");
+    EXPECT("39", energy.twice_mean_kinetic == 0 && energy.friction_loss == 0);
+    WORKS("39", hbvib_branch_energy(branch, point, &energy));
     WORKS("39", hbvib_branch_slip_fraction(branch, point, &shares, 1));
     EXPECT("39", shares > 0 && shares < 1);
     WORKS("39", hbvib_view_init(&view, sizeof view));

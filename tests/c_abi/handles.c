@@ -55,10 +55,12 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
 {
     hbvib_view view;
     hbvib_reduction reduction;
+    hbvib_energy energy;
     double numbers[80];
     int64_t count = -1;
     WORKS(row, hbvib_view_init(&view, sizeof view));
     WORKS(row, hbvib_reduction_init(&reduction, sizeof reduction));
+    WORKS(row, hbvib_energy_init(&energy, sizeof energy));
     REFUSED(row, hbvib_branch_free(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_points(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_status(b), HBVIB_E_HANDLE, 1, words);
@@ -69,6 +71,7 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     REFUSED(row, hbvib_branch_folds(b, 0, NULL, NULL, NULL, &count), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_at(b, 0, 0, NULL, NULL, &count), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_reduction(b, &reduction), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_energy(b, 0, &energy), HBVIB_E_HANDLE, 1, words);
     EXPECT(row, count == -1);
 }
 

@@ -86,6 +86,26 @@ static void residual(hbvib_model *model, hbvib_branch *branch, const double *at)
     free(jac);
 }
 
+/* The work of both forces of 5 N goes into damping and friction; 24 sectors make the wheel. */
+static void energy(hbvib_branch *branch)
+{
+    hbvib_energy e;
+    double x[80], work;
+    int64_t point = -1, count = -1;
+    WORKS("energy", hbvib_branch_at(branch, 0, 1, NULL, &point, &count));
+    WORKS("energy", hbvib_branch_harmonics(branch, point, 0, NDOF, x, 40));
+    WORKS("energy", hbvib_energy_init(&e, sizeof e));
+    WORKS("energy", hbvib_branch_energy(branch, point, &e));
+    work = -PI * 5 * (x[2 * NDOF + 1] + x[2 * NDOF + 3]);
+    EXPECT("energy", fabs((e.structural_loss + e.friction_loss) / work - 1) < 1e-9);
+    EXPECT("energy", e.structural_loss > 0 && e.friction_loss > 0 && e.twice_mean_kinetic == 2 * e.kinetic_mean);
+    EXPECT("energy", e.kinetic_peak > e.kinetic_mean && e.potential_peak > e.potential_mean);
+    EXPECT("energy", fabs(e.wheel_kinetic_mean / (24 * e.kinetic_mean) - 1) < 1e-14);
+    EXPECT("energy", fabs(e.wheel_potential_mean / (24 * e.potential_mean) - 1) < 1e-14);
+    EXPECT("energy", e.wheel_kinetic_peak >= e.wheel_kinetic_mean && e.wheel_kinetic_peak < 24 * e.kinetic_peak);
+    EXPECT("energy", e.wheel_potential_peak >= e.wheel_potential_mean && e.wheel_potential_peak < 24 * e.potential_peak);
+}
+
 static void modes(hbvib_model *model)
 {
     double omega[NDOF], stuck[NDOF], shapes[2 * NDOF * NDOF], norm;
@@ -113,6 +133,7 @@ int main(void)
     WORKS("solve", hbvib_forced_response(the_model, &s, &o, NULL, &branch));
     special_points(branch, at);
     residual(the_model, branch, at);
+    energy(branch);
     modes(the_model);
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(the_model));

@@ -1,0 +1,132 @@
+//! Follows a branch from its first point to the end of the range: points, folds, peaks, solutions
+//! wanted at given parameter values. The same for every analysis.
+
+use crate::branch::{Branch, SpecialKind};
+use crate::continuation::events::{Event, Locator};
+use crate::continuation::{Advance, Continuation, Point, Settings};
+use crate::error::{Result, Status};
+use crate::hooks::{Hooks, Progress};
+use crate::problem::Problem;
+
+/// What an analysis does with the points that are found. It was last evaluated at the point that it
+/// is handed.
+pub(super) trait Keeper {
+    /// The problem that is solved.
+    fn problem(&mut self) -> &mut dyn Problem;
+
+    /// Stores a point of the curve.
+    fn keep(&mut self, point: &Point) -> Result<()>;
+
+    /// Stores a point beside the curve.
+    fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<()>;
+
+    /// What was stored so far.
+    fn branch(&self) -> &Branch;
+}
+
+/// How far to follow, and what to look for.
+pub(super) struct Task<'a> {
+    pub settings: Settings,
+    /// The whole range, of which `settings` may leave out what needs no following.
+    pub range: (f64, f64),
+    /// Parameter values at which solutions are wanted.
+    pub at: &'a [f64],
+    pub max_points: usize,
+}
+
+impl Task<'_> {
+    /// Stores the first point of the curve, or the only one, and follows the branch from there.
+    pub fn run(&self, keeper: &mut dyn Keeper, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
+        keeper.keep(&first)?;
+        if self.report(keeper, hooks, &first) {
+            return Ok(Status::StoppedByCaller);
+        }
+        let (start, end) = (self.settings.start, self.settings.end);
+        if start.to_bits() == end.to_bits() {
+            for (i, p) in self.at.iter().enumerate() {
+                if p.to_bits() == end.to_bits() {
+                    keeper.keep_special(SpecialKind::At(i), first.try_clone()?)?;
+                }
+            }
+            return Ok(Status::Ok);
+        }
+        let n = first.unknowns().len();
+        let mut locator = Locator::new(n, self.settings)?;
+        let mut continuation = Continuation::new(self.settings, first)?;
+        loop {
+            if keeper.branch().points() >= self.max_points {
+                return Ok(Status::StoppedMaxPoints);
+            }
+            let (point, end) = match continuation.advance(keeper.problem(), hooks.cancelled)? {
+                Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
+                Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
+                Advance::Stopped(status) => return Ok(status),
+            };
+            keeper.keep(&point)?;
+            let stop = self.report(keeper, hooks, &point);
+            if let Some(before) = continuation.previous() {
+                self.events(keeper, &mut locator, before, &point, end.is_some())?;
+            }
+            if stop {
+                return Ok(Status::StoppedByCaller);
+            }
+            if let Some(status) = end {
+                return Ok(status);
+            }
+        }
+    }
+
+    /// Tells the host of the point stored last; `true` if it wants to stop.
+    pub fn report(&self, keeper: &dyn Keeper, hooks: &mut Hooks<'_>, point: &Point) -> bool {
+        let (start, end) = self.range;
+        let range = end - start;
+        hooks.report(&Progress {
+            point: keeper.branch().points(),
+            parameter: point.parameter(),
+            amplitude: keeper.branch().amplitude().last().copied().unwrap_or(0.0),
+            residual: point.residual,
+            step: point.step,
+            fraction_done: if range == 0.0 {
+                1.0
+            } else {
+                ((point.parameter() - start) / range).clamp(0.0, 1.0)
+            },
+            newton_iterations: point.iterations,
+        })
+    }
+
+    /// Looks for folds, peaks and wanted parameter values between two neighbours.
+    fn events(&self, keeper: &mut dyn Keeper, locator: &mut Locator, a: &Point, b: &Point, last: bool) -> Result<()> {
+        if Event::Peak.between(a, b)
+            && let Some(peak) = locator.locate(keeper.problem(), Event::Peak, a, b)?
+        {
+            keeper.keep_special(SpecialKind::Peak, peak)?;
+        }
+        let fold = if Event::Fold.between(a, b) {
+            locator.locate(keeper.problem(), Event::Fold, a, b)?
+        } else {
+            None
+        };
+        if let Some(fold) = &fold {
+            keeper.keep_special(SpecialKind::Fold, fold.try_clone()?)?;
+            self.wanted(keeper, locator, a, fold, false)?;
+            self.wanted(keeper, locator, fold, b, last)
+        } else {
+            self.wanted(keeper, locator, a, b, last)
+        }
+    }
+
+    /// Solves at the wanted parameter values on the arc from `a` (included) to `b` (with the last
+    /// point of the branch included), which has no fold inside.
+    fn wanted(&self, keeper: &mut dyn Keeper, locator: &mut Locator, a: &Point, b: &Point, last: bool) -> Result<()> {
+        for (i, &p) in self.at.iter().enumerate() {
+            let (pa, pb) = (a.parameter(), b.parameter());
+            let inside = (pa <= p && p < pb) || (pb < p && p <= pa);
+            let inside = inside || (last && p.to_bits() == pb.to_bits());
+            if inside && let Some(point) = locator.at_parameter(keeper.problem(), a, b, p)? {
+                keeper.keep_special(SpecialKind::At(i), point)?;
+            }
+        }
+        Ok(())
+    }
+}

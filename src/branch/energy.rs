@@ -1,0 +1,86 @@
+//! Energies and losses of a stored point.
+
+use super::Branch;
+use crate::error::{Result, fail, try_vec};
+use crate::postprocess::energy::{balance, peaks};
+use num_complex::Complex64;
+
+/// Energies and losses of one point, in the caller's units. Potential energy is that of the linear
+/// structure with its springs and contacts that never slip; contacts that may slip are left out.
+/// For a plain structure the values per sector are those of the whole.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Energy {
+    /// Σ_{h>0} ½ (hω)² X_hᴴ M_h X_h of a sector, twice its mean kinetic energy.
+    pub twice_mean_kinetic: f64,
+    /// Kinetic energy of a sector, mean over the period.
+    pub kinetic_mean: f64,
+    /// Kinetic energy of a sector, largest over the period.
+    pub kinetic_peak: f64,
+    /// Potential energy of a sector, mean over the period.
+    pub potential_mean: f64,
+    /// Potential energy of a sector, largest over the period.
+    pub potential_peak: f64,
+    /// Kinetic energy of the wheel, mean over the period.
+    pub wheel_kinetic_mean: f64,
+    /// Kinetic energy of the wheel, largest over the period.
+    pub wheel_kinetic_peak: f64,
+    /// Potential energy of the wheel, mean over the period.
+    pub wheel_potential_mean: f64,
+    /// Potential energy of the wheel, largest over the period.
+    pub wheel_potential_peak: f64,
+    /// Work per cycle and sector that damping, and stiffness without symmetry, take from the motion.
+    pub structural_loss: f64,
+    /// Work per cycle and sector of the contacts that may slip.
+    pub friction_loss: f64,
+}
+
+impl Branch {
+    /// Energies and losses of a stored point.
+    ///
+    /// # Errors
+    /// `Index` for an unknown point, `OutOfMemory`.
+    pub fn energy_at(&self, point: usize) -> Result<Energy> {
+        const WHAT: &str = "the energies";
+        let Some(&omega) = self.omega.get(point) else {
+            return fail!(
+                Index,
+                "point = {point}, needs 0 .. {} (points and special points)",
+                self.stored()
+            );
+        };
+        let n = self.ndof();
+        let length = self.condensed.length();
+        let mut all = try_vec((self.harmonics + 1).saturating_mul(n), Complex64::ZERO, WHAT)?;
+        self.harmonics_at(point, &mut all)?;
+        // In the solver's units, the carried harmonics one after the other; a scale that is a power
+        // of two costs no digit.
+        let carried = self.carried();
+        for (i, &h) in carried.iter().enumerate() {
+            all.copy_within(h * n..(h + 1) * n, i * n);
+        }
+        let x = &mut all[..carried.len() * n];
+        for z in x.iter_mut() {
+            *z /= length;
+        }
+        let size = self.condensed.coordinates() * self.condensed.set().packed_len();
+        let motion = &self.motion[point * size..(point + 1) * size];
+        let forces = self.contact_forces(motion)?;
+        let balance = balance(&self.condensed, omega, x, &forces, motion);
+        let peaks = peaks(&self.condensed, omega, x)?;
+        let unit = |energy: f64| energy * length * length;
+        let wheel = |energy: f64| unit(energy) * self.condensed.sectors() as f64;
+        Ok(Energy {
+            twice_mean_kinetic: unit(balance.twice_mean_kinetic),
+            kinetic_mean: unit(0.5 * balance.twice_mean_kinetic),
+            kinetic_peak: unit(peaks.kinetic),
+            potential_mean: unit(balance.potential_mean),
+            potential_peak: unit(peaks.potential),
+            wheel_kinetic_mean: wheel(0.5 * balance.twice_mean_kinetic),
+            wheel_kinetic_peak: unit(peaks.wheel_kinetic),
+            wheel_potential_mean: wheel(balance.potential_mean),
+            wheel_potential_peak: unit(peaks.wheel_potential),
+            structural_loss: unit(balance.structural_loss),
+            friction_loss: unit(balance.friction_loss),
+        })
+    }
+}

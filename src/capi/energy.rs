@@ -1,0 +1,114 @@
+//! Energies and losses of a point.
+
+use super::boundary::{call, index};
+use super::handles::{KeptBranch, read};
+use super::sized::{Described, check_out, fill_out, init};
+use super::types::{hbvib_branch, hbvib_status};
+use crate::error::Status;
+
+/// Energies and losses of one point, in the caller's units. Fill it by hbvib_energy_init. In a
+/// plain model the sector is the whole. Kinetic energy is v'Mv/2. Potential energy is x'Kx/2 of the
+/// linear structure, with springs and contacts that never slip (infinite limit); contacts that may
+/// slip are left out. Sectors share evenly what couples them.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct hbvib_energy {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: i32,
+    /// Sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2 of a sector: twice its mean kinetic energy.
+    pub twice_mean_kinetic: f64,
+    /// Kinetic energy of a sector, mean over the period.
+    pub kinetic_mean: f64,
+    /// Kinetic energy of a sector, largest over the period.
+    pub kinetic_peak: f64,
+    /// Potential energy of a sector, mean over the period.
+    pub potential_mean: f64,
+    /// Potential energy of a sector, largest over the period.
+    pub potential_peak: f64,
+    /// Kinetic energy of the wheel, mean over the period.
+    pub wheel_kinetic_mean: f64,
+    /// Kinetic energy of the wheel, largest over the period.
+    pub wheel_kinetic_peak: f64,
+    /// Potential energy of the wheel, mean over the period.
+    pub wheel_potential_mean: f64,
+    /// Potential energy of the wheel, largest over the period.
+    pub wheel_potential_peak: f64,
+    /// Work per cycle and sector that damping, and stiffness without symmetry, take from the
+    /// motion.
+    pub structural_loss: f64,
+    /// Work per cycle and sector of the contacts that may slip. In a forced response both losses
+    /// make up the work of the forces.
+    pub friction_loss: f64,
+}
+
+unsafe impl Described for hbvib_energy {
+    const NAME: &'static str = "hbvib_energy";
+    const FIRST: usize = 96;
+
+    fn filled() -> Self {
+        Self {
+            struct_size: 0,
+            reserved: 0,
+            twice_mean_kinetic: 0.0,
+            kinetic_mean: 0.0,
+            kinetic_peak: 0.0,
+            potential_mean: 0.0,
+            potential_peak: 0.0,
+            wheel_kinetic_mean: 0.0,
+            wheel_kinetic_peak: 0.0,
+            wheel_potential_mean: 0.0,
+            wheel_potential_peak: 0.0,
+            structural_loss: 0.0,
+            friction_loss: 0.0,
+        }
+    }
+}
+
+/// Fills an energy with zeros.
+///
+/// e          the struct; untouched on error.
+/// size_of_e  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_energy_init(e: *mut hbvib_energy, size_of_e: usize) -> hbvib_status {
+    call(|| unsafe { init(e, size_of_e) })
+}
+
+/// Energies and losses of a stored point.
+///
+/// point  number of a point of the curve, or of a peak, fold or wanted frequency.
+/// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_energy(
+    branch: *const hbvib_branch,
+    point: i64,
+    out: *mut hbvib_energy,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let point = index(point, kept.branch.stored(), 2, "point")?;
+        unsafe { check_out(out, 3) }?;
+        let e = kept.branch.energy_at(point)?;
+        let value = hbvib_energy {
+            twice_mean_kinetic: e.twice_mean_kinetic,
+            kinetic_mean: e.kinetic_mean,
+            kinetic_peak: e.kinetic_peak,
+            potential_mean: e.potential_mean,
+            potential_peak: e.potential_peak,
+            wheel_kinetic_mean: e.wheel_kinetic_mean,
+            wheel_kinetic_peak: e.wheel_kinetic_peak,
+            wheel_potential_mean: e.wheel_potential_mean,
+            wheel_potential_peak: e.wheel_potential_peak,
+            structural_loss: e.structural_loss,
+            friction_loss: e.friction_loss,
+            ..hbvib_energy::filled()
+        };
+        unsafe { fill_out(out, value) };
+        Ok(Status::Ok)
+    })
+}

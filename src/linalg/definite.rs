@@ -1,0 +1,107 @@
+//! Whether a large sparse matrix is positive semidefinite. Lanczos iteration would not tell: it
+//! meets a negative direction by chance only.
+
+use super::sparse::{Csc, Form};
+use crate::error::{Error, Result, fail, try_push, try_vec};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
+use faer::{Par, Side};
+use num_complex::Complex64;
+
+/// What is added to the diagonal, relative to it: rounding must not make a singular matrix fail.
+const MARGIN: f64 = 1e-10;
+
+/// Refuses a Hermitian mass matrix that is negative in some direction, by a Cholesky
+/// factorisation of M + 1e-10 diag(M).
+///
+/// # Errors
+/// `NotPositiveDefinite` with a sentence about the mass matrix, `OutOfMemory`.
+pub fn check_mass(m: &Csc) -> Result<()> {
+    const WHAT: &str = "a Cholesky factorisation";
+    let n = m.rows;
+    let mut margin = Vec::new();
+    for j in 0..n {
+        let diagonal = m.get(j, j).re;
+        let alone = diagonal == 0.0 && m.column(j).all(|(_, v)| v == Complex64::ZERO);
+        if diagonal < 0.0 || (diagonal == 0.0 && !alone) {
+            return negative(j);
+        }
+        // A row without mass is taken out by a one of its own.
+        let added = if alone { 1.0 } else { MARGIN * diagonal };
+        try_push(&mut margin, (j, j, added.into()), WHAT)?;
+    }
+    let margin = Csc::from_triplets(n, n, margin)?;
+    let a = Csc::sum(
+        n,
+        &[(Complex64::ONE, m, Form::Plain), (Complex64::ONE, &margin, Form::Plain)],
+    )?;
+    let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &a.row_idx);
+    let no_memory = || Error::out_of_memory(WHAT);
+    let symbolic = factorize_symbolic_cholesky(
+        pattern,
+        Side::Lower,
+        SymmetricOrdering::Amd,
+        CholeskySymbolicParams::default(),
+    )
+    .map_err(|_| no_memory())?;
+    let need = symbolic.factorize_numeric_llt_scratch::<Complex64>(Par::Seq, faer::Spec::default());
+    let mut scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
+    let mut values = try_vec(symbolic.len_val(), Complex64::ZERO, WHAT)?;
+    let factored = symbolic.factorize_numeric_llt(
+        &mut values,
+        SparseColMatRef::new(pattern, &a.values),
+        Side::Lower,
+        LltRegularization::default(),
+        Par::Seq,
+        MemStack::new(&mut scratch),
+        faer::Spec::default(),
+    );
+    match factored {
+        Ok(_) => Ok(()),
+        Err(LltError::NonPositivePivot { index }) => negative(index),
+    }
+}
+
+fn negative(pivot: usize) -> Result<()> {
+    fail!(
+        NotPositiveDefinite,
+        "mass matrix is not positive semidefinite: pivot {pivot} is negative"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::error::Status;
+
+    /// A chain of consistent masses with the last `light` degrees of freedom massless.
+    fn chain(n: usize, light: usize) -> Vec<(usize, usize, Complex64)> {
+        let mut entries = Vec::new();
+        for i in 0..n - light - 1 {
+            for (p, q, v) in [(0, 0, 2.0), (1, 1, 2.0), (0, 1, 1.0), (1, 0, 1.0)] {
+                entries.push((i + p, i + q, Complex64::from(v)));
+            }
+        }
+        entries
+    }
+
+    #[test]
+    fn a_semidefinite_mass_passes_and_a_negative_direction_does_not() {
+        let n = 300;
+        let check = |entries| check_mass(&Csc::from_triplets(n, n, entries).unwrap());
+        check(chain(n, 0)).unwrap();
+        check(chain(n, 40)).unwrap();
+        // One mass on the difference of two motions: singular, not negative.
+        let singular = [(0, 0, 1.0), (1, 1, 1.0), (0, 1, -1.0), (1, 0, -1.0)];
+        check(singular.map(|(i, j, v)| (i, j, Complex64::from(v))).to_vec()).unwrap();
+        // Positive on the diagonal, negative beside it.
+        let mut entries = chain(n, 0);
+        entries.extend([(7, 150, Complex64::new(0.0, 5.0)), (150, 7, Complex64::new(0.0, -5.0))]);
+        assert!(check(entries).is_err_and(|e| e.status == Status::NotPositiveDefinite));
+        let mut entries = chain(n, 40);
+        entries.extend([(3, 290, Complex64::ONE), (290, 3, Complex64::ONE)]);
+        assert!(check(entries).is_err_and(|e| e.status == Status::NotPositiveDefinite));
+    }
+}

@@ -1,0 +1,248 @@
+//! The linear mode, contacts stuck, of a damped structure that artificial damping keeps periodic.
+//!
+//! Real ω and D and a complex shape x solve
+//! (K + iωC − ω²(1 + 2iD) M) x = 0, or (K − 2iD Kₛ + iωC − ω² M) x = 0 with Kₛ the structure's own
+//! stiffness. One complex equation settles the two real unknowns: inverse iteration on a problem
+//! that is nonlinear in its eigenvalue (Neumaier 1985, doi:10.1137/0722055).
+
+use super::Model;
+use super::linear_modes::ContactState;
+use super::spring::Wave;
+use super::start_mode::{StartMode, times};
+use super::structure::MatrixKind;
+use crate::error::{Result, fail, try_copy, try_vec};
+use crate::linalg::factor::Factor;
+use crate::linalg::quadratic::quadratic;
+use crate::linalg::sparse::{Csc, Form};
+use crate::options::DampingForm;
+use num_complex::Complex64;
+
+/// A mode of the damped structure.
+#[derive(Clone, Debug)]
+pub struct DampedMode {
+    /// Angular frequency ω, rad per time unit.
+    pub omega: f64,
+    /// Damping ratio D of the artificial damping: positive where the structure's own takes energy.
+    pub damping: f64,
+    /// Shape with xᴴ M x = 1 over one sector, in phase with the undamped one.
+    pub shape: Vec<Complex64>,
+}
+
+/// Relative distance of the shift from the frequency. Close by, each step gains so many digits; on
+/// it, the factors would be singular.
+const OFFSET: f64 = 1e-8;
+
+/// The same for repeated frequencies. A shift too close would mix modes that only rounding tells
+/// apart, and lose the mixture of the start.
+const OFFSET_REPEATED: f64 = 1e-5;
+
+/// Most steps.
+const MAX_STEPS: usize = 30;
+
+/// Residual relative to its terms that rounding may leave.
+const ROUNDING: f64 = 1e-12;
+
+/// The same, relative to the inertia, for a mixture of frequencies that only nearly are equal.
+const NEARLY_EQUAL: f64 = 3e-8;
+
+const WHAT: &str = "the damped mode";
+
+impl Model {
+    /// The mode with the structure's damping, contacts stuck, that grows out of `start`, a mode of
+    /// [`Self::start_mode`]. Without damping it is `start`, and D is 0 exactly.
+    ///
+    /// A mixture of modes of equal frequency is kept where the damping leaves it a mode.
+    ///
+    /// # Errors
+    /// `NoConvergence` where the damping is so strong that no mode is reached; `Singular` where
+    /// artificial damping of the stiffness type does not act on the mode; `Dimension` for a shape
+    /// of another length; `OutOfMemory`.
+    pub fn damped_mode(&self, start: &StartMode, form: DampingForm) -> Result<DampedMode> {
+        let n = self.ndof();
+        if start.shape.len() != n {
+            return fail!(
+                Dimension,
+                "the start mode has {} entries, needs ndof = {n}",
+                start.shape.len()
+            );
+        }
+        let structure = self.structure();
+        let problem = Damped {
+            form,
+            stiffness: self.stiffness_at_rest(Wave::Harmonic(1), ContactState::Stuck)?,
+            own: structure.wave_matrix(MatrixKind::Stiffness, 1)?,
+            damping: structure.wave_matrix(MatrixKind::Damping, 1)?,
+            mass: structure.wave_matrix(MatrixKind::Mass, 1)?,
+        };
+        let undamped = DampedMode {
+            omega: start.omega,
+            damping: 0.0,
+            shape: try_copy(&start.shape, WHAT)?,
+        };
+        let conservative = problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
+        if conservative && problem.damping.max_abs() == 0.0 {
+            return Ok(undamped);
+        }
+        if start.multiplicity > 1 {
+            let mode = problem.follow(&undamped, OFFSET_REPEATED)?;
+            if problem.residual(&mode, true)? {
+                return Ok(mode);
+            }
+        }
+        let mode = problem.follow(&undamped, OFFSET)?;
+        if problem.residual(&mode, false)? {
+            return Ok(mode);
+        }
+        fail!(
+            NoConvergence,
+            "the damped linear mode was not reached from mode {} at omega = {}; is the structure damped beyond vibration?",
+            start.index,
+            start.omega
+        )
+    }
+}
+
+/// Matrices of the fundamental.
+struct Damped {
+    form: DampingForm,
+    stiffness: Csc,
+    own: Csc,
+    damping: Csc,
+    mass: Csc,
+}
+
+impl Damped {
+    /// Factors by which K, Kₛ, C and M enter A(ω, D).
+    fn factors(&self, omega: f64, d: f64) -> [Complex64; 4] {
+        let i = Complex64::I;
+        let (own, inertia) = match self.form {
+            DampingForm::Mass => (Complex64::ZERO, 1.0 + 2.0 * i * d),
+            DampingForm::Stiffness => (-2.0 * i * d, Complex64::ONE),
+        };
+        [Complex64::ONE, own, i * omega, -omega * omega * inertia]
+    }
+
+    fn terms(&self) -> [&Csc; 4] {
+        [&self.stiffness, &self.own, &self.damping, &self.mass]
+    }
+
+    fn matrix(&self, omega: f64, d: f64) -> Result<Csc> {
+        let [k, s, c, m] = self.factors(omega, d);
+        let [stiffness, own, damping, mass] = self.terms();
+        Csc::sum(
+            mass.rows,
+            &[
+                (k, stiffness, Form::Plain),
+                (s, own, Form::Plain),
+                (c, damping, Form::Plain),
+                (m, mass, Form::Plain),
+            ],
+        )
+    }
+
+    /// A x, ∂A/∂ω x and ∂A/∂D x, one after the other.
+    fn columns(&self, mode: &DampedMode) -> Result<Vec<Complex64>> {
+        let (n, x, i) = (self.mass.rows, &mode.shape, Complex64::I);
+        let (omega, d) = (mode.omega, mode.damping);
+        let mut columns = try_vec(3 * n, Complex64::ZERO, WHAT)?;
+        let (residual, derivatives) = columns.split_at_mut(n);
+        for (factor, a) in self.factors(omega, d).into_iter().zip(self.terms()) {
+            a.multiply_add(factor, x, residual);
+        }
+        let (by_omega, by_damping) = derivatives.split_at_mut(n);
+        self.damping.multiply_add(i, x, by_omega);
+        match self.form {
+            DampingForm::Mass => {
+                self.mass.multiply_add(-2.0 * omega * (1.0 + 2.0 * i * d), x, by_omega);
+                self.mass.multiply_add(-2.0 * i * omega * omega, x, by_damping);
+            }
+            DampingForm::Stiffness => {
+                self.mass.multiply_add((-2.0 * omega).into(), x, by_omega);
+                self.own.multiply_add(-2.0 * i, x, by_damping);
+            }
+        }
+        Ok(columns)
+    }
+
+    /// Newton's method on A(ω, D) x = 0, vᴴ x = 1 with v = M φ, its factors those of a shift nearby:
+    /// x changes by A⁻¹(A x + dω ∂A/∂ω x + dD ∂A/∂D x), and v is orthogonal to the change.
+    fn follow(&self, start: &DampedMode, offset: f64) -> Result<DampedMode> {
+        let n = self.mass.rows;
+        let mut mode = DampedMode {
+            shape: try_copy(&start.shape, WHAT)?,
+            ..*start
+        };
+        let v = times(&self.mass, &start.shape)?;
+        let project = |z: &[Complex64]| -> Complex64 { v.iter().zip(z).map(|(v, z)| v.conj() * z).sum() };
+        let mut factor = Factor::new(&self.matrix(mode.omega, 0.0)?, 3)?;
+        let mut last = f64::INFINITY;
+        for _ in 0..MAX_STEPS {
+            factor.factor(&self.matrix(mode.omega * (1.0 + offset), mode.damping)?)?;
+            let mut z = self.columns(&mode)?;
+            factor.solve(&mut z, false)?;
+            let (y, z) = z.split_at(n);
+            let (by_omega, by_damping) = z.split_at(n);
+            let (r, a, b) = (project(y), project(by_omega), project(by_damping));
+            let determinant = a.re * b.im - a.im * b.re;
+            if determinant.abs() <= 1e-12 * a.norm() * b.norm() {
+                return fail!(
+                    Singular,
+                    "artificial damping of the stiffness type does not act on the mode: its stiffness is in springs and contacts; use the mass type"
+                );
+            }
+            let d_omega = (r.im * b.re - r.re * b.im) / determinant;
+            let d_damping = (r.re * a.im - r.im * a.re) / determinant;
+            let (mut change, mut size) = (0.0_f64, 0.0_f64);
+            for (((x, y), p), q) in mode.shape.iter_mut().zip(y).zip(by_omega).zip(by_damping) {
+                let dx = y + d_omega * p + d_damping * q;
+                *x -= dx;
+                change = change.max(dx.norm());
+                size = size.max(x.norm());
+            }
+            mode.omega += d_omega;
+            mode.damping += d_damping;
+            if !(mode.omega > 0.0 && mode.omega.is_finite() && size.is_finite()) {
+                return fail!(
+                    NoConvergence,
+                    "the damped linear mode was not reached: omega became {}",
+                    mode.omega
+                );
+            }
+            let change = change / size + d_omega.abs() / mode.omega + d_damping.abs();
+            // Done at the level of rounding, or where the steps have come to rest above it.
+            if change <= 2e-15 || (change < 1e-9 && change > 0.5 * last) {
+                break;
+            }
+            last = change;
+        }
+        let norm = quadratic(&self.mass, &mode.shape).sqrt();
+        for x in &mut mode.shape {
+            *x /= norm;
+        }
+        Ok(mode)
+    }
+
+    /// Whether A x = 0 but for rounding, or for the difference of frequencies that count as equal.
+    fn residual(&self, mode: &DampedMode, repeated: bool) -> Result<bool> {
+        let n = self.mass.rows;
+        let mut sum = try_vec(n, Complex64::ZERO, WHAT)?;
+        let mut sizes = try_vec(n, 0.0_f64, WHAT)?;
+        let mut inertia = try_vec(n, Complex64::ZERO, WHAT)?;
+        for (factor, a) in self.factors(mode.omega, mode.damping).into_iter().zip(self.terms()) {
+            a.multiply_add(factor, &mode.shape, &mut sum);
+            for (j, x) in mode.shape.iter().enumerate() {
+                for (i, v) in a.column(j) {
+                    sizes[i] += (factor * v * x).norm();
+                }
+            }
+        }
+        self.mass
+            .multiply_add((mode.omega * mode.omega).into(), &mode.shape, &mut inertia);
+        let largest = |z: &[Complex64]| z.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
+        let mut allowed = ROUNDING * sizes.iter().fold(0.0_f64, |m, &s| m.max(s));
+        if repeated {
+            allowed = allowed.max(NEARLY_EQUAL * largest(&inertia));
+        }
+        Ok(largest(&sum) <= allowed)
+    }
+}

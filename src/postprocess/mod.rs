@@ -1,0 +1,3 @@
+//! What follows from one solved point: numbers from the harmonics of its motion.
+
+pub mod energy;
