@@ -80,11 +80,23 @@ fn the_counter_counts() {
 
 #[test]
 fn an_evaluation_allocates_nothing() {
-    let model = BASE.sector();
+    no_evaluation_allocates(&BASE.sector());
+}
+
+#[test]
+fn an_evaluation_of_a_cubic_spring_allocates_nothing() {
+    let mut model = BASE.sector();
+    for dof in [2, 3] {
+        model.add_contact(&Contact::cubic(dof, None, 1e6, 1e17)).unwrap();
+    }
+    no_evaluation_allocates(&model);
+}
+
+fn no_evaluation_allocates(model: &Model) {
     for (highest, samples) in WAYS {
         let options = options(highest, samples);
         let omega = TAU * 208.85;
-        let condensed = Condensed::new(&model, &options, omega).unwrap();
+        let condensed = Condensed::new(model, &options, omega).unwrap();
         let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
         let n = problem.size();
         let mut u = vec![0.0; n];

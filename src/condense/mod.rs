@@ -16,7 +16,7 @@ pub mod modal;
 pub mod poles;
 pub mod tables;
 
-use crate::contact::Law;
+use crate::contact::{ContactKind, Law, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
@@ -37,7 +37,7 @@ pub enum Reference {
     /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, damped structure or not.
     Complex,
     /// kt: contacts that stick drop out of Newton's method. The poles are the resonances of the
-    /// stuck structure, so this is for damped structures.
+    /// stuck structure, so this is for damped structures. Cubic springs never drop out.
     Stuck,
 }
 
@@ -116,7 +116,8 @@ pub struct Condensed {
     length: f64,
     blocks: Vec<HarmonicBlock>,
     laws: Vec<PlacedLaw>,
-    /// Sum of the contact stiffnesses per coordinate.
+    /// Stiffness per coordinate from which κ is made: the sum of kt of its contacts, or more where
+    /// one is a cubic spring.
     stiffness: Vec<f64>,
     reference: Reference,
     contacts: usize,
@@ -137,9 +138,9 @@ pub struct Reduction {
     pub coordinates: usize,
     /// Contacts in the model.
     pub contacts: usize,
-    /// Contacts that became linear springs (infinite slip limit).
+    /// Contacts that became linear springs (infinite slip limit, no cubic term).
     pub never_slipping: usize,
-    /// Contacts without force (no stiffness or no slip limit).
+    /// Contacts without force (no stiffness, or no slip limit).
     pub inert: usize,
     /// Highest harmonic number asked for.
     pub harmonics_asked: usize,
@@ -175,7 +176,7 @@ impl Condensed {
             // Without forces nothing moves; the fundamental carries the zero solution.
             forced.push(usize::from(options.harmonics > 0));
         }
-        let (mut condensed, contacts) = Self::unscaled(model, options, &forced, None)?;
+        let (mut condensed, contacts) = Self::unscaled(model, options, &forced, omega, None)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
         // underflows whatever the units.
         let largest = model
@@ -215,7 +216,8 @@ impl Condensed {
         form: DampingForm,
         shape: &[Complex64],
     ) -> Result<(Self, f64)> {
-        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], Some(form))?;
+        // A mode has a linear frequency, so the structure holds its springs by stiffness.
+        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], 0.0, Some(form))?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
         let motion = rows
@@ -225,25 +227,23 @@ impl Condensed {
         Ok((condensed, motion))
     }
 
-    /// All but the scale of lengths: no forces and no laws yet. Returns the coordinate of each
+    /// All but the scale of lengths: no forces and no laws yet; `omega` tells the size of inertia. Returns the coordinate of each
     /// active contact as well.
     fn unscaled(
         model: &Model,
         options: &SolverOptions,
         forced: &[usize],
+        omega: f64,
         form: Option<DampingForm>,
     ) -> Result<(Self, Vec<(usize, usize)>)> {
         let mut inert = 0;
         let mut never_slipping = Vec::new();
         let mut active = Vec::new();
         for (i, contact) in model.contacts().iter().enumerate() {
-            let limit = contact.slip_limit();
-            if contact.kt == 0.0 || limit == 0.0 {
-                inert += 1;
-            } else if limit.is_infinite() {
-                try_push(&mut never_slipping, i, "the contacts")?;
-            } else {
-                try_push(&mut active, i, "the contacts")?;
+            match contact.role() {
+                Role::Inert => inert += 1,
+                Role::Spring => try_push(&mut never_slipping, i, "the contacts")?,
+                Role::Active => try_push(&mut active, i, "the contacts")?,
             }
         }
         let odd = active.iter().all(|&i| Law::new(&model.contacts()[i], 1.0).is_odd());
@@ -259,6 +259,14 @@ impl Condensed {
         for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
             stiffness[coordinate] += model.contacts()[contact].kt;
         }
+        raise_for_springs(
+            model,
+            omega,
+            &set,
+            &never_slipping,
+            (&active, &coordinate_of),
+            &mut stiffness,
+        )?;
         let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && form.is_none() {
@@ -379,6 +387,12 @@ impl Condensed {
         self.reference.kappa(self.stiffness[coordinate], self.blocks[i].number)
     }
 
+    /// Stiffness of a coordinate from which κ is made.
+    #[must_use]
+    pub fn stiffness(&self, coordinate: usize) -> f64 {
+        self.stiffness[coordinate]
+    }
+
     /// The reference stiffness that was chosen.
     #[must_use]
     pub fn reference(&self) -> Reference {
@@ -426,6 +440,35 @@ fn gather(model: &Model, active: &[usize]) -> Result<(Vec<usize>, Vec<usize>)> {
         coordinate_of[i] = representatives.len() - 1;
     }
     Ok((coordinate_of, representatives))
+}
+
+/// Raises the stiffness of coordinates with cubic springs, whose kt may be zero, to that of the
+/// structure where they act, so that κ moves the poles whatever kt is. For a structure without
+/// stiffness of its own the inertia at `omega` tells the size.
+fn raise_for_springs(
+    model: &Model,
+    omega: f64,
+    set: &HarmonicSet,
+    never_slipping: &[usize],
+    (active, coordinate_of): (&[usize], &[usize]),
+    stiffness: &mut [f64],
+) -> Result<()> {
+    let is_cubic = |i: usize| model.contacts()[i].kind == ContactKind::Cubic;
+    if !active.iter().any(|&i| is_cubic(i)) {
+        return Ok(());
+    }
+    let lowest = set.numbers().first().copied().unwrap_or(0);
+    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
+    let k = model.sprung_stiffness(Wave::Harmonic(lowest), stuck)?;
+    let m = model.structure().wave_matrix(MatrixKind::Mass, lowest)?;
+    for (&i, &coordinate) in active.iter().zip(coordinate_of).filter(|&(&i, _)| is_cubic(i)) {
+        let contact = &model.contacts()[i];
+        for p in [contact.dof_a, contact.dof_b].into_iter().flatten() {
+            let size = k.get(p, p).norm().max(omega * omega * m.get(p, p).norm());
+            stiffness[coordinate] = stiffness[coordinate].max(size);
+        }
+    }
+    Ok(())
 }
 
 fn harmonic_block(
