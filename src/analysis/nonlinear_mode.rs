@@ -102,13 +102,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         );
     }
     let mut problem = Mode::new(&condensed, &gauge, &linear, solver.samples)?;
-    let onset = problem.linear_up_to()?;
-    // A smooth law is never linear, however small its force.
-    let linear_up_to = if problem.is_linear_at(onset - 1e-9)? {
-        onset
-    } else {
-        f64::NEG_INFINITY
-    };
+    let linear_up_to = problem.linear_up_to()?;
     let info = ModeInfo {
         index: chosen.index,
         omega: chosen.omega,

@@ -142,7 +142,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     let fundamental = branch.carried().iter().position(|&h| h == 1).unwrap_or(0);
     let mut x = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
     for point in 0..branch.points() {
-        recovery.go_to(point)?;
+        recovery.go_to(point);
         recovery.harmonic(fundamental, &mut x)?;
         let state = load.state(branch.omega()[point], data.point(point), &x)?;
         try_push(&mut states, state, WHAT)?;

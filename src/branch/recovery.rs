@@ -48,10 +48,7 @@ impl<'a> Recovery<'a> {
     }
 
     /// Evaluates the contact forces at a stored point.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn go_to(&mut self, point: usize) -> Result<()> {
+    pub fn go_to(&mut self, point: usize) {
         self.point = point;
         self.workspace.set_damping(self.branch.damping_at(point));
         let set = self.branch.condensed.set();
@@ -59,7 +56,7 @@ impl<'a> Recovery<'a> {
         let motion = self.motion();
         self.forces.fill(0.0);
         let Some((evaluator, evaluation)) = &mut self.laws else {
-            return Ok(());
+            return;
         };
         for placed in self.branch.condensed.laws() {
             let packed = placed.coordinate * m..(placed.coordinate + 1) * m;
@@ -69,7 +66,6 @@ impl<'a> Recovery<'a> {
                 *f += e;
             }
         }
-        Ok(())
     }
 
     /// Packed contact forces per coordinate at the point, in the solver's units.
