@@ -20,5 +20,6 @@ pub mod residual;
 pub mod results;
 mod sized;
 pub mod solve;
+pub mod synthesis;
 pub mod tables;
 pub mod types;
