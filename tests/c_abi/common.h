@@ -102,6 +102,18 @@ static inline hbvib_forced_options frequencies(double from_hz, double to_hz)
     return o;
 }
 
+/* A mode of the ring damper: log10 of the modal amplitude over the slip limit's displacement. */
+static inline hbvib_mode_options amplitudes(double log10_from, double log10_to)
+{
+    hbvib_contact c = ring_contact();
+    double unit = log10(c.mu * c.preload / c.kt);
+    hbvib_mode_options o;
+    if (hbvib_mode_options_init(&o, sizeof o) != HBVIB_OK) abort();
+    o.log10_start = unit + log10_from;
+    o.log10_stop = unit + log10_to;
+    return o;
+}
+
 /* Frequencies, amplitudes and the harmonics at the peak: the bits of a solution. */
 typedef struct solution {
     int64_t points;
