@@ -191,8 +191,8 @@ unsafe fn mode_options<'a>(o: &hbvib_mode_options, model: &Model) -> Result<Mode
 /// A positive status says why the branch ends early; the branch is there with all points found,
 /// which may be none.
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
-/// out of range, a mode that moves no contact, a reference at a node of the mode and missing
-/// matrices; HBVIB_E_NOT_POSITIVE_DEFINITE and HBVIB_E_NOT_HERMITIAN for the matrices;
+/// out of range, a mode that moves no contact, one without frequency, and a reference at its node;
+/// HBVIB_E_NOT_POSITIVE_DEFINITE and HBVIB_E_NOT_HERMITIAN for matrices, missing ones among them;
 /// HBVIB_E_UNSUPPORTED for constant forces; HBVIB_E_NO_CONVERGENCE where no first point was found;
 /// HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY.

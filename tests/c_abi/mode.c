@@ -67,9 +67,9 @@ static void curve(hbvib_branch *branch, const hbvib_mode_options *o, double larg
         EXPECT("curve", at.log10_amplitude == p[i] && at.modal_amplitude == modal[i] && at.omega == omega[i] &&
                             at.damping_ratio == damping[i] && at.energy == energy[i] && at.friction_loss == friction[i] &&
                             at.structural_loss == structure[i] && at.assurance == alike[i]);
-        EXPECT("curve", fabs(log10(modal[i]) - p[i]) < 1e-12 && structure[i] == 0 && energy[i] > 0);
+        EXPECT("curve", fabs(log10(modal[i]) - p[i]) < 1e-12 && energy[i] > 0 && fabs(structure[i]) <= 1e-15 * energy[i]);
         EXPECT("curve", fabs(at.energy_damping_ratio - at.damping_ratio) < 1e-9 * largest);
-        EXPECT("curve", fabs(at.energy_damping_ratio * 4 * PI * energy[i] - friction[i]) <= 1e-12 * friction[i]);
+        EXPECT("curve", fabs(at.energy_damping_ratio * 4 * PI * energy[i] - friction[i] - structure[i]) <= 1e-12 * friction[i]);
         EXPECT("curve", at.fundamental_share > 0.99 && at.fundamental_share < 1 + 1e-14);
         EXPECT("curve", alike[i] > 0.9 && alike[i] < 1 + 1e-14);
         if (p[i] <= info.linear_up_to)
@@ -291,7 +291,7 @@ static void cancelled(void)
     const double *p;
     o.at = &o.log10_stop;
     o.at_len = 1;
-    for (stop = 1; stop <= 61; stop += 20) {
+    for (stop = 1; stop <= 31; stop += 15) {
         memset(&found, 0, sizeof found);
         found.stop_at = stop;
         WORKS("hooks", hbvib_hooks_init(&h, sizeof h));
@@ -397,7 +397,7 @@ static void bad_options(void)
 /* What only model and options together show. */
 static void bad_models(void)
 {
-    const double indefinite[4] = {1, 0, 0, -1}, loose[4] = {0, 0, 0, 4};
+    const double indefinite[4] = {1, 2, 2, 1}, loose[4] = {0, 0, 0, 4};
     hbvib_model *model = two_masses(ONES, RISING, 1);
     hbvib_mode_options o;
     WORKS("models", hbvib_mode_options_init(&o, sizeof o));
@@ -438,7 +438,7 @@ static void bad_models(void)
     o.amplitude_contact = -1;
     model = NULL;
     WORKS("no matrices", hbvib_model_new(2, &model));
-    REFUSED("no matrices", with(model, NULL, &o), HBVIB_E_ARGUMENT, 0, "mass");
+    REFUSED("no matrices", with(model, NULL, &o), HBVIB_E_NOT_POSITIVE_DEFINITE, 0, "mass matrix is zero");
     WORKS("no matrices", hbvib_model_free(model));
 }
 
