@@ -141,6 +141,8 @@ typedef enum {
   /// Elastic Coulomb friction with constant normal load in one direction: a spring kt in series
   /// with a slider of limit mu * preload.
   HBVIB_JENKINS = 1,
+  /// Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
+  HBVIB_CUBIC = 5,
 } hbvib_contact_kind;
 
 /// Special degrees of freedom.
@@ -153,7 +155,7 @@ typedef enum {
 typedef enum {
   /// Without force.
   HBVIB_CONTACTS_FREE = 0,
-  /// Linear springs kt.
+  /// Linear springs kt, as at small motion.
   HBVIB_CONTACTS_STUCK = 1,
 } hbvib_contact_state;
 
@@ -176,7 +178,7 @@ typedef enum {
   HBVIB_NEWTON_ITERATIONS = 6,
   /// Highest harmonic number carried.
   HBVIB_HARMONICS_USED = 8,
-  /// Share of the period that each contact slips: points x contacts.
+  /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
   HBVIB_SLIP_FRACTION = 9,
   /// Nonlinear modes only: log10 of the amplitude, the parameter.
   HBVIB_LOG10_AMPLITUDE = 10,
@@ -267,25 +269,27 @@ typedef struct {
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// HBVIB_JENKINS.
+  /// HBVIB_JENKINS or HBVIB_CUBIC.
   int32_t kind;
-  /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND. Jenkins
-  /// uses the first, the others must be HBVIB_GROUND.
+  /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND. Both
+  /// laws use the first, the others must be HBVIB_GROUND.
   int64_t dof_a[3];
   /// Side b, likewise.
   int64_t dof_b[3];
   /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
   int64_t sector_offset;
-  /// Tangential stiffness, force per length, >= 0.
+  /// Stiffness (tangential, at small motion), force per length, >= 0.
   double kt;
-  /// Normal stiffness; 0 for Jenkins.
+  /// Must be 0.
   double kn;
-  /// Friction coefficient, >= 0.
+  /// Friction coefficient of HBVIB_JENKINS, >= 0; 0 for others.
   double mu;
-  /// Normal load, force, >= 0; infinite sticks for ever.
+  /// Normal load of HBVIB_JENKINS, force, >= 0, infinite sticks for ever; 0 for others.
   double preload;
-  /// Normal clearance; 0 for Jenkins.
+  /// Must be 0.
   double gap;
+  /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
+  double cubic;
 } hbvib_contact;
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
@@ -300,7 +304,8 @@ typedef struct {
   int64_t harmonics;
   /// Cap on H where the tolerance decides.
   int64_t max_harmonics;
-  /// 0: stick-slip events are located exactly; else samples per period, at least 2H + 1.
+  /// 0: stick-slip events are located exactly; else samples per period, at least 2H + 1. Laws
+  /// without events (HBVIB_CUBIC) are exact either way.
   int64_t samples;
   /// First arc-length step in scaled unknowns; 0 = automatic.
   double step;
@@ -450,9 +455,9 @@ typedef struct {
   int64_t coordinates;
   /// Contacts in the model.
   int64_t contacts;
-  /// Contacts that became linear springs (infinite slip limit).
+  /// Contacts that became linear springs (infinite slip limit, no cubic term).
   int64_t never_slipping;
-  /// Contacts without force (no stiffness or no slip limit).
+  /// Contacts without force (no stiffness, or no slip limit).
   int64_t inert;
   /// Highest harmonic number H asked for.
   int64_t harmonics_asked;
@@ -546,6 +551,8 @@ typedef struct {
   int64_t multiplicity;
   /// Degree of freedom whose fundamental is real.
   int64_t reference_dof;
+  /// Waves per turn of the fundamental, with their sense: the engine order of the wave.
+  int64_t engine_order;
   /// -1: the parameter measures the modal amplitude; else this contact's motion.
   int64_t amplitude_contact;
   /// Angular frequency of the linear mode without damping.
@@ -738,12 +745,13 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
                                 double *shapes);
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
-/// Set kind, dof_a, kt, mu and preload at least.
+/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of HBVIB_CUBIC.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
+hbvib_status hbvib_contact_init(hbvib_contact *c,
+                                size_t size_of_c);
 
 /// Adds a contact. Equal contacts add up.
 ///
@@ -755,7 +763,7 @@ hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
 /// Threads: one at a time per model.
 hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c, int64_t *id);
 
-/// Changes the normal load of a contact.
+/// Changes the normal load of a contact. An HBVIB_CUBIC has none, which is HBVIB_E_ARGUMENT.
 ///
 /// id       number from hbvib_model_add_contact.
 /// preload  force, >= 0; infinite sticks for ever.
@@ -769,7 +777,8 @@ hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double prel
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
-/// samples     0: events are located exactly; else samples per period, at least 2H + 1.
+/// samples     0: events are located exactly; else samples per period, at least 2H + 1. A law
+///             without events (HBVIB_CUBIC) is exact either way.
 /// motion      H + 1 complex numbers Y_0 .. Y_H; the imaginary part of Y_0 has no effect.
 /// motion_len  complex numbers in it, H + 1.
 /// force       receives H + 1 complex numbers F_0 .. F_H.

@@ -1,8 +1,6 @@
 //! The result of an analysis: points along a branch, its peaks and folds, solutions asked for, and
 //! what was removed from the problem.
 
-use crate::aft::{Evaluation, Evaluator};
-use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail, try_extend, try_push, try_vec};
 use num_complex::Complex64;
@@ -10,8 +8,10 @@ use std::sync::Arc;
 
 mod energy;
 pub mod mode;
+mod recovery;
 
 pub use energy::Energy;
+pub(crate) use recovery::Recovery;
 
 /// A solution beside the curve: a peak, a fold, or one at a parameter value asked for.
 #[derive(Clone, Copy, Debug)]
@@ -329,53 +329,14 @@ impl Branch {
                 x.len()
             );
         }
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let size = self.condensed.coordinates() * m;
-        let motion = &self.motion[point * size..(point + 1) * size];
-        let forces = self.contact_forces(motion)?;
-        let mut workspace = Workspace::new(&self.condensed, None)?;
-        workspace.set_damping(self.damping_at(point));
-        let mut w = try_vec(self.condensed.coordinates(), Complex64::ZERO, "the contact forces")?;
         let mut found = try_vec(needed, Complex64::ZERO, "the harmonics")?;
-        for (i, &h) in set.numbers().iter().enumerate() {
-            for (c, w) in w.iter_mut().enumerate() {
-                let packed = c * m..(c + 1) * m;
-                let kappa = self.condensed.kappa(c, i);
-                *w = set.get(&forces[packed.clone()], i) - kappa * set.get(&motion[packed], i);
-            }
-            let harmonic = &mut found[h * n..(h + 1) * n];
-            workspace.recover(&self.condensed, i, self.omega[point], &w, harmonic)?;
-            for z in harmonic.iter_mut() {
-                *z *= self.condensed.length();
-                if h == 0 {
-                    z.im = 0.0;
-                }
-            }
+        let mut recovery = Recovery::new(self)?;
+        recovery.go_to(point);
+        for (i, &h) in self.carried().iter().enumerate() {
+            recovery.harmonic(i, &mut found[h * n..(h + 1) * n])?;
         }
         x.copy_from_slice(&found);
         Ok(())
-    }
-
-    /// Packed contact forces per coordinate for packed motions.
-    fn contact_forces(&self, motion: &[f64]) -> Result<Vec<f64>> {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let mut forces = try_vec(motion.len(), 0.0, "the contact forces")?;
-        if motion.is_empty() {
-            return Ok(forces);
-        }
-        let mut evaluator = Evaluator::new(set, self.samples)?;
-        let mut evaluation = Evaluation::new(set)?;
-        for placed in self.condensed.laws() {
-            let packed = placed.coordinate * m..(placed.coordinate + 1) * m;
-            evaluator.prepare(set, &motion[packed.clone()]);
-            evaluator.evaluate(&placed.law, set, &motion[packed.clone()], &mut evaluation);
-            for (f, e) in forces[packed].iter_mut().zip(&evaluation.force) {
-                *f += e;
-            }
-        }
-        Ok(forces)
     }
 }
 

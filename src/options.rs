@@ -13,7 +13,7 @@ pub struct SolverOptions {
     /// Cap on H where the tolerance decides.
     pub max_harmonics: usize,
     /// `0`: exact stick-slip events. Otherwise every law is sampled at so many equidistant times
-    /// per period, at least 2H + 1.
+    /// per period, at least 2H + 1. Laws without events are exact either way.
     pub samples: usize,
     /// First arc-length step in scaled unknowns; `0` chooses.
     pub step: f64,
@@ -210,14 +210,13 @@ impl ModeChoice<'_> {
     /// `Argument`, `NotFinite` or `Dimension`, naming the field, its value and its range.
     pub fn check(&self, ndof: usize) -> Result<()> {
         match *self {
-            Self::Index(_) => Ok(()),
             Self::Near(omega) if !omega.is_finite() => {
                 fail!(NotFinite, "near_omega = {omega}, needs a finite angular frequency > 0")
             }
             Self::Near(omega) if omega <= 0.0 => {
                 fail!(Argument, "near_omega = {omega}, needs an angular frequency > 0")
             }
-            Self::Near(_) => Ok(()),
+            Self::Index(_) | Self::Near(_) => Ok(()),
             Self::Shape(shape) => {
                 if shape.len() != ndof {
                     return fail!(
@@ -335,6 +334,55 @@ impl ModeOptions<'_> {
         }
         if let Some(dof) = self.reference_dof.filter(|&d| d >= ndof) {
             return fail!(Index, "reference_dof = {dof}, needs 0 .. {}", ndof - 1);
+        }
+        Ok(())
+    }
+}
+
+/// Options of a response synthesised from a nonlinear mode.
+#[derive(Clone, Copy, Debug)]
+pub struct SynthesisOptions {
+    /// Factor on all forces of the model.
+    pub force_factor: f64,
+    /// Damping ratio that is added to the mode's.
+    pub damping_ratio: f64,
+    /// Add the damping of the model's C, which is right for a mode that was computed without it.
+    pub model_damping: bool,
+}
+
+impl Default for SynthesisOptions {
+    fn default() -> Self {
+        Self {
+            force_factor: 1.0,
+            damping_ratio: 0.0,
+            model_damping: false,
+        }
+    }
+}
+
+impl SynthesisOptions {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// `NotFinite` or `Argument`, naming the field, its value and its range.
+    pub fn check(&self) -> Result<()> {
+        for (name, value) in [
+            ("force_factor", self.force_factor),
+            ("damping_ratio", self.damping_ratio),
+        ] {
+            if !value.is_finite() {
+                return fail!(NotFinite, "{name} = {value}, needs a finite number");
+            }
+        }
+        if self.force_factor <= 0.0 {
+            return fail!(Argument, "force_factor = {}, needs a number > 0", self.force_factor);
+        }
+        if self.damping_ratio.abs() >= 1.0 {
+            return fail!(
+                Argument,
+                "damping_ratio = {}, needs -1 < damping_ratio < 1",
+                self.damping_ratio
+            );
         }
         Ok(())
     }

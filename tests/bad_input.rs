@@ -235,6 +235,60 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
 }
 
 #[test]
+fn a_refused_cubic_spring_leaves_the_model_as_it_was() {
+    unharmed(|model| {
+        let friction = BASE.contact();
+        let spring = Contact::cubic(2, Some(3), 1.0, -1.0);
+        for (bad, status, words) in [
+            (
+                Contact {
+                    cubic: f64::INFINITY,
+                    ..spring
+                },
+                Status::NotFinite,
+                "cubic = inf",
+            ),
+            (
+                Contact {
+                    cubic: f64::NAN,
+                    ..friction
+                },
+                Status::NotFinite,
+                "cubic = NaN",
+            ),
+            (
+                Contact { cubic: 2.0, ..friction },
+                Status::Argument,
+                "cubic = 2, needs 0 for a Jenkins contact",
+            ),
+            (
+                Contact { mu: 0.3, ..spring },
+                Status::Argument,
+                "mu = 0.3, needs 0 for a cubic spring",
+            ),
+            (
+                Contact {
+                    preload: f64::INFINITY,
+                    ..spring
+                },
+                Status::Argument,
+                "preload = inf, needs 0 for a cubic spring",
+            ),
+            (Contact { kt: -1.0, ..spring }, Status::Argument, "kt = -1"),
+        ] {
+            refused(model.add_contact(&bad), status, &[words]);
+        }
+        let mut sprung = model.try_clone().unwrap();
+        sprung.add_contact(&spring).unwrap();
+        refused(
+            sprung.set_preload(1, 0.0),
+            Status::Argument,
+            &["preload", "id = 1", "cubic spring"],
+        );
+    });
+}
+
+#[test]
 fn sizes_of_a_model_out_of_range_are_refused() {
     refused(Model::new(0), Status::Dimension, &["ndof = 0"]);
     refused(Model::new(usize::MAX), Status::Dimension, &["ndof"]);

@@ -136,6 +136,9 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
             ..across
         },
         Contact::jenkins(1, None, 1.0, 0.4, 0.5),
+        Contact::cubic(1, Some(2), 0.8, 3.0 * feed.real()),
+        // Friction and a cubic spring side by side.
+        Contact::cubic(0, Some(1), 0.5, 2.0),
     ] {
         model.add_contact(&contact).unwrap();
     }
@@ -272,6 +275,8 @@ fn condensed_case(
         .iter()
         .map(|placed| match placed.law {
             Law::Jenkins(law) => law.limit / law.stiffness,
+            // The cubic term equals the linear one.
+            Law::Cubic(law) => (law.linear / law.cubic.abs()).sqrt(),
         })
         .fold(f64::INFINITY, f64::min);
     let n = condensed.coordinates() * condensed.set().packed_len();

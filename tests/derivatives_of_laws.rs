@@ -52,12 +52,15 @@ fn law(contact: &Contact, x: &[Complex64], jacobian: Option<&mut [f64]>) -> Vec<
     parts(&f)
 }
 
+fn friction(limit: f64) -> Contact {
+    Contact::jenkins(0, None, 1.0, 1.0, limit)
+}
+
 /// Every column of the law's Jacobian at x, or only its action along given directions.
-fn check_law(x: &[Complex64], limit: f64, directions: Option<&[Vec<f64>]>) -> Checked {
-    let contact = Contact::jenkins(0, None, 1.0, 1.0, limit);
+fn check_law(x: &[Complex64], contact: &Contact, directions: Option<&[Vec<f64>]>) -> Checked {
     let order = 2 * x.len();
     let mut jacobian = vec![0.0; order * order];
-    law(&contact, x, Some(&mut jacobian));
+    law(contact, x, Some(&mut jacobian));
     let units: Vec<Vec<f64>> = (0..order)
         .map(|c| (0..order).map(|i| f64::from(u8::from(i == c))).collect())
         .collect();
@@ -70,9 +73,10 @@ fn check_law(x: &[Complex64], limit: f64, directions: Option<&[Vec<f64>]>) -> Ch
         }
         let stencil = Stencil::of(1e-6, |h| {
             let moved: Vec<f64> = parts(x).iter().zip(d).map(|(x, d)| x + h * d).collect();
-            law(&contact, &pairs(&moved), None)
+            law(contact, &pairs(&moved), None)
         });
-        stencil.check("contact Jacobian", &slope, 1.0)?;
+        let scale = slope.iter().fold(1.0_f64, |m, s| m.max(s.abs()));
+        stencil.check("contact Jacobian", &slope, scale)?;
     }
     Ok(())
 }
@@ -89,7 +93,7 @@ proptest! {
         let x = motion(&numbers[..2 * (highest + 1)]);
         // From far beyond the slip limit to below it; without oscillation the mean sets the scale.
         let size = half_range(&x).max(if highest == 0 { x[0].norm() } else { 0.0 });
-        check_law(&x, size * 10.0_f64.powf(exponent), None)?;
+        check_law(&x, &friction(size * 10.0_f64.powf(exponent)), None)?;
     }
 
     #[test]
@@ -99,7 +103,18 @@ proptest! {
         beyond in prop::sample::select(vec![-1e-2, -1e-4, 1e-4, 1e-3, 1e-2, 0.1]),
     ) {
         let x = motion(&numbers[..2 * (highest + 1)]);
-        check_law(&x, half_range(&x) / (1.0 + beyond), None)?;
+        check_law(&x, &friction(half_range(&x) / (1.0 + beyond)), None)?;
+    }
+
+    #[test]
+    fn the_jacobian_of_the_cubic_spring(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 20),
+        highest in 0_usize..=9,
+        kt in prop::sample::select(vec![0.0, 1.0]),
+        k3 in -3.0..3.0_f64,
+    ) {
+        let x = motion(&numbers[..2 * (highest + 1)]);
+        check_law(&x, &Contact::cubic(0, None, kt, k3), None)?;
     }
 }
 
@@ -119,6 +134,6 @@ proptest! {
             .iter()
             .map(|d| d[..order].iter().map(|v| v / (order as f64).sqrt()).collect())
             .collect();
-        check_law(&x, half_range(&x) * 10.0_f64.powf(exponent), Some(&directions))?;
+        check_law(&x, &friction(half_range(&x) * 10.0_f64.powf(exponent)), Some(&directions))?;
     }
 }

@@ -17,8 +17,10 @@ use hbvib::linalg::norm;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;
+use hbvib::postprocess::energy::balance;
 use hbvib::problem::forced::Forced;
 use hbvib::problem::{Linearisation, Problem, Start};
+use num_complex::Complex64;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::f64::consts::TAU;
@@ -78,11 +80,23 @@ fn the_counter_counts() {
 
 #[test]
 fn an_evaluation_allocates_nothing() {
-    let model = BASE.sector();
+    no_evaluation_allocates(&BASE.sector());
+}
+
+#[test]
+fn an_evaluation_of_a_cubic_spring_allocates_nothing() {
+    let mut model = BASE.sector();
+    for dof in [2, 3] {
+        model.add_contact(&Contact::cubic(dof, None, 1e6, 1e17)).unwrap();
+    }
+    no_evaluation_allocates(&model);
+}
+
+fn no_evaluation_allocates(model: &Model) {
     for (highest, samples) in WAYS {
         let options = options(highest, samples);
         let omega = TAU * 208.85;
-        let condensed = Condensed::new(&model, &options, omega).unwrap();
+        let condensed = Condensed::new(model, &options, omega).unwrap();
         let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
         let n = problem.size();
         let mut u = vec![0.0; n];
@@ -107,6 +121,16 @@ fn an_evaluation_allocates_nothing() {
         let (count, _) = allocations(|| problem.observe(&u, &direction));
         assert_eq!(count, 0, "observing the amplitude");
     }
+}
+
+#[test]
+fn the_energy_balance_of_a_point_allocates_nothing() {
+    let condensed = Condensed::new(&BASE.sector(), &options(9, 0), TAU * 208.85).unwrap();
+    let x = vec![Complex64::ONE; condensed.set().numbers().len() * condensed.ndof()];
+    let packed = vec![1.0; condensed.coordinates() * condensed.set().packed_len()];
+    let (count, found) = allocations(|| balance(&condensed, 1300.0, &x, &packed, &packed));
+    assert_eq!(count, 0);
+    assert!(found.twice_mean_kinetic > 0.0 && found.structural_loss > 0.0);
 }
 
 #[test]

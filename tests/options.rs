@@ -12,7 +12,7 @@ use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::options::{Amplitude, DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
 use num_complex::Complex64;
 use refusal::{OMEGA, refused, unharmed};
 
@@ -223,4 +223,146 @@ fn a_model_without_forces_stays_at_rest() {
     let branch = solve_at(&model, &harmonics(5), OMEGA);
     assert_eq!(branch.status(), Status::Ok);
     assert!(all_harmonics(&branch, 0).iter().all(|z| *z == Complex64::ZERO));
+}
+
+/// Good options of a mode.
+const SIX_DECADES: ModeOptions<'static> = ModeOptions {
+    choice: ModeChoice::Index(0),
+    diameter: None,
+    amplitude: Amplitude::Modal,
+    log10_start: -6.0,
+    log10_stop: 0.0,
+    at: &[],
+    damping_form: DampingForm::Mass,
+    reference_dof: None,
+};
+
+#[test]
+fn every_bad_range_of_a_mode_is_refused_by_name() {
+    let good = SIX_DECADES;
+    let cases = [
+        (
+            ModeOptions::default(),
+            Status::Argument,
+            "amplitude range is empty or reversed: log10_start = 0, log10_stop = 0, needs start < stop",
+        ),
+        (
+            ModeOptions {
+                log10_stop: -7.0,
+                ..good
+            },
+            Status::Argument,
+            "empty or reversed",
+        ),
+        (
+            ModeOptions {
+                log10_start: f64::NAN,
+                ..good
+            },
+            Status::NotFinite,
+            "log10_start",
+        ),
+        (
+            ModeOptions {
+                log10_stop: f64::INFINITY,
+                ..good
+            },
+            Status::NotFinite,
+            "log10_stop",
+        ),
+        (
+            ModeOptions {
+                log10_start: -400.0,
+                ..good
+            },
+            Status::Argument,
+            "log10_start = -400",
+        ),
+        (
+            ModeOptions {
+                at: &[-1.0, 0.5],
+                ..good
+            },
+            Status::Argument,
+            "at[1] = 0.5",
+        ),
+        (
+            ModeOptions {
+                at: &[f64::NAN],
+                ..good
+            },
+            Status::NotFinite,
+            "at[0]",
+        ),
+        (
+            ModeOptions {
+                reference_dof: Some(4),
+                ..good
+            },
+            Status::Index,
+            "reference_dof = 4, needs 0 .. 3",
+        ),
+    ];
+    for (options, status, words) in cases {
+        refused(options.check(4, 2, 24), status, &[words]);
+    }
+    let all = ModeOptions {
+        at: &[-6.0, 0.0],
+        reference_dof: Some(3),
+        amplitude: Amplitude::Contact(1),
+        ..good
+    };
+    all.check(4, 2, 24).unwrap();
+    assert_eq!(all.damping_form, DampingForm::Mass);
+}
+
+#[test]
+fn every_bad_choice_of_a_mode_is_refused_by_name() {
+    let good = SIX_DECADES;
+    let zero = [Complex64::ZERO; 4];
+    let cases = [
+        (
+            ModeOptions {
+                amplitude: Amplitude::Contact(2),
+                ..good
+            },
+            Status::Index,
+            "amplitude_contact = 2, but the model has 2 contacts",
+        ),
+        (
+            ModeOptions {
+                diameter: Some(13),
+                ..good
+            },
+            Status::Argument,
+            "diameter = 13, needs 0 .. 12 for 24 sectors",
+        ),
+        (
+            ModeOptions {
+                choice: ModeChoice::Near(-1.0),
+                ..good
+            },
+            Status::Argument,
+            "near_omega = -1",
+        ),
+        (
+            ModeOptions {
+                choice: ModeChoice::Shape(&zero[..3]),
+                ..good
+            },
+            Status::Dimension,
+            "shape has 3",
+        ),
+        (
+            ModeOptions {
+                choice: ModeChoice::Shape(&zero),
+                ..good
+            },
+            Status::Argument,
+            "shape is zero",
+        ),
+    ];
+    for (options, status, words) in cases {
+        refused(options.check(4, 2, 24), status, &[words]);
+    }
 }

@@ -68,6 +68,9 @@ impl Exact {
 
     /// Force and Jacobian of `law` for the prepared motion; see [`super`].
     pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        if self.assembly.smooth(law, set, motion, out) {
+            return;
+        }
         law.pieces(set, motion, &self.extrema, &mut self.pieces);
         self.assembly.start(out);
         let fold = if set.is_odd() { 2.0 } else { 1.0 };

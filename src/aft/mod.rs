@@ -8,10 +8,12 @@
 //! > ∂F/∂X = T(S) − Σ k g ⊗ c(r),  F = ∂F/∂X · X + Σ o g,
 //!
 //! because the force is continuous where pieces meet, so that moving events contribute nothing
-//! (Petrov & Ewins 2003, doi:10.1115/1.1539868). T(S) maps Xₘ to Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ).
+//! (Petrov & Ewins 2003, doi:10.1115/1.1539868). T(S) maps Xₘ to Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ). A smooth
+//! law gives S at once, without pieces.
 
 pub mod exact;
 pub mod sampled;
+mod smooth;
 
 use crate::contact::{Law, Piece};
 use crate::error::{Result, try_vec};
@@ -33,11 +35,12 @@ pub struct Evaluation {
     pub force: Vec<f64>,
     /// ∂F/∂X, column-major.
     pub jacobian: Vec<f64>,
-    /// F − ∂F/∂X · X; for friction this is fc·∂F/∂fc, since F is homogeneous in (X, fc).
+    /// F − ∂F/∂X · X, the derivative of F by the logarithm of the factor in [`Law::eased`].
     pub offset: Vec<f64>,
     /// Share of the period that is spent slipping, 0 for a stuck contact.
     pub slip_fraction: f64,
-    /// Whether the law is linear at this motion: one piece without anchor, F = k X.
+    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X. Never so
+    /// for a smooth law.
     pub stuck: bool,
 }
 

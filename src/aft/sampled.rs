@@ -1,6 +1,6 @@
 //! Sampled evaluation: the law at N equidistant times per period, Fourier sums instead of
 //! integrals. The force is O(N⁻²) accurate, the Jacobian O(N⁻¹); it serves for cross-checks and
-//! for laws without exact events.
+//! for laws without exact events. Smooth laws are not sampled: their harmonics are exact.
 
 use super::{Assembly, Evaluation};
 use crate::contact::{Law, Piece};
@@ -63,6 +63,9 @@ impl Sampled {
 
     /// Force and Jacobian of `law` for the prepared motion; see [`super`].
     pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        if self.assembly.smooth(law, set, motion, out) {
+            return;
+        }
         law.sampled_pieces(&self.samples, &mut self.pieces);
         self.assembly.start(out);
         let n = self.samples.len();

@@ -3,8 +3,11 @@
 mod follow;
 pub mod forced_response;
 pub mod harmonic_residual;
+mod mode_points;
 pub mod nonlinear_mode;
+pub mod synthesis;
 
 pub use forced_response::forced_response;
 pub use harmonic_residual::{contact_evaluate, forced_residual};
 pub use nonlinear_mode::nonlinear_mode;
+pub use synthesis::synthesise;

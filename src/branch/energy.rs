@@ -1,6 +1,6 @@
 //! Energies and losses of a stored point.
 
-use super::Branch;
+use super::{Branch, Recovery};
 use crate::error::{Result, fail, try_vec};
 use crate::postprocess::energy::{balance, peaks};
 use num_complex::Complex64;
@@ -50,23 +50,21 @@ impl Branch {
         };
         let n = self.ndof();
         let length = self.condensed.length();
-        let mut all = try_vec((self.harmonics + 1).saturating_mul(n), Complex64::ZERO, WHAT)?;
-        self.harmonics_at(point, &mut all)?;
-        // In the solver's units, the carried harmonics one after the other; a scale that is a power
-        // of two costs no digit.
-        let carried = self.carried();
-        for (i, &h) in carried.iter().enumerate() {
-            all.copy_within(h * n..(h + 1) * n, i * n);
-        }
-        let x = &mut all[..carried.len() * n];
-        for z in x.iter_mut() {
-            *z /= length;
+        let carried = self.carried().len();
+        let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, WHAT)?;
+        let mut recovery = Recovery::new(self)?;
+        recovery.go_to(point);
+        for (i, x) in x.chunks_exact_mut(n).enumerate() {
+            recovery.harmonic(i, x)?;
+            // In the solver's units: a scale that is a power of two costs no digit.
+            for z in x {
+                *z /= length;
+            }
         }
         let size = self.condensed.coordinates() * self.condensed.set().packed_len();
         let motion = &self.motion[point * size..(point + 1) * size];
-        let forces = self.contact_forces(motion)?;
-        let balance = balance(&self.condensed, omega, x, &forces, motion);
-        let peaks = peaks(&self.condensed, omega, x)?;
+        let balance = balance(&self.condensed, omega, &x, recovery.forces(), motion);
+        let peaks = peaks(&self.condensed, omega, &x)?;
         let unit = |energy: f64| energy * length * length;
         let wheel = |energy: f64| unit(energy) * self.condensed.sectors() as f64;
         Ok(Energy {

@@ -1,6 +1,7 @@
 //! What a nonlinear mode holds beside the points that every branch has.
 
 use super::Branch;
+use crate::condense::Condensed;
 use crate::error::{Error, Result, try_extend};
 use crate::model::repeated::Multiple;
 use crate::options::Amplitude;
@@ -20,6 +21,8 @@ pub struct ModeInfo {
     pub multiple: Multiple,
     /// Degree of freedom whose fundamental is real.
     pub reference_dof: usize,
+    /// Waves per turn of the fundamental: the signed engine order that it was computed for.
+    pub engine_order: i64,
     /// What the parameter measures.
     pub amplitude: Amplitude,
     /// log₁₀ of the amplitude up to which all contacts stick; −∞ where a law is never linear.
@@ -66,6 +69,8 @@ pub(crate) struct ModeData {
     pub info: ModeInfo,
     pub linear: LinearMode,
     pub gauge: Gauge,
+    /// The range of log₁₀ amplitude.
+    pub range: (f64, f64),
     fields: [Vec<f64>; FIELDS],
     points: Vec<ModePoint>,
     /// Unknowns and parameter of each point of the curve, then its tangent.
@@ -77,11 +82,12 @@ pub(crate) struct ModeData {
 const FIELDS: usize = 7;
 
 impl ModeData {
-    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, unknowns: usize) -> Self {
+    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: (f64, f64), unknowns: usize) -> Self {
         Self {
             info,
             linear,
             gauge,
+            range,
             fields: Default::default(),
             points: Vec::new(),
             states: Vec::new(),
@@ -171,6 +177,14 @@ impl Branch {
     /// Damping ratio at a stored point; 0 for a forced response.
     pub(super) fn damping_at(&self, point: usize) -> f64 {
         self.mode_at(point).map_or(0.0, |p| p.damping_ratio)
+    }
+
+    pub(crate) fn condensed(&self) -> &Condensed {
+        &self.condensed
+    }
+
+    pub(crate) fn samples(&self) -> usize {
+        self.samples
     }
 
     pub(crate) fn mode_data(&self) -> Option<&ModeData> {

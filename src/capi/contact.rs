@@ -11,6 +11,7 @@ use crate::model::Model;
 
 const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
 const JENKINS: i32 = hbvib_contact_kind::HBVIB_JENKINS as i32;
+const CUBIC: i32 = hbvib_contact_kind::HBVIB_CUBIC as i32;
 
 unsafe impl Described for hbvib_contact {
     const NAME: &'static str = "hbvib_contact";
@@ -28,6 +29,7 @@ unsafe impl Described for hbvib_contact {
             mu: 0.0,
             preload: 0.0,
             gap: 0.0,
+            cubic: 0.0,
         }
     }
 }
@@ -36,11 +38,20 @@ unsafe impl Described for hbvib_contact {
 fn law(c: &hbvib_contact) -> Result<Contact> {
     let kind = match c.kind {
         JENKINS => ContactKind::Jenkins,
-        other => return fail!(Argument, "hbvib_contact: kind = {other}, needs HBVIB_JENKINS = 1"),
+        CUBIC => ContactKind::Cubic,
+        other => {
+            return fail!(
+                Argument,
+                "hbvib_contact: kind = {other}, needs HBVIB_JENKINS = 1 or HBVIB_CUBIC = 5"
+            );
+        }
     };
     for (name, value) in [("kn", c.kn), ("gap", c.gap)] {
         if value != 0.0 {
-            return fail!(Argument, "hbvib_contact: {name} = {value}, needs 0 for HBVIB_JENKINS");
+            return fail!(
+                Argument,
+                "hbvib_contact: {name} = {value}, needs 0 for HBVIB_JENKINS and HBVIB_CUBIC"
+            );
         }
     }
     Ok(Contact {
@@ -51,6 +62,7 @@ fn law(c: &hbvib_contact) -> Result<Contact> {
         kt: c.kt,
         mu: c.mu,
         preload: c.preload,
+        cubic: c.cubic,
     })
 }
 
@@ -59,7 +71,7 @@ fn side(dofs: [i64; 3], ndof: usize, name: &str) -> Result<Option<usize>> {
     if let Some(other) = dofs[1..].iter().find(|&&dof| dof != GROUND) {
         return fail!(
             Argument,
-            "hbvib_contact: {name} has {other} in its second or third place, needs HBVIB_GROUND = -1 there for HBVIB_JENKINS"
+            "hbvib_contact: {name} has {other} in its second or third place, needs HBVIB_GROUND = -1 there"
         );
     }
     match dofs[0] {
@@ -74,7 +86,7 @@ fn side(dofs: [i64; 3], ndof: usize, name: &str) -> Result<Option<usize>> {
 }
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
-/// Set kind, dof_a, kt, mu and preload at least.
+/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of HBVIB_CUBIC.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
@@ -117,7 +129,7 @@ pub unsafe extern "C" fn hbvib_model_add_contact(
     })
 }
 
-/// Changes the normal load of a contact.
+/// Changes the normal load of a contact. An HBVIB_CUBIC has none, which is HBVIB_E_ARGUMENT.
 ///
 /// id       number from hbvib_model_add_contact.
 /// preload  force, >= 0; infinite sticks for ever.
@@ -139,7 +151,8 @@ pub unsafe extern "C" fn hbvib_model_set_preload(model: *mut hbvib_model, id: i6
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
-/// samples     0: events are located exactly; else samples per period, at least 2H + 1.
+/// samples     0: events are located exactly; else samples per period, at least 2H + 1. A law
+///             without events (HBVIB_CUBIC) is exact either way.
 /// motion      H + 1 complex numbers Y_0 .. Y_H; the imaginary part of Y_0 has no effect.
 /// motion_len  complex numbers in it, H + 1.
 /// force       receives H + 1 complex numbers F_0 .. F_H.

@@ -94,6 +94,8 @@ pub struct hbvib_mode_info {
     pub multiplicity: i64,
     /// Degree of freedom whose fundamental is real.
     pub reference_dof: i64,
+    /// Waves per turn of the fundamental, with their sense: the engine order of the wave.
+    pub engine_order: i64,
     /// -1: the parameter measures the modal amplitude; else this contact's motion.
     pub amplitude_contact: i64,
     /// Angular frequency of the linear mode without damping.
@@ -105,7 +107,7 @@ pub struct hbvib_mode_info {
 
 unsafe impl Described for hbvib_mode_info {
     const NAME: &'static str = "hbvib_mode_info";
-    const FIRST: usize = 56;
+    const FIRST: usize = 64;
 
     fn filled() -> Self {
         Self {
@@ -114,6 +116,7 @@ unsafe impl Described for hbvib_mode_info {
             mode_index: 0,
             multiplicity: 0,
             reference_dof: 0,
+            engine_order: 0,
             amplitude_contact: -1,
             omega: 0.0,
             linear_up_to: 0.0,
@@ -209,6 +212,7 @@ pub unsafe extern "C" fn hbvib_branch_mode_info(
             mode_index: info.index as i64,
             multiplicity: info.multiplicity as i64,
             reference_dof: info.reference_dof as i64,
+            engine_order: info.engine_order,
             amplitude_contact: match info.amplitude {
                 Amplitude::Modal => -1,
                 Amplitude::Contact(id) => id as i64,

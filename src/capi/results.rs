@@ -27,9 +27,9 @@ pub struct hbvib_reduction {
     pub coordinates: i64,
     /// Contacts in the model.
     pub contacts: i64,
-    /// Contacts that became linear springs (infinite slip limit).
+    /// Contacts that became linear springs (infinite slip limit, no cubic term).
     pub never_slipping: i64,
-    /// Contacts without force (no stiffness or no slip limit).
+    /// Contacts without force (no stiffness, or no slip limit).
     pub inert: i64,
     /// Highest harmonic number H asked for.
     pub harmonics_asked: i64,

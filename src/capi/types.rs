@@ -115,6 +115,8 @@ pub enum hbvib_contact_kind {
     /// Elastic Coulomb friction with constant normal load in one direction: a spring kt in series
     /// with a slider of limit mu * preload.
     HBVIB_JENKINS = 1,
+    /// Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
+    HBVIB_CUBIC = 5,
 }
 
 /// Special degrees of freedom.
@@ -129,7 +131,7 @@ pub enum hbvib_special_dof {
 pub enum hbvib_contact_state {
     /// Without force.
     HBVIB_CONTACTS_FREE = 0,
-    /// Linear springs kt.
+    /// Linear springs kt, as at small motion.
     HBVIB_CONTACTS_STUCK = 1,
 }
 
@@ -153,7 +155,7 @@ pub enum hbvib_field {
     HBVIB_NEWTON_ITERATIONS = 6,
     /// Highest harmonic number carried.
     HBVIB_HARMONICS_USED = 8,
-    /// Share of the period that each contact slips: points x contacts.
+    /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
     HBVIB_SLIP_FRACTION = 9,
     /// Nonlinear modes only: log10 of the amplitude, the parameter.
     HBVIB_LOG10_AMPLITUDE = 10,
@@ -224,25 +226,27 @@ pub struct hbvib_matrix {
 pub struct hbvib_contact {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// HBVIB_JENKINS.
+    /// HBVIB_JENKINS or HBVIB_CUBIC.
     pub kind: i32,
-    /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND. Jenkins
-    /// uses the first, the others must be HBVIB_GROUND.
+    /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND. Both
+    /// laws use the first, the others must be HBVIB_GROUND.
     pub dof_a: [i64; 3],
     /// Side b, likewise.
     pub dof_b: [i64; 3],
     /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
     pub sector_offset: i64,
-    /// Tangential stiffness, force per length, >= 0.
+    /// Stiffness (tangential, at small motion), force per length, >= 0.
     pub kt: f64,
-    /// Normal stiffness; 0 for Jenkins.
+    /// Must be 0.
     pub kn: f64,
-    /// Friction coefficient, >= 0.
+    /// Friction coefficient of HBVIB_JENKINS, >= 0; 0 for others.
     pub mu: f64,
-    /// Normal load, force, >= 0; infinite sticks for ever.
+    /// Normal load of HBVIB_JENKINS, force, >= 0, infinite sticks for ever; 0 for others.
     pub preload: f64,
-    /// Normal clearance; 0 for Jenkins.
+    /// Must be 0.
     pub gap: f64,
+    /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
+    pub cubic: f64,
 }
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
@@ -259,7 +263,8 @@ pub struct hbvib_solver_options {
     pub harmonics: i64,
     /// Cap on H where the tolerance decides.
     pub max_harmonics: i64,
-    /// 0: stick-slip events are located exactly; else samples per period, at least 2H + 1.
+    /// 0: stick-slip events are located exactly; else samples per period, at least 2H + 1. Laws
+    /// without events (HBVIB_CUBIC) are exact either way.
     pub samples: i64,
     /// First arc-length step in scaled unknowns; 0 = automatic.
     pub step: f64,

@@ -9,6 +9,8 @@
 //! move the contact, so that neither the free nor the stuck resonances of an undamped structure
 //! are singular. The whole motion follows as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
+pub mod block;
+mod coordinates;
 pub mod dynamic;
 pub mod flexibility;
 pub mod interpolation;
@@ -16,15 +18,16 @@ pub mod modal;
 pub mod poles;
 pub mod tables;
 
-use crate::contact::Law;
+use crate::contact::{Law, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
-use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, Wave, relative_row};
 use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, SolverOptions};
+use block::harmonic_block;
+pub use block::{Artificial, HarmonicBlock};
+use coordinates::{gather, raise_for_springs};
 use flexibility::Workspace;
 use num_complex::Complex64;
 
@@ -37,7 +40,7 @@ pub enum Reference {
     /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, damped structure or not.
     Complex,
     /// kt: contacts that stick drop out of Newton's method. The poles are the resonances of the
-    /// stuck structure, so this is for damped structures.
+    /// stuck structure, so this is for damped structures. Cubic springs never drop out.
     Stuck,
 }
 
@@ -47,51 +50,6 @@ impl Reference {
             Self::Stuck => stiffness.into(),
             Self::Complex if number == 0 => (0.5 * stiffness).into(),
             Self::Complex => Complex64::new(0.5 * stiffness, 0.5 * stiffness),
-        }
-    }
-}
-
-/// Matrix of the artificial damping of a nonlinear mode; see [`dynamic`].
-#[derive(Clone, Debug)]
-pub enum Artificial {
-    /// A forced response has none.
-    None,
-    /// M, which every harmonic has.
-    Mass,
-    /// K of the structure alone, at the entries of the pattern.
-    Stiffness(Vec<Complex64>),
-}
-
-/// What one harmonic sees of the structure.
-#[derive(Clone, Debug)]
-pub struct HarmonicBlock {
-    /// Harmonic number h.
-    pub number: usize,
-    /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
-    pub reference: Csc,
-    /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
-    pub stiffness: Vec<Complex64>,
-    /// C_h at the entries of the pattern.
-    pub damping: Vec<Complex64>,
-    /// M_h at the entries of the pattern.
-    pub mass: Vec<Complex64>,
-    /// The artificial damping.
-    pub artificial: Artificial,
-    /// F_h in units of the length scale.
-    pub force: Vec<Complex64>,
-    /// Rows of W, one per relative coordinate.
-    pub rows: Vec<Row>,
-}
-
-impl HarmonicBlock {
-    /// y = M x
-    pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
-        y.fill(Complex64::ZERO);
-        let pattern = &self.reference;
-        for (j, x) in x.iter().enumerate() {
-            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                y[pattern.row_idx[at]] += self.mass[at] * x;
-            }
         }
     }
 }
@@ -116,7 +74,8 @@ pub struct Condensed {
     length: f64,
     blocks: Vec<HarmonicBlock>,
     laws: Vec<PlacedLaw>,
-    /// Sum of the contact stiffnesses per coordinate.
+    /// Stiffness per coordinate from which κ is made: the sum of kt of its contacts, or more where
+    /// one is a cubic spring.
     stiffness: Vec<f64>,
     reference: Reference,
     contacts: usize,
@@ -137,9 +96,9 @@ pub struct Reduction {
     pub coordinates: usize,
     /// Contacts in the model.
     pub contacts: usize,
-    /// Contacts that became linear springs (infinite slip limit).
+    /// Contacts that became linear springs (infinite slip limit, no cubic term).
     pub never_slipping: usize,
-    /// Contacts without force (no stiffness or no slip limit).
+    /// Contacts without force (no stiffness, or no slip limit).
     pub inert: usize,
     /// Highest harmonic number asked for.
     pub harmonics_asked: usize,
@@ -175,7 +134,7 @@ impl Condensed {
             // Without forces nothing moves; the fundamental carries the zero solution.
             forced.push(usize::from(options.harmonics > 0));
         }
-        let (mut condensed, contacts) = Self::unscaled(model, options, &forced, None)?;
+        let (mut condensed, contacts) = Self::unscaled(model, options, &forced, omega, None)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
         // underflows whatever the units.
         let largest = model
@@ -215,7 +174,8 @@ impl Condensed {
         form: DampingForm,
         shape: &[Complex64],
     ) -> Result<(Self, f64)> {
-        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], Some(form))?;
+        // A mode has a linear frequency, so the structure holds its springs by stiffness.
+        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], 0.0, Some(form))?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
         let motion = rows
@@ -225,25 +185,23 @@ impl Condensed {
         Ok((condensed, motion))
     }
 
-    /// All but the scale of lengths: no forces and no laws yet. Returns the coordinate of each
+    /// All but the scale of lengths: no forces and no laws yet; `omega` tells the size of inertia. Returns the coordinate of each
     /// active contact as well.
     fn unscaled(
         model: &Model,
         options: &SolverOptions,
         forced: &[usize],
+        omega: f64,
         form: Option<DampingForm>,
     ) -> Result<(Self, Vec<(usize, usize)>)> {
         let mut inert = 0;
         let mut never_slipping = Vec::new();
         let mut active = Vec::new();
         for (i, contact) in model.contacts().iter().enumerate() {
-            let limit = contact.slip_limit();
-            if contact.kt == 0.0 || limit == 0.0 {
-                inert += 1;
-            } else if limit.is_infinite() {
-                try_push(&mut never_slipping, i, "the contacts")?;
-            } else {
-                try_push(&mut active, i, "the contacts")?;
+            match contact.role() {
+                Role::Inert => inert += 1,
+                Role::Spring => try_push(&mut never_slipping, i, "the contacts")?,
+                Role::Active => try_push(&mut active, i, "the contacts")?,
             }
         }
         let odd = active.iter().all(|&i| Law::new(&model.contacts()[i], 1.0).is_odd());
@@ -259,6 +217,14 @@ impl Condensed {
         for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
             stiffness[coordinate] += model.contacts()[contact].kt;
         }
+        raise_for_springs(
+            model,
+            omega,
+            &set,
+            &never_slipping,
+            (&active, &coordinate_of),
+            &mut stiffness,
+        )?;
         let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && form.is_none() {
@@ -379,6 +345,12 @@ impl Condensed {
         self.reference.kappa(self.stiffness[coordinate], self.blocks[i].number)
     }
 
+    /// Stiffness of a coordinate from which κ is made.
+    #[must_use]
+    pub fn stiffness(&self, coordinate: usize) -> f64 {
+        self.stiffness[coordinate]
+    }
+
     /// The reference stiffness that was chosen.
     #[must_use]
     pub fn reference(&self) -> Reference {
@@ -402,79 +374,4 @@ impl Condensed {
             unknowns: self.coordinates() * self.set.packed_len(),
         }
     }
-}
-
-/// Gathers active contacts on unique relative coordinates: per active contact its coordinate, and
-/// per coordinate one contact that stands for it.
-fn gather(model: &Model, active: &[usize]) -> Result<(Vec<usize>, Vec<usize>)> {
-    let sectors = model.structure().sectors() as i128;
-    let key = |position: usize| {
-        let c = &model.contacts()[active[position]];
-        (c.dof_a, c.dof_b, i128::from(c.sector_offset).rem_euclid(sectors))
-    };
-    let mut order = try_vec(active.len(), 0, "the contacts")?;
-    for (i, o) in order.iter_mut().enumerate() {
-        *o = i;
-    }
-    order.sort_by_key(|&i| key(i));
-    let mut coordinate_of = try_vec(active.len(), 0, "the contacts")?;
-    let mut representatives = Vec::new();
-    for (k, &i) in order.iter().enumerate() {
-        if k == 0 || key(i) != key(order[k - 1]) {
-            try_push(&mut representatives, active[i], "the contacts")?;
-        }
-        coordinate_of[i] = representatives.len() - 1;
-    }
-    Ok((coordinate_of, representatives))
-}
-
-fn harmonic_block(
-    model: &Model,
-    number: usize,
-    never_slipping: &[usize],
-    representatives: &[usize],
-    kappa: impl Fn(usize) -> Complex64,
-) -> Result<HarmonicBlock> {
-    let structure = model.structure();
-    let n = model.ndof();
-    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
-    let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
-    let mut rows = try_vec(representatives.len(), [None; 2], "the contacts")?;
-    for (r, &i) in rows.iter_mut().zip(representatives) {
-        let contact = &model.contacts()[i];
-        let phase = structure.phase(number, contact.sector_offset);
-        *r = relative_row(contact.dof_a, contact.dof_b, phase);
-    }
-    let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
-    let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
-    let mut references = Vec::new();
-    for (c, row) in rows.iter().enumerate() {
-        for &(p, a) in row.iter().flatten() {
-            for &(q, b) in row.iter().flatten() {
-                try_push(&mut references, (p, q, a.conj() * kappa(c) * b), "the contacts")?;
-            }
-        }
-    }
-    let references = Csc::from_triplets(n, n, references)?;
-    // Zero factors add the pattern alone.
-    let (one, zero) = (Complex64::ONE, Complex64::ZERO);
-    let reference = Csc::sum(
-        n,
-        &[
-            (one, &stiffness, Form::Plain),
-            (one, &references, Form::Plain),
-            (zero, &damping, Form::Plain),
-            (zero, &mass, Form::Plain),
-        ],
-    )?;
-    Ok(HarmonicBlock {
-        number,
-        damping: damping.aligned(&reference)?,
-        mass: mass.aligned(&reference)?,
-        stiffness: stiffness.aligned(&reference)?,
-        reference,
-        artificial: Artificial::None,
-        force: try_vec(n, Complex64::ZERO, "the forces")?,
-        rows,
-    })
 }

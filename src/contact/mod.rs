@@ -1,21 +1,37 @@
 //! Contact laws: what a host says of a contact, and the vocabulary that every law speaks.
 //!
 //! A law turns a periodic motion into [`Piece`]s, intervals on which its force is affine in the
-//! motion. Everything after that (Fourier coefficients, Jacobian) is the same for all laws and
-//! lives in [`crate::aft`].
+//! motion; a [`Smooth`] law has none and gives the spectrum of its stiffness. Everything after that
+//! (Fourier coefficients, Jacobian) is the same for all laws and lives in [`crate::aft`].
 
+pub mod cubic;
 pub mod jenkins;
 
 use crate::error::{Result, fail};
 use crate::fourier::Extremum;
 use crate::harmonics::HarmonicSet;
+use cubic::Cubic;
 use jenkins::Jenkins;
+use num_complex::Complex64;
 
 /// Which law a contact obeys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactKind {
     /// Elastic Coulomb friction with constant normal load in one direction.
     Jenkins,
+    /// Spring with a cubic term: f = kt·y + cubic·y³.
+    Cubic,
+}
+
+/// What a contact is for a solver.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Without force at any motion.
+    Inert,
+    /// A linear spring of stiffness kt at any motion.
+    Spring,
+    /// Nonlinear; of stiffness kt at small motion.
+    Active,
 }
 
 /// A contact between two degrees of freedom, or between one and the ground.
@@ -29,12 +45,14 @@ pub struct Contact {
     pub dof_b: Option<usize>,
     /// Side b lies in sector s + offset (cyclic models).
     pub sector_offset: i64,
-    /// Tangential stiffness, force per length, at least 0.
+    /// Stiffness at small motion, force per length, at least 0.
     pub kt: f64,
-    /// Friction coefficient, at least 0.
+    /// Friction coefficient, at least 0; 0 for a cubic spring.
     pub mu: f64,
-    /// Normal load, force, at least 0; infinite sticks for ever.
+    /// Normal load, force, at least 0; infinite sticks for ever; 0 for a cubic spring.
     pub preload: f64,
+    /// Force per length cubed of a cubic spring, of any sign; 0 for a Jenkins contact.
+    pub cubic: f64,
 }
 
 impl Contact {
@@ -49,6 +67,30 @@ impl Contact {
             kt,
             mu,
             preload,
+            cubic: 0.0,
+        }
+    }
+
+    /// A spring f = kt·y + k3·y³ between degree of freedom `a` and `b` (or the ground), hardening for
+    /// k3 > 0, softening for k3 < 0.
+    #[must_use]
+    pub fn cubic(a: usize, b: Option<usize>, kt: f64, k3: f64) -> Self {
+        Self {
+            kind: ContactKind::Cubic,
+            cubic: k3,
+            ..Self::jenkins(a, b, kt, 0.0, 0.0)
+        }
+    }
+
+    /// What the constants of the law make of the contact.
+    #[must_use]
+    pub fn role(&self) -> Role {
+        match self.kind {
+            ContactKind::Jenkins if self.kt == 0.0 || self.slip_limit() == 0.0 => Role::Inert,
+            ContactKind::Jenkins if self.slip_limit().is_infinite() => Role::Spring,
+            ContactKind::Cubic if self.cubic == 0.0 && self.kt == 0.0 => Role::Inert,
+            ContactKind::Cubic if self.cubic == 0.0 => Role::Spring,
+            ContactKind::Jenkins | ContactKind::Cubic => Role::Active,
         }
     }
 
@@ -75,6 +117,21 @@ impl Contact {
                 return fail!(Argument, "contact: {name} = {value}, needs a number >= 0");
             }
         }
+        if !self.cubic.is_finite() {
+            return fail!(NotFinite, "contact: cubic = {}, needs a finite number", self.cubic);
+        }
+        let unused: &[_] = match self.kind {
+            ContactKind::Jenkins => &[("cubic", self.cubic, "Jenkins contact")],
+            ContactKind::Cubic => &[
+                ("mu", self.mu, "cubic spring"),
+                ("preload", self.preload, "cubic spring"),
+            ],
+        };
+        for &(name, value, kind) in unused {
+            if value != 0.0 {
+                return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
+            }
+        }
         Ok(())
     }
 }
@@ -97,11 +154,22 @@ pub struct Piece {
     pub offset: f64,
 }
 
+/// A law whose force is linear·x plus a term that is homogeneous in x: f(s·x) = s^degree·f(x).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Smooth {
+    /// Stiffness of the linear term.
+    pub linear: f64,
+    /// Degree of the other term.
+    pub degree: f64,
+}
+
 /// Law of one scalar relative motion. All quantities are in the solver's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Law {
     /// Elastic Coulomb friction.
     Jenkins(Jenkins),
+    /// Linear and cubic spring.
+    Cubic(Cubic),
 }
 
 impl Law {
@@ -114,6 +182,10 @@ impl Law {
                 stiffness: contact.kt,
                 limit: contact.slip_limit() / length,
             }),
+            ContactKind::Cubic => Self::Cubic(Cubic {
+                linear: contact.kt,
+                cubic: contact.cubic * length * length,
+            }),
         }
     }
 
@@ -121,12 +193,14 @@ impl Law {
     #[must_use]
     pub fn is_odd(&self) -> bool {
         match self {
-            Self::Jenkins(_) => true,
+            Self::Jenkins(_) | Self::Cubic(_) => true,
         }
     }
 
-    /// The same law with its slip limit multiplied by `factor`, the homotopy from stuck (large
-    /// factor) to the law as given (1).
+    /// The law as seen at a motion `factor` times smaller: eased(s)(x) = s·law(x/s). A large factor
+    /// gives the law at rest, a linear spring; 1 gives the law itself; between them runs the homotopy
+    /// that finds a first point. From the identity follows, for any law with force F and Jacobian J,
+    /// dF/d(ln s) = F − J X.
     #[must_use]
     pub fn eased(&self, factor: f64) -> Self {
         match *self {
@@ -134,31 +208,57 @@ impl Law {
                 limit: law.limit * factor,
                 ..law
             }),
+            Self::Cubic(law) => Self::Cubic(Cubic {
+                cubic: law.cubic / (factor * factor),
+                ..law
+            }),
         }
     }
 
-    /// The factor at which a motion of the given half range just sticks.
+    /// The factor of [`Self::eased`] at which the law just is a linear spring for a motion of the given
+    /// half range (max − min)/2 and mean: friction sticks, a cubic term is small against the
+    /// stiffness `reference`.
     #[must_use]
-    pub fn sticking_factor(&self, half_range: f64) -> f64 {
+    pub fn sticking_factor(&self, half_range: f64, mean: f64, reference: f64) -> f64 {
         match self {
             Self::Jenkins(law) => law.stiffness * half_range / law.limit,
+            Self::Cubic(law) => law.sticking_factor(half_range + mean.abs(), reference),
+        }
+    }
+
+    /// For a law without events: fills the spectrum Sₙ = (1/2π)∫ s(x(τ)) e^{−inτ} dτ, n ≥ 0, of the
+    /// tangent stiffness s of its homogeneous term. `None`, and nothing is written: the law has
+    /// events and speaks in pieces.
+    pub fn nonlinear_spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]) -> Option<Smooth> {
+        match self {
+            Self::Jenkins(_) => None,
+            Self::Cubic(law) => {
+                law.spectrum(set, motion, spectrum);
+                Some(Smooth {
+                    linear: law.linear,
+                    degree: 3.0,
+                })
+            }
         }
     }
 
     /// Exact pieces over one turn (half a turn for sets of odd harmonics) from the reversals of
-    /// the motion.
+    /// the motion; none for a smooth law.
     pub fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>) {
         pieces.clear();
         match self {
             Self::Jenkins(law) => law.pieces(set, motion, reversals, pieces),
+            Self::Cubic(_) => {}
         }
     }
 
-    /// Pieces in sample numbers over one turn from equidistant samples of the motion.
+    /// Pieces in sample numbers over one turn from equidistant samples of the motion; none for a
+    /// smooth law.
     pub fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
         pieces.clear();
         match self {
             Self::Jenkins(law) => law.sampled_pieces(samples, pieces),
+            Self::Cubic(_) => {}
         }
     }
 }

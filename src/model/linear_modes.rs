@@ -3,6 +3,7 @@
 use super::Model;
 use super::spring::Wave;
 use super::structure::MatrixKind;
+use crate::contact::Role;
 use crate::error::{Result, check_memory, fail};
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
@@ -16,7 +17,7 @@ use num_complex::Complex64;
 pub enum ContactState {
     /// Without force.
     Free,
-    /// Linear springs of stiffness kt.
+    /// Linear springs of stiffness kt, as at small motion.
     Stuck,
 }
 
@@ -75,7 +76,7 @@ impl Model {
         let stuck = self
             .contacts()
             .iter()
-            .filter(|c| contacts == ContactState::Stuck && c.slip_limit() > 0.0);
+            .filter(|c| contacts == ContactState::Stuck && c.role() != Role::Inert);
         self.sprung_stiffness(wave, stuck)
     }
 

@@ -9,7 +9,7 @@ pub mod spring;
 pub mod start_mode;
 pub mod structure;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, fail, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use excitation::Excitation;
@@ -210,12 +210,19 @@ impl Model {
     /// Changes the normal load of a contact.
     ///
     /// # Errors
-    /// `Index` for an unknown contact, else as [`Contact::check_constants`].
+    /// `Index` for an unknown contact, `Argument` for one without normal load, else as
+    /// [`Contact::check_constants`].
     pub fn set_preload(&mut self, id: usize, preload: f64) -> Result<()> {
         let count = self.contacts.len();
         let Some(contact) = self.contacts.get_mut(id) else {
             return fail!(Index, "contact id = {id}, but the model has {count} contacts");
         };
+        if contact.kind == ContactKind::Cubic {
+            return fail!(
+                Argument,
+                "preload of contact id = {id}, but that is a cubic spring, which has none"
+            );
+        }
         let changed = Contact { preload, ..*contact };
         changed.check_constants()?;
         *contact = changed;

@@ -108,7 +108,7 @@ fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>>
             try_push(&mut candidates, x, WHAT)?;
         }
     }
-    let first = take_longest(pencil, &mut candidates)?;
+    let first = take_longest(pencil, &mut candidates);
     let weighted = times(&pencil.mass, &first)?;
     for _ in 0..2 {
         for x in &mut candidates {
@@ -118,7 +118,7 @@ fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>>
             }
         }
     }
-    let second = take_longest(pencil, &mut candidates)?;
+    let second = take_longest(pencil, &mut candidates);
     let mut wave = first;
     for (w, s) in wave.iter_mut().zip(&second) {
         *w = Complex64::new(w.re, s.re) * FRAC_1_SQRT_2;
@@ -136,7 +136,7 @@ fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>>
 }
 
 /// Takes out the vector of largest modal mass and normalises it.
-fn take_longest(pencil: &Pencil, candidates: &mut Vec<Vec<Complex64>>) -> Result<Vec<Complex64>> {
+fn take_longest(pencil: &Pencil, candidates: &mut Vec<Vec<Complex64>>) -> Vec<Complex64> {
     let (mut longest, mut square) = (0, 0.0);
     for (i, x) in candidates.iter().enumerate() {
         let s = quadratic(&pencil.mass, x);
@@ -148,5 +148,5 @@ fn take_longest(pencil: &Pencil, candidates: &mut Vec<Vec<Complex64>>) -> Result
     for z in &mut x {
         *z /= square.sqrt();
     }
-    Ok(x)
+    x
 }

@@ -212,8 +212,11 @@ impl<'a> ContactForces<'a> {
         let mut largest = 0.0_f64;
         for placed in self.condensed.laws() {
             let c = placed.coordinate;
-            self.evaluator.prepare(set, &motion[c * m..(c + 1) * m]);
-            largest = largest.max(placed.law.sticking_factor(self.evaluator.half_range(set)));
+            let motion = &motion[c * m..(c + 1) * m];
+            self.evaluator.prepare(set, motion);
+            let mean = if set.has_mean() { motion[0] } else { 0.0 };
+            let (range, reference) = (self.evaluator.half_range(set), self.condensed.stiffness(c));
+            largest = largest.max(placed.law.sticking_factor(range, mean, reference));
         }
         largest
     }

@@ -30,6 +30,9 @@ const OMEGA_UNIT: f64 = 0.05;
 /// Change of D that weighs as much.
 const DAMPING_UNIT: f64 = 2e-3;
 
+/// Distance below the onset of slip, in log₁₀, at which contacts surely stick whatever the rounding.
+const ONSET_ROUNDING: f64 = 1e-9;
+
 /// What fixes amplitude and phase of a mode.
 #[derive(Clone, Debug)]
 pub struct Gauge {
@@ -125,20 +128,22 @@ impl<'a> Mode<'a> {
         }
     }
 
-    /// log₁₀ of the amplitude up to which the linear mode is (nearly) the solution.
+    /// log₁₀ of the amplitude up to which all laws are linear; −∞ where one of them never is.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
     pub fn linear_up_to(&mut self) -> Result<f64> {
         let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
         self.linear_start(&mut u);
-        Ok(-self.forces.sticking_factor(&u[..u.len() - 2]).log10())
-    }
-
-    /// Whether all laws are linear at the linear mode of this log₁₀ amplitude.
-    pub fn is_linear_at(&mut self, log10: f64) -> Result<bool> {
-        let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
-        self.linear_start(&mut u);
-        self.forces.ease(10f64.powf(-log10));
-        self.forces.evaluate(&u[..u.len() - 2]);
-        Ok(self.forces.all_stuck())
+        let motion = &u[..u.len() - 2];
+        let onset = -self.forces.sticking_factor(motion).log10();
+        self.forces.ease(10f64.powf(ONSET_ROUNDING - onset));
+        self.forces.evaluate(motion);
+        Ok(if self.forces.all_stuck() {
+            onset
+        } else {
+            f64::NEG_INFINITY
+        })
     }
 
     fn fundamental(&self) -> usize {

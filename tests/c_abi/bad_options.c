@@ -115,7 +115,7 @@ static void struct_sizes(void)
         EXPECT("66", s.struct_size == bad[i] && s.harmonics == 9);
     }
     REFUSED("66", hbvib_matrix_init((hbvib_matrix *)&larger, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
-    REFUSED("66", hbvib_contact_init((hbvib_contact *)&larger, 96), HBVIB_E_STRUCT_SIZE, 2, "needs 104");
+    REFUSED("66", hbvib_contact_init((hbvib_contact *)&larger, 96), HBVIB_E_STRUCT_SIZE, 2, "needs 112");
     REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 56");
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 40");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
@@ -123,7 +123,7 @@ static void struct_sizes(void)
     REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_point_init(&point, 80), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
-    REFUSED("66", hbvib_mode_info_init(&info, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 56");
+    REFUSED("66", hbvib_mode_info_init(&info, 56), HBVIB_E_STRUCT_SIZE, 2, "needs 64");
     memset(&s, 0xAA, sizeof s);
     REFUSED("67", with(&s, &o, NULL), HBVIB_E_STRUCT_SIZE, 2, "hbvib_solver_options_init");
     memset(&o, 0xAA, sizeof o);

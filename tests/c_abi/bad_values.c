@@ -189,6 +189,37 @@ static void contacts(hbvib_model *model)
     c.gap = NAN;
     REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "gap = NaN");
     c = ring_contact();
+    c.cubic = 2;
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "cubic = 2, needs 0");
+    c.struct_size = 104; /* compiled before the field was there: not read */
+    {
+        double y[4] = {0, 0, 1e-4, 0}, f[4];
+        WORKS("54", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, NULL, 0));
+    }
+    c = cubic_contact();
+    c.kn = 1;
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "kn = 1");
+    c = cubic_contact();
+    c.gap = -1;
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "gap = -1");
+    c = cubic_contact();
+    c.mu = 0.3;
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "mu = 0.3, needs 0");
+    c = cubic_contact();
+    c.preload = INFINITY;
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "preload = inf, needs 0");
+    c = cubic_contact();
+    c.dof_b[1] = 1;
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "dof_b");
+    for (i = 0; i < 4; i++) { /* rows 43, 44: its cubic term has any sign */
+        c = cubic_contact();
+        c.kt = bad[i];
+        REFUSED("43", hbvib_model_add_contact(model, &c, &id), i == 0 ? HBVIB_E_ARGUMENT : HBVIB_E_NOT_FINITE, 2, "kt");
+        c = cubic_contact();
+        c.cubic = bad[i];
+        if (i > 0) REFUSED("44", hbvib_model_add_contact(model, &c, &id), HBVIB_E_NOT_FINITE, 2, "cubic");
+    }
+    c = ring_contact();
     c.dof_a[2] = 1;
     REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "dof_a");
     c = ring_contact();
@@ -218,6 +249,17 @@ static void contacts(hbvib_model *model)
         c.preload = 1e300;
         WORKS("45", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, NULL, 0));
         EXPECT("45", f[2] == 5e3 && f[3] == 0);
+    }
+    { /* the describing function of a cubic spring, and no preload on it */
+        double y[4] = {0, 0, 0, 2}, f[4], jac[16];
+        hbvib_model *copy = NULL;
+        c = cubic_contact();
+        WORKS("43", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, jac, 16));
+        EXPECT("43", f[2] == 0 && f[3] == (5 - 0.75 * 2 * 4) * 2);
+        WORKS("43", hbvib_model_clone(model, &copy));
+        WORKS("43", hbvib_model_add_contact(copy, &c, NULL));
+        REFUSED("44", hbvib_model_set_preload(copy, 1, 1), HBVIB_E_ARGUMENT, 3, "cubic spring");
+        WORKS("43", hbvib_model_free(copy));
     }
     { /* row 42: equal contacts add up. Row 49: no contact is a linear problem. Row 46: kt = 1e30. */
         hbvib_model *copy = NULL;

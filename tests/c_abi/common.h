@@ -58,6 +58,19 @@ static inline hbvib_contact ring_contact(void)
     return c;
 }
 
+/* f = 5 y - 2 y^3 between the same degrees of freedom. */
+static inline hbvib_contact cubic_contact(void)
+{
+    hbvib_contact c;
+    if (hbvib_contact_init(&c, sizeof c) != HBVIB_OK) abort();
+    c.kind = HBVIB_CUBIC;
+    c.dof_a[0] = 2;
+    c.dof_b[0] = 3;
+    c.kt = 5;
+    c.cubic = -2;
+    return c;
+}
+
 static const double MASS[16] = {0.2, 0, 0, 0, 0, 0.3, 0, 0, 0, 0, 1.2, 0, 0, 0, 0, 0.03};
 static const double STIFFNESS[16] = {2e6, -2e6, 0, 0, -2e6, 3e6, -1e6, 0, 0, -1e6, 101.6e6, 0, 0, 0, 0, 4e7};
 static const double COUPLING[16] = {0, 0, 0, 0, 0, 0, 0, 0, 0, 0, -5e7, 0, 0, 0, 0, -2e7};

@@ -1,0 +1,220 @@
+//! Forced responses from a nonlinear mode: near resonance the structure moves like one oscillator whose
+//! frequency and damping follow the amplitude (single nonlinear mode theory: Krack, Panning-von
+//! Scheidt & Wallaschek 2013, doi:10.1115/1.4024404).
+//!
+//! With a the modal amplitude and X₁ the fundamental of the mode, which moves like a φ,
+//!
+//! > |ω₀² − Ω² + 2iDω₀Ω| a² = |X₁ᴴ F|,
+//! > Ω² = ω₀²(1 − 2D²) ± (|X₁ᴴF|²/a⁴ − 4D²ω₀⁴(1 − D²))^½:
+//!
+//! two frequencies at each amplitude, and the resonance where the root vanishes.
+
+mod oscillator;
+mod refinement;
+
+use crate::branch::mode::ModeData;
+use crate::branch::{Branch, Recovery};
+use crate::error::{Result, fail, try_push, try_vec};
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
+use crate::options::SynthesisOptions;
+use num_complex::Complex64;
+use oscillator::{Load, State};
+use refinement::Refinement;
+
+/// A synthesised response at one frequency.
+#[derive(Clone, Copy, Debug)]
+pub struct SynthesisPoint {
+    /// Angular frequency Ω of the force.
+    pub omega: f64,
+    /// Fundamental of the branch's response degree of freedom, with the phase against the force.
+    pub response: Complex64,
+    /// Modal amplitude.
+    pub modal_amplitude: f64,
+    /// Natural angular frequency ω₀ at this amplitude.
+    pub natural_omega: f64,
+    /// Damping ratio at this amplitude, with what the options add.
+    pub damping_ratio: f64,
+}
+
+/// Where the synthesis may mislead.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Validity {
+    /// Distance to the nearest other natural frequency of the wave, contacts anywhere between stuck
+    /// and free, over the half-power bandwidth 2DΩ; infinite where no other mode is known.
+    pub other_mode: f64,
+    /// Share of the fundamental in the kinetic energy.
+    pub fundamental_share: f64,
+    /// Several modes share the frequency of the linear mode.
+    pub repeated: bool,
+    /// The branch passes this amplitude more than once.
+    pub folded: bool,
+}
+
+/// Share of the kinetic energy outside of the fundamental above which a higher harmonic resonates.
+const OUTSIDE: f64 = 0.01;
+
+impl Validity {
+    /// Another mode lies within the bandwidth of this one, or shares its frequency.
+    #[must_use]
+    pub fn another_mode(&self) -> bool {
+        self.repeated || self.other_mode <= 1.0
+    }
+
+    /// The mode resonates with another one in a higher harmonic: more than 1 % of its kinetic energy
+    /// lies there, or it has several forms at this amplitude.
+    #[must_use]
+    pub fn internal_resonance(&self) -> bool {
+        self.folded || self.fundamental_share < 1.0 - OUTSIDE
+    }
+}
+
+/// A synthesised resonance.
+#[derive(Clone, Copy, Debug)]
+pub struct SynthesisPeak {
+    /// The response there.
+    pub at: SynthesisPoint,
+    /// log₁₀ of the amplitude as the branch measures it.
+    pub log10_amplitude: f64,
+    /// Whether amplitude rises with force here. Where it does not, the resonance bounds a detached
+    /// response from below.
+    pub rising: bool,
+    /// Where this may mislead.
+    pub validity: Validity,
+}
+
+/// A synthesised response.
+#[derive(Clone, Debug)]
+pub struct Synthesis {
+    /// The response by rising amplitude on the lower flank, then by falling amplitude on the upper
+    /// one, as far as the branch reaches.
+    pub points: Vec<SynthesisPoint>,
+    /// Resonances, refined on the mode's equations, in the order of the branch. None where the force
+    /// is too small or too large for the amplitudes of the branch.
+    pub peaks: Vec<SynthesisPeak>,
+}
+
+const WHAT: &str = "the synthesised response";
+
+/// Synthesises the response to the forces of `model` in the fundamental from a nonlinear mode.
+///
+/// `model` is the one that the mode was computed from, or one with other forces or damping. Forces in
+/// other harmonics play no part.
+///
+/// # Errors
+/// `Unsupported` for a branch that is no mode; `Dimension` or `Argument` for a model of another size
+/// or another wave, without forces in the fundamental, or options out of range.
+pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Synthesis> {
+    options.check()?;
+    let Some(data) = branch.mode_data() else {
+        return fail!(
+            Unsupported,
+            "the branch is a forced response; responses are synthesised from a nonlinear mode"
+        );
+    };
+    check_model(branch, data, model)?;
+    let mut force = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
+    model.excitation().add_to(1, options.force_factor, &mut force);
+    if force.iter().all(|f| *f == Complex64::ZERO) {
+        return fail!(Argument, "the model has no force in the fundamental");
+    }
+    let damping = if options.model_damping {
+        Some(model.structure().wave_matrix(MatrixKind::Damping, 1)?)
+    } else {
+        None
+    };
+    let load = Load {
+        force,
+        damping,
+        ratio: options.damping_ratio,
+        response_dof: branch.response_dof(),
+    };
+    let mut states = Vec::new();
+    let mut recovery = Recovery::new(branch)?;
+    let fundamental = branch.carried().iter().position(|&h| h == 1).unwrap_or(0);
+    let mut x = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
+    for point in 0..branch.points() {
+        recovery.go_to(point);
+        recovery.harmonic(fundamental, &mut x)?;
+        let state = load.state(branch.omega()[point], data.point(point), &x)?;
+        try_push(&mut states, state, WHAT)?;
+    }
+    let mut synthesis = Synthesis {
+        points: flanks(&states)?,
+        peaks: Vec::new(),
+    };
+    let mut refinement = Refinement::new(branch, data, &load)?;
+    for k in 1..states.len() {
+        let (a, b) = (states[k - 1].excess(), states[k].excess());
+        if (a < 0.0) == (b < 0.0) {
+            continue;
+        }
+        if let Some(state) = refinement.between(k - 1, a, b)? {
+            let peak = SynthesisPeak {
+                at: state.at_peak(),
+                log10_amplitude: state.log10,
+                rising: a < 0.0,
+                validity: validity(branch, data, &state),
+            };
+            try_push(&mut synthesis.peaks, peak, WHAT)?;
+        }
+    }
+    Ok(synthesis)
+}
+
+fn check_model(branch: &Branch, data: &ModeData, model: &Model) -> Result<()> {
+    if model.ndof() != branch.ndof() || model.structure().sectors() != branch.reduction().sectors {
+        return fail!(
+            Dimension,
+            "the model has {} degrees of freedom and {} sectors, the mode {} and {}",
+            model.ndof(),
+            model.structure().sectors(),
+            branch.ndof(),
+            branch.reduction().sectors
+        );
+    }
+    let (given, own) = (model.structure().engine_order(), data.info.engine_order);
+    if model.structure().fold(given) != model.structure().fold(own) {
+        return fail!(
+            Argument,
+            "the forces of engine order {given} do not excite the mode, which is a wave of engine order {own}"
+        );
+    }
+    Ok(())
+}
+
+/// Both flanks of the response.
+fn flanks(states: &[State]) -> Result<Vec<SynthesisPoint>> {
+    let mut points = Vec::new();
+    let lower = states.iter().map(|s| s.spread().and_then(|r| s.at(-r)));
+    let upper = states.iter().rev().map(|s| s.spread().and_then(|r| s.at(r)));
+    for point in lower.chain(upper).flatten() {
+        try_push(&mut points, point, WHAT)?;
+    }
+    Ok(points)
+}
+
+fn validity(branch: &Branch, data: &ModeData, state: &State) -> Validity {
+    let info = &data.info;
+    let omega = state.omega;
+    let bandwidth = 2.0 * state.damping.abs() * omega;
+    let mut distance = f64::INFINITY;
+    for (j, &stuck) in info.stuck.iter().enumerate().filter(|(j, _)| *j != info.index) {
+        // A mode of which nothing slips lies at its stuck frequency, else somewhere below.
+        let free = info.free.get(j).copied().unwrap_or(stuck);
+        let (low, high) = (stuck.min(free), stuck.max(free));
+        distance = distance.min((low - omega).max(omega - high).max(0.0));
+    }
+    let folds = branch.folds().iter().filter_map(|f| branch.mode_at(f.point));
+    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+    for fold in folds {
+        low = low.min(fold.log10_amplitude);
+        high = high.max(fold.log10_amplitude);
+    }
+    Validity {
+        other_mode: if distance == 0.0 { 0.0 } else { distance / bandwidth },
+        fundamental_share: state.fundamental_share,
+        repeated: info.multiplicity > 1,
+        folded: low <= state.log10 && state.log10 <= high,
+    }
+}
