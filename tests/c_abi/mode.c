@@ -264,6 +264,46 @@ static void repeated(void)
     WORKS("repeated", hbvib_model_free(model));
 }
 
+/* Damping of the structure adds its work; a cubic spring takes none, and is never linear. */
+static void losses(void)
+{
+    hbvib_model *model = two_masses(ONES, RISING, 2);
+    hbvib_solver_options s = three_harmonics();
+    hbvib_mode_options o = amplitudes(2, 3);
+    hbvib_contact c;
+    ending e = ends(the_model, &s, &o);
+    EXPECT("losses", e.point.structural_loss > 0 && e.point.friction_loss > 0);
+    EXPECT("losses", fabs(e.point.energy_damping_ratio / e.point.damping_ratio - 1) < 1e-9);
+
+    WORKS("cubic", hbvib_contact_init(&c, sizeof c));
+    c.kind = HBVIB_CUBIC;
+    c.dof_a[0] = 1;
+    c.cubic = 2;
+    WORKS("cubic", hbvib_model_add_contact(model, &c, NULL));
+    WORKS("cubic", hbvib_mode_options_init(&o, sizeof o));
+    o.mode_index = 1;
+    o.log10_start = -2;
+    o.log10_stop = 0;
+    s = solver_options();
+    s.harmonics = 1; /* omega^2 = k + 3/4 cubic amplitude^2 */
+    {
+        hbvib_branch *branch = NULL;
+        hbvib_mode_point p;
+        hbvib_mode_info info;
+        int64_t i;
+        WORKS("cubic", hbvib_nonlinear_mode(model, &s, &o, NULL, &branch));
+        info = mode_info(branch);
+        EXPECT("cubic", info.mode_index == 1 && info.omega == 2 && isinf(info.linear_up_to) && info.linear_up_to < 0);
+        for (i = 0; i < hbvib_branch_points(branch); i++) {
+            p = mode_point(branch, i);
+            EXPECT("cubic", fabs(p.omega / sqrt(4 + 1.5 * p.modal_amplitude * p.modal_amplitude) - 1) < 1e-12);
+            EXPECT("cubic", fabs(p.damping_ratio) < 1e-12 && fabs(p.energy_damping_ratio) < 1e-12);
+        }
+        WORKS("cubic", hbvib_branch_free(branch));
+    }
+    WORKS("cubic", hbvib_model_free(model));
+}
+
 typedef struct seen {
     double parameter[MOST_POINTS];
     int64_t calls, stop_at;
@@ -449,6 +489,7 @@ int main(int count, char **arguments)
     reference(arguments + 1);
     choices();
     repeated();
+    losses();
     cancelled();
     bad_options();
     bad_models();
