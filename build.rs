@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 13] = [
+const SOURCES: [&str; 14] = [
     "types",
     "boundary",
     "matrix",
@@ -18,6 +18,7 @@ const SOURCES: [&str; 13] = [
     "special",
     "energy",
     "mode_results",
+    "synthesis",
     "residual",
 ];
 

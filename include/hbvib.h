@@ -213,6 +213,19 @@ typedef enum {
   HBVIB_MODE_FIRST = 3,
 } hbvib_mode_multiple;
 
+/// Where a synthesised resonance may mislead: bits of a sum.
+typedef enum {
+  /// Nothing was found against it.
+  HBVIB_SYNTHESIS_VALID = 0,
+  /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear mode.
+  HBVIB_SYNTHESIS_ANOTHER_MODE = 1,
+  /// A higher harmonic holds more than 1 % of the kinetic energy, or the branch passes this
+  /// amplitude more than once.
+  HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
+  /// The amplitude falls as the force rises: a detached response begins here.
+  HBVIB_SYNTHESIS_FALLING = 4,
+} hbvib_synthesis_flag;
+
 /// Weights of log lines.
 typedef enum {
   /// No line at all.
@@ -561,6 +574,18 @@ typedef struct {
   /// linear.
   double linear_up_to;
 } hbvib_mode_info;
+
+/// Options of a synthesised response. Fill it by hbvib_synthesis_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1: add the damping of the model's C, for a mode that was computed without it; 0: do not.
+  int32_t model_damping;
+  /// Factor on all forces of the model, > 0.
+  double force_factor;
+  /// Damping ratio that is added to the mode's, between -1 and 1.
+  double damping_ratio;
+} hbvib_synthesis_options;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1086,6 +1111,67 @@ hbvib_status hbvib_branch_mode_point(const hbvib_branch *branch,
 /// Errors: HBVIB_E_UNSUPPORTED (the branch of a forced response), HBVIB_E_NULL,
 /// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
 hbvib_status hbvib_branch_mode_info(const hbvib_branch *branch, hbvib_mode_info *out);
+
+/// Fills the options of a synthesis with their defaults: the forces and the damping as they are.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_synthesis_options_init(hbvib_synthesis_options *o, size_t size_of_o);
+
+/// The response to the forces of a model in the fundamental, synthesised from a nonlinear mode: the
+/// structure moves near resonance like one oscillator whose frequency and damping follow the
+/// amplitude. Points come by rising amplitude below the resonance, then by falling amplitude above
+/// it, two for each point of the branch whose amplitude the force can hold.
+///
+/// branch           a nonlinear mode.
+/// model            the model of the mode, or one with other forces or damping; forces in other
+///                  harmonics play no part.
+/// options          NULL: the defaults.
+/// capacity         numbers that fit into each array; twice the points of the branch suffice.
+/// omega            receives the angular frequencies of the force, or NULL.
+/// response         receives the fundamentals of the branch's response degree of freedom, complex, in
+///                  phase with the force where real; or NULL.
+/// modal_amplitude  receives the modal amplitudes, or NULL.
+/// count            receives how many points there are, also when `capacity` is too small.
+/// Errors: HBVIB_E_UNSUPPORTED (branch is no mode), HBVIB_E_DIMENSION (capacity too small, a model of
+/// another size), HBVIB_E_ARGUMENT (options, a model whose forces excite another wave or none,
+/// overlapping arrays), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_synthesis(const hbvib_branch *branch,
+                                    const hbvib_model *model,
+                                    const hbvib_synthesis_options *options,
+                                    int64_t capacity,
+                                    double *omega,
+                                    double *response,
+                                    double *modal_amplitude,
+                                    int64_t *count);
+
+/// The resonances of a synthesised response, refined on the mode's equations, in the order of the
+/// branch; none where the force is too small or too large for its amplitudes.
+///
+/// branch, model, options  as for hbvib_branch_synthesis.
+/// capacity                numbers that fit into each array.
+/// omega                   receives their angular frequencies, or NULL.
+/// amplitude               receives the amplitudes |X_1| of the response degree of freedom, or NULL.
+/// log10_amplitude         receives the amplitudes as the branch measures them, log10, or NULL.
+/// damping_ratio           receives the damping ratios there, all included, or NULL.
+/// other_mode              receives the distance to the nearest other natural frequency of the wave
+///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// flags                   receives where they may mislead, sums of hbvib_synthesis_flag; or NULL.
+/// count                   receives how many there are, also when `capacity` is too small.
+/// Errors and threads: as for hbvib_branch_synthesis.
+hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
+                                          const hbvib_model *model,
+                                          const hbvib_synthesis_options *options,
+                                          int64_t capacity,
+                                          double *omega,
+                                          double *amplitude,
+                                          double *log10_amplitude,
+                                          double *damping_ratio,
+                                          double *other_mode,
+                                          int32_t *flags,
+                                          int64_t *count);
 
 /// Residual R_h = (K - h^2 omega^2 M + i h omega C) X_h + f_h - F_h of harmonic balance at a point
 /// of the caller, for hosts with a continuation of their own and for tests. Nothing is removed:

@@ -23,5 +23,6 @@ pub mod results;
 mod sized;
 pub mod solve;
 pub mod special;
+pub mod synthesis;
 pub mod tables;
 pub mod types;

@@ -51,7 +51,7 @@ impl Lists {
 }
 
 /// A pointer that may be NULL, but not misaligned.
-fn optional<T>((p, argument): (*mut T, i32), name: &str) -> Result<Option<*mut T>> {
+pub(super) fn optional<T>((p, argument): (*mut T, i32), name: &str) -> Result<Option<*mut T>> {
     if p.is_null() {
         return Ok(None);
     }
