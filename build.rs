@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 11] = [
+const SOURCES: [&str; 14] = [
     "types",
     "boundary",
     "matrix",
@@ -13,8 +13,11 @@ const SOURCES: [&str; 11] = [
     "contact",
     "tables",
     "solve",
+    "mode",
     "results",
+    "special",
     "energy",
+    "mode_results",
     "synthesis",
     "residual",
 ];

@@ -45,7 +45,8 @@ pub fn nonlinear_mode(
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
     solver.check()?;
-    range.check(model.ndof(), model.contacts().len())?;
+    let sectors = model.structure().sectors();
+    range.check(model.ndof(), model.contacts().len(), sectors)?;
     if solver.harmonics == 0 {
         return fail!(Argument, "harmonics = 0, a nonlinear mode needs at least 1");
     }
@@ -64,14 +65,6 @@ pub fn nonlinear_mode(
     match range.diameter {
         None => on_wave(model, solver, range, hooks),
         Some(diameter) => {
-            let sectors = model.structure().sectors();
-            if diameter > sectors / 2 {
-                return fail!(
-                    Argument,
-                    "diameter = {diameter}, needs 0 .. {} for {sectors} sectors",
-                    sectors / 2
-                );
-            }
             let mut model = model.try_clone()?;
             model.set_wave(diameter as i64);
             on_wave(&model, solver, range, hooks)
@@ -158,7 +151,7 @@ fn gauge(model: &Model, range: &ModeOptions<'_>, linear: &mut LinearMode) -> Res
             if motion <= NODE * largest {
                 return fail!(
                     Argument,
-                    "amplitude: the mode does not move contact {id}: relative motion {motion} of {largest}"
+                    "amplitude_contact = {id}: the mode does not move this contact: relative motion {motion} of {largest}"
                 );
             }
             for z in shape.iter_mut() {

@@ -2,8 +2,8 @@
 
 use super::boundary::{self, Blame, Range, call, check_pointer, disjoint};
 use super::handles::{KeptBranch, read};
-use super::results::optional;
 use super::sized::{Described, init, load};
+use super::special::optional;
 use super::types::{hbvib_branch, hbvib_model, hbvib_status};
 use crate::analysis::synthesis::{Synthesis, SynthesisPeak, synthesise};
 use crate::error::{Result, Status, fail};
