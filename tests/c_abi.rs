@@ -149,6 +149,11 @@ fn bad_options_and_models_of_a_mode_are_refused() {
 }
 
 #[test]
+fn responses_are_synthesised_from_modes() {
+    silent("synthesis", |_| vec![]);
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
 }

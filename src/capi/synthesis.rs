@@ -90,7 +90,11 @@ unsafe fn synthesis(
         };
         chosen.check().blame(3)?;
     }
-    synthesise(&kept.branch, &model, &chosen).blame(2)
+    synthesise(&kept.branch, &model, &chosen).map_err(|e| match e.status {
+        Status::Unsupported => e.in_argument(1),
+        Status::Argument | Status::Dimension => e.in_argument(2),
+        _ => e,
+    })
 }
 
 /// The response to the forces of a model in the fundamental, synthesised from a nonlinear mode: the
