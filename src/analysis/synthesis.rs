@@ -47,8 +47,8 @@ pub struct Validity {
     pub fundamental_share: f64,
     /// Several modes share the frequency of the linear mode.
     pub repeated: bool,
-    /// The branch passes this amplitude more than once.
-    pub folded: bool,
+    /// The amplitude falls along the branch here, beyond a fold.
+    pub turned: bool,
 }
 
 /// Share of the kinetic energy outside of the fundamental above which a higher harmonic resonates.
@@ -62,10 +62,10 @@ impl Validity {
     }
 
     /// The mode resonates with another one in a higher harmonic: more than 1 % of its kinetic energy
-    /// lies there, or it has several forms at this amplitude.
+    /// lies there, or its amplitude has turned.
     #[must_use]
     pub fn internal_resonance(&self) -> bool {
-        self.folded || self.fundamental_share < 1.0 - OUTSIDE
+        self.turned || self.fundamental_share < 1.0 - OUTSIDE
     }
 }
 
@@ -150,11 +150,12 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
             continue;
         }
         if let Some(state) = refinement.between(k - 1, a, b)? {
+            let backwards = states[k].log10 < states[k - 1].log10;
             let peak = SynthesisPeak {
                 at: state.at_peak(),
                 log10_amplitude: state.log10,
                 rising: a < 0.0,
-                validity: validity(branch, data, &state),
+                validity: validity(data, &state, backwards),
             };
             try_push(&mut synthesis.peaks, peak, WHAT)?;
         }
@@ -194,7 +195,7 @@ fn flanks(states: &[State]) -> Result<Vec<SynthesisPoint>> {
     Ok(points)
 }
 
-fn validity(branch: &Branch, data: &ModeData, state: &State) -> Validity {
+fn validity(data: &ModeData, state: &State, backwards: bool) -> Validity {
     let info = &data.info;
     let omega = state.omega;
     let bandwidth = 2.0 * state.damping.abs() * omega;
@@ -205,16 +206,10 @@ fn validity(branch: &Branch, data: &ModeData, state: &State) -> Validity {
         let (low, high) = (stuck.min(free), stuck.max(free));
         distance = distance.min((low - omega).max(omega - high).max(0.0));
     }
-    let folds = branch.folds().iter().filter_map(|f| branch.mode_at(f.point));
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for fold in folds {
-        low = low.min(fold.log10_amplitude);
-        high = high.max(fold.log10_amplitude);
-    }
     Validity {
         other_mode: if distance == 0.0 { 0.0 } else { distance / bandwidth },
         fundamental_share: state.fundamental_share,
         repeated: info.multiplicity > 1,
-        folded: low <= state.log10 && state.log10 <= high,
+        turned: backwards,
     }
 }

@@ -33,8 +33,8 @@ pub enum hbvib_synthesis_flag {
     HBVIB_SYNTHESIS_VALID = 0,
     /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear mode.
     HBVIB_SYNTHESIS_ANOTHER_MODE = 1,
-    /// A higher harmonic holds more than 1 % of the kinetic energy, or the branch passes this
-    /// amplitude more than once.
+    /// Higher harmonics hold more than 1 % of the kinetic energy, or the point lies where the
+    /// amplitude falls along the branch, beyond a fold.
     HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
     /// The amplitude falls as the force rises: a detached response begins here.
     HBVIB_SYNTHESIS_FALLING = 4,
