@@ -2,15 +2,17 @@
 //! responses of Fig. 5 without computing them.
 
 use std::error::Error;
+use std::f64::consts::TAU;
 use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
+use hbvib::analysis::synthesis::SynthesisPeak;
 use hbvib::analysis::synthesise;
 use hbvib::branch::Branch;
 use hbvib::options::{DampingForm, SolverOptions, SynthesisOptions};
 
-use crate::backbone::{Backbone, Wanted};
+use crate::backbone::{Backbone, Point, Wanted};
 use crate::csv::write_csv;
 use crate::figures::{RANGE, SMOOTH};
 use crate::model::{B2, Parameters, WANTED};
@@ -19,10 +21,10 @@ use crate::progress::Bar;
 use crate::response::{Range, Response};
 
 /// Slip of the ring, from stuck to sliding as it does at any larger one.
-const SLIPS: (f64, f64) = (0.1, 1e5);
+const SLIPS: (f64, f64) = (0.1, 1e4);
 
 /// Covers the responses of Fig. 5 with room on both sides.
-const SLIPS_OF_RESPONSES: (f64, f64) = (0.005, 1e5);
+const SLIPS_OF_RESPONSES: (f64, f64) = (0.01, 4e3);
 
 /// With so many harmonics the response is right to 1e-4, which tells the error of the synthesis from
 /// that of the harmonics.
@@ -84,7 +86,7 @@ pub fn against_energy(folder: &Path) -> Result<(), Box<dyn Error>> {
             };
             figure.save(&stem)
         };
-    let curve = |y: fn(&crate::backbone::Point) -> f64| mode.points.iter().map(|p| (p.energy, y(p))).collect();
+    let curve = |y: fn(&Point) -> f64| mode.points.iter().map(|p| (p.energy, y(p))).collect();
     one(
         8,
         "Frequency",
@@ -162,7 +164,7 @@ impl Overlay {
             let force = computed.0;
             let model = Parameters { force, ..base }.model()?;
             let synthesis = synthesise(&branch, &model, &SynthesisOptions::default())?;
-            let amplitude = |p: &hbvib::analysis::synthesis::SynthesisPeak| p.at.response.norm();
+            let amplitude = |p: &SynthesisPeak| p.at.response.norm();
             let largest = synthesis
                 .peaks
                 .iter()
@@ -170,7 +172,7 @@ impl Overlay {
             let peak = largest.ok_or_else(|| format!("the mode has no resonance under {force} N"))?;
             rows.push(Row {
                 computed,
-                frequency: peak.at.omega / std::f64::consts::TAU,
+                frequency: peak.at.omega / TAU,
                 amplitude: amplitude(peak),
                 judgement: match (peak.validity.another_mode(), peak.validity.internal_resonance()) {
                     (false, false) => "valid",
@@ -189,12 +191,12 @@ impl Overlay {
 
     /// The backbone and the synthesised resonances as series of one label.
     pub fn series(&self) -> [Series; 2] {
-        let hertz = self.branch.omega().iter().map(|omega| omega / std::f64::consts::TAU);
+        let hertz = self.branch.omega().iter().map(|omega| omega / TAU);
         let curve = hertz.zip(self.branch.amplitude().iter().copied()).collect();
         let peaks = self.rows.iter().map(|row| (row.frequency, row.amplitude)).collect();
         [
-            Series::new("mode", Style::Dashed, curve),
-            Series::new("mode", Style::Rings, peaks),
+            Series::new("nonlinear mode", Style::Dashed, curve),
+            Series::new("nonlinear mode", Style::Rings, peaks),
         ]
     }
 
