@@ -77,8 +77,8 @@ fn frequency_damping_and_energy_agree_with_the_reference() {
     let table = reference["table"].as_array().unwrap();
     let rows = || table.iter().rev();
     // Rust writes the shortest decimals that are read back to the same number.
-    let at: String = rows().map(|row| format!(" --at-slip {}", number(&row["a"]))).collect();
-    let mode = mode(&folder("mode"), &format!("--harmonics 7{at}"));
+    let at: Vec<String> = rows().map(|row| format!("--at-slip {}", number(&row["a"]))).collect();
+    let mode = mode(&folder("mode"), &format!("--harmonics 7 {}", at.join(" ")));
     assert_eq!(mode.as_object().unwrap().len(), 3);
     let points = list(&mode, "backbone");
     assert_eq!(get(&points[0], "slip").to_bits(), 0.5_f64.to_bits());
@@ -193,7 +193,7 @@ fn both_forms_of_damping_agree_where_they_should() {
     assert!((get(a, "damping_ratio") / exact - 1.0).abs() < 0.01);
     // The mode is damped lightly, so the form matters little.
     let ratio = get(&stiffness["max_damping"], "damping_ratio") / get(&mass["max_damping"], "damping_ratio");
-    assert!(ratio != 1.0 && (ratio - 1.0).abs() < 0.01, "{ratio}");
+    assert!((1e-6..0.01).contains(&(ratio - 1.0).abs()), "{ratio}");
 }
 
 #[test]

@@ -8,12 +8,11 @@ use hbvib::branch::Branch;
 use hbvib::error::{Result as Checked, Status};
 use hbvib::hooks::{Hooks, Progress};
 use hbvib::options::{Amplitude, DampingForm, ModeChoice, ModeOptions, SolverOptions};
-use num_complex::Complex64;
 use serde_json::{Map, Value};
 
 use crate::json::number;
 use crate::model::{CONTACT, DOFS, Parameters, WANTED};
-use crate::response::{harmonics, harmonics_to_json};
+use crate::response::{Harmonics, harmonics, harmonics_to_json};
 
 /// A mode that is wanted over a range of slip: the peak of the fundamental of the relative motion of
 /// disk and ring, over the motion at which the contact begins to slip.
@@ -88,8 +87,8 @@ pub struct Point {
     pub energy: f64,
     /// Work of friction per cycle, J.
     pub dissipation: f64,
-    /// Every harmonic that is carried: its number, and `X_p` of each degree of freedom.
-    pub harmonics: Vec<(usize, Vec<Complex64>)>,
+    /// Motion of all degrees of freedom.
+    pub harmonics: Harmonics,
 }
 
 impl Point {

@@ -27,6 +27,9 @@ pub struct Range {
     pub at: Vec<f64>,
 }
 
+/// Every harmonic that is carried: its number, and `X_p` of each degree of freedom wanted.
+pub type Harmonics = Vec<(usize, Vec<Complex64>)>;
+
 /// A solution: motion of sector 1, x(t) = Re Σ `X_p` exp(i p ω t).
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -34,8 +37,8 @@ pub struct Point {
     pub number: usize,
     /// Frequency of the force, Hz.
     pub frequency: f64,
-    /// Every harmonic that is carried: its number, and `X_p` of each degree of freedom wanted.
-    pub harmonics: Vec<(usize, Vec<Complex64>)>,
+    /// Its motion.
+    pub harmonics: Harmonics,
 }
 
 impl Point {
@@ -210,17 +213,12 @@ fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Re
     })
 }
 
-/// Every harmonic that is carried at a point of a branch: its number, and `X_p` of each degree of
-/// freedom wanted.
+/// The motion at a point of a branch.
 ///
 /// # Errors
 ///
 /// If the library refuses the point.
-pub fn harmonics(
-    branch: &Branch,
-    number: usize,
-    wanted: &[usize],
-) -> Result<Vec<(usize, Vec<Complex64>)>, Box<dyn Error>> {
+pub fn harmonics(branch: &Branch, number: usize, wanted: &[usize]) -> Result<Harmonics, Box<dyn Error>> {
     let n = branch.ndof();
     let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
     branch.harmonics_at(number, &mut all)?;
