@@ -5,8 +5,21 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 10] = [
-    "types", "boundary", "matrix", "model", "contact", "tables", "solve", "results", "energy", "residual",
+const SOURCES: [&str; 14] = [
+    "types",
+    "boundary",
+    "matrix",
+    "model",
+    "contact",
+    "tables",
+    "solve",
+    "mode",
+    "results",
+    "special",
+    "energy",
+    "mode_results",
+    "synthesis",
+    "residual",
 ];
 
 fn main() {

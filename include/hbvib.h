@@ -159,12 +159,19 @@ typedef enum {
   HBVIB_CONTACTS_STUCK = 1,
 } hbvib_contact_state;
 
-/// Results that a branch holds for each point of the curve.
+/// Results that a branch holds for each point of the curve. Energies are of one sector.
 typedef enum {
   /// Angular frequency.
   HBVIB_OMEGA = 0,
   /// Peak amplitude of the fundamental of the response degree of freedom.
   HBVIB_AMPLITUDE = 1,
+  /// Nonlinear modes only: damping ratio D.
+  HBVIB_DAMPING_RATIO = 2,
+  /// Nonlinear modes only: T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the
+  /// mean kinetic energy.
+  HBVIB_ENERGY = 3,
+  /// Nonlinear modes only: work of friction per cycle.
+  HBVIB_DISSIPATION = 4,
   /// Relative residual.
   HBVIB_RESIDUAL = 5,
   /// Newton iterations.
@@ -173,7 +180,51 @@ typedef enum {
   HBVIB_HARMONICS_USED = 8,
   /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
   HBVIB_SLIP_FRACTION = 9,
+  /// Nonlinear modes only: log10 of the amplitude, the parameter.
+  HBVIB_LOG10_AMPLITUDE = 10,
+  /// Nonlinear modes only: modal amplitude sqrt(X_1^H M X_1).
+  HBVIB_MODAL_AMPLITUDE = 11,
+  /// Nonlinear modes only: work of the structure's damping per cycle.
+  HBVIB_STRUCTURAL_LOSS = 12,
+  /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
+  /// of the point before; 1 for the first.
+  HBVIB_MODAL_ASSURANCE = 13,
 } hbvib_field;
+
+/// Artificial damping that makes the motion of a damped structure periodic, D its damping ratio.
+typedef enum {
+  /// The term -2 D omega M x'.
+  HBVIB_DAMPING_MASS = 0,
+  /// The term -zeta K x', D = zeta omega / 2, K the structure's own stiffness without springs and
+  /// contacts.
+  HBVIB_DAMPING_STIFFNESS = 1,
+} hbvib_damping_form;
+
+/// How the linear mode was chosen among those of one frequency.
+typedef enum {
+  /// The frequency is simple: there was nothing to choose.
+  HBVIB_MODE_SINGLE = 0,
+  /// Two real modes make a travelling wave (phi_1 + i phi_2) / sqrt(2), or the one that runs
+  /// against it.
+  HBVIB_MODE_TRAVELLING_WAVE = 1,
+  /// The mass-weighted projection of the shape given.
+  HBVIB_MODE_PROJECTED = 2,
+  /// The mode that was found first; another machine may find another one.
+  HBVIB_MODE_FIRST = 3,
+} hbvib_mode_multiple;
+
+/// Where a synthesised resonance may mislead: bits of a sum.
+typedef enum {
+  /// Nothing was found against it.
+  HBVIB_SYNTHESIS_VALID = 0,
+  /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear mode.
+  HBVIB_SYNTHESIS_ANOTHER_MODE = 1,
+  /// A higher harmonic holds more than 1 % of the kinetic energy, or the branch passes this
+  /// amplitude more than once.
+  HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
+  /// The amplitude falls as the force rises: a detached response begins here.
+  HBVIB_SYNTHESIS_FALLING = 4,
+} hbvib_synthesis_flag;
 
 /// Weights of log lines.
 typedef enum {
@@ -187,7 +238,7 @@ typedef enum {
   HBVIB_LOG_DEBUG = 3,
 } hbvib_log_level;
 
-/// A branch of solutions, created by hbvib_forced_response.
+/// A branch of solutions, created by hbvib_forced_response or hbvib_nonlinear_mode.
 typedef struct hbvib_branch hbvib_branch;
 
 /// A structure with its contacts and forces, created by hbvib_model_new or hbvib_cyclic_new.
@@ -282,7 +333,8 @@ typedef struct {
   /// Cap on the number of points.
   int64_t max_points;
   /// Degree of freedom whose fundamental defines amplitude and peaks; -1: the forced one that
-  /// moves most at the lower end of the range, contacts at their reference stiffness.
+  /// moves most at the lower end of the range, contacts at their reference stiffness. In a
+  /// nonlinear mode it defines the amplitude reported, no more; -1: the phase reference.
   int64_t response_dof;
   /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
   int32_t keep_even_harmonics;
@@ -318,7 +370,7 @@ typedef struct {
   int32_t newton_iterations;
   /// Number of points accepted so far, this one included.
   int64_t point;
-  /// Angular frequency.
+  /// Angular frequency; in a nonlinear mode log10 of the amplitude.
   double parameter;
   /// Peak amplitude of the fundamental of the response degree of freedom.
   double amplitude;
@@ -326,7 +378,7 @@ typedef struct {
   double residual;
   /// Arc length of the step that led here, in scaled unknowns.
   double step;
-  /// Share of the frequency range done, 0 to 1.
+  /// Share of the range done, 0 to 1.
   double fraction_done;
 } hbvib_progress;
 
@@ -348,6 +400,41 @@ typedef struct {
   /// set by another thread or a signal handler, and is never written here. May be NULL.
   const hbvib_cancel_flag *cancel;
 } hbvib_hooks;
+
+/// Options of hbvib_nonlinear_mode. Fill it by hbvib_mode_options_init, then set the range.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_DAMPING_MASS (default) or HBVIB_DAMPING_STIFFNESS.
+  int32_t damping_form;
+  /// log10 of the first amplitude.
+  double log10_start;
+  /// log10 of the last amplitude, above the first.
+  double log10_stop;
+  /// -1 (default): the wave of the model's engine order. 0 .. sectors / 2: the forward wave of
+  /// this nodal diameter.
+  int64_t diameter;
+  /// Number of the linear mode, contacts stuck, from 0 (default) by rising frequency.
+  int64_t mode_index;
+  /// Above 0: the linear mode nearest to this angular frequency, and mode_index is not looked at.
+  /// 0: not used.
+  double near_omega;
+  /// The linear mode most alike this shape, ndof complex numbers of one sector and of any size,
+  /// and mode_index is not looked at. NULL: not used. It excludes near_omega.
+  const double *shape;
+  /// Complex numbers in shape.
+  int64_t shape_len;
+  /// What the amplitude measures. -1 (default): sqrt(X_1^H M X_1) over one sector, length times
+  /// square root of mass. Else a contact: |Y_1| of its relative motion, a peak length.
+  int64_t amplitude_contact;
+  /// log10 of amplitudes within the range at which every solution is wanted as well, or NULL.
+  const double *at;
+  /// Their number.
+  int64_t at_len;
+  /// Degree of freedom whose fundamental is real; -1 (default): the one that moves most in the
+  /// linear mode.
+  int64_t reference_dof;
+} hbvib_mode_options;
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
 typedef struct {
@@ -433,6 +520,72 @@ typedef struct {
   /// make up the work of the forces.
   double friction_loss;
 } hbvib_energy;
+
+/// Numbers of one point of a nonlinear mode, in the caller's units; energies are of one sector. Fill
+/// it by hbvib_mode_point_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// log10 of the amplitude, the parameter.
+  double log10_amplitude;
+  /// Angular frequency.
+  double omega;
+  /// Damping ratio D.
+  double damping_ratio;
+  /// Modal amplitude sqrt(X_1^H M X_1), whatever the parameter measures.
+  double modal_amplitude;
+  /// T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the mean kinetic energy.
+  double energy;
+  /// Share of the fundamental in it, 0 to 1.
+  double fundamental_share;
+  /// Work of friction per cycle.
+  double friction_loss;
+  /// Work of the structure's damping per cycle.
+  double structural_loss;
+  /// (friction_loss + structural_loss) / (4 pi energy). With HBVIB_DAMPING_MASS the balance of
+  /// work makes it equal to damping_ratio, which checks both.
+  double energy_damping_ratio;
+  /// |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1 of the point before; 1
+  /// for the first.
+  double assurance;
+} hbvib_mode_point;
+
+/// Where a nonlinear mode started. Fill it by hbvib_mode_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// How one of several modes of the same frequency was chosen: HBVIB_MODE_SINGLE and so on.
+  int32_t multiple;
+  /// Number of the linear mode, contacts stuck, from 0 by rising frequency.
+  int64_t mode_index;
+  /// How many modes share its frequency.
+  int64_t multiplicity;
+  /// Degree of freedom whose fundamental is real.
+  int64_t reference_dof;
+  /// Waves per turn of the fundamental, with their sense: the engine order of the wave.
+  int64_t engine_order;
+  /// -1: the parameter measures the modal amplitude; else this contact's motion.
+  int64_t amplitude_contact;
+  /// Angular frequency of the linear mode without damping.
+  double omega;
+  /// log10 of the amplitude up to which all contacts stick; minus infinity where a law is never
+  /// linear.
+  double linear_up_to;
+} hbvib_mode_info;
+
+/// Options of a synthesised response. Fill it by hbvib_synthesis_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1: add the damping of the model's C, for a mode that was computed without it; 0: do not.
+  int32_t model_damping;
+  /// Factor on all forces of the model, > 0.
+  double force_factor;
+  /// Damping ratio that is added to the mode's, between -1 and 1.
+  double damping_ratio;
+} hbvib_synthesis_options;
 
 #ifdef __cplusplus
 extern "C" {
@@ -751,6 +904,39 @@ hbvib_status hbvib_forced_response(const hbvib_model *model,
                                    const hbvib_hooks *hooks,
                                    hbvib_branch **out);
 
+/// Fills the options of a nonlinear mode with their defaults: the lowest mode of the model's wave,
+/// modal amplitude, damping of mass form. The range is empty and must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_mode_options_init(hbvib_mode_options *o, size_t size_of_o);
+
+/// Follows a nonlinear mode over a range of amplitude, from contacts that stick to contacts that
+/// slide, by extended periodic motion and arc-length continuation: artificial damping makes up for
+/// what friction and the structure take, and its damping ratio D belongs to the result. The forces
+/// of the model play no part. Turns in amplitude are passed, largest damping ratios refined.
+///
+/// solver  options; NULL: the defaults. harmonics must be at least 1.
+/// mode    the linear mode to start from, what the amplitude measures, its range.
+/// hooks   progress, log and cancellation; NULL: none.
+/// out     receives the branch; untouched on error. Free it by hbvib_branch_free.
+/// A positive status says why the branch ends early; the branch is there with all points found,
+/// which may be none.
+/// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
+/// out of range, a mode that moves no contact, one without frequency, and a reference at its node;
+/// HBVIB_E_NOT_POSITIVE_DEFINITE and HBVIB_E_NOT_HERMITIAN for matrices, missing ones among them;
+/// HBVIB_E_UNSUPPORTED for constant forces; HBVIB_E_NO_CONVERGENCE where no first point was found;
+/// HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number may solve one model at a time, with the same results as one alone; changing
+/// or freeing it meanwhile is HBVIB_E_BUSY.
+hbvib_status hbvib_nonlinear_mode(const hbvib_model *model,
+                                  const hbvib_solver_options *solver,
+                                  const hbvib_mode_options *mode,
+                                  const hbvib_hooks *hooks,
+                                  hbvib_branch **out);
+
 /// Fills a view with nothing in it.
 ///
 /// v          the struct; untouched on error.
@@ -770,8 +956,8 @@ hbvib_status hbvib_reduction_init(hbvib_reduction *r, size_t size_of_r);
 /// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_BUSY. Threads: any, once.
 hbvib_status hbvib_branch_free(hbvib_branch *branch);
 
-/// Number of points on the curve, or a negative status. Peaks, folds and solutions at wanted
-/// frequencies are stored beside the curve and carry the numbers from there on.
+/// Number of points on the curve, or a negative status. Peaks, folds and the solutions wanted at
+/// given frequencies or amplitudes are stored beside the curve and carry the numbers from there on.
 ///
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 int64_t hbvib_branch_points(const hbvib_branch *branch);
@@ -785,17 +971,20 @@ hbvib_status hbvib_branch_status(const hbvib_branch *branch);
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
-///        points x contacts, a contact that sticks throughout being 0.
+///        points x contacts, a contact that sticks throughout being 0. A forced response has none of
+///        the fields that belong to nonlinear modes.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
 /// Threads: any number on one branch.
-hbvib_status hbvib_branch_field(const hbvib_branch *branch, int32_t field, hbvib_view *out);
+hbvib_status hbvib_branch_field(const hbvib_branch *branch,
+                                int32_t field,
+                                hbvib_view *out);
 
 /// Recovers harmonics 0 .. H of a range of degrees of freedom at a stored point, in the caller's
 /// unit of length. Harmonics that are not carried are zero.
 ///
-/// point      number of a point of the curve, or of a peak, fold or wanted frequency.
+/// point      number of a point of the curve, or of a peak, fold or solution wanted.
 /// first_dof  first degree of freedom of the range, from 0.
 /// n_dof      number of them, at least 1.
 /// x          receives (H + 1) x n_dof complex numbers, harmonic after harmonic; untouched on
@@ -812,7 +1001,7 @@ hbvib_status hbvib_branch_harmonics(const hbvib_branch *branch,
 
 /// Shares of the period that each contact slips at a stored point.
 ///
-/// point       number of a point of the curve, or of a peak, fold or wanted frequency.
+/// point       number of a point of the curve, or of a peak, fold or solution wanted.
 /// shares      receives one double per contact of the model, 0 for one that sticks throughout;
 ///             NULL is allowed where there is no contact.
 /// shares_len  doubles in it.
@@ -823,8 +1012,15 @@ hbvib_status hbvib_branch_slip_fraction(const hbvib_branch *branch,
                                         double *shares,
                                         int64_t shares_len);
 
-/// Maxima of the amplitude of the response degree of freedom within the range, refined on the
-/// solution, in the order in which they were met.
+/// What was removed from the problem before it was solved, and which degree of freedom was
+/// followed.
+///
+/// out  receives the numbers; fill it by hbvib_reduction_init before; untouched on error.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
+
+/// Maxima of the amplitude of the response degree of freedom within the range; in a nonlinear mode
+/// the points of largest damping ratio. Refined on the solution, in the order in which they were met.
 ///
 /// capacity   numbers that fit into each array.
 /// omega      receives their angular frequencies, or NULL.
@@ -841,7 +1037,8 @@ hbvib_status hbvib_branch_peaks(const hbvib_branch *branch,
                                 int64_t *point,
                                 int64_t *count);
 
-/// Turning points in frequency, refined on the solution, in the order in which they were met.
+/// Turning points in frequency, in a nonlinear mode in amplitude, refined on the solution, in the
+/// order in which they were met.
 ///
 /// Arguments, errors and threads as for hbvib_branch_peaks.
 hbvib_status hbvib_branch_folds(const hbvib_branch *branch,
@@ -851,7 +1048,8 @@ hbvib_status hbvib_branch_folds(const hbvib_branch *branch,
                                 int64_t *point,
                                 int64_t *count);
 
-/// Every solution that was found at one of the frequencies in hbvib_forced_options.at.
+/// Every solution that was found at one of the frequencies in hbvib_forced_options.at, or of the
+/// amplitudes in hbvib_mode_options.at.
 ///
 /// wanted     index into `at`, from 0.
 /// capacity   numbers that fit into each array.
@@ -868,13 +1066,6 @@ hbvib_status hbvib_branch_at(const hbvib_branch *branch,
                              int64_t *point,
                              int64_t *count);
 
-/// What was removed from the problem before it was solved, and which degree of freedom was
-/// followed.
-///
-/// out  receives the numbers; fill it by hbvib_reduction_init before; untouched on error.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
-hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
-
 /// Fills an energy with zeros.
 ///
 /// e          the struct; untouched on error.
@@ -884,11 +1075,103 @@ hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);
 
 /// Energies and losses of a stored point.
 ///
-/// point  number of a point of the curve, or of a peak, fold or wanted frequency.
+/// point  number of a point of the curve, or of a peak, fold or solution wanted.
 /// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
 hbvib_status hbvib_branch_energy(const hbvib_branch *branch, int64_t point, hbvib_energy *out);
+
+/// Fills a point of a mode with zeros.
+///
+/// p          the struct; untouched on error.
+/// size_of_p  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_mode_point_init(hbvib_mode_point *p, size_t size_of_p);
+
+/// Fills the description of a mode with nothing.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_mode_info_init(hbvib_mode_info *i, size_t size_of_i);
+
+/// Numbers of a stored point of a nonlinear mode.
+///
+/// point  number of a point of the curve, or of a peak, fold or solution wanted.
+/// out    receives the numbers; fill it by hbvib_mode_point_init before; untouched on error.
+/// Errors: HBVIB_E_UNSUPPORTED (the branch of a forced response), HBVIB_E_INDEX (point),
+/// HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+hbvib_status hbvib_branch_mode_point(const hbvib_branch *branch,
+                                     int64_t point,
+                                     hbvib_mode_point *out);
+
+/// Where a nonlinear mode started, and how the linear mode was chosen.
+///
+/// out  receives the description; fill it by hbvib_mode_info_init before; untouched on error.
+/// Errors: HBVIB_E_UNSUPPORTED (the branch of a forced response), HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+hbvib_status hbvib_branch_mode_info(const hbvib_branch *branch, hbvib_mode_info *out);
+
+/// Fills the options of a synthesis with their defaults: the forces and the damping as they are.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_synthesis_options_init(hbvib_synthesis_options *o, size_t size_of_o);
+
+/// The response to the forces of a model in the fundamental, synthesised from a nonlinear mode: the
+/// structure moves near resonance like one oscillator whose frequency and damping follow the
+/// amplitude. Points come by rising amplitude below the resonance, then by falling amplitude above
+/// it, two for each point of the branch whose amplitude the force can hold.
+///
+/// branch           a nonlinear mode.
+/// model            the model of the mode, or one with other forces or damping; forces in other
+///                  harmonics play no part.
+/// options          NULL: the defaults.
+/// capacity         numbers that fit into each array; twice the points of the branch suffice.
+/// omega            receives the angular frequencies of the force, or NULL.
+/// response         receives the fundamentals of the branch's response degree of freedom, complex, in
+///                  phase with the force where real; or NULL.
+/// modal_amplitude  receives the modal amplitudes, or NULL.
+/// count            receives how many points there are, also when `capacity` is too small.
+/// Errors: HBVIB_E_UNSUPPORTED (branch is no mode), HBVIB_E_DIMENSION (capacity too small, a model of
+/// another size), HBVIB_E_ARGUMENT (options, a model whose forces excite another wave or none,
+/// overlapping arrays), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_synthesis(const hbvib_branch *branch,
+                                    const hbvib_model *model,
+                                    const hbvib_synthesis_options *options,
+                                    int64_t capacity,
+                                    double *omega,
+                                    double *response,
+                                    double *modal_amplitude,
+                                    int64_t *count);
+
+/// The resonances of a synthesised response, refined on the mode's equations, in the order of the
+/// branch; none where the force is too small or too large for its amplitudes.
+///
+/// branch, model, options  as for hbvib_branch_synthesis.
+/// capacity                numbers that fit into each array.
+/// omega                   receives their angular frequencies, or NULL.
+/// amplitude               receives the amplitudes |X_1| of the response degree of freedom, or NULL.
+/// log10_amplitude         receives the amplitudes as the branch measures them, log10, or NULL.
+/// damping_ratio           receives the damping ratios there, all included, or NULL.
+/// other_mode              receives the distance to the nearest other natural frequency of the wave
+///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// flags                   receives where they may mislead, sums of hbvib_synthesis_flag; or NULL.
+/// count                   receives how many there are, also when `capacity` is too small.
+/// Errors and threads: as for hbvib_branch_synthesis.
+hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
+                                          const hbvib_model *model,
+                                          const hbvib_synthesis_options *options,
+                                          int64_t capacity,
+                                          double *omega,
+                                          double *amplitude,
+                                          double *log10_amplitude,
+                                          double *damping_ratio,
+                                          double *other_mode,
+                                          int32_t *flags,
+                                          int64_t *count);
 
 /// Residual R_h = (K - h^2 omega^2 M + i h omega C) X_h + f_h - F_h of harmonic balance at a point
 /// of the caller, for hosts with a continuation of their own and for tests. Nothing is removed:

@@ -201,6 +201,12 @@ impl Branch {
         &self.omega[..self.curve]
     }
 
+    /// Angular frequency of one stored point, the special ones included.
+    #[must_use]
+    pub fn omega_at(&self, point: usize) -> Option<f64> {
+        self.omega.get(point).copied()
+    }
+
     /// Amplitude |X| of the response degree of freedom (fundamental, peak) at each point.
     #[must_use]
     pub fn amplitude(&self) -> &[f64] {
@@ -239,19 +245,19 @@ impl Branch {
         (point < self.stored()).then(|| &self.slip_fraction[point * contacts..(point + 1) * contacts])
     }
 
-    /// Maxima of the amplitude, refined on the solution.
+    /// Maxima of the amplitude, in a nonlinear mode of the damping ratio, refined on the solution.
     #[must_use]
     pub fn peaks(&self) -> &[Special] {
         &self.peaks
     }
 
-    /// Turning points in frequency, refined on the solution.
+    /// Turning points in frequency, in a nonlinear mode in amplitude, refined on the solution.
     #[must_use]
     pub fn folds(&self) -> &[Special] {
         &self.folds
     }
 
-    /// Every solution found at the i-th frequency asked for.
+    /// Every solution found at the i-th frequency (in a nonlinear mode: amplitude) asked for.
     #[must_use]
     pub fn at(&self, i: usize) -> &[Special] {
         self.at.get(i).map_or(&[], Vec::as_slice)

@@ -5,7 +5,8 @@
 pub struct Progress {
     /// Number of points accepted so far, this one included.
     pub point: usize,
-    /// The continuation parameter: angular frequency in rad per time unit.
+    /// The continuation parameter: angular frequency in rad per time unit, in a nonlinear mode
+    /// log₁₀ of the amplitude.
     pub parameter: f64,
     /// Amplitude of the response degree of freedom (fundamental, peak).
     pub amplitude: f64,

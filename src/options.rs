@@ -29,7 +29,9 @@ pub struct SolverOptions {
     /// Cap on the number of accepted points.
     pub max_points: usize,
     /// Degree of freedom whose fundamental defines amplitude and peaks; `None`: the forced one
-    /// that moves most at the lower end of the range, contacts at their reference stiffness.
+    /// that moves most at the lower end of the range, contacts at their reference stiffness. In a
+    /// nonlinear mode its fundamental is the amplitude reported; `None`: that of the phase
+    /// reference.
     pub response_dof: Option<usize>,
     /// Carry the mean and the even harmonics even where symmetry makes them zero.
     pub keep_even_harmonics: bool,
@@ -209,28 +211,25 @@ impl ModeChoice<'_> {
     pub fn check(&self, ndof: usize) -> Result<()> {
         match *self {
             Self::Near(omega) if !omega.is_finite() => {
-                fail!(
-                    NotFinite,
-                    "mode_frequency = {omega}, needs a finite angular frequency > 0"
-                )
+                fail!(NotFinite, "near_omega = {omega}, needs a finite angular frequency > 0")
             }
             Self::Near(omega) if omega <= 0.0 => {
-                fail!(Argument, "mode_frequency = {omega}, needs an angular frequency > 0")
+                fail!(Argument, "near_omega = {omega}, needs an angular frequency > 0")
             }
             Self::Index(_) | Self::Near(_) => Ok(()),
             Self::Shape(shape) => {
                 if shape.len() != ndof {
                     return fail!(
                         Dimension,
-                        "mode_shape has {} complex entries, needs ndof = {ndof}",
+                        "shape has {} complex entries, needs ndof = {ndof}",
                         shape.len()
                     );
                 }
                 if let Some(i) = shape.iter().position(|z| !z.is_finite()) {
-                    return fail!(NotFinite, "mode_shape[{i}] is not finite");
+                    return fail!(NotFinite, "shape[{i}] is not finite");
                 }
                 if shape.iter().all(|&z| z == Complex64::ZERO) {
-                    return fail!(Argument, "mode_shape is zero, needs a motion");
+                    return fail!(Argument, "shape is zero, needs a motion");
                 }
                 Ok(())
             }
@@ -288,19 +287,24 @@ impl Default for ModeOptions<'_> {
 const MAX_LOG10: f64 = 150.0;
 
 impl ModeOptions<'_> {
-    /// Checks every field for a model of `ndof` degrees of freedom (per sector) and so many contacts.
+    /// Checks every field for a model of `ndof` degrees of freedom (per sector), so many contacts and
+    /// sectors.
     ///
     /// # Errors
     /// `Argument`, `NotFinite`, `Dimension` or `Index`, naming the field, its value and its range.
-    pub fn check(&self, ndof: usize, contacts: usize) -> Result<()> {
+    pub fn check(&self, ndof: usize, contacts: usize, sectors: usize) -> Result<()> {
         self.choice.check(ndof)?;
+        if let Some(diameter) = self.diameter.filter(|&d| d > sectors / 2) {
+            return fail!(
+                Argument,
+                "diameter = {diameter}, needs 0 .. {} for {sectors} sectors",
+                sectors / 2
+            );
+        }
         if let Amplitude::Contact(id) = self.amplitude
             && id >= contacts
         {
-            return fail!(
-                Index,
-                "amplitude: contact id = {id}, but the model has {contacts} contacts"
-            );
+            return fail!(Index, "amplitude_contact = {id}, but the model has {contacts} contacts");
         }
         let (start, stop) = (self.log10_start, self.log10_stop);
         for (name, value) in [("log10_start", start), ("log10_stop", stop)] {

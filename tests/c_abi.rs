@@ -4,6 +4,9 @@
 
 #![cfg(target_os = "linux")]
 
+mod common;
+
+use common::{data, number};
 use hbvib::analysis::forced_response;
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
@@ -12,6 +15,7 @@ use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions};
 use num_complex::Complex64;
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
@@ -125,6 +129,28 @@ fn bad_options_and_ranges_are_refused() {
 #[test]
 fn results_are_what_they_say() {
     silent("results", |_| vec![]);
+}
+
+#[test]
+fn nonlinear_modes_are_those_of_the_reference() {
+    let reference = &data("nnm_base.json")["H"]["3"];
+    let table = reference["table"].as_array().unwrap();
+    let rows = [0, table.len() / 2].map(|i| &table[i]);
+    let mut numbers: Vec<&Value> = rows.iter().flat_map(|r| [&r["alpha"], &r["omega"], &r["D"]]).collect();
+    numbers.push(&reference["D_max"]["D"]);
+    silent("mode", |_| {
+        numbers.iter().map(|v| number(v).to_string().into()).collect()
+    });
+}
+
+#[test]
+fn bad_options_and_models_of_a_mode_are_refused() {
+    silent("bad_modes", |_| vec![]);
+}
+
+#[test]
+fn responses_are_synthesised_from_modes() {
+    silent("synthesis", |_| vec![]);
 }
 
 #[test]

@@ -304,7 +304,7 @@ fn every_bad_range_of_a_mode_is_refused_by_name() {
         ),
     ];
     for (options, status, words) in cases {
-        refused(options.check(4, 2), status, &[words]);
+        refused(options.check(4, 2, 24), status, &[words]);
     }
     let all = ModeOptions {
         at: &[-6.0, 0.0],
@@ -312,7 +312,7 @@ fn every_bad_range_of_a_mode_is_refused_by_name() {
         amplitude: Amplitude::Contact(1),
         ..good
     };
-    all.check(4, 2).unwrap();
+    all.check(4, 2, 24).unwrap();
     assert_eq!(all.damping_form, DampingForm::Mass);
 }
 
@@ -327,7 +327,15 @@ fn every_bad_choice_of_a_mode_is_refused_by_name() {
                 ..good
             },
             Status::Index,
-            "contact id = 2, but the model has 2 contacts",
+            "amplitude_contact = 2, but the model has 2 contacts",
+        ),
+        (
+            ModeOptions {
+                diameter: Some(13),
+                ..good
+            },
+            Status::Argument,
+            "diameter = 13, needs 0 .. 12 for 24 sectors",
         ),
         (
             ModeOptions {
@@ -335,7 +343,7 @@ fn every_bad_choice_of_a_mode_is_refused_by_name() {
                 ..good
             },
             Status::Argument,
-            "mode_frequency = -1",
+            "near_omega = -1",
         ),
         (
             ModeOptions {
@@ -343,7 +351,7 @@ fn every_bad_choice_of_a_mode_is_refused_by_name() {
                 ..good
             },
             Status::Dimension,
-            "mode_shape has 3",
+            "shape has 3",
         ),
         (
             ModeOptions {
@@ -351,10 +359,10 @@ fn every_bad_choice_of_a_mode_is_refused_by_name() {
                 ..good
             },
             Status::Argument,
-            "mode_shape is zero",
+            "shape is zero",
         ),
     ];
     for (options, status, words) in cases {
-        refused(options.check(4, 2), status, &[words]);
+        refused(options.check(4, 2, 24), status, &[words]);
     }
 }

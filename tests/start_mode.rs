@@ -227,23 +227,23 @@ fn modes_that_cannot_be_had_are_refused_by_name() {
     refused(
         start(&model, ModeChoice::Near(f64::NAN)),
         Status::NotFinite,
-        &["mode_frequency"],
+        &["near_omega"],
     );
     refused(
         start(&model, ModeChoice::Near(0.0)),
         Status::Argument,
-        &["mode_frequency = 0"],
+        &["near_omega = 0"],
     );
     let zero = [Complex64::ZERO; NDOF];
     refused(
         start(&model, ModeChoice::Shape(&zero)),
         Status::Argument,
-        &["mode_shape is zero"],
+        &["shape is zero"],
     );
     refused(
         start(&model, ModeChoice::Shape(&zero[1..])),
         Status::Dimension,
-        &["mode_shape has 3", "ndof = 4"],
+        &["shape has 3", "ndof = 4"],
     );
     // A rigid ring: diameter 0 without contact, small and large.
     let free = {

@@ -11,7 +11,7 @@ use hbvib::options::{Amplitude, DampingForm, ModeChoice, ModeOptions, SolverOpti
 use serde_json::{Map, Value};
 
 use crate::json::number;
-use crate::model::{CONTACT, DOFS, Parameters, WANTED};
+use crate::model::{CONTACT, DOFS, Parameters, SECTORS, WANTED};
 use crate::response::{Harmonics, harmonics, harmonics_to_json};
 
 /// A mode that is wanted over a range of slip: the peak of the fundamental of the relative motion of
@@ -39,7 +39,7 @@ impl Wanted {
     ///
     /// As [`ModeOptions::check`].
     pub fn check(&self) -> Checked<()> {
-        self.options(&self.logarithms()).check(DOFS.len(), 1)
+        self.options(&self.logarithms()).check(DOFS.len(), 1, SECTORS)
     }
 
     /// The parameter of the library: log10 of the relative motion.

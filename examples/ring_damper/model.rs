@@ -28,7 +28,8 @@ const RING: usize = 3;
 /// Number of the contact between disk and ring.
 pub const CONTACT: usize = 0;
 
-const SECTORS: usize = 24;
+/// Sectors of the wheel.
+pub const SECTORS: usize = 24;
 const BLADE_TIP_MASS: f64 = 0.2;
 const BLADE_ROOT_MASS: f64 = 0.3;
 const DISK_MASS: f64 = 1.2;

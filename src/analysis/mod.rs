@@ -3,6 +3,7 @@
 mod follow;
 pub mod forced_response;
 pub mod harmonic_residual;
+mod mode_points;
 pub mod nonlinear_mode;
 pub mod synthesis;
 

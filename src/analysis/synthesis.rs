@@ -9,20 +9,18 @@
 //!
 //! two frequencies at each amplitude, and the resonance where the root vanishes.
 
-use crate::branch::mode::{ModeData, ModePoint};
+mod oscillator;
+mod refinement;
+
+use crate::branch::mode::ModeData;
 use crate::branch::{Branch, Recovery};
-use crate::continuation::events::Locator;
-use crate::continuation::step_control::StepControl;
-use crate::continuation::{Point, Settings};
-use crate::error::{Result, fail, try_copy, try_push, try_vec};
-use crate::linalg::sparse::Csc;
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SynthesisOptions;
-use crate::postprocess::energy::balance;
-use crate::problem::mode::Mode;
-use crate::problem::{Linearisation, Problem};
 use num_complex::Complex64;
+use oscillator::{Load, State};
+use refinement::Refinement;
 
 /// A synthesised response at one frequency.
 #[derive(Clone, Copy, Debug)]
@@ -97,12 +95,6 @@ pub struct Synthesis {
 }
 
 const WHAT: &str = "the synthesised response";
-
-/// Relative accuracy of the amplitude of a resonance.
-const WIDTH: f64 = 1e-12;
-
-/// Most evaluations for one resonance.
-const MAX_EVALUATIONS: usize = 60;
 
 /// Synthesises the response to the forces of `model` in the fundamental from a nonlinear mode.
 ///
@@ -191,108 +183,6 @@ fn check_model(branch: &Branch, data: &ModeData, model: &Model) -> Result<()> {
     Ok(())
 }
 
-/// What acts on the mode.
-struct Load {
-    force: Vec<Complex64>,
-    damping: Option<Csc>,
-    ratio: f64,
-    response_dof: usize,
-}
-
-/// The mode at one amplitude, as the synthesis sees it.
-#[derive(Clone, Copy, Debug)]
-struct State {
-    omega: f64,
-    damping: f64,
-    /// Square of the modal amplitude.
-    square: f64,
-    /// X₁ᴴ F
-    work: Complex64,
-    /// X₁ of the response degree of freedom.
-    response: Complex64,
-    log10: f64,
-    fundamental_share: f64,
-}
-
-impl Load {
-    fn state(&self, omega: f64, point: Option<&ModePoint>, x: &[Complex64]) -> Result<State> {
-        let Some(point) = point else {
-            return fail!(Internal, "a point of the mode has no numbers");
-        };
-        let square = point.modal_amplitude * point.modal_amplitude;
-        let mut damping = point.damping_ratio + self.ratio;
-        if let Some(c) = &self.damping {
-            // xᴴ C x = 2Dω·xᴴ M x
-            let mut form = 0.0;
-            for (j, xj) in x.iter().enumerate() {
-                for (i, v) in c.column(j) {
-                    form += (x[i].conj() * v * xj).re;
-                }
-            }
-            damping += 0.5 * form / (omega * square);
-        }
-        Ok(State {
-            omega,
-            damping,
-            square,
-            work: x.iter().zip(&self.force).map(|(x, f)| x.conj() * f).sum(),
-            response: x[self.response_dof],
-            log10: point.log10_amplitude,
-            fundamental_share: point.fundamental_share,
-        })
-    }
-}
-
-impl State {
-    /// What damping takes at resonance beyond what the force can give: 2D(1 − D²)^½ω₀²a² − |X₁ᴴF|.
-    fn excess(&self) -> f64 {
-        let d = self.damping;
-        2.0 * d * (1.0 - d * d).max(0.0).sqrt() * self.omega * self.omega * self.square - self.work.norm()
-    }
-
-    /// Half the distance of the two Ω², where the force can hold the amplitude.
-    fn spread(&self) -> Option<f64> {
-        let (d, w2) = (self.damping, self.omega * self.omega);
-        let b = self.work.norm() / self.square;
-        let square = b * b - 4.0 * d * d * (1.0 - d * d) * w2 * w2;
-        (square >= 0.0).then(|| square.sqrt())
-    }
-
-    fn at(&self, spread: f64) -> Option<SynthesisPoint> {
-        let (d, w2) = (self.damping, self.omega * self.omega);
-        let square = w2 * (1.0 - 2.0 * d * d) + spread;
-        if square <= 0.0 {
-            return None;
-        }
-        let omega = square.sqrt();
-        // The oscillator turns X₁ into the phase in which the force does the work that is needed.
-        let stiffness = Complex64::new(w2 - square, 2.0 * d * self.omega * omega);
-        let phase = self.work / stiffness;
-        let turn = if phase.norm() > 0.0 {
-            phase / phase.norm()
-        } else {
-            Complex64::ONE
-        };
-        Some(SynthesisPoint {
-            omega,
-            response: self.response * turn,
-            modal_amplitude: self.square.sqrt(),
-            natural_omega: self.omega,
-            damping_ratio: d,
-        })
-    }
-
-    fn at_peak(&self) -> SynthesisPoint {
-        self.at(0.0).unwrap_or(SynthesisPoint {
-            omega: 0.0,
-            response: self.response,
-            modal_amplitude: self.square.sqrt(),
-            natural_omega: self.omega,
-            damping_ratio: self.damping,
-        })
-    }
-}
-
 /// Both flanks of the response.
 fn flanks(states: &[State]) -> Result<Vec<SynthesisPoint>> {
     let mut points = Vec::new();
@@ -302,125 +192,6 @@ fn flanks(states: &[State]) -> Result<Vec<SynthesisPoint>> {
         try_push(&mut points, point, WHAT)?;
     }
     Ok(points)
-}
-
-/// Solves the mode between two points of its branch.
-struct Refinement<'a> {
-    branch: &'a Branch,
-    data: &'a ModeData,
-    load: &'a Load,
-    problem: Mode<'a>,
-    locator: Locator,
-    at: Linearisation,
-    x: Vec<Complex64>,
-}
-
-impl<'a> Refinement<'a> {
-    fn new(branch: &'a Branch, data: &'a ModeData, load: &'a Load) -> Result<Self> {
-        let problem = Mode::new(branch.condensed(), &data.gauge, &data.linear, branch.samples())?;
-        let n = problem.size();
-        let settings = Settings {
-            start: data.range.0,
-            end: data.range.1,
-            tolerance: 1e-10,
-            max_iterations: 25,
-            steps: StepControl::new(0.0, 0.0, 0.0),
-        };
-        Ok(Self {
-            branch,
-            data,
-            load,
-            at: Linearisation::new(n)?,
-            locator: Locator::new(n, settings)?,
-            x: try_vec(branch.ndof(), Complex64::ZERO, WHAT)?,
-            problem,
-        })
-    }
-
-    /// The state without excess between points k and k + 1, whose excesses are given, by the
-    /// Illinois variant of regula falsi in log₁₀ a.
-    fn between(&mut self, k: usize, first: f64, last: f64) -> Result<Option<State>> {
-        let (Some(a), Some(b)) = (self.point(k)?, self.point(k + 1)?) else {
-            return Ok(None);
-        };
-        let (mut low, mut high) = ((a.parameter(), first), (b.parameter(), last));
-        let mut side = 0;
-        let mut found = None;
-        for _ in 0..MAX_EVALUATIONS {
-            let p = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let p = if p.is_finite() { p } else { 0.5 * (low.0 + high.0) };
-            let Some(state) = self.solve(&a, &b, p)? else { break };
-            let f = state.excess();
-            found = Some(state);
-            if f == 0.0 || (high.0 - low.0).abs() <= WIDTH || f.abs() <= WIDTH * state.work.norm() {
-                break;
-            }
-            if (f < 0.0) == (low.1 < 0.0) {
-                low = (p, f);
-                if side == -1 {
-                    high.1 *= 0.5;
-                }
-                side = -1;
-            } else {
-                high = (p, f);
-                if side == 1 {
-                    low.1 *= 0.5;
-                }
-                side = 1;
-            }
-        }
-        Ok(found)
-    }
-
-    /// A point of the curve as the continuation left it.
-    fn point(&self, k: usize) -> Result<Option<Point>> {
-        let Some((v, tangent)) = self.data.state(k) else {
-            return Ok(None);
-        };
-        Ok(Some(Point {
-            v: try_copy(v, WHAT)?,
-            tangent: try_copy(tangent, WHAT)?,
-            amplitude: Complex64::ZERO,
-            slope: Complex64::ZERO,
-            residual: 0.0,
-            iterations: 0,
-            step: 0.0,
-            stalled: false,
-            positive: true,
-        }))
-    }
-
-    fn solve(&mut self, a: &Point, b: &Point, p: f64) -> Result<Option<State>> {
-        let n = self.problem.size();
-        let mut v = try_copy(&a.v, WHAT)?;
-        if p <= self.data.info.linear_up_to {
-            v[n] = p;
-        } else if let Some(point) = self.locator.at_parameter(&mut self.problem, a, b, p)? {
-            v = point.v;
-        } else {
-            return Ok(None);
-        }
-        self.problem.evaluate(&v[..n], p, &mut self.at)?;
-        let (omega, damping_ratio) = Mode::frequency_and_damping(&self.data.linear, &v[..n]);
-        let unit = 10f64.powf(p) * self.branch.condensed().length();
-        let dofs = self.branch.ndof();
-        let i = self.branch.carried().iter().position(|&h| h == 1).unwrap_or(0);
-        let shape = &self.problem.shape()[i * dofs..(i + 1) * dofs];
-        self.branch.condensed().blocks()[i].multiply_mass(shape, &mut self.x);
-        let size: f64 = shape.iter().zip(&self.x).map(|(a, b)| (a.conj() * b).re).sum();
-        let energy = balance(self.branch.condensed(), omega, self.problem.shape(), &[], &[]).twice_mean_kinetic;
-        let point = ModePoint {
-            log10_amplitude: p,
-            modal_amplitude: unit * size.sqrt(),
-            damping_ratio,
-            fundamental_share: 0.5 * omega * omega * size / energy,
-            ..ModePoint::default()
-        };
-        for (to, from) in self.x.iter_mut().zip(shape) {
-            *to = from * unit;
-        }
-        self.load.state(omega, Some(&point), &self.x).map(Some)
-    }
 }
 
 fn validity(branch: &Branch, data: &ModeData, state: &State) -> Validity {

@@ -6,6 +6,7 @@ use crate::error::{Error, Result, try_extend};
 use crate::model::repeated::Multiple;
 use crate::options::Amplitude;
 use crate::problem::mode::{Gauge, LinearMode};
+use std::f64::consts::PI;
 
 /// Where a nonlinear mode started.
 #[derive(Clone, Debug)]
@@ -51,6 +52,15 @@ pub struct ModePoint {
     pub structural_loss: f64,
     /// Mass-weighted assurance |X₁ᴴ M Y₁|²/(X₁ᴴMX₁·Y₁ᴴMY₁) with the point before; 1 for the first.
     pub assurance: f64,
+}
+
+impl ModePoint {
+    /// All losses over 4πT. With artificial damping of mass form the balance of work makes it
+    /// equal to the damping ratio, whatever the number of harmonics.
+    #[must_use]
+    pub fn energy_damping_ratio(&self) -> f64 {
+        (self.friction_loss + self.structural_loss) / (4.0 * PI * self.energy)
+    }
 }
 
 /// The mode's part of a branch.

@@ -79,7 +79,7 @@ pub unsafe extern "C" fn hbvib_energy_init(e: *mut hbvib_energy, size_of_e: usiz
 
 /// Energies and losses of a stored point.
 ///
-/// point  number of a point of the curve, or of a peak, fold or wanted frequency.
+/// point  number of a point of the curve, or of a peak, fold or solution wanted.
 /// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.

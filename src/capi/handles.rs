@@ -32,7 +32,7 @@ const NONE: u32 = u32::MAX;
 /// A branch with what its queries need besides.
 pub(super) struct KeptBranch {
     pub branch: Branch,
-    /// Number of frequencies that were asked for.
+    /// Number of frequencies, or amplitudes of a mode, that were asked for.
     pub wanted: usize,
 }
 

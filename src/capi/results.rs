@@ -1,14 +1,49 @@
 //! What a branch tells.
 
-use super::boundary::{Blame, call, call_count, check_pointer, count, index};
+use super::boundary::{Blame, call, call_count, check_pointer, index};
 use super::contact::exact_len;
 use super::handles::{KeptBranch, free, read};
 use super::sized::{Described, check_out, fill_out, init};
-use super::types::{hbvib_branch, hbvib_field, hbvib_reduction, hbvib_scalar, hbvib_status, hbvib_view};
-use crate::branch::Special;
-use crate::error::{Result, Status, fail, try_vec};
+use super::types::{hbvib_branch, hbvib_field, hbvib_scalar, hbvib_status, hbvib_view};
+use crate::branch::mode::ModeField;
+use crate::error::{Status, fail, try_vec};
 use core::ptr;
 use num_complex::Complex64;
+
+/// What was removed from the problem before it was solved. Fill it by hbvib_reduction_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct hbvib_reduction {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: i32,
+    /// Sectors of the wheel; all but one are removed.
+    pub sectors: i64,
+    /// Degrees of freedom of one sector.
+    pub degrees_of_freedom: i64,
+    /// Relative contact coordinates that remain of them.
+    pub coordinates: i64,
+    /// Contacts in the model.
+    pub contacts: i64,
+    /// Contacts that became linear springs (infinite slip limit, no cubic term).
+    pub never_slipping: i64,
+    /// Contacts without force (no stiffness, or no slip limit).
+    pub inert: i64,
+    /// Highest harmonic number H asked for.
+    pub harmonics_asked: i64,
+    /// Number of harmonics carried.
+    pub harmonics_carried: i64,
+    /// Real unknowns of the nonlinear problem.
+    pub unknowns: i64,
+    /// The degree of freedom whose amplitude was followed.
+    pub response_dof: i64,
+    /// 1 if the mean is carried, else 0.
+    pub mean_carried: i32,
+    /// 1 if even harmonics were left out because law and forcing are odd, else 0.
+    pub even_removed: i32,
+}
 
 unsafe impl Described for hbvib_view {
     const NAME: &'static str = "hbvib_view";
@@ -79,8 +114,8 @@ pub unsafe extern "C" fn hbvib_branch_free(branch: *mut hbvib_branch) -> hbvib_s
     call(|| free::<KeptBranch>(branch, 1).map(|()| Status::Ok))
 }
 
-/// Number of points on the curve, or a negative status. Peaks, folds and solutions at wanted
-/// frequencies are stored beside the curve and carry the numbers from there on.
+/// Number of points on the curve, or a negative status. Peaks, folds and the solutions wanted at
+/// given frequencies or amplitudes are stored beside the curve and carry the numbers from there on.
 ///
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
@@ -100,7 +135,8 @@ pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbv
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
-///        points x contacts, a contact that sticks throughout being 0.
+///        points x contacts, a contact that sticks throughout being 0. A forced response has none of
+///        the fields that belong to nonlinear modes.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -130,7 +166,11 @@ pub unsafe extern "C" fn hbvib_branch_field(
             NEWTON_ITERATIONS => branch.newton_iterations(),
             HARMONICS_USED => branch.harmonics_used(),
             SLIP_FRACTION => branch.slip_fraction(),
-            _ => return fail!(Argument, "field = {field}, needs a value of enum hbvib_field").blame(2),
+            _ => match mode_field(field).map(|f| branch.mode_field(f)) {
+                Some(Some(data)) => data,
+                Some(None) => return fail!(Argument, "field = {field}: only a nonlinear mode has it").blame(2),
+                None => return fail!(Argument, "field = {field}, needs a value of enum hbvib_field").blame(2),
+            },
         };
         let mut view = hbvib_view {
             rank: 1,
@@ -148,10 +188,25 @@ pub unsafe extern "C" fn hbvib_branch_field(
     })
 }
 
+/// The fields that only nonlinear modes have.
+fn mode_field(field: i32) -> Option<ModeField> {
+    [
+        (hbvib_field::HBVIB_DAMPING_RATIO, ModeField::DampingRatio),
+        (hbvib_field::HBVIB_ENERGY, ModeField::Energy),
+        (hbvib_field::HBVIB_DISSIPATION, ModeField::FrictionLoss),
+        (hbvib_field::HBVIB_LOG10_AMPLITUDE, ModeField::Log10Amplitude),
+        (hbvib_field::HBVIB_MODAL_AMPLITUDE, ModeField::ModalAmplitude),
+        (hbvib_field::HBVIB_STRUCTURAL_LOSS, ModeField::StructuralLoss),
+        (hbvib_field::HBVIB_MODAL_ASSURANCE, ModeField::Assurance),
+    ]
+    .into_iter()
+    .find_map(|(constant, known)| (constant as i32 == field).then_some(known))
+}
+
 /// Recovers harmonics 0 .. H of a range of degrees of freedom at a stored point, in the caller's
 /// unit of length. Harmonics that are not carried are zero.
 ///
-/// point      number of a point of the curve, or of a peak, fold or wanted frequency.
+/// point      number of a point of the curve, or of a peak, fold or solution wanted.
 /// first_dof  first degree of freedom of the range, from 0.
 /// n_dof      number of them, at least 1.
 /// x          receives (H + 1) x n_dof complex numbers, harmonic after harmonic; untouched on
@@ -193,7 +248,7 @@ pub unsafe extern "C" fn hbvib_branch_harmonics(
 
 /// Shares of the period that each contact slips at a stored point.
 ///
-/// point       number of a point of the curve, or of a peak, fold or wanted frequency.
+/// point       number of a point of the curve, or of a peak, fold or solution wanted.
 /// shares      receives one double per contact of the model, 0 for one that sticks throughout;
 ///             NULL is allowed where there is no contact.
 /// shares_len  doubles in it.
@@ -217,146 +272,6 @@ pub unsafe extern "C" fn hbvib_branch_slip_fraction(
             unsafe { shares.copy_from(found.as_ptr(), found.len()) };
         }
         Ok(Status::Ok)
-    })
-}
-
-/// Output arrays for special points, each of them optional, with the numbers of their arguments.
-struct Lists {
-    omega: (*mut f64, i32),
-    amplitude: (*mut f64, i32),
-    point: (*mut i64, i32),
-    count: (*mut i64, i32),
-}
-
-impl Lists {
-    /// Writes the special points if `capacity`, the argument of the given number, suffices.
-    ///
-    /// # Safety
-    /// The caller of the C function states that `capacity` values fit into each array.
-    unsafe fn fill(&self, specials: &[Special], capacity: (i64, i32)) -> Result<Status> {
-        let (capacity, argument) = (count(capacity.0, capacity.1, "capacity")?, capacity.1);
-        let omega = optional(self.omega, "omega")?;
-        let amplitude = optional(self.amplitude, "amplitude")?;
-        let point = optional(self.point, "point")?;
-        check_pointer(self.count.0, self.count.1, "count")?;
-        unsafe { self.count.0.write(specials.len() as i64) };
-        if omega.is_none() && amplitude.is_none() && point.is_none() {
-            return Ok(Status::Ok);
-        }
-        if capacity < specials.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", specials.len()).blame(argument);
-        }
-        for (i, special) in specials.iter().enumerate() {
-            unsafe {
-                if let Some(p) = omega {
-                    p.add(i).write(special.omega);
-                }
-                if let Some(p) = amplitude {
-                    p.add(i).write(special.amplitude);
-                }
-                if let Some(p) = point {
-                    p.add(i).write(special.point as i64);
-                }
-            }
-        }
-        Ok(Status::Ok)
-    }
-}
-
-/// A pointer that may be NULL, but not misaligned.
-fn optional<T>((p, argument): (*mut T, i32), name: &str) -> Result<Option<*mut T>> {
-    if p.is_null() {
-        return Ok(None);
-    }
-    check_pointer(p, argument, name)?;
-    Ok(Some(p))
-}
-
-/// Maxima of the amplitude of the response degree of freedom within the range, refined on the
-/// solution, in the order in which they were met.
-///
-/// capacity   numbers that fit into each array.
-/// omega      receives their angular frequencies, or NULL.
-/// amplitude  receives their amplitudes, or NULL.
-/// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
-/// count      receives how many there are, also when `capacity` is too small. With all arrays NULL
-///            only the count is returned.
-/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
-/// HBVIB_E_HANDLE. Threads: any number on one branch.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_branch_peaks(
-    branch: *const hbvib_branch,
-    capacity: i64,
-    omega: *mut f64,
-    amplitude: *mut f64,
-    point: *mut i64,
-    count: *mut i64,
-) -> hbvib_status {
-    call(|| {
-        let kept = read::<KeptBranch>(branch, 1)?;
-        let lists = Lists {
-            omega: (omega, 3),
-            amplitude: (amplitude, 4),
-            point: (point, 5),
-            count: (count, 6),
-        };
-        unsafe { lists.fill(kept.branch.peaks(), (capacity, 2)) }
-    })
-}
-
-/// Turning points in frequency, refined on the solution, in the order in which they were met.
-///
-/// Arguments, errors and threads as for hbvib_branch_peaks.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_branch_folds(
-    branch: *const hbvib_branch,
-    capacity: i64,
-    omega: *mut f64,
-    amplitude: *mut f64,
-    point: *mut i64,
-    count: *mut i64,
-) -> hbvib_status {
-    call(|| {
-        let kept = read::<KeptBranch>(branch, 1)?;
-        let lists = Lists {
-            omega: (omega, 3),
-            amplitude: (amplitude, 4),
-            point: (point, 5),
-            count: (count, 6),
-        };
-        unsafe { lists.fill(kept.branch.folds(), (capacity, 2)) }
-    })
-}
-
-/// Every solution that was found at one of the frequencies in hbvib_forced_options.at.
-///
-/// wanted     index into `at`, from 0.
-/// capacity   numbers that fit into each array.
-/// amplitude  receives their amplitudes, or NULL.
-/// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
-/// count      receives how many there are, as for hbvib_branch_peaks; several where the branch is
-///            folded, none where it ended before.
-/// Errors: HBVIB_E_INDEX (wanted), else as for hbvib_branch_peaks. Threads: any number on one
-/// branch.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_branch_at(
-    branch: *const hbvib_branch,
-    wanted: i64,
-    capacity: i64,
-    amplitude: *mut f64,
-    point: *mut i64,
-    count: *mut i64,
-) -> hbvib_status {
-    call(|| {
-        let kept = read::<KeptBranch>(branch, 1)?;
-        let wanted = index(wanted, kept.wanted, 2, "wanted")?;
-        let lists = Lists {
-            omega: (ptr::null_mut(), 0),
-            amplitude: (amplitude, 4),
-            point: (point, 5),
-            count: (count, 6),
-        };
-        unsafe { lists.fill(kept.branch.at(wanted), (capacity, 3)) }
     })
 }
 

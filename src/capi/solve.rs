@@ -8,7 +8,8 @@ use super::types::{
     hbvib_solver_options, hbvib_status,
 };
 use crate::analysis;
-use crate::error::{Result, TEXT_CAPACITY, fail};
+use crate::branch::Branch;
+use crate::error::{Result, Status, TEXT_CAPACITY, fail};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
@@ -290,25 +291,38 @@ pub unsafe extern "C" fn hbvib_forced_response(
         let forced = unsafe { load(forced, 3) }?;
         let guess_len = (solver.harmonics + 1).saturating_mul(model.ndof());
         let forced = unsafe { forced_options(&forced, guess_len) }.blame(3)?;
-        let hooks = unsafe { load_hooks(hooks) }?;
-        check_pointer(out, 5, "out")?;
-        let branch = unsafe {
-            with_hooks(&hooks, |hooks| {
-                if solver.num_threads > 1 {
-                    hooks.log(
-                        LogLevel::Info,
-                        "a forced response runs on one thread, whatever num_threads says",
-                    );
-                }
+        unsafe {
+            follow(&solver, hooks, out, forced.at.len(), |hooks| {
                 analysis::forced_response(&model, &solver, &forced, hooks)
             })
-        }?;
-        let status = branch.status();
-        let kept = KeptBranch {
-            branch,
-            wanted: forced.at.len(),
-        };
-        unsafe { out.write(insert(kept)?) };
-        Ok(status)
+        }
     })
+}
+
+/// Runs an analysis with the hooks in argument 4 and keeps its branch, with `wanted` solutions asked
+/// for, in argument 5.
+///
+/// # Safety
+/// The caller of the C function states that the pointers are what they are said to be.
+pub(super) unsafe fn follow(
+    solver: &SolverOptions,
+    hooks: *const hbvib_hooks,
+    out: *mut *mut hbvib_branch,
+    wanted: usize,
+    analysis: impl FnOnce(&mut Hooks<'_>) -> Result<Branch>,
+) -> Result<Status> {
+    let hooks = unsafe { load_hooks(hooks) }?;
+    check_pointer(out, 5, "out")?;
+    let branch = unsafe {
+        with_hooks(&hooks, |hooks| {
+            if solver.num_threads > 1 {
+                let line = "a branch is followed on one thread, whatever num_threads says";
+                hooks.log(LogLevel::Info, line);
+            }
+            analysis(hooks)
+        })
+    }?;
+    let status = branch.status();
+    unsafe { out.write(insert(KeptBranch { branch, wanted })?) };
+    Ok(status)
 }

@@ -135,13 +135,20 @@ pub enum hbvib_contact_state {
     HBVIB_CONTACTS_STUCK = 1,
 }
 
-/// Results that a branch holds for each point of the curve.
+/// Results that a branch holds for each point of the curve. Energies are of one sector.
 #[repr(C)]
 pub enum hbvib_field {
     /// Angular frequency.
     HBVIB_OMEGA = 0,
     /// Peak amplitude of the fundamental of the response degree of freedom.
     HBVIB_AMPLITUDE = 1,
+    /// Nonlinear modes only: damping ratio D.
+    HBVIB_DAMPING_RATIO = 2,
+    /// Nonlinear modes only: T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the
+    /// mean kinetic energy.
+    HBVIB_ENERGY = 3,
+    /// Nonlinear modes only: work of friction per cycle.
+    HBVIB_DISSIPATION = 4,
     /// Relative residual.
     HBVIB_RESIDUAL = 5,
     /// Newton iterations.
@@ -150,6 +157,15 @@ pub enum hbvib_field {
     HBVIB_HARMONICS_USED = 8,
     /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
     HBVIB_SLIP_FRACTION = 9,
+    /// Nonlinear modes only: log10 of the amplitude, the parameter.
+    HBVIB_LOG10_AMPLITUDE = 10,
+    /// Nonlinear modes only: modal amplitude sqrt(X_1^H M X_1).
+    HBVIB_MODAL_AMPLITUDE = 11,
+    /// Nonlinear modes only: work of the structure's damping per cycle.
+    HBVIB_STRUCTURAL_LOSS = 12,
+    /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
+    /// of the point before; 1 for the first.
+    HBVIB_MODAL_ASSURANCE = 13,
 }
 
 /// Weights of log lines.
@@ -168,7 +184,7 @@ pub enum hbvib_log_level {
 /// A structure with its contacts and forces, created by hbvib_model_new or hbvib_cyclic_new.
 pub struct hbvib_model(());
 
-/// A branch of solutions, created by hbvib_forced_response.
+/// A branch of solutions, created by hbvib_forced_response or hbvib_nonlinear_mode.
 pub struct hbvib_branch(());
 
 /// A matrix of the caller, read during the call and never kept. Fill it by hbvib_matrix_init.
@@ -263,7 +279,8 @@ pub struct hbvib_solver_options {
     /// Cap on the number of points.
     pub max_points: i64,
     /// Degree of freedom whose fundamental defines amplitude and peaks; -1: the forced one that
-    /// moves most at the lower end of the range, contacts at their reference stiffness.
+    /// moves most at the lower end of the range, contacts at their reference stiffness. In a
+    /// nonlinear mode it defines the amplitude reported, no more; -1: the phase reference.
     pub response_dof: i64,
     /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
     pub keep_even_harmonics: i32,
@@ -303,7 +320,7 @@ pub struct hbvib_progress {
     pub newton_iterations: i32,
     /// Number of points accepted so far, this one included.
     pub point: i64,
-    /// Angular frequency.
+    /// Angular frequency; in a nonlinear mode log10 of the amplitude.
     pub parameter: f64,
     /// Peak amplitude of the fundamental of the response degree of freedom.
     pub amplitude: f64,
@@ -311,7 +328,7 @@ pub struct hbvib_progress {
     pub residual: f64,
     /// Arc length of the step that led here, in scaled unknowns.
     pub step: f64,
-    /// Share of the frequency range done, 0 to 1.
+    /// Share of the range done, 0 to 1.
     pub fraction_done: f64,
 }
 
@@ -354,40 +371,6 @@ pub struct hbvib_view {
     pub shape: [i64; 3],
     /// Distance of neighbours in each dimension, in numbers of the view's kind.
     pub stride: [i64; 3],
-}
-
-/// What was removed from the problem before it was solved. Fill it by hbvib_reduction_init.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct hbvib_reduction {
-    /// Bytes of this struct as the caller knows it.
-    pub struct_size: u32,
-    /// 0.
-    pub reserved: i32,
-    /// Sectors of the wheel; all but one are removed.
-    pub sectors: i64,
-    /// Degrees of freedom of one sector.
-    pub degrees_of_freedom: i64,
-    /// Relative contact coordinates that remain of them.
-    pub coordinates: i64,
-    /// Contacts in the model.
-    pub contacts: i64,
-    /// Contacts that became linear springs (infinite slip limit, no cubic term).
-    pub never_slipping: i64,
-    /// Contacts without force (no stiffness, or no slip limit).
-    pub inert: i64,
-    /// Highest harmonic number H asked for.
-    pub harmonics_asked: i64,
-    /// Number of harmonics carried.
-    pub harmonics_carried: i64,
-    /// Real unknowns of the nonlinear problem.
-    pub unknowns: i64,
-    /// The degree of freedom whose amplitude was followed.
-    pub response_dof: i64,
-    /// 1 if the mean is carried, else 0.
-    pub mean_carried: i32,
-    /// 1 if even harmonics were left out because law and forcing are odd, else 0.
-    pub even_removed: i32,
 }
 
 /// A status code of the header is that of the library.

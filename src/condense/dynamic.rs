@@ -51,8 +51,9 @@ impl DynamicStiffness {
     pub fn factor(&mut self, condensed: &Condensed, i: usize, omega: Complex64, damping: f64) -> Result<()> {
         let block = &condensed.blocks()[i];
         let z = &mut self.z[i];
+        let sum = Combination::value(block, omega, damping);
         for (at, z) in z.values.iter_mut().enumerate() {
-            *z = entry(block, at, omega, damping);
+            *z = sum.at(block, at);
         }
         self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega.re))
     }
@@ -76,28 +77,65 @@ impl DynamicStiffness {
     }
 }
 
-/// An entry of Z_κ.
-fn entry(block: &HarmonicBlock, at: usize, omega: Complex64, damping: f64) -> Complex64 {
-    let hw = block.number as f64 * omega;
-    let z = block.reference.values[at] + Complex64::I * hw * block.damping[at] - hw * hw * block.mass[at];
-    if damping == 0.0 {
-        return z;
-    }
-    z + damping * slope(block, at, omega, damping, By::Damping)
+/// Z_κ or one of its derivatives as a sum of the block's matrices.
+#[derive(Clone, Copy)]
+struct Combination {
+    reference: f64,
+    damping: Complex64,
+    mass: Complex64,
+    /// Factor of the structure's own stiffness, for artificial damping of that type.
+    own: Complex64,
 }
 
-/// An entry of ∂Z/∂ω or ∂Z/∂D.
-fn slope(block: &HarmonicBlock, at: usize, omega: Complex64, damping: f64, by: By) -> Complex64 {
-    let h = block.number as f64;
-    let (c, m) = (block.damping[at], block.mass[at]);
-    match (by, &block.artificial) {
-        (By::Omega, Artificial::Mass) => {
-            Complex64::I * h * c - 2.0 * h * h * omega * m - Complex64::I * (4.0 * h * damping) * omega * m
+impl Combination {
+    /// Z_κ
+    fn value(block: &HarmonicBlock, omega: Complex64, damping: f64) -> Self {
+        let hw = block.number as f64 * omega;
+        let artificial = Self::slope(block, omega, damping, By::Damping);
+        Self {
+            reference: 1.0,
+            damping: Complex64::I * hw,
+            mass: damping * artificial.mass - hw * hw,
+            own: damping * artificial.own,
         }
-        (By::Omega, _) => Complex64::I * h * c - 2.0 * h * h * omega * m,
-        (By::Damping, Artificial::None) => Complex64::ZERO,
-        (By::Damping, Artificial::Mass) => -2.0 * h * Complex64::I * omega * omega * m,
-        (By::Damping, Artificial::Stiffness(k)) => -2.0 * h * Complex64::I * k[at],
+    }
+
+    /// ∂Z/∂ω or ∂Z/∂D
+    fn slope(block: &HarmonicBlock, omega: Complex64, damping: f64, by: By) -> Self {
+        let h = block.number as f64;
+        let ih = Complex64::I * h;
+        let zero = Self {
+            reference: 0.0,
+            damping: Complex64::ZERO,
+            mass: Complex64::ZERO,
+            own: Complex64::ZERO,
+        };
+        match (by, &block.artificial) {
+            (By::Omega, artificial) => Self {
+                damping: ih,
+                mass: match artificial {
+                    Artificial::Mass => -2.0 * (h + 2.0 * Complex64::I * damping) * h * omega,
+                    Artificial::None | Artificial::Stiffness(_) => -2.0 * h * h * omega,
+                },
+                ..zero
+            },
+            (By::Damping, Artificial::None) => zero,
+            (By::Damping, Artificial::Mass) => Self {
+                mass: -2.0 * ih * omega * omega,
+                ..zero
+            },
+            (By::Damping, Artificial::Stiffness(_)) => Self { own: -2.0 * ih, ..zero },
+        }
+    }
+
+    #[inline]
+    fn at(&self, block: &HarmonicBlock, at: usize) -> Complex64 {
+        let z =
+            self.reference * block.reference.values[at] + self.damping * block.damping[at] + self.mass * block.mass[at];
+        match &block.artificial {
+            Artificial::Stiffness(own) => z + self.own * own[at],
+            Artificial::None | Artificial::Mass => z,
+        }
     }
 }
 
@@ -114,11 +152,30 @@ pub(super) fn add_slope_product(
 ) {
     let block = &condensed.blocks()[i];
     let pattern = &block.reference;
+    let sum = Combination::slope(block, omega, damping, by);
     for j in 0..x.len() {
         for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
             let k = pattern.row_idx[at];
             let (to, from) = if transposed { (j, k) } else { (k, j) };
-            y[to] += slope(block, at, omega, damping, by) * x[from];
+            y[to] += sum.at(block, at) * x[from];
+        }
+    }
+}
+
+/// y −= Z x for the i-th carried harmonic.
+pub(super) fn subtract_product(
+    condensed: &Condensed,
+    i: usize,
+    (omega, damping): (f64, f64),
+    x: &[Complex64],
+    y: &mut [Complex64],
+) {
+    let block = &condensed.blocks()[i];
+    let pattern = &block.reference;
+    let sum = Combination::value(block, omega.into(), damping);
+    for (j, x) in x.iter().enumerate() {
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            y[pattern.row_idx[at]] -= sum.at(block, at) * x;
         }
     }
 }
@@ -133,10 +190,11 @@ pub(super) fn product(
 ) -> Complex64 {
     let block = &condensed.blocks()[i];
     let pattern = &block.reference;
+    let z = Combination::value(block, omega, 0.0);
     let mut sum = Complex64::ZERO;
     for (j, x) in right.iter().enumerate() {
         for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-            sum += left[pattern.row_idx[at]] * entry(block, at, omega, 0.0) * x;
+            sum += left[pattern.row_idx[at]] * z.at(block, at) * x;
         }
     }
     sum

@@ -9,6 +9,8 @@
 //! move the contact, so that neither the free nor the stuck resonances of an undamped structure
 //! are singular. The whole motion follows as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
+pub mod block;
+mod coordinates;
 pub mod dynamic;
 pub mod flexibility;
 pub mod interpolation;
@@ -16,15 +18,16 @@ pub mod modal;
 pub mod poles;
 pub mod tables;
 
-use crate::contact::{ContactKind, Law, Role};
+use crate::contact::{Law, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
-use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, Wave, relative_row};
 use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, SolverOptions};
+use block::harmonic_block;
+pub use block::{Artificial, HarmonicBlock};
+use coordinates::{gather, raise_for_springs};
 use flexibility::Workspace;
 use num_complex::Complex64;
 
@@ -47,51 +50,6 @@ impl Reference {
             Self::Stuck => stiffness.into(),
             Self::Complex if number == 0 => (0.5 * stiffness).into(),
             Self::Complex => Complex64::new(0.5 * stiffness, 0.5 * stiffness),
-        }
-    }
-}
-
-/// Matrix of the artificial damping of a nonlinear mode; see [`dynamic`].
-#[derive(Clone, Debug)]
-pub enum Artificial {
-    /// A forced response has none.
-    None,
-    /// M, which every harmonic has.
-    Mass,
-    /// K of the structure alone, at the entries of the pattern.
-    Stiffness(Vec<Complex64>),
-}
-
-/// What one harmonic sees of the structure.
-#[derive(Clone, Debug)]
-pub struct HarmonicBlock {
-    /// Harmonic number h.
-    pub number: usize,
-    /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
-    pub reference: Csc,
-    /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
-    pub stiffness: Vec<Complex64>,
-    /// C_h at the entries of the pattern.
-    pub damping: Vec<Complex64>,
-    /// M_h at the entries of the pattern.
-    pub mass: Vec<Complex64>,
-    /// The artificial damping.
-    pub artificial: Artificial,
-    /// F_h in units of the length scale.
-    pub force: Vec<Complex64>,
-    /// Rows of W, one per relative coordinate.
-    pub rows: Vec<Row>,
-}
-
-impl HarmonicBlock {
-    /// y = M x
-    pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
-        y.fill(Complex64::ZERO);
-        let pattern = &self.reference;
-        for (j, x) in x.iter().enumerate() {
-            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                y[pattern.row_idx[at]] += self.mass[at] * x;
-            }
         }
     }
 }
@@ -416,108 +374,4 @@ impl Condensed {
             unknowns: self.coordinates() * self.set.packed_len(),
         }
     }
-}
-
-/// Gathers active contacts on unique relative coordinates: per active contact its coordinate, and
-/// per coordinate one contact that stands for it.
-fn gather(model: &Model, active: &[usize]) -> Result<(Vec<usize>, Vec<usize>)> {
-    let sectors = model.structure().sectors() as i128;
-    let key = |position: usize| {
-        let c = &model.contacts()[active[position]];
-        (c.dof_a, c.dof_b, i128::from(c.sector_offset).rem_euclid(sectors))
-    };
-    let mut order = try_vec(active.len(), 0, "the contacts")?;
-    for (i, o) in order.iter_mut().enumerate() {
-        *o = i;
-    }
-    order.sort_by_key(|&i| key(i));
-    let mut coordinate_of = try_vec(active.len(), 0, "the contacts")?;
-    let mut representatives = Vec::new();
-    for (k, &i) in order.iter().enumerate() {
-        if k == 0 || key(i) != key(order[k - 1]) {
-            try_push(&mut representatives, active[i], "the contacts")?;
-        }
-        coordinate_of[i] = representatives.len() - 1;
-    }
-    Ok((coordinate_of, representatives))
-}
-
-/// Raises the stiffness of coordinates with cubic springs, whose kt may be zero, to that of the
-/// structure where they act, so that κ moves the poles whatever kt is. For a structure without
-/// stiffness of its own the inertia at `omega` tells the size.
-fn raise_for_springs(
-    model: &Model,
-    omega: f64,
-    set: &HarmonicSet,
-    never_slipping: &[usize],
-    (active, coordinate_of): (&[usize], &[usize]),
-    stiffness: &mut [f64],
-) -> Result<()> {
-    let is_cubic = |i: usize| model.contacts()[i].kind == ContactKind::Cubic;
-    if !active.iter().any(|&i| is_cubic(i)) {
-        return Ok(());
-    }
-    let lowest = set.numbers().first().copied().unwrap_or(0);
-    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
-    let k = model.sprung_stiffness(Wave::Harmonic(lowest), stuck)?;
-    let m = model.structure().wave_matrix(MatrixKind::Mass, lowest)?;
-    for (&i, &coordinate) in active.iter().zip(coordinate_of).filter(|&(&i, _)| is_cubic(i)) {
-        let contact = &model.contacts()[i];
-        for p in [contact.dof_a, contact.dof_b].into_iter().flatten() {
-            let size = k.get(p, p).norm().max(omega * omega * m.get(p, p).norm());
-            stiffness[coordinate] = stiffness[coordinate].max(size);
-        }
-    }
-    Ok(())
-}
-
-fn harmonic_block(
-    model: &Model,
-    number: usize,
-    never_slipping: &[usize],
-    representatives: &[usize],
-    kappa: impl Fn(usize) -> Complex64,
-) -> Result<HarmonicBlock> {
-    let structure = model.structure();
-    let n = model.ndof();
-    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
-    let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
-    let mut rows = try_vec(representatives.len(), [None; 2], "the contacts")?;
-    for (r, &i) in rows.iter_mut().zip(representatives) {
-        let contact = &model.contacts()[i];
-        let phase = structure.phase(number, contact.sector_offset);
-        *r = relative_row(contact.dof_a, contact.dof_b, phase);
-    }
-    let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
-    let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
-    let mut references = Vec::new();
-    for (c, row) in rows.iter().enumerate() {
-        for &(p, a) in row.iter().flatten() {
-            for &(q, b) in row.iter().flatten() {
-                try_push(&mut references, (p, q, a.conj() * kappa(c) * b), "the contacts")?;
-            }
-        }
-    }
-    let references = Csc::from_triplets(n, n, references)?;
-    // Zero factors add the pattern alone.
-    let (one, zero) = (Complex64::ONE, Complex64::ZERO);
-    let reference = Csc::sum(
-        n,
-        &[
-            (one, &stiffness, Form::Plain),
-            (one, &references, Form::Plain),
-            (zero, &damping, Form::Plain),
-            (zero, &mass, Form::Plain),
-        ],
-    )?;
-    Ok(HarmonicBlock {
-        number,
-        damping: damping.aligned(&reference)?,
-        mass: mass.aligned(&reference)?,
-        stiffness: stiffness.aligned(&reference)?,
-        reference,
-        artificial: Artificial::None,
-        force: try_vec(n, Complex64::ZERO, "the forces")?,
-        rows,
-    })
 }

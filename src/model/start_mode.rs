@@ -219,7 +219,7 @@ impl<'a> Known<'a> {
         if best.is_empty() || most <= 1e-12 * mass {
             return fail!(
                 Argument,
-                "mode_shape is unlike each of the {} lowest modes, or moves no mass",
+                "shape is unlike each of the {} lowest modes, or moves no mass",
                 parts.len()
             );
         }

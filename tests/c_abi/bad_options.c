@@ -101,6 +101,9 @@ static void struct_sizes(void)
     hbvib_view view;
     hbvib_reduction reduction;
     hbvib_energy energy;
+    hbvib_mode_options mode = amplitudes(1, 3);
+    hbvib_mode_point point;
+    hbvib_mode_info info;
     hbvib_hooks h;
     hbvib_branch *branch = NULL;
     size_t i;
@@ -118,6 +121,9 @@ static void struct_sizes(void)
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
     REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
+    REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
+    REFUSED("66", hbvib_mode_point_init(&point, 80), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
+    REFUSED("66", hbvib_mode_info_init(&info, 56), HBVIB_E_STRUCT_SIZE, 2, "needs 64");
     memset(&s, 0xAA, sizeof s);
     REFUSED("67", with(&s, &o, NULL), HBVIB_E_STRUCT_SIZE, 2, "hbvib_solver_options_init");
     memset(&o, 0xAA, sizeof o);
@@ -125,6 +131,17 @@ static void struct_sizes(void)
     memset(&h, 0xAA, sizeof h);
     o = frequencies(207, 211);
     REFUSED("67", with(NULL, &o, &h), HBVIB_E_STRUCT_SIZE, 4, "hbvib_hooks_init");
+    memset(&mode, 0xAA, sizeof mode);
+    REFUSED("67", hbvib_nonlinear_mode(the_model, NULL, &mode, NULL, &branch), HBVIB_E_STRUCT_SIZE, 3,
+            "hbvib_mode_options_init");
+    mode = amplitudes(1, 3);
+    memset(&point, 0xAA, sizeof point);
+    memset(&info, 0xAA, sizeof info);
+    WORKS("67", hbvib_nonlinear_mode(the_model, NULL, &mode, NULL, &branch));
+    REFUSED("67", hbvib_branch_mode_point(branch, 0, &point), HBVIB_E_STRUCT_SIZE, 3, "hbvib_mode_point_init");
+    REFUSED("67", hbvib_branch_mode_info(branch, &info), HBVIB_E_STRUCT_SIZE, 2, "hbvib_mode_info_init");
+    WORKS("67", hbvib_branch_free(branch));
+    branch = NULL;
     memset(&view, 0xAA, sizeof view);
     memset(&reduction, 0xAA, sizeof reduction);
     memset(&energy, 0xAA, sizeof energy);

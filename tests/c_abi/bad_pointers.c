@@ -4,7 +4,7 @@
 static void *misaligned(void *p) { return (char *)p + 4; }
 
 /* Row 1: NULL for each pointer, one at a time. Row 4: NULL handles. */
-static void null_pointers(hbvib_model *model, hbvib_branch *branch)
+static void null_pointers(hbvib_model *model, hbvib_branch *branch, hbvib_branch *backbone)
 {
     hbvib_matrix a = matrix(NDOF, STIFFNESS);
     hbvib_contact c = ring_contact();
@@ -13,6 +13,9 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     hbvib_branch *no_branch = (hbvib_branch *)&a, *kept_branch = no_branch;
     hbvib_reduction reduction;
     hbvib_energy energy;
+    hbvib_mode_options mode = amplitudes(1, 3);
+    hbvib_mode_point mode_point;
+    hbvib_mode_info mode_info;
     hbvib_view view;
     double numbers[8 * NDOF * NDOF] = {0};
     int64_t count = 0;
@@ -25,12 +28,16 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     REFUSED("1", hbvib_view_init(NULL, sizeof view), HBVIB_E_NULL, 1, "hbvib_view");
     REFUSED("1", hbvib_reduction_init(NULL, sizeof reduction), HBVIB_E_NULL, 1, "hbvib_reduction");
     REFUSED("1", hbvib_energy_init(NULL, sizeof energy), HBVIB_E_NULL, 1, "hbvib_energy");
+    REFUSED("1", hbvib_mode_options_init(NULL, sizeof mode), HBVIB_E_NULL, 1, "hbvib_mode_options");
+    REFUSED("1", hbvib_mode_point_init(NULL, sizeof mode_point), HBVIB_E_NULL, 1, "hbvib_mode_point");
+    REFUSED("1", hbvib_mode_info_init(NULL, sizeof mode_info), HBVIB_E_NULL, 1, "hbvib_mode_info");
 
     /* Row 2: the out handle. */
     REFUSED("2", hbvib_model_new(4, NULL), HBVIB_E_NULL, 2, "out");
     REFUSED("2", hbvib_cyclic_new(4, 24, NULL), HBVIB_E_NULL, 3, "out");
     REFUSED("2", hbvib_model_clone(model, NULL), HBVIB_E_NULL, 2, "out");
     REFUSED("2", hbvib_forced_response(model, NULL, &o, NULL, NULL), HBVIB_E_NULL, 5, "out");
+    REFUSED("2", hbvib_nonlinear_mode(model, NULL, &mode, NULL, NULL), HBVIB_E_NULL, 5, "out");
 
     REFUSED("4", hbvib_model_set_matrix(NULL, HBVIB_MASS, &a), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("1", hbvib_model_set_matrix(model, HBVIB_MASS, NULL), HBVIB_E_NULL, 3, "hbvib_matrix");
@@ -54,6 +61,8 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     REFUSED("1", hbvib_linear_modes(model, 0, HBVIB_CONTACTS_FREE, 4, NULL, numbers), HBVIB_E_NULL, 5, "omega");
     REFUSED("4", hbvib_forced_response(NULL, NULL, &o, NULL, &no_branch), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("1", hbvib_forced_response(model, NULL, NULL, NULL, &no_branch), HBVIB_E_NULL, 3, "hbvib_forced_options");
+    REFUSED("4", hbvib_nonlinear_mode(NULL, NULL, &mode, NULL, &no_branch), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_nonlinear_mode(model, NULL, NULL, NULL, &no_branch), HBVIB_E_NULL, 3, "hbvib_mode_options");
     EXPECT("1", no_branch == kept_branch);
     WORKS("4", hbvib_branch_free(NULL));
     REFUSED("4", hbvib_branch_points(NULL), HBVIB_E_HANDLE, 1, "NULL");
@@ -77,6 +86,12 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     WORKS("1", hbvib_energy_init(&energy, sizeof energy));
     REFUSED("4", hbvib_branch_energy(NULL, 0, &energy), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("1", hbvib_branch_energy(branch, 0, NULL), HBVIB_E_NULL, 3, "hbvib_energy");
+    WORKS("1", hbvib_mode_point_init(&mode_point, sizeof mode_point));
+    REFUSED("4", hbvib_branch_mode_point(NULL, 0, &mode_point), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_branch_mode_point(backbone, 0, NULL), HBVIB_E_NULL, 3, "hbvib_mode_point");
+    WORKS("1", hbvib_mode_info_init(&mode_info, sizeof mode_info));
+    REFUSED("4", hbvib_branch_mode_info(NULL, &mode_info), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_branch_mode_info(backbone, NULL), HBVIB_E_NULL, 2, "hbvib_mode_info");
 
     REFUSED("4", hbvib_forced_residual(NULL, NULL, 1, numbers, 40, numbers, 40, NULL, 0, NULL, 0), HBVIB_E_HANDLE, 1,
             "NULL");
@@ -111,6 +126,11 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch)
     o.at_len = 0;
     o.guess_len = 40;
     REFUSED("1", hbvib_forced_response(model, NULL, &o, NULL, &no_branch), HBVIB_E_NULL, 3, "guess");
+    mode.at_len = 1;
+    REFUSED("1", hbvib_nonlinear_mode(model, NULL, &mode, NULL, &no_branch), HBVIB_E_NULL, 3, "at");
+    mode.at_len = 0;
+    mode.shape_len = NDOF;
+    REFUSED("1", hbvib_nonlinear_mode(model, NULL, &mode, NULL, &no_branch), HBVIB_E_NULL, 3, "shape");
     EXPECT("1", no_branch == kept_branch);
 }
 
@@ -120,6 +140,7 @@ static void sizes(hbvib_model *model)
     hbvib_model *none = (hbvib_model *)model, *kept = none;
     hbvib_matrix a = matrix(NDOF, STIFFNESS);
     hbvib_forced_options o = frequencies(207, 211);
+    hbvib_mode_options mode = amplitudes(1, 3);
     hbvib_branch *branch = NULL;
     double padded[6 * NDOF];
     size_t i;
@@ -152,6 +173,16 @@ static void sizes(hbvib_model *model)
             REFUSED("6-8", hbvib_forced_response(model, NULL, &o, NULL, &branch), HBVIB_E_DIMENSION, 3, "guess_len");
         }
         o = frequencies(207, 211);
+        mode.at = mode.shape = MASS;
+        mode.at_len = bad[i];
+        mode.shape_len = NDOF;
+        if (bad[i] == INT64_MAX)
+            REFUSED("7", hbvib_nonlinear_mode(model, NULL, &mode, NULL, &branch), HBVIB_E_DIMENSION, 3, "at");
+        if (bad[i] < 0)
+            REFUSED("6", hbvib_nonlinear_mode(model, NULL, &mode, NULL, &branch), HBVIB_E_DIMENSION, 3, "at_len");
+        mode.at_len = 0;
+        mode.shape_len = bad[i];
+        REFUSED("6-8", hbvib_nonlinear_mode(model, NULL, &mode, NULL, &branch), HBVIB_E_DIMENSION, 3, "shape_len");
         REFUSED("6-8", hbvib_linear_modes(model, 0, 0, bad[i], padded, NULL), HBVIB_E_DIMENSION, 4, "needs 1 .. ndof = 4");
     }
     EXPECT("7", branch == NULL);
@@ -207,9 +238,11 @@ static void sizes(hbvib_model *model)
     }
 }
 
-static void buffers(hbvib_model *model, hbvib_branch *branch)
+static void buffers(hbvib_model *model, hbvib_branch *branch, hbvib_branch *backbone)
 {
     hbvib_energy energy;
+    hbvib_mode_point mode_point;
+    hbvib_mode_options mode = amplitudes(1, 3);
     hbvib_matrix a = matrix(NDOF, STIFFNESS);
     hbvib_contact c = ring_contact();
     double x[200] = {0}, r[200];
@@ -248,6 +281,9 @@ static void buffers(hbvib_model *model, hbvib_branch *branch)
     REFUSED("14", hbvib_branch_peaks(branch, 9, misaligned(r), NULL, NULL, &count), HBVIB_E_ARGUMENT, 3, "misaligned");
     REFUSED("14", hbvib_branch_peaks(branch, 9, NULL, NULL, NULL, misaligned(idx)), HBVIB_E_ARGUMENT, 6, "misaligned");
     REFUSED("14", hbvib_branch_energy(branch, 0, (hbvib_energy *)misaligned(r)), HBVIB_E_ARGUMENT, 3, "misaligned");
+    REFUSED("14", hbvib_branch_mode_point(backbone, 0, (hbvib_mode_point *)misaligned(r)), HBVIB_E_ARGUMENT, 3, "misaligned");
+    REFUSED("14", hbvib_branch_mode_info(backbone, (hbvib_mode_info *)misaligned(r)), HBVIB_E_ARGUMENT, 2, "misaligned");
+    REFUSED("14", hbvib_nonlinear_mode(model, NULL, &mode, NULL, misaligned(idx)), HBVIB_E_ARGUMENT, 5, "misaligned");
     REFUSED("14", hbvib_model_add_contact(model, &c, misaligned(idx)), HBVIB_E_ARGUMENT, 3, "misaligned");
     REFUSED("14", hbvib_model_new(4, misaligned(idx)), HBVIB_E_ARGUMENT, 2, "misaligned");
 
@@ -328,27 +364,35 @@ static void buffers(hbvib_model *model, hbvib_branch *branch)
     REFUSED("39", hbvib_branch_energy(branch, -1, &energy), HBVIB_E_INDEX, 2, "point = -1");
     EXPECT("39", energy.twice_mean_kinetic == 0 && energy.friction_loss == 0);
     WORKS("39", hbvib_branch_energy(branch, point, &energy));
+    WORKS("39", hbvib_mode_point_init(&mode_point, sizeof mode_point));
+    REFUSED("39", hbvib_branch_mode_point(backbone, INT64_MAX, &mode_point), HBVIB_E_INDEX, 2, "point");
+    REFUSED("39", hbvib_branch_mode_point(backbone, -1, &mode_point), HBVIB_E_INDEX, 2, "point = -1");
+    EXPECT("39", mode_point.omega == 0 && mode_point.energy == 0);
     WORKS("39", hbvib_branch_slip_fraction(branch, point, &shares, 1));
     EXPECT("39", shares > 0 && shares < 1);
     WORKS("39", hbvib_view_init(&view, sizeof view));
     REFUSED("54", hbvib_branch_field(branch, 9999, &view), HBVIB_E_ARGUMENT, 2, "field = 9999");
+    REFUSED("54", hbvib_branch_field(backbone, 9999, &view), HBVIB_E_ARGUMENT, 2, "field = 9999");
     EXPECT("54", view.data == NULL && view.rank == 0);
 }
 
 int main(void)
 {
-    hbvib_branch *branch = NULL;
+    hbvib_branch *branch = NULL, *backbone = NULL;
     hbvib_forced_options o = frequencies(207, 211);
+    hbvib_mode_options mode = amplitudes(1, 3);
     hbvib_solver_options s = solver_options();
     const double wanted = 2 * PI * 208;
     begin();
     o.at = &wanted;
     o.at_len = 1;
     WORKS("1", hbvib_forced_response(the_model, &s, &o, NULL, &branch));
-    null_pointers(the_model, branch);
+    WORKS("1", hbvib_nonlinear_mode(the_model, &s, &mode, NULL, &backbone));
+    null_pointers(the_model, branch, backbone);
     sizes(the_model);
-    buffers(the_model, branch);
+    buffers(the_model, branch, backbone);
     WORKS("1", hbvib_branch_free(branch));
+    WORKS("1", hbvib_branch_free(backbone));
     WORKS("1", hbvib_model_free(the_model));
     return verdict(200);
 }

@@ -115,6 +115,18 @@ static inline hbvib_forced_options frequencies(double from_hz, double to_hz)
     return o;
 }
 
+/* A mode of the ring damper: log10 of the modal amplitude over the slip limit's displacement. */
+static inline hbvib_mode_options amplitudes(double log10_from, double log10_to)
+{
+    hbvib_contact c = ring_contact();
+    double unit = log10(c.mu * c.preload / c.kt);
+    hbvib_mode_options o;
+    if (hbvib_mode_options_init(&o, sizeof o) != HBVIB_OK) abort();
+    o.log10_start = unit + log10_from;
+    o.log10_stop = unit + log10_to;
+    return o;
+}
+
 /* Frequencies, amplitudes and the harmonics at the peak: the bits of a solution. */
 typedef struct solution {
     int64_t points;
@@ -186,6 +198,28 @@ static inline void begin(void)
     }
     the_model = model;
 }
+
+/* Two masses that do not know each other; contacts to the ground from dof first_contact on. */
+static inline hbvib_model *two_masses(const double *m, const double *k, int64_t first_contact)
+{
+    hbvib_model *model = NULL;
+    hbvib_matrix a = matrix(2, m), b = matrix(2, k);
+    hbvib_contact c;
+    int64_t dof;
+    WORKS("two masses", hbvib_model_new(2, &model));
+    WORKS("two masses", hbvib_model_set_matrix(model, HBVIB_MASS, &a));
+    WORKS("two masses", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &b));
+    for (dof = first_contact; dof < 2; dof++) {
+        WORKS("two masses", hbvib_contact_init(&c, sizeof c));
+        c.kind = HBVIB_JENKINS;
+        c.dof_a[0] = dof;
+        c.kt = c.mu = c.preload = 1;
+        WORKS("two masses", hbvib_model_add_contact(model, &c, NULL));
+    }
+    return model;
+}
+
+static const double ONES[4] = {1, 0, 0, 1}, RISING[4] = {1, 0, 0, 4};
 
 static inline int verdict(int least_checks)
 {

@@ -29,6 +29,7 @@ static void no_model(const char *row, hbvib_model *m, const char *words)
     hbvib_matrix a = matrix(NDOF, MASS);
     hbvib_contact c = ring_contact();
     hbvib_forced_options o = frequencies(207, 211);
+    hbvib_mode_options mode = amplitudes(1, 3);
     hbvib_model *out = NULL;
     hbvib_branch *branch = NULL;
     double numbers[160] = {0};
@@ -46,6 +47,7 @@ static void no_model(const char *row, hbvib_model *m, const char *words)
     REFUSED(row, hbvib_model_clear_forces(m), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_linear_modes(m, 0, 0, 4, numbers, NULL), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_forced_response(m, NULL, &o, NULL, &branch), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_nonlinear_mode(m, NULL, &mode, NULL, &branch), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_forced_residual(m, NULL, 1, numbers, 40, numbers + 80, 40, NULL, 0, NULL, 0), HBVIB_E_HANDLE, 1, words);
     EXPECT(row, out == NULL && branch == NULL);
 }
@@ -56,11 +58,15 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     hbvib_view view;
     hbvib_reduction reduction;
     hbvib_energy energy;
+    hbvib_mode_point point;
+    hbvib_mode_info info;
     double numbers[80];
     int64_t count = -1;
     WORKS(row, hbvib_view_init(&view, sizeof view));
     WORKS(row, hbvib_reduction_init(&reduction, sizeof reduction));
     WORKS(row, hbvib_energy_init(&energy, sizeof energy));
+    WORKS(row, hbvib_mode_point_init(&point, sizeof point));
+    WORKS(row, hbvib_mode_info_init(&info, sizeof info));
     REFUSED(row, hbvib_branch_free(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_points(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_status(b), HBVIB_E_HANDLE, 1, words);
@@ -72,6 +78,8 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     REFUSED(row, hbvib_branch_at(b, 0, 0, NULL, NULL, &count), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_reduction(b, &reduction), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_energy(b, 0, &energy), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_mode_point(b, 0, &point), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_mode_info(b, &info), HBVIB_E_HANDLE, 1, words);
     EXPECT(row, count == -1);
 }
 

@@ -41,12 +41,14 @@ static void special_points(hbvib_branch *branch, const double *at)
         WORKS("at", hbvib_branch_harmonics(branch, point, 0, 1, part, 10));
         EXPECT("at", fabs(hypot(part[2], part[3]) / amplitude - 1) < 1e-12);
     }
-    for (i = 0; i < 10; i++) {
+    for (i = 0; i < 15; i++) {
         hbvib_status status;
         WORKS("views", hbvib_view_init(&view, sizeof view));
         status = hbvib_branch_field(branch, (int32_t)i, &view);
-        if (i == 2 || i == 3 || i == 4 || i == 7) {
-            EXPECT("views", status == HBVIB_E_ARGUMENT);
+        if (i == 2 || i == 3 || i == 4 || i == 7 || i >= 10) {
+            int a_modes = i != 7 && i != 14;
+            EXPECT("views", status == HBVIB_E_ARGUMENT && hbvib_last_error_argument() == 2 && view.data == NULL);
+            EXPECT("views", (strstr(hbvib_last_error(), "only a nonlinear mode has it") != NULL) == a_modes);
             continue;
         }
         EXPECT("views", status == HBVIB_OK && view.shape[0] == points && view.scalar == HBVIB_REAL);
@@ -84,6 +86,18 @@ static void residual(hbvib_model *model, hbvib_branch *branch, const double *at)
     }
     EXPECT("residual", slope < 1e-4 * largest);
     free(jac);
+}
+
+/* What belongs to a mode is refused. */
+static void no_mode(hbvib_branch *branch)
+{
+    hbvib_mode_point point;
+    hbvib_mode_info info;
+    WORKS("no mode", hbvib_mode_point_init(&point, sizeof point));
+    WORKS("no mode", hbvib_mode_info_init(&info, sizeof info));
+    REFUSED("no mode", hbvib_branch_mode_point(branch, 0, &point), HBVIB_E_UNSUPPORTED, 1, "a forced response has no mode");
+    REFUSED("no mode", hbvib_branch_mode_info(branch, &info), HBVIB_E_UNSUPPORTED, 1, "a forced response has no mode");
+    EXPECT("no mode", point.omega == 0 && info.omega == 0);
 }
 
 /* The work of both forces of 5 N goes into damping and friction; 24 sectors make the wheel. */
@@ -133,6 +147,7 @@ int main(void)
     WORKS("solve", hbvib_forced_response(the_model, &s, &o, NULL, &branch));
     special_points(branch, at);
     residual(the_model, branch, at);
+    no_mode(branch);
     energy(branch);
     modes(the_model);
     WORKS("free", hbvib_branch_free(branch));

@@ -1,0 +1,109 @@
+//! The mode at one amplitude as an oscillator under a force.
+
+use super::SynthesisPoint;
+use crate::branch::mode::ModePoint;
+use crate::error::{Result, fail};
+use crate::linalg::sparse::Csc;
+use num_complex::Complex64;
+
+/// What acts on the mode.
+pub(super) struct Load {
+    pub force: Vec<Complex64>,
+    pub damping: Option<Csc>,
+    pub ratio: f64,
+    pub response_dof: usize,
+}
+
+/// The mode at one amplitude, as the synthesis sees it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    pub omega: f64,
+    pub damping: f64,
+    /// Square of the modal amplitude.
+    pub square: f64,
+    /// X₁ᴴ F
+    pub work: Complex64,
+    /// X₁ of the response degree of freedom.
+    pub response: Complex64,
+    pub log10: f64,
+    pub fundamental_share: f64,
+}
+
+impl Load {
+    pub fn state(&self, omega: f64, point: Option<&ModePoint>, x: &[Complex64]) -> Result<State> {
+        let Some(point) = point else {
+            return fail!(Internal, "a point of the mode has no numbers");
+        };
+        let square = point.modal_amplitude * point.modal_amplitude;
+        let mut damping = point.damping_ratio + self.ratio;
+        if let Some(c) = &self.damping {
+            // xᴴ C x = 2Dω·xᴴ M x
+            let mut form = 0.0;
+            for (j, xj) in x.iter().enumerate() {
+                for (i, v) in c.column(j) {
+                    form += (x[i].conj() * v * xj).re;
+                }
+            }
+            damping += 0.5 * form / (omega * square);
+        }
+        Ok(State {
+            omega,
+            damping,
+            square,
+            work: x.iter().zip(&self.force).map(|(x, f)| x.conj() * f).sum(),
+            response: x[self.response_dof],
+            log10: point.log10_amplitude,
+            fundamental_share: point.fundamental_share,
+        })
+    }
+}
+
+impl State {
+    /// What damping takes at resonance beyond what the force can give: 2D(1 − D²)^½ω₀²a² − |X₁ᴴF|.
+    pub fn excess(&self) -> f64 {
+        let d = self.damping;
+        2.0 * d * (1.0 - d * d).max(0.0).sqrt() * self.omega * self.omega * self.square - self.work.norm()
+    }
+
+    /// Half the distance of the two Ω², where the force can hold the amplitude.
+    pub fn spread(&self) -> Option<f64> {
+        let (d, w2) = (self.damping, self.omega * self.omega);
+        let b = self.work.norm() / self.square;
+        let square = b * b - 4.0 * d * d * (1.0 - d * d) * w2 * w2;
+        (square >= 0.0).then(|| square.sqrt())
+    }
+
+    pub fn at(&self, spread: f64) -> Option<SynthesisPoint> {
+        let (d, w2) = (self.damping, self.omega * self.omega);
+        let square = w2 * (1.0 - 2.0 * d * d) + spread;
+        if square <= 0.0 {
+            return None;
+        }
+        let omega = square.sqrt();
+        // The oscillator turns X₁ into the phase in which the force does the work that is needed.
+        let stiffness = Complex64::new(w2 - square, 2.0 * d * self.omega * omega);
+        let phase = self.work / stiffness;
+        let turn = if phase.norm() > 0.0 {
+            phase / phase.norm()
+        } else {
+            Complex64::ONE
+        };
+        Some(SynthesisPoint {
+            omega,
+            response: self.response * turn,
+            modal_amplitude: self.square.sqrt(),
+            natural_omega: self.omega,
+            damping_ratio: d,
+        })
+    }
+
+    pub fn at_peak(&self) -> SynthesisPoint {
+        self.at(0.0).unwrap_or(SynthesisPoint {
+            omega: 0.0,
+            response: self.response,
+            modal_amplitude: self.square.sqrt(),
+            natural_omega: self.omega,
+            damping_ratio: self.damping,
+        })
+    }
+}

@@ -1,0 +1,150 @@
+//! The points that a branch holds beside its curve: peaks, folds, and those that were asked for.
+
+use super::boundary::{Blame, call, check_pointer, count, index};
+use super::handles::{KeptBranch, read};
+use super::types::{hbvib_branch, hbvib_status};
+use crate::branch::Special;
+use crate::error::{Result, Status, fail};
+use core::ptr;
+
+/// Output arrays for special points, each of them optional, with the numbers of their arguments.
+struct Lists {
+    omega: (*mut f64, i32),
+    amplitude: (*mut f64, i32),
+    point: (*mut i64, i32),
+    count: (*mut i64, i32),
+}
+
+impl Lists {
+    /// Writes the special points if `capacity`, the argument of the given number, suffices.
+    ///
+    /// # Safety
+    /// The caller of the C function states that `capacity` values fit into each array.
+    unsafe fn fill(&self, specials: &[Special], capacity: (i64, i32)) -> Result<Status> {
+        let (capacity, argument) = (count(capacity.0, capacity.1, "capacity")?, capacity.1);
+        let omega = optional(self.omega, "omega")?;
+        let amplitude = optional(self.amplitude, "amplitude")?;
+        let point = optional(self.point, "point")?;
+        check_pointer(self.count.0, self.count.1, "count")?;
+        unsafe { self.count.0.write(specials.len() as i64) };
+        if omega.is_none() && amplitude.is_none() && point.is_none() {
+            return Ok(Status::Ok);
+        }
+        if capacity < specials.len() {
+            return fail!(Dimension, "capacity = {capacity}, needs {}", specials.len()).blame(argument);
+        }
+        for (i, special) in specials.iter().enumerate() {
+            unsafe {
+                if let Some(p) = omega {
+                    p.add(i).write(special.omega);
+                }
+                if let Some(p) = amplitude {
+                    p.add(i).write(special.amplitude);
+                }
+                if let Some(p) = point {
+                    p.add(i).write(special.point as i64);
+                }
+            }
+        }
+        Ok(Status::Ok)
+    }
+}
+
+/// A pointer that may be NULL, but not misaligned.
+pub(super) fn optional<T>((p, argument): (*mut T, i32), name: &str) -> Result<Option<*mut T>> {
+    if p.is_null() {
+        return Ok(None);
+    }
+    check_pointer(p, argument, name)?;
+    Ok(Some(p))
+}
+
+/// Maxima of the amplitude of the response degree of freedom within the range; in a nonlinear mode
+/// the points of largest damping ratio. Refined on the solution, in the order in which they were met.
+///
+/// capacity   numbers that fit into each array.
+/// omega      receives their angular frequencies, or NULL.
+/// amplitude  receives their amplitudes, or NULL.
+/// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
+/// count      receives how many there are, also when `capacity` is too small. With all arrays NULL
+///            only the count is returned.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_peaks(
+    branch: *const hbvib_branch,
+    capacity: i64,
+    omega: *mut f64,
+    amplitude: *mut f64,
+    point: *mut i64,
+    count: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let lists = Lists {
+            omega: (omega, 3),
+            amplitude: (amplitude, 4),
+            point: (point, 5),
+            count: (count, 6),
+        };
+        unsafe { lists.fill(kept.branch.peaks(), (capacity, 2)) }
+    })
+}
+
+/// Turning points in frequency, in a nonlinear mode in amplitude, refined on the solution, in the
+/// order in which they were met.
+///
+/// Arguments, errors and threads as for hbvib_branch_peaks.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_folds(
+    branch: *const hbvib_branch,
+    capacity: i64,
+    omega: *mut f64,
+    amplitude: *mut f64,
+    point: *mut i64,
+    count: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let lists = Lists {
+            omega: (omega, 3),
+            amplitude: (amplitude, 4),
+            point: (point, 5),
+            count: (count, 6),
+        };
+        unsafe { lists.fill(kept.branch.folds(), (capacity, 2)) }
+    })
+}
+
+/// Every solution that was found at one of the frequencies in hbvib_forced_options.at, or of the
+/// amplitudes in hbvib_mode_options.at.
+///
+/// wanted     index into `at`, from 0.
+/// capacity   numbers that fit into each array.
+/// amplitude  receives their amplitudes, or NULL.
+/// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
+/// count      receives how many there are, as for hbvib_branch_peaks; several where the branch is
+///            folded, none where it ended before.
+/// Errors: HBVIB_E_INDEX (wanted), else as for hbvib_branch_peaks. Threads: any number on one
+/// branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_at(
+    branch: *const hbvib_branch,
+    wanted: i64,
+    capacity: i64,
+    amplitude: *mut f64,
+    point: *mut i64,
+    count: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let wanted = index(wanted, kept.wanted, 2, "wanted")?;
+        let lists = Lists {
+            omega: (ptr::null_mut(), 0),
+            amplitude: (amplitude, 4),
+            point: (point, 5),
+            count: (count, 6),
+        };
+        unsafe { lists.fill(kept.branch.at(wanted), (capacity, 3)) }
+    })
+}
