@@ -2,63 +2,13 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::sync::OnceLock;
+use std::path::Path;
 
+use example::{DOFS, folder, run};
 use serde_json::Value;
 
-const DOFS: [&str; 4] = ["b2", "b1", "d", "r"];
-
-/// The example, built once into the target folder of this test; cargo says where it lies.
-fn program() -> &'static Path {
-    static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM.get_or_init(|| {
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
-        let output = Command::new(env!("CARGO"))
-            .args([
-                "build",
-                "--release",
-                "--example",
-                "ring_damper",
-                "--message-format",
-                "json",
-            ])
-            .arg("--manifest-path")
-            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
-            .arg("--target-dir")
-            .arg(target)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let messages = String::from_utf8(output.stdout).unwrap();
-        let mut built = messages.lines().filter_map(|line| {
-            let message: Value = serde_json::from_str(line).ok()?;
-            let named = message["target"]["name"] == "ring_damper";
-            named
-                .then(|| message["executable"].as_str().map(PathBuf::from))
-                .flatten()
-        });
-        built.next_back().unwrap()
-    })
-}
-
-/// An empty folder of its own for one test.
-fn folder(name: &str) -> PathBuf {
-    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("ring_damper_{name}"));
-    if path.exists() {
-        fs::remove_dir_all(&path).unwrap();
-    }
-    fs::create_dir_all(&path).unwrap();
-    path
-}
-
-fn run(folder: &Path, flags: &[&str]) -> Output {
-    let mut command = Command::new(program());
-    command.current_dir(folder).args(flags);
-    // Outside of `cargo run` the program writes below the current folder.
-    command.env_remove("CARGO_MANIFEST_DIR").output().unwrap()
-}
+#[path = "common/example.rs"]
+mod example;
 
 fn response(folder: &Path, flags: &[&str]) -> Value {
     let output = run(folder, &[flags, &["--json", "response.json"]].concat());
@@ -222,6 +172,8 @@ fn bad_flags_are_named_and_nothing_is_written() {
         ("--at-hz", "--at-hz 300"),
         ("--at-hz", "--at-hz 208 --at-hz"),
         ("yes", "--tip-only yes"),
+        ("--mode", "--family 1"),
+        ("--at-slip", "--force 5 --at-slip 2"),
     ];
     for (name, flags) in bad {
         let mut all = vec!["--json", "response.json"];
@@ -270,7 +222,7 @@ fn figures_show_stuck_softening_and_sliding_and_the_best_damper() {
     let output = run(&folder, &[]);
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     let figures = folder.join("target/ring_damper");
-    for number in 4..=7 {
+    for number in 4..=9 {
         let file = |suffix| fs::read(figures.join(format!("figure{number}.{suffix}"))).unwrap();
         assert!(file("svg").starts_with(b"<svg"));
         assert!(file("png").starts_with(b"\x89PNG"));

@@ -16,32 +16,21 @@ use crate::sector::{Sector, Size};
 
 /// The flags of the program.
 pub const FLAGS: [Flag; 9] = [
-    flag("--force", "N", "amplitude of the force at the blade tip (2)"),
-    flag("--harmonics", "H", "highest harmonic number (3)"),
-    flag("--model", "rom|full", "reduced or full sector (rom)"),
-    flag("--from", "Hz", "begin of the range (512)"),
-    flag("--to", "Hz", "end of the range (548)"),
-    Flag {
-        repeatable: true,
-        ..flag(
-            "--at-hz",
-            "f",
-            "list the solutions at exactly this frequency; repeatable",
-        )
-    },
-    flag("--data", "FOLDER", "read the sector from here (examples/data/fe)"),
-    flag("--json", "FILE", "write the response to this file"),
-    flag("--help", "", "show this text"),
+    Flag::new("--force", "N", "amplitude of the force at the blade tip (2)"),
+    Flag::new("--harmonics", "H", "highest harmonic number (3)"),
+    Flag::new("--model", "rom|full", "reduced or full sector (rom)"),
+    Flag::new("--from", "Hz", "begin of the range (512)"),
+    Flag::new("--to", "Hz", "end of the range (548)"),
+    Flag::new(
+        "--at-hz",
+        "f",
+        "list the solutions at exactly this frequency; repeatable",
+    )
+    .repeatable(),
+    Flag::new("--data", "FOLDER", "read the sector from here (examples/data/fe)"),
+    Flag::new("--json", "FILE", "write the response to this file"),
+    Flag::new("--help", "", "show this text"),
 ];
-
-const fn flag(name: &'static str, value: &'static str, help: &'static str) -> Flag {
-    Flag {
-        name,
-        value,
-        repeatable: false,
-        help,
-    }
-}
 
 /// Shows the resonance of the blade from sticking (537 Hz) to sliding (528 Hz).
 pub const RANGE: (f64, f64) = (512.0, 548.0);
@@ -75,10 +64,7 @@ impl Request {
     ///
     /// A sentence naming the flag whose value cannot be used.
     pub fn new(flags: &Flags, folder: &Path) -> Result<Self, String> {
-        let positive = |f: &f64| f.is_finite() && *f > 0.0;
-        let force = flags.value("--force", "a finite number of at least 0", |f: &f64| {
-            f.is_finite() && *f >= 0.0
-        })?;
+        let force = flags.amount("--force")?;
         let size = match flags.value("--model", "rom or full", |_: &String| true)?.as_deref() {
             None | Some("rom") => Size::Reduced,
             Some("full") => Size::Full,
@@ -93,13 +79,9 @@ impl Request {
         }
         solver.check().map_err(|e| format!("--harmonics: {e}"))?;
         let range = Range {
-            from: flags
-                .value("--from", "a finite number above 0", positive)?
-                .unwrap_or(RANGE.0),
-            to: flags
-                .value("--to", "a finite number above 0", positive)?
-                .unwrap_or(RANGE.1),
-            at: flags.values("--at-hz", "a finite number above 0", positive)?,
+            from: flags.positive("--from")?.unwrap_or(RANGE.0),
+            to: flags.positive("--to")?.unwrap_or(RANGE.1),
+            at: flags.values("--at-hz", "a finite number above 0", flags::is_positive)?,
         };
         // A downward sweep must be meant: it takes both ends.
         if !(flags.has("--from") && flags.has("--to")) && range.from >= range.to {

@@ -1,4 +1,4 @@
-//! Figures 4 to 7 of the paper, each as CSV, SVG and PNG, with a short table on the screen.
+//! Figures 4 to 9 of the paper, each as CSV, SVG and PNG, with a short table on the screen.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -10,15 +10,16 @@ use hbvib::options::SolverOptions;
 
 use crate::csv::write_csv;
 use crate::model::{LARGEST_DIAMETER, Parameters, WANTED, modes_with_ring_stuck, modes_without_ring};
+use crate::modes::{self, Overlay};
 use crate::plot::{Figure, Series, Style};
 use crate::progress::Bar;
 use crate::response::{Range, Response};
 
 /// Shows the resonance of nodal diameter 2 from the ring sliding (207.8 Hz) to stuck (210.0 Hz).
-const RANGE: (f64, f64) = (207.0, 211.0);
+pub const RANGE: (f64, f64) = (207.0, 211.0);
 
 /// Largest step along a curve, small enough for it to be drawn smoothly.
-const SMOOTH: f64 = 0.005;
+pub const SMOOTH: f64 = 0.005;
 
 /// A parameter that is varied over one figure.
 struct Study {
@@ -83,6 +84,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
     for study in &STUDIES {
         study.run(&folder)?;
     }
+    modes::against_energy(&folder)?;
     writeln!(std::io::stdout(), "\nFigures and their data: {}", folder.display())?;
     Ok(())
 }
@@ -177,12 +179,21 @@ impl Study {
             &[self.column, "frequency_Hz", "amplitude_b2_m"],
             &rows,
         )?;
-        self.plot(&cases, |_| 1.0, "Amplitude of b2 [m]").save(&stem)?;
+        let mut figure = self.plot(&cases, |_| 1.0, "Amplitude of b2 [m]");
+        let mut overlay = None;
         if self.number == 5 {
+            let peaks = cases
+                .iter()
+                .map(|(force, r, _)| (*force, r.peak.frequency, r.peak.amplitude()));
+            let mode = Overlay::new(&solver, &peaks.collect::<Vec<_>>())?;
+            figure.series.extend(mode.series());
+            mode.write(folder)?;
+            overlay = Some(mode);
             // Divided by the force, the stuck and the sliding ring both collapse onto one curve.
             self.plot(&cases, |force| force, "Amplitude of b2 / force [m/N]")
                 .save(&folder.join("figure5_receptance"))?;
         }
+        figure.save(&stem)?;
 
         let mut screen = std::io::stdout().lock();
         writeln!(screen, "\nFigure {}: {}", self.number, self.title)?;
@@ -198,6 +209,10 @@ impl Study {
                 screen,
                 "{value:>13}{frequency:>12.4}{amplitude:>18.6e}{points:>9}{time:>11.1}"
             )?;
+        }
+        if let Some(mode) = overlay {
+            mode.show(&mut screen)?;
+            modes::with_many_harmonics(&mut screen)?;
         }
         Ok(())
     }

@@ -25,7 +25,11 @@ const B1: usize = 1;
 const DISK: usize = 2;
 const RING: usize = 3;
 
-const SECTORS: usize = 24;
+/// Number of the contact between disk and ring.
+pub const CONTACT: usize = 0;
+
+/// Sectors of the wheel.
+pub const SECTORS: usize = 24;
 const BLADE_TIP_MASS: f64 = 0.2;
 const BLADE_ROOT_MASS: f64 = 0.3;
 const DISK_MASS: f64 = 1.2;
@@ -76,6 +80,11 @@ impl Parameters {
     /// The centrifugal force that presses the ring of one sector against the disk, N.
     pub fn normal_load(&self) -> f64 {
         self.ring_mass * RADIUS * (self.rpm * 2.0 * PI / 60.0).powi(2)
+    }
+
+    /// The relative motion of disk and ring at which the contact begins to slip, m.
+    pub fn slip_length(&self) -> f64 {
+        FRICTION * self.normal_load() / self.kt
     }
 
     /// The model of a sector with ring, contact and forces.

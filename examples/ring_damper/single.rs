@@ -8,69 +8,33 @@ use hbvib::options::SolverOptions;
 
 use crate::flags::{self, Flag, Flags};
 use crate::json::write_json;
+use crate::mode;
 use crate::model::{DOFS, Parameters, WANTED};
 use crate::progress::{Bar, write_stderr};
 use crate::response::{Point, Range, Response};
 
-/// The flags of the program.
-pub const FLAGS: [Flag; 14] = [
-    flag("--force", "N", "amplitude of the force on each forced mass (5)"),
-    flag("--ring-mass", "kg", "mass of the ring per sector (0.03)"),
-    flag(
-        "--rpm",
-        "n",
-        "speed that sets the normal load, may be fractional (3000)",
-    ),
-    flag("--engine-order", "k", "engine order of the force, any integer (2)"),
-    flag("--kt", "N/m", "tangential stiffness of the contact (5e7)"),
-    flag("--beta", "s", "damping C = beta K, without the contact (1.5e-6)"),
-    flag("--tip-only", "", "force on b2 alone instead of b2 and b1"),
-    flag("--harmonics", "H", "highest harmonic number (9)"),
-    flag(
-        "--samples",
-        "N",
-        "samples per period (without: exact stick-slip events)",
-    ),
-    flag(
+/// The flags that only a response has.
+pub const FLAGS: [Flag; 6] = [
+    Flag::new("--force", "N", "amplitude of the force on each forced mass (5)"),
+    Flag::new("--engine-order", "k", "engine order of the force, any integer (2)"),
+    Flag::new("--tip-only", "", "force on b2 alone instead of b2 and b1"),
+    Flag::new(
         "--from",
         "Hz",
         "begin of the range (below the resonance, 207 in the base case)",
     ),
-    flag(
+    Flag::new(
         "--to",
         "Hz",
         "end of the range (above the resonance, 211 in the base case)",
     ),
-    Flag {
-        repeatable: true,
-        ..flag(
-            "--at-hz",
-            "f",
-            "list the solutions at exactly this frequency; repeatable",
-        )
-    },
-    flag("--json", "FILE", "write the response to this file"),
-    flag("--help", "", "show this text"),
-];
-
-const fn flag(name: &'static str, value: &'static str, help: &'static str) -> Flag {
-    Flag {
-        name,
-        value,
-        repeatable: false,
-        help,
-    }
-}
-
-/// The text of `--help`.
-pub fn help() -> String {
-    format!(
-        "Forced response of a bladed disk with a friction ring damper.\n\n\
-         Without flags: figures 4 to 7 of the paper, as CSV, SVG and PNG under target/ring_damper/.\n\
-         With flags: one response; what is not given has the value of the base case.\n\n{}",
-        flags::table(&FLAGS)
+    Flag::new(
+        "--at-hz",
+        "f",
+        "list the solutions at exactly this frequency; repeatable",
     )
-}
+    .repeatable(),
+];
 
 /// One response that was asked for.
 #[derive(Clone, Debug)]
@@ -88,13 +52,10 @@ impl Request {
     ///
     /// A sentence naming the flag whose value cannot be used.
     pub fn new(flags: &Flags) -> Result<Self, String> {
-        let positive = |name: &str| flags.value(name, "a finite number above 0", |x: &f64| x.is_finite() && *x > 0.0);
-        let amount = |name: &str, default: f64| {
-            let value = flags.value(name, "a finite number of at least 0", |x: &f64| {
-                x.is_finite() && *x >= 0.0
-            })?;
-            Ok::<f64, String>(value.unwrap_or(default))
-        };
+        if let Some(name) = flags.first_of(&mode::FLAGS) {
+            return Err(format!("{name} belongs to a nonlinear mode: give --mode as well"));
+        }
+        let amount = |name: &str, default: f64| Ok::<f64, String>(flags.amount(name)?.unwrap_or(default));
         let base = Parameters::default();
         let parameters = Parameters {
             force: amount("--force", base.force)?,
@@ -107,18 +68,9 @@ impl Request {
             kt: amount("--kt", base.kt)?,
             beta: amount("--beta", base.beta)?,
         };
-        let mut solver = SolverOptions::default();
-        if let Some(highest) = flags.value("--harmonics", "an integer of at least 1", |h: &usize| *h >= 1)? {
-            solver.harmonics = highest;
-        }
-        if let Some(samples) = flags.value("--samples", "an integer of at least 1", |n: &usize| *n >= 1)? {
-            solver.samples = samples;
-        }
-        solver.check().map_err(|e| format!("--harmonics, --samples: {e}"))?;
-        let (from, to) = (positive("--from")?, positive("--to")?);
-        let at = flags.values("--at-hz", "a finite number above 0", |x: &f64| {
-            x.is_finite() && *x > 0.0
-        })?;
+        let solver = solver_options(flags)?;
+        let (from, to) = (flags.positive("--from")?, flags.positive("--to")?);
+        let at = flags.values("--at-hz", "a finite number above 0", flags::is_positive)?;
         let range = complete(&parameters, from, to, at)?;
         Ok(Self {
             parameters,
@@ -161,6 +113,23 @@ impl Request {
 fn show(screen: &mut impl Write, what: &str, point: &Point) -> std::io::Result<()> {
     let (frequency, amplitude) = (point.frequency, point.amplitude());
     writeln!(screen, "{what:<5}{frequency:.9} Hz   |X_1| of b2 {amplitude:.9e} m")
+}
+
+/// What the flags say of the harmonics.
+///
+/// # Errors
+///
+/// A sentence naming the flag whose value cannot be used.
+pub fn solver_options(flags: &Flags) -> Result<SolverOptions, String> {
+    let mut solver = SolverOptions::default();
+    if let Some(highest) = flags.value("--harmonics", "an integer of at least 1", |h: &usize| *h >= 1)? {
+        solver.harmonics = highest;
+    }
+    if let Some(samples) = flags.value("--samples", "an integer of at least 1", |n: &usize| *n >= 1)? {
+        solver.samples = samples;
+    }
+    solver.check().map_err(|e| format!("--harmonics, --samples: {e}"))?;
+    Ok(solver)
 }
 
 /// Fills in the ends of the range that are not given, and checks the whole.

@@ -19,6 +19,26 @@ pub struct Flag {
     pub help: &'static str,
 }
 
+impl Flag {
+    /// A flag that may be given once.
+    pub const fn new(name: &'static str, value: &'static str, help: &'static str) -> Self {
+        Self {
+            name,
+            value,
+            repeatable: false,
+            help,
+        }
+    }
+
+    /// The same flag, to be given as often as wanted.
+    pub const fn repeatable(self) -> Self {
+        Self {
+            repeatable: true,
+            ..self
+        }
+    }
+}
+
 /// The flags that were given, with their values still as text.
 #[derive(Debug, Default)]
 pub struct Flags {
@@ -64,6 +84,12 @@ impl Flags {
         self.given.iter().any(|g| g.0 == name)
     }
 
+    /// The first flag given of those in `known`.
+    pub fn first_of(&self, known: &[Flag]) -> Option<&'static str> {
+        let mut names = self.given.iter().map(|g| g.0);
+        names.find(|name| known.iter().any(|k| k.name == *name))
+    }
+
     /// The value of a flag as a path.
     pub fn path(&self, name: &str) -> Option<PathBuf> {
         self.given.iter().find(|g| g.0 == name).map(|g| PathBuf::from(&g.1))
@@ -82,6 +108,26 @@ impl Flags {
             .collect()
     }
 
+    /// A finite number above 0 that is given once at most.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::values`].
+    pub fn positive(&self, name: &str) -> Result<Option<f64>, String> {
+        self.value(name, "a finite number above 0", is_positive)
+    }
+
+    /// A finite number of at least 0 that is given once at most.
+    ///
+    /// # Errors
+    ///
+    /// As [`Self::values`].
+    pub fn amount(&self, name: &str) -> Result<Option<f64>, String> {
+        self.value(name, "a finite number of at least 0", |x: &f64| {
+            x.is_finite() && *x >= 0.0
+        })
+    }
+
     /// The value of a flag that is given once at most.
     ///
     /// # Errors
@@ -90,6 +136,12 @@ impl Flags {
     pub fn value<T: FromStr>(&self, name: &str, needs: &str, valid: impl Fn(&T) -> bool) -> Result<Option<T>, String> {
         Ok(self.values(name, needs, valid)?.pop())
     }
+}
+
+/// Whether a number is finite and above 0.
+#[allow(clippy::trivially_copy_pass_by_ref, reason = "what Flags::values takes")]
+pub fn is_positive(x: &f64) -> bool {
+    x.is_finite() && *x > 0.0
 }
 
 /// The flags as a table for the help.

@@ -45,6 +45,8 @@ pub enum Style {
     Dashed,
     /// A symbol at every point.
     Markers,
+    /// A circle round every point, beside a dashed line of the same label.
+    Rings,
 }
 
 /// Named points of one curve. Points that are not finite interrupt the line.
@@ -196,7 +198,7 @@ impl Figure {
         for (shape, (label, color)) in legend.iter().enumerate().filter(|l| !l.1.0.is_empty()) {
             for series in self.series.iter().filter(|s| s.label == *label) {
                 let sample: &[Point] = match series.style {
-                    Style::Markers => &[(left + SAMPLE.0 / 2.0, at)],
+                    Style::Markers | Style::Rings => &[(left + SAMPLE.0 / 2.0, at)],
                     _ => &[(left, at), (left + SAMPLE.0, at)],
                 };
                 let frame = [(left, top), (right, bottom)];

@@ -27,6 +27,9 @@ pub struct Range {
     pub at: Vec<f64>,
 }
 
+/// Every harmonic that is carried: its number, and `X_p` of each degree of freedom wanted.
+pub type Harmonics = Vec<(usize, Vec<Complex64>)>;
+
 /// A solution: motion of sector 1, x(t) = Re Σ `X_p` exp(i p ω t).
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -34,8 +37,8 @@ pub struct Point {
     pub number: usize,
     /// Frequency of the force, Hz.
     pub frequency: f64,
-    /// Every harmonic that is carried: its number, and `X_p` of each degree of freedom wanted.
-    pub harmonics: Vec<(usize, Vec<Complex64>)>,
+    /// Its motion.
+    pub harmonics: Harmonics,
 }
 
 impl Point {
@@ -201,13 +204,7 @@ fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Re
     let harmonics = match branch.response_at(number) {
         // The response degree of freedom is at hand; others are recovered with the whole structure.
         Some(response) if wanted == [branch.response_dof()] => carried.zip(response.iter().map(|&x| vec![x])).collect(),
-        _ => {
-            let n = branch.ndof();
-            let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
-            branch.harmonics_at(number, &mut all)?;
-            let of = |p: usize| wanted.iter().map(|dof| all[p * n + dof]).collect();
-            carried.map(|p| (p, of(p))).collect()
-        }
+        _ => harmonics(branch, number, wanted)?,
     };
     Ok(Point {
         number,
@@ -216,19 +213,41 @@ fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Re
     })
 }
 
+/// The motion at a point of a branch.
+///
+/// # Errors
+///
+/// If the library refuses the point.
+pub fn harmonics(branch: &Branch, number: usize, wanted: &[usize]) -> Result<Harmonics, Box<dyn Error>> {
+    let n = branch.ndof();
+    let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
+    branch.harmonics_at(number, &mut all)?;
+    let of = |p: usize| wanted.iter().map(|dof| all[p * n + dof]).collect();
+    Ok(branch.carried().iter().map(|&p| (p, of(p))).collect())
+}
+
 fn point_to_json(point: &Point, amplitude: &str, names: &[&str]) -> Result<Value, Box<dyn Error>> {
+    let mut object = Map::new();
+    object.insert("frequency_hz".into(), number(point.frequency)?);
+    object.insert(amplitude.into(), number(point.amplitude())?);
+    object.insert("harmonics".into(), harmonics_to_json(&point.harmonics, names)?);
+    Ok(object.into())
+}
+
+/// Real and imaginary part of each harmonic of each degree of freedom, by their names.
+///
+/// # Errors
+///
+/// If a number is not finite.
+pub fn harmonics_to_json(carried: &[(usize, Vec<Complex64>)], names: &[&str]) -> Result<Value, Box<dyn Error>> {
     let mut harmonics = Map::new();
     for (dof, &name) in names.iter().enumerate() {
         let mut of_dof = Map::new();
-        for (p, x) in &point.harmonics {
+        for (p, x) in carried {
             let pair = vec![number(x[dof].re)?, number(x[dof].im)?];
             of_dof.insert(p.to_string(), pair.into());
         }
         harmonics.insert(name.into(), of_dof.into());
     }
-    let mut object = Map::new();
-    object.insert("frequency_hz".into(), number(point.frequency)?);
-    object.insert(amplitude.into(), number(point.amplitude())?);
-    object.insert("harmonics".into(), harmonics.into());
-    Ok(object.into())
+    Ok(harmonics.into())
 }

@@ -33,7 +33,7 @@ pub(super) fn legend(series: &[Series]) -> Vec<(&str, RGBColor)> {
     }
     let is_dashed = |label: &str| {
         let mut same = series.iter().filter(|s| s.label == label);
-        same.all(|s| s.style == Style::Dashed)
+        same.all(|s| matches!(s.style, Style::Dashed | Style::Rings))
     };
     let dashed: Vec<&str> = labels.iter().copied().filter(|l| is_dashed(l)).collect();
     let reference = dashed.first().filter(|_| dashed.len() == 1 && labels.len() > 1);

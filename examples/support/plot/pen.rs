@@ -75,6 +75,10 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
                 let mut shown = points.iter().filter(inside);
                 shown.try_for_each(|p| self.marker(*p, shape, color))
             }
+            Style::Rings => {
+                let mut shown = points.iter().filter(inside);
+                shown.try_for_each(|p| self.ring(*p, color))
+            }
         }
     }
 
@@ -90,6 +94,14 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
         };
         let corners: Vec<_> = corners.iter().map(|d| self.pixel((x + d.0, y + d.1))).collect();
         Ok(self.area.draw(&Polygon::new(corners, color.filled()))?)
+    }
+
+    fn ring(&self, (x, y): Point, color: RGBColor) -> Outcome {
+        let corner = |k: u32| {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 36.0).sin_cos();
+            (x + 8.0 * cos, y + 8.0 * sin)
+        };
+        self.line(&(0..=36).map(corner).collect::<Vec<_>>(), color, 1.6)
     }
 
     /// The width of a text.
