@@ -77,6 +77,27 @@ impl DynamicStiffness {
     }
 }
 
+/// Refines a solution x of Z x = b once, with the factors at hand, those of the i-th harmonic at
+/// (ω, D): near a resonance of Z_κ the rounding of a plain solution is many times that of the
+/// relative motions that follow from it. `rest` is memory for b − Z x.
+pub(super) fn refine(
+    dynamic: &mut DynamicStiffness,
+    condensed: &Condensed,
+    i: usize,
+    at: (f64, f64),
+    b: &[Complex64],
+    x: &mut [Complex64],
+    rest: &mut [Complex64],
+) -> Result<()> {
+    rest.copy_from_slice(b);
+    subtract_product(condensed, i, at, x, rest);
+    dynamic.solve(condensed, i, at.0, rest, false)?;
+    for (x, d) in x.iter_mut().zip(rest) {
+        *x += *d;
+    }
+    Ok(())
+}
+
 /// Z_κ or one of its derivatives as a sum of the block's matrices.
 #[derive(Clone, Copy)]
 struct Combination {
@@ -163,7 +184,7 @@ pub(super) fn add_slope_product(
 }
 
 /// y −= Z x for the i-th carried harmonic.
-pub(super) fn subtract_product(
+fn subtract_product(
     condensed: &Condensed,
     i: usize,
     (omega, damping): (f64, f64),

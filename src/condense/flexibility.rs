@@ -5,7 +5,7 @@
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
 use super::Condensed;
-use super::dynamic::{By, DynamicStiffness, add_slope_product, product};
+use super::dynamic::{By, DynamicStiffness, add_slope_product, product, refine};
 use crate::error::{Result, try_vec};
 use crate::model::spring::Row;
 use num_complex::Complex64;
@@ -45,6 +45,7 @@ pub struct Workspace {
     /// Z⁻ᵀ Rᵀ, ndof rows.
     rows: Vec<Complex64>,
     product: Vec<Complex64>,
+    load: Vec<Complex64>,
     table: Table,
 }
 
@@ -63,6 +64,7 @@ impl Workspace {
             columns: try_vec(n.saturating_mul(outputs), Complex64::ZERO, "the contact flexibility")?,
             rows: Vec::new(),
             product: try_vec(n, Complex64::ZERO, "the contact flexibility")?,
+            load: try_vec(n, Complex64::ZERO, "the contact flexibility")?,
             table: Table::new(condensed.coordinates())?,
         })
     }
@@ -199,12 +201,15 @@ impl Workspace {
     ) -> Result<()> {
         self.dynamic.factor(condensed, i, omega.into(), self.damping)?;
         let block = &condensed.blocks()[i];
-        x.copy_from_slice(&block.force);
+        self.load.copy_from_slice(&block.force);
         for (row, w) in block.rows.iter().zip(contact_force) {
             for &(p, a) in row.iter().flatten() {
-                x[p] -= a.conj() * w;
+                self.load[p] -= a.conj() * w;
             }
         }
-        self.dynamic.solve(condensed, i, omega, x, false)
+        let at = (omega, self.damping);
+        x.copy_from_slice(&self.load);
+        self.dynamic.solve(condensed, i, omega, x, false)?;
+        refine(&mut self.dynamic, condensed, i, at, &self.load, x, &mut self.product)
     }
 }

@@ -5,7 +5,7 @@
 //! x = −Z⁻¹ Wᴴ w, ∂x/∂w = −Z⁻¹ Wᴴ, ∂x/∂ω = −Z⁻¹ Z_ω x, ∂x/∂D = −Z⁻¹ Z_D x.
 
 use super::Condensed;
-use super::dynamic::{By, DynamicStiffness, add_slope_product, subtract_product};
+use super::dynamic::{By, DynamicStiffness, add_slope_product, refine};
 use crate::error::{Result, try_vec};
 use crate::model::spring::Row;
 use num_complex::Complex64;
@@ -62,19 +62,23 @@ impl Modal {
                 *x -= z * w;
             }
         }
-        // One step of iterative refinement: a mode lies close to a resonance of Z_κ, and Newton's method
-        // would not get below the rounding of a plain solution on stiff structures.
-        self.by_omega.fill(Complex64::ZERO);
+        // Newton's method would not get below the rounding of a plain solution on stiff structures.
+        self.by_damping.fill(Complex64::ZERO);
         for (row, w) in rows.iter().zip(w) {
             for &(p, a) in row.iter().flatten() {
-                self.by_omega[p] -= a.conj() * w;
+                self.by_damping[p] -= a.conj() * w;
             }
         }
-        subtract_product(condensed, i, (omega, damping), &self.x, &mut self.by_omega);
-        self.dynamic.solve(condensed, i, omega, &mut self.by_omega, false)?;
-        for (x, d) in self.x.iter_mut().zip(&self.by_omega) {
-            *x += d;
-        }
+        let (b, x) = (&self.by_damping, &mut self.x);
+        refine(
+            &mut self.dynamic,
+            condensed,
+            i,
+            (omega, damping),
+            b,
+            x,
+            &mut self.by_omega,
+        )?;
         let at = (omega.into(), damping);
         for (derivative, by) in [(&mut self.by_omega, By::Omega), (&mut self.by_damping, By::Damping)] {
             derivative.fill(Complex64::ZERO);
