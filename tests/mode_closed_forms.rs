@@ -3,7 +3,7 @@
 //! method of its own.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 
 use common::{BASE, Blisk, D, R, data, harmonics, number};
