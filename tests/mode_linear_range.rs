@@ -2,7 +2,7 @@
 //! amplitude at which it ends are those of an eigenvalue problem, with or without structural damping.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 
 use common::{BASE, Blisk, data, harmonics, number};
