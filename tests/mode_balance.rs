@@ -1,7 +1,7 @@
 //! Power balance and scaling of nonlinear modes: exact statements about the equations at every H.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 
 use common::{BASE, Blisk, all_harmonics, harmonics};
