@@ -3,7 +3,7 @@
 //! at which the response lags by 90° only lies near the backbone.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 
 use common::{B1, B2, BASE, Blisk, all_harmonics, harmonics, relative_gap, slip};
