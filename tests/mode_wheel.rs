@@ -2,7 +2,7 @@
 //! the wave where the sector is symmetric. Same-H solutions of the same physics.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 
 use common::{B2, BASE, Blisk, NDOF, SECTORS, all_harmonics, harmonics, phase, relative_gap};
