@@ -2,7 +2,7 @@
 //! continuity, not by the order of frequencies. Same-H solutions.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 
 use common::{BASE, Blisk, D, R, data, harmonics, number};
