@@ -2,7 +2,7 @@
 //! slip one after the other.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 
 use common::{BASE, Blisk, harmonics};
