@@ -1,7 +1,7 @@
 //! Bad input to a nonlinear mode gives its stated error with a sentence that names the fault.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 #[path = "common/refusal.rs"]
 mod refusal;
@@ -50,9 +50,9 @@ fn a_mode_that_does_not_exist_is_refused() {
         );
     }
     for (choice, status, word) in [
-        (ModeChoice::Near(f64::NAN), Status::NotFinite, "mode_frequency = NaN"),
-        (ModeChoice::Near(0.0), Status::Argument, "mode_frequency = 0"),
-        (ModeChoice::Near(-5.0), Status::Argument, "mode_frequency = -5"),
+        (ModeChoice::Near(f64::NAN), Status::NotFinite, "near_omega = NaN"),
+        (ModeChoice::Near(0.0), Status::Argument, "near_omega = 0"),
+        (ModeChoice::Near(-5.0), Status::Argument, "near_omega = -5"),
         (
             ModeChoice::Shape(&[Complex64::ONE; 3]),
             Status::Dimension,
@@ -179,12 +179,12 @@ fn a_mode_that_moves_no_contact_is_refused() {
     refused(
         follow(&model, &by_contact(0)),
         Status::Argument,
-        &["amplitude", "contact 0"],
+        &["amplitude_contact = 0", "does not move"],
     );
     refused(
         follow(&model, &by_contact(3)),
         Status::Index,
-        &["amplitude", "id = 3", "3 contacts"],
+        &["amplitude_contact = 3", "3 contacts"],
     );
     assert_eq!(follow(&model, &by_contact(1)).unwrap().status(), Status::Ok);
 }
