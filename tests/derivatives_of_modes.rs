@@ -2,7 +2,7 @@
 //! of a sector without mirror symmetry: these are identities, no solution is needed.
 
 mod common;
-#[path = "common/modes.rs"]
+#[path = "common/mode_cases.rs"]
 mod modes;
 #[path = "common/stencil.rs"]
 mod stencil;
