@@ -62,7 +62,7 @@ fn a_mode_that_does_not_exist_is_refused() {
         (
             ModeChoice::Shape(&[Complex64::new(f64::INFINITY, 0.0); 4]),
             Status::NotFinite,
-            "mode_shape[0]",
+            "shape[0]",
         ),
     ] {
         base_refuses(&ModeOptions { choice, ..RANGE }, status, &[word]);
