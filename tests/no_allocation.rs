@@ -16,9 +16,10 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::linalg::norm;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::SolverOptions;
+use hbvib::options::{DampingForm, ModeChoice, SolverOptions};
 use hbvib::postprocess::energy::balance;
 use hbvib::problem::forced::Forced;
+use hbvib::problem::mode::{Gauge, LinearMode, Mode};
 use hbvib::problem::{Linearisation, Problem, Start};
 use num_complex::Complex64;
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -131,6 +132,47 @@ fn the_energy_balance_of_a_point_allocates_nothing() {
     let (count, found) = allocations(|| balance(&condensed, 1300.0, &x, &packed, &packed));
     assert_eq!(count, 0);
     assert!(found.twice_mean_kinetic > 0.0 && found.structural_loss > 0.0);
+}
+
+#[test]
+fn an_evaluation_of_a_mode_allocates_nothing() {
+    let model = BASE.sector();
+    let start = model.start_mode(ModeChoice::Index(0)).unwrap();
+    for form in [DampingForm::Mass, DampingForm::Stiffness] {
+        let damped = model.damped_mode(&start, form).unwrap();
+        let linear = LinearMode {
+            omega: damped.omega,
+            damping: damped.damping,
+            shape: damped.shape,
+        };
+        let gauge = Gauge {
+            contact: None,
+            reference_dof: 0,
+        };
+        for (highest, samples) in WAYS {
+            let options = options(highest, samples);
+            let (condensed, _) = Condensed::for_mode(&model, &options, form, &linear.shape).unwrap();
+            let mut problem = Mode::new(&condensed, &gauge, &linear, samples).unwrap();
+            let n = problem.size();
+            let mut u = vec![0.0; n];
+            let mut at = Linearisation::new(n).unwrap();
+            assert!(problem.start(Start::Stuck, 0.0, &mut u).unwrap());
+            let onset = problem.linear_up_to().unwrap();
+            // The first evaluation may lay out memory.
+            problem.evaluate(&u, onset + 1.0, &mut at).unwrap();
+            let (count, ()) = allocations(|| {
+                for k in 0..5 {
+                    // The motion changes too: other reversals, other slips.
+                    u[k % n] *= 1.5;
+                    problem.evaluate(&u, onset + 0.5 * k as f64, &mut at).unwrap();
+                }
+            });
+            assert_eq!(count, 0, "{form:?}, H = {highest}, {samples} samples");
+            let direction = vec![1.0; n + 1];
+            let (count, _) = allocations(|| problem.observe(&u, &direction));
+            assert_eq!(count, 0, "observing the damping ratio");
+        }
+    }
 }
 
 #[test]

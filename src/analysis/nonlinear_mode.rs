@@ -7,9 +7,9 @@ use crate::branch::mode::{ModeData, ModeInfo};
 use crate::branch::{Branch, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::modal::along;
-use crate::continuation::Settings;
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
+use crate::continuation::{Advance, Continuation, Settings};
 use crate::error::{Result, Status, fail};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
@@ -183,8 +183,13 @@ fn run(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
+    // The branch may come back to amplitudes below the onset, slipping.
+    let followed = if from < end { start } else { from };
     let task = Task {
-        settings,
+        settings: Settings {
+            start: followed,
+            ..settings
+        },
         range: (start, end),
         at: range.at,
         max_points: solver.max_points,
@@ -212,13 +217,50 @@ fn run(
             return Ok(Status::StoppedMaxPoints);
         }
     }
-    match start::solve(points.problem(), &settings, hooks.cancelled)? {
+    match first_slipping(points.problem(), &settings, linear_up_to, solver.max_points, hooks)? {
         First::Found(first) => {
             hooks.log(LogLevel::Info, "first point with slip or a nonlinear force solved");
             task.run(points, first, hooks)
         }
         First::Cancelled => Ok(Status::StoppedByCaller),
     }
+}
+
+/// The point at `settings.start`, beyond the linear range. Newton's method from a linear mode far
+/// below may find another mode, so the branch is followed from the onset.
+fn first_slipping(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    linear_up_to: f64,
+    max_points: usize,
+    hooks: &Hooks<'_>,
+) -> Result<First> {
+    let near = linear_up_to + BEYOND_ONSET.log10();
+    if near.is_infinite() || settings.start <= near {
+        return start::solve(problem, settings, hooks.cancelled);
+    }
+    let way = Settings {
+        start: near,
+        end: settings.start,
+        ..*settings
+    };
+    let mut continuation = match start::solve(problem, &way, hooks.cancelled)? {
+        First::Found(point) => Continuation::new(way, point)?,
+        First::Cancelled => return Ok(First::Cancelled),
+    };
+    for _ in 0..max_points {
+        match continuation.advance(problem, hooks.cancelled)? {
+            Advance::Accepted { point, last: true } => return Ok(First::Found(point)),
+            Advance::Accepted { .. } => {}
+            Advance::Stopped(Status::StoppedByCaller) => return Ok(First::Cancelled),
+            Advance::LeftAtStart { .. } | Advance::Stopped(_) => break,
+        }
+    }
+    fail!(
+        NoConvergence,
+        "log10_start = {} was not reached from the onset of slip at {linear_up_to}; start below the onset, or raise max_newton or max_points",
+        settings.start
+    )
 }
 
 /// Points from the start of the range to `end`, below which all contacts stick: nothing has to

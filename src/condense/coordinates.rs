@@ -1,11 +1,13 @@
 //! The relative coordinates: contacts between the same two places share one.
 
+use super::modal::along;
 use crate::contact::ContactKind;
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::model::Model;
-use crate::model::spring::Wave;
+use crate::model::spring::{Wave, relative_row};
 use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
 
 /// Gathers active contacts on unique relative coordinates: per active contact its coordinate, and
 /// per coordinate one contact that stands for it.
@@ -58,4 +60,19 @@ pub(super) fn raise_for_springs(
         }
     }
     Ok(())
+}
+
+/// Relative motion at a contact over the motions of its sides, 0 .. 1: how much the contact gives.
+///
+/// A mode that hardly moves a contact hardly feels its stiffness, κ in its place neither, and the
+/// structure with κ would still resonate in the mode. With κ reduced to this share, about the
+/// dynamic stiffness of what hangs on the contact, the relative motion is no longer small and the
+/// resonance is damped.
+pub(super) fn give(model: &Model, contact: usize, shape: &[Complex64]) -> f64 {
+    let contact = &model.contacts()[contact];
+    let phase = model.structure().phase(1, contact.sector_offset);
+    let row = relative_row(contact.dof_a, contact.dof_b, phase);
+    let sides: f64 = row.iter().flatten().map(|&(p, a)| (a * shape[p]).norm()).sum();
+    let relative = along(&row, shape).norm();
+    if relative > 1e-9 * sides { relative / sides } else { 1.0 }
 }

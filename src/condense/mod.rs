@@ -27,7 +27,7 @@ use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, SolverOptions};
 use block::harmonic_block;
 pub use block::{Artificial, HarmonicBlock};
-use coordinates::{gather, raise_for_springs};
+use coordinates::{gather, give, raise_for_springs};
 use flexibility::Workspace;
 use num_complex::Complex64;
 
@@ -78,6 +78,8 @@ pub struct Condensed {
     /// one is a cubic spring.
     stiffness: Vec<f64>,
     reference: Reference,
+    /// Share of the reference stiffness that the fundamental takes, per coordinate.
+    share: Vec<f64>,
     contacts: usize,
     never_slipping: usize,
     inert: usize,
@@ -175,7 +177,7 @@ impl Condensed {
         shape: &[Complex64],
     ) -> Result<(Self, f64)> {
         // A mode has a linear frequency, so the structure holds its springs by stiffness.
-        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], 0.0, Some(form))?;
+        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], 0.0, Some((form, shape)))?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
         let motion = rows
@@ -192,7 +194,7 @@ impl Condensed {
         options: &SolverOptions,
         forced: &[usize],
         omega: f64,
-        form: Option<DampingForm>,
+        mode: Option<(DampingForm, &[Complex64])>,
     ) -> Result<(Self, Vec<(usize, usize)>)> {
         let mut inert = 0;
         let mut never_slipping = Vec::new();
@@ -227,19 +229,25 @@ impl Condensed {
         )?;
         let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
-        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && form.is_none() {
+        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
             Reference::Stuck
         } else {
             Reference::Complex
         };
+        let mut share = try_vec(representatives.len(), 1.0, "the contacts")?;
+        if let Some((_, shape)) = mode {
+            for (share, &contact) in share.iter_mut().zip(&representatives) {
+                *share = give(model, contact, shape);
+            }
+        }
         let mut blocks = Vec::new();
         for &number in set.numbers() {
-            let kappa = |c: usize| reference.kappa(stiffness[c], number);
+            let kappa = |c: usize| reference.kappa(stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
             let mut block = harmonic_block(model, number, &never_slipping, &representatives, kappa)?;
-            block.artificial = match form {
+            block.artificial = match mode {
                 None => Artificial::None,
-                Some(DampingForm::Mass) => Artificial::Mass,
-                Some(DampingForm::Stiffness) => {
+                Some((DampingForm::Mass, _)) => Artificial::Mass,
+                Some((DampingForm::Stiffness, _)) => {
                     let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
                     Artificial::Stiffness(structure.aligned(&block.reference)?)
                 }
@@ -258,6 +266,7 @@ impl Condensed {
             laws: Vec::new(),
             stiffness,
             reference,
+            share,
             contacts: model.contacts().len(),
             never_slipping: never_slipping.len(),
             inert,
@@ -342,7 +351,9 @@ impl Condensed {
     /// Reference stiffness κ of a coordinate in the i-th carried harmonic.
     #[must_use]
     pub fn kappa(&self, coordinate: usize, i: usize) -> Complex64 {
-        self.reference.kappa(self.stiffness[coordinate], self.blocks[i].number)
+        let number = self.blocks[i].number;
+        let share = if number == 1 { self.share[coordinate] } else { 1.0 };
+        self.reference.kappa(self.stiffness[coordinate], number) * share
     }
 
     /// Stiffness of a coordinate from which κ is made.

@@ -34,26 +34,16 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
     let p = settings.start;
     let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations)?;
     let mut v = try_vec(n + 1, 0.0, WHAT)?;
-    let mut stuck: Option<Vec<f64>> = None;
     for kind in [Start::Given, Start::Stuck, Start::Reference] {
         if !problem.start(kind, p, &mut v[..n])? {
             continue;
         }
-        if kind == Start::Reference {
-            // The homotopy is surer than a poorer start.
-            if let Some(u) = &stuck {
-                match homotopy(problem, settings, u, &mut corrector, cancelled)? {
-                    Some(first) => return Ok(first),
-                    None => {
-                        problem.start(kind, p, &mut v[..n])?;
-                    }
-                }
-            }
-        }
         v[n] = p;
-        if kind == Start::Stuck {
-            stuck = Some(try_copy(&v[..n], WHAT)?);
-        }
+        let stuck = if kind == Start::Stuck {
+            Some(try_copy(&v[..n], WHAT)?)
+        } else {
+            None
+        };
         match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
             Outcome::Converged(corrected) => {
                 v[n] = p;
@@ -61,6 +51,12 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
             }
             Outcome::Cancelled => return Ok(First::Cancelled),
             Outcome::Failed => {}
+        }
+        // The homotopy is surer than a poorer start.
+        if let Some(u) = &stuck
+            && let Some(first) = homotopy(problem, settings, u, &mut corrector, cancelled)?
+        {
+            return Ok(first);
         }
     }
     fail!(

@@ -33,6 +33,11 @@ const DAMPING_UNIT: f64 = 2e-3;
 /// Distance below the onset of slip, in log₁₀, at which contacts surely stick whatever the rounding.
 const ONSET_ROUNDING: f64 = 1e-9;
 
+/// Share of the structure's largest motion that counts as size of the residual. A relative motion is
+/// known to the rounding of the motions that are solved for, which may be thousands of times larger:
+/// a tolerance of 1e-10 then asks for no more than 1e-12 of them.
+const OF_MOTION: f64 = 1e-2;
+
 /// What fixes amplitude and phase of a mode.
 #[derive(Clone, Debug)]
 pub struct Gauge {
@@ -239,6 +244,7 @@ impl Problem for Mode<'_> {
             out.jacobian[k * n + k] = 1.0;
         }
         let dofs = self.condensed.ndof();
+        let mut largest = 0.0_f64;
         for (i, block) in self.condensed.blocks().iter().enumerate() {
             let mean = block.number == 0;
             let at = set.offset(i);
@@ -247,6 +253,7 @@ impl Problem for Mode<'_> {
             }
             self.modal.solve(self.condensed, i, omega, damping, &self.w)?;
             self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.modal.x());
+            largest = self.modal.x().iter().fold(largest, |m, z| m.max(z.norm()));
             for (r, row) in block.rows.iter().enumerate() {
                 let position = r * m + at;
                 put(&mut out.residual, position, mean, -along(row, self.modal.x()));
@@ -267,7 +274,8 @@ impl Problem for Mode<'_> {
                 self.fix_gauge(rates, by_parameter, out);
             }
         }
-        out.scale = 1.0 + norm(motion);
+        // Each coordinate adds its rounding.
+        out.scale = 1.0 + norm(motion) + OF_MOTION * largest * (coordinates as f64).sqrt();
         Ok(())
     }
 
