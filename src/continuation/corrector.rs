@@ -52,10 +52,6 @@ pub struct Corrector {
 /// Relative size of a Newton step that is round-off: no further progress can be had.
 const ROUND_OFF: f64 = 1e-13;
 
-/// Relative size of a Newton step that no longer shrinks at which rounding, not the model, keeps the
-/// residual up: the solution is then known to about this accuracy.
-const STALLED: f64 = 1e-10;
-
 /// Smallest damping factor.
 const SMALLEST_DAMPING: f64 = 1.0 / 1024.0;
 
@@ -110,30 +106,21 @@ impl Corrector {
             }
             self.newton_step();
             let size = norm(&self.step);
-            let round_off = self.is_small(v, metric, ROUND_OFF);
+            let round_off = self.is_round_off(v, metric);
             if residual <= self.tolerance || round_off {
                 return Ok(Outcome::Converged(
                     self.finish(problem, v, metric, iteration, residual)?,
                 ));
             }
-            let stuck = iteration == self.max_iterations || (!damped && size > last_size);
-            last_size = size;
-            let next = if damped && !stuck {
-                self.damped_step(problem, v, metric, size, damping)?
-            } else {
-                (!stuck).then_some(1.0)
-            };
-            let Some(next) = next else {
-                // The factors and the step are still those at `v`.
-                if self.is_small(v, metric, STALLED) {
-                    return Ok(Outcome::Converged(
-                        self.finish(problem, v, metric, iteration, residual)?,
-                    ));
-                }
+            if iteration == self.max_iterations || (!damped && size > last_size) {
                 break;
-            };
+            }
+            last_size = size;
             if damped {
-                damping = next;
+                match self.damped_step(problem, v, metric, size, damping)? {
+                    Some(used) => damping = used,
+                    None => break,
+                }
             } else {
                 metric.add(v, 1.0, &self.step);
                 if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? {
@@ -159,12 +146,12 @@ impl Corrector {
         if r == 0.0 { 0.0 } else { r / self.at.scale }
     }
 
-    /// Whether the Newton step at hand is at most this share of `v`. The metric does not measure that: its
+    /// Whether the Newton step at hand is round-off of `v`. The metric does not measure that: its
     /// unit may be far above unknowns that were large elsewhere on the branch.
-    fn is_small(&self, v: &[f64], metric: Metric, share: f64) -> bool {
+    fn is_round_off(&self, v: &[f64], metric: Metric) -> bool {
         let n = v.len() - 1;
-        norm(&self.step[..n]) * metric.u <= share * norm(&v[..n])
-            && self.step[n].abs() * metric.p <= share * (v[n].abs() + metric.p)
+        norm(&self.step[..n]) * metric.u <= ROUND_OFF * norm(&v[..n])
+            && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p)
     }
 
     fn factor(&mut self, metric: Metric, row: &[f64]) -> Result<bool> {
