@@ -65,8 +65,9 @@ fn check_point(point: &Value, carried: &[&str], relative: f64) {
             square += if *p == "1" { size } else { 0.0 };
         }
     }
-    assert!((get(point, "modal_amplitude") / square.sqrt() - 1.0).abs() < 1e-12);
-    assert!((get(point, "energy_j") / energy - 1.0).abs() < 1e-12);
+    // A mode that hardly works on the contact is recovered from a tiny force: rounding grows 1e5 times.
+    assert!((get(point, "modal_amplitude") / square.sqrt() - 1.0).abs() < 1e-10);
+    assert!((get(point, "energy_j") / energy - 1.0).abs() < 1e-10);
     let slip = (motion(point, "d", "1") - motion(point, "r", "1")).norm() / delta();
     assert!((slip / get(point, "slip") - 1.0).abs() < relative, "{slip}");
 }
