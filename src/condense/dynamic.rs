@@ -4,9 +4,11 @@
 //! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
 //! −2ihDK.
 
+use super::modal::along;
 use super::{Artificial, Condensed, HarmonicBlock};
-use crate::error::{Error, Result, fail, try_push};
+use crate::error::{Error, Result, fail, try_push, try_vec};
 use crate::linalg::factor::Factor;
+use crate::linalg::quadratic::{self, ComplexSum};
 use crate::linalg::sparse::Csc;
 use num_complex::Complex64;
 
@@ -22,7 +24,18 @@ pub struct DynamicStiffness {
     factor: Factor,
     /// Z_κ per harmonic.
     z: Vec<Csc>,
+    /// b − Z x, and memory for summing it exactly.
+    rest: Vec<Complex64>,
+    sums: Vec<ComplexSum>,
+    part: Vec<ComplexSum>,
 }
+
+/// Relative error of the relative motions at which a residual summed with its rounding errors is
+/// worth its cost.
+const NOISE: f64 = 1e-12;
+
+/// Degrees of freedom up to which such a residual is never needed.
+const PLAIN_UP_TO: usize = 100;
 
 impl DynamicStiffness {
     /// Memory for a condensed model, solving up to `columns` right-hand sides at a time.
@@ -37,9 +50,15 @@ impl DynamicStiffness {
         let Some(first) = condensed.blocks().first() else {
             return fail!(Internal, "no harmonic is carried");
         };
+        const WHAT: &str = "the dynamic stiffness";
+        let n = condensed.ndof();
+        let exact = if n > PLAIN_UP_TO { n } else { 0 };
         Ok(Self {
             factor: Factor::new(&first.reference, columns)?,
             z,
+            rest: try_vec(n, Complex64::ZERO, WHAT)?,
+            sums: try_vec(exact, ComplexSum::default(), WHAT)?,
+            part: try_vec(exact, ComplexSum::default(), WHAT)?,
         })
     }
 
@@ -75,27 +94,68 @@ impl DynamicStiffness {
             .solve(b, transposed)
             .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
     }
-}
 
-/// Refines a solution x of Z x = b once, with the factors at hand, those of the i-th harmonic at
-/// (ω, D): near a resonance of Z_κ the rounding of a plain solution is many times that of the
-/// relative motions that follow from it. `rest` is memory for b − Z x.
-pub(super) fn refine(
-    dynamic: &mut DynamicStiffness,
-    condensed: &Condensed,
-    i: usize,
-    at: (f64, f64),
-    b: &[Complex64],
-    x: &mut [Complex64],
-    rest: &mut [Complex64],
-) -> Result<()> {
-    rest.copy_from_slice(b);
-    subtract_product(condensed, i, at, x, rest);
-    dynamic.solve(condensed, i, at.0, rest, false)?;
-    for (x, d) in x.iter_mut().zip(rest) {
-        *x += *d;
+    /// Refines a solution x of Z x = b with the factors at hand, those of the i-th harmonic at (ω, D).
+    ///
+    /// Near a resonance of Z_κ the rounding of a plain solution is many times that of the relative
+    /// motions that follow from it, and a mode is always near one. What the first step changes in
+    /// the relative motions tells whether rounding of the residual itself matters.
+    ///
+    /// # Errors
+    /// As [`Self::factor`].
+    pub fn refine(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        at: (f64, f64),
+        b: &[Complex64],
+        x: &mut [Complex64],
+    ) -> Result<()> {
+        let noise = self.refinement(condensed, i, at, b, x, false)?;
+        if noise > NOISE && !self.sums.is_empty() {
+            self.refinement(condensed, i, at, b, x, true)?;
+        }
+        Ok(())
     }
-    Ok(())
+
+    /// One step x += Z⁻¹(b − Z x); returns the relative change of the relative motions.
+    fn refinement(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        at: (f64, f64),
+        b: &[Complex64],
+        x: &mut [Complex64],
+        exact: bool,
+    ) -> Result<f64> {
+        let block = &condensed.blocks()[i];
+        let sum = Combination::value(block, at.0.into(), at.1);
+        self.rest.copy_from_slice(b);
+        if exact {
+            sum.exact_product(block, x, &mut self.sums, &mut self.part);
+            for (rest, sum) in self.rest.iter_mut().zip(&mut self.sums) {
+                *rest = sum.subtracted_from(*rest);
+            }
+        } else {
+            let pattern = &block.reference;
+            for (j, x) in x.iter().enumerate() {
+                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                    self.rest[pattern.row_idx[at]] -= sum.at(block, at) * x;
+                }
+            }
+        }
+        let solved = self.factor.solve(&mut self.rest, false);
+        solved.map_err(|e| at_harmonic(e, block, at.0))?;
+        let mut change = (0.0_f64, 0.0_f64);
+        for row in &block.rows {
+            change.0 = change.0.max(along(row, &self.rest).norm());
+            change.1 = change.1.max(along(row, x).norm());
+        }
+        for (x, d) in x.iter_mut().zip(&self.rest) {
+            *x += *d;
+        }
+        Ok(if change.0 == 0.0 { 0.0 } else { change.0 / change.1 })
+    }
 }
 
 /// Z_κ or one of its derivatives as a sum of the block's matrices.
@@ -149,6 +209,29 @@ impl Combination {
         }
     }
 
+    /// sums ← Z x without rounding between its terms: the matrices are multiplied one by one, since
+    /// their sum is rounded anew at each frequency.
+    fn exact_product(&self, block: &HarmonicBlock, x: &[Complex64], sums: &mut [ComplexSum], part: &mut [ComplexSum]) {
+        let own = match &block.artificial {
+            Artificial::Stiffness(own) => Some((self.own, own)),
+            Artificial::None | Artificial::Mass => None,
+        };
+        let terms = [
+            Some((self.reference.into(), &block.reference.values)),
+            Some((self.damping, &block.damping)),
+            Some((self.mass, &block.mass)),
+            own,
+        ];
+        sums.fill(ComplexSum::default());
+        for (factor, values) in terms.into_iter().flatten() {
+            part.fill(ComplexSum::default());
+            quadratic::product(&block.reference, values, x, part);
+            for (sum, part) in sums.iter_mut().zip(part.iter()) {
+                sum.add_multiple(*part, factor);
+            }
+        }
+    }
+
     #[inline]
     fn at(&self, block: &HarmonicBlock, at: usize) -> Complex64 {
         let z =
@@ -179,24 +262,6 @@ pub(super) fn add_slope_product(
             let k = pattern.row_idx[at];
             let (to, from) = if transposed { (j, k) } else { (k, j) };
             y[to] += sum.at(block, at) * x[from];
-        }
-    }
-}
-
-/// y −= Z x for the i-th carried harmonic.
-fn subtract_product(
-    condensed: &Condensed,
-    i: usize,
-    (omega, damping): (f64, f64),
-    x: &[Complex64],
-    y: &mut [Complex64],
-) {
-    let block = &condensed.blocks()[i];
-    let pattern = &block.reference;
-    let sum = Combination::value(block, omega.into(), damping);
-    for (j, x) in x.iter().enumerate() {
-        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-            y[pattern.row_idx[at]] -= sum.at(block, at) * x;
         }
     }
 }

@@ -5,7 +5,7 @@
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
 use super::Condensed;
-use super::dynamic::{By, DynamicStiffness, add_slope_product, product, refine};
+use super::dynamic::{By, DynamicStiffness, add_slope_product, product};
 use crate::error::{Result, try_vec};
 use crate::model::spring::Row;
 use num_complex::Complex64;
@@ -210,6 +210,6 @@ impl Workspace {
         let at = (omega, self.damping);
         x.copy_from_slice(&self.load);
         self.dynamic.solve(condensed, i, omega, x, false)?;
-        refine(&mut self.dynamic, condensed, i, at, &self.load, x, &mut self.product)
+        self.dynamic.refine(condensed, i, at, &self.load, x)
     }
 }

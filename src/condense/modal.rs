@@ -5,7 +5,7 @@
 //! x = −Z⁻¹ Wᴴ w, ∂x/∂w = −Z⁻¹ Wᴴ, ∂x/∂ω = −Z⁻¹ Z_ω x, ∂x/∂D = −Z⁻¹ Z_D x.
 
 use super::Condensed;
-use super::dynamic::{By, DynamicStiffness, add_slope_product, refine};
+use super::dynamic::{By, DynamicStiffness, add_slope_product};
 use crate::error::{Result, try_vec};
 use crate::model::spring::Row;
 use num_complex::Complex64;
@@ -69,16 +69,8 @@ impl Modal {
                 self.by_damping[p] -= a.conj() * w;
             }
         }
-        let (b, x) = (&self.by_damping, &mut self.x);
-        refine(
-            &mut self.dynamic,
-            condensed,
-            i,
-            (omega, damping),
-            b,
-            x,
-            &mut self.by_omega,
-        )?;
+        self.dynamic
+            .refine(condensed, i, (omega, damping), &self.by_damping, &mut self.x)?;
         let at = (omega.into(), damping);
         for (derivative, by) in [(&mut self.by_omega, By::Omega), (&mut self.by_damping, By::Damping)] {
             derivative.fill(Complex64::ZERO);

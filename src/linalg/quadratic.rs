@@ -87,11 +87,20 @@ impl ComplexSum {
         }
     }
 
-    fn add_multiple(&mut self, a: Self, b: Complex64) {
+    /// Adds a·b of a sum a, to the precision of this one.
+    pub fn add_multiple(&mut self, a: Self, b: Complex64) {
         self.re.add_multiple(a.re, b.re);
         self.re.add_multiple(a.im, -b.im);
         self.im.add_multiple(a.re, b.im);
         self.im.add_multiple(a.im, b.re);
+    }
+
+    /// a minus the sum.
+    #[must_use]
+    pub fn subtracted_from(mut self, a: Complex64) -> Complex64 {
+        self.re.add(-a.re);
+        self.im.add(-a.im);
+        -self.total()
     }
 
     /// The sum.
