@@ -43,14 +43,14 @@ impl DynamicStiffness {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
+        const WHAT: &str = "the dynamic stiffness";
         let mut z = Vec::new();
         for block in condensed.blocks() {
-            try_push(&mut z, block.reference.try_clone()?, "the dynamic stiffness")?;
+            try_push(&mut z, block.reference.try_clone()?, WHAT)?;
         }
         let Some(first) = condensed.blocks().first() else {
             return fail!(Internal, "no harmonic is carried");
         };
-        const WHAT: &str = "the dynamic stiffness";
         let n = condensed.ndof();
         let exact = if n > PLAIN_UP_TO { n } else { 0 };
         Ok(Self {
