@@ -141,6 +141,9 @@ typedef enum {
   /// Elastic Coulomb friction with constant normal load in one direction: a spring kt in series
   /// with a slider of limit mu * preload.
   HBVIB_JENKINS = 1,
+  /// Spring along the normal that opens: it pushes the sides apart with
+  /// N = max(preload + kn * (closing - gap), 0), where closing = x_b - x_a along n.
+  HBVIB_UNILATERAL = 4,
   /// Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
   HBVIB_CUBIC = 5,
 } hbvib_contact_kind;
@@ -155,7 +158,7 @@ typedef enum {
 typedef enum {
   /// Without force.
   HBVIB_CONTACTS_FREE = 0,
-  /// Linear springs kt, as at small motion.
+  /// Linear springs, as at small motion: kt, or kn where HBVIB_UNILATERAL presses at rest.
   HBVIB_CONTACTS_STUCK = 1,
 } hbvib_contact_state;
 
@@ -282,24 +285,26 @@ typedef struct {
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// HBVIB_JENKINS or HBVIB_CUBIC.
+  /// HBVIB_JENKINS, HBVIB_UNILATERAL or HBVIB_CUBIC.
   int32_t kind;
-  /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND. Both
-  /// laws use the first, the others must be HBVIB_GROUND.
+  /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND.
+  /// HBVIB_UNILATERAL acts along n, the others along t1; the places not used must be HBVIB_GROUND.
   int64_t dof_a[3];
   /// Side b, likewise.
   int64_t dof_b[3];
   /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
   int64_t sector_offset;
-  /// Stiffness (tangential, at small motion), force per length, >= 0.
+  /// Stiffness (tangential, at small motion), force per length, >= 0; 0 for HBVIB_UNILATERAL.
   double kt;
-  /// Must be 0.
+  /// Normal stiffness of HBVIB_UNILATERAL, >= 0; 0 for others.
   double kn;
   /// Friction coefficient of HBVIB_JENKINS, >= 0; 0 for others.
   double mu;
-  /// Normal load of HBVIB_JENKINS, force, >= 0, infinite sticks for ever; 0 for others.
+  /// Normal load at rest, force, >= 0; of HBVIB_JENKINS, where infinite sticks for ever, and of
+  /// HBVIB_UNILATERAL; 0 for others.
   double preload;
-  /// Must be 0.
+  /// Closing at which HBVIB_UNILATERAL without preload begins to press, any sign: a negative one
+  /// presses at rest. 0 for others.
   double gap;
   /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
   double cubic;
@@ -770,13 +775,13 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
                                 double *shapes);
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
-/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of HBVIB_CUBIC.
+/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of
+/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, dof_a[2], dof_b[2], kn, and gap or preload.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-hbvib_status hbvib_contact_init(hbvib_contact *c,
-                                size_t size_of_c);
+hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
 
 /// Adds a contact. Equal contacts add up.
 ///

@@ -137,6 +137,8 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
         },
         Contact::jenkins(1, None, 1.0, 0.4, 0.5),
         Contact::cubic(1, Some(2), 0.8, 3.0 * feed.real()),
+        // A stop.
+        Contact::unilateral(Some(0), Some(2), 1.3, 0.3 + 0.1 * feed.real()),
         // Friction and a cubic spring side by side.
         Contact::cubic(0, Some(1), 0.5, 2.0),
     ] {
@@ -277,6 +279,7 @@ fn condensed_case(
             Law::Jenkins(law) => law.limit / law.stiffness,
             // The cubic term equals the linear one.
             Law::Cubic(law) => (law.linear / law.cubic.abs()).sqrt(),
+            Law::Unilateral(law) => law.gap.abs(),
         })
         .fold(f64::INFINITY, f64::min);
     let n = condensed.coordinates() * condensed.set().packed_len();
@@ -307,7 +310,7 @@ proptest! {
     }
 
     #[test]
-    fn the_derivatives_of_the_homotopy_in_the_slip_limit(
+    fn the_derivatives_of_the_homotopies_in_amplitude_and_in_load(
         numbers in numbers(),
         shape in shapes(),
         engine_order in -7_i64..=7,
@@ -315,21 +318,27 @@ proptest! {
         omega in 0.5..4.0_f64,
         keep_even in any::<bool>(),
         share in 0.0..1.0_f64,
+        preloaded in any::<bool>(),
     ) {
         let mut feed = Feed { numbers: &numbers, next: 0 };
-        let model = random_model(shape, engine_order, &mut feed);
+        let mut model = random_model(shape, engine_order, &mut feed);
+        if preloaded {
+            model.add_contact(&Contact::unilateral(None, Some(1), 0.9, -0.2)).unwrap();
+        }
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
         let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), 0, None).unwrap();
         let mut stuck = vec![0.0; u.len()];
-        prop_assert!(problem.start(Start::Stuck, omega, &mut stuck).unwrap());
+        prop_assert!(problem.start(Start::Stuck, omega, &mut stuck).unwrap() != preloaded);
         // The stuck motion must slip for a homotopy to exist; a larger one always does.
         for x in &mut stuck {
             *x *= 1e3;
         }
-        let begin = problem.begin_homotopy(omega, &stuck);
-        prop_assert!(begin.is_some());
-        // λ in a range in which the limits vary from those given to ten times that.
-        let p = share * 10.0_f64.ln();
+        let Some((_, end)) = problem.begin_homotopy(omega, &stuck) else {
+            return Err(TestCaseError::fail("no homotopy"));
+        };
+        // Limits from those given to ten times that, or vibrating forces from none to those given.
+        let p = if preloaded { share } else { share * 10.0_f64.ln() };
+        prop_assert_eq!(end > 0.5, preloaded);
         check_problem(&mut problem, &Condensation { u, p, direction }, play)?;
         problem.end_homotopy();
     }

@@ -107,6 +107,16 @@ proptest! {
     }
 
     #[test]
+    fn the_jacobian_of_the_unilateral_spring(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 20),
+        highest in 0_usize..=9,
+        gap in -1.0..1.0_f64,
+    ) {
+        let x = motion(&numbers[..2 * (highest + 1)]);
+        check_law(&x, &Contact::unilateral(Some(0), None, 1.0, gap), None)?;
+    }
+
+    #[test]
     fn the_jacobian_of_the_cubic_spring(
         numbers in prop::collection::vec(-1.0..1.0_f64, 20),
         highest in 0_usize..=9,

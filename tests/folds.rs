@@ -52,7 +52,7 @@ impl Problem for Duffing {
         Ok(true)
     }
 
-    fn begin_homotopy(&mut self, _: f64, _: &[f64]) -> Option<f64> {
+    fn begin_homotopy(&mut self, _: f64, _: &[f64]) -> Option<(f64, f64)> {
         None
     }
 

@@ -7,6 +7,7 @@ use crate::branch::mode::{ModeData, ModeInfo};
 use crate::branch::{Branch, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::modal::along;
+use crate::contact::Contact;
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Settings};
@@ -60,6 +61,12 @@ pub fn nonlinear_mode(
             "a constant force of {} acts on dof {}; nonlinear modes under constant forces are not provided yet",
             force.value.re,
             force.dof
+        );
+    }
+    if let Some(id) = model.contacts().iter().position(Contact::is_preloaded) {
+        return fail!(
+            Unsupported,
+            "contact {id} presses at rest; nonlinear modes under constant forces are not provided yet"
         );
     }
     match range.diameter {

@@ -11,6 +11,7 @@ use crate::model::Model;
 
 const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
 const JENKINS: i32 = hbvib_contact_kind::HBVIB_JENKINS as i32;
+const UNILATERAL: i32 = hbvib_contact_kind::HBVIB_UNILATERAL as i32;
 const CUBIC: i32 = hbvib_contact_kind::HBVIB_CUBIC as i32;
 
 unsafe impl Described for hbvib_contact {
@@ -39,54 +40,54 @@ fn law(c: &hbvib_contact) -> Result<Contact> {
     let kind = match c.kind {
         JENKINS => ContactKind::Jenkins,
         CUBIC => ContactKind::Cubic,
+        UNILATERAL => ContactKind::Unilateral,
         other => {
             return fail!(
                 Argument,
-                "hbvib_contact: kind = {other}, needs HBVIB_JENKINS = 1 or HBVIB_CUBIC = 5"
+                "hbvib_contact: kind = {other}, needs HBVIB_JENKINS = 1, HBVIB_UNILATERAL = 4 or HBVIB_CUBIC = 5"
             );
         }
     };
-    for (name, value) in [("kn", c.kn), ("gap", c.gap)] {
-        if value != 0.0 {
-            return fail!(
-                Argument,
-                "hbvib_contact: {name} = {value}, needs 0 for HBVIB_JENKINS and HBVIB_CUBIC"
-            );
-        }
-    }
     Ok(Contact {
         kind,
         dof_a: None,
         dof_b: None,
         sector_offset: c.sector_offset,
         kt: c.kt,
+        kn: c.kn,
         mu: c.mu,
         preload: c.preload,
+        gap: c.gap,
         cubic: c.cubic,
     })
 }
 
-/// One side of a contact that acts in one direction.
-fn side(dofs: [i64; 3], ndof: usize, name: &str) -> Result<Option<usize>> {
-    if let Some(other) = dofs[1..].iter().find(|&&dof| dof != GROUND) {
-        return fail!(
-            Argument,
-            "hbvib_contact: {name} has {other} in its second or third place, needs HBVIB_GROUND = -1 there"
-        );
+/// One side of a contact that acts in one direction: the first place, t1, or for a unilateral spring
+/// the third, n.
+fn side(dofs: [i64; 3], kind: ContactKind, ndof: usize, name: &str) -> Result<Option<usize>> {
+    let place = if kind == ContactKind::Unilateral { 2 } else { 0 };
+    for (i, &other) in dofs.iter().enumerate() {
+        if i != place && other != GROUND {
+            return fail!(
+                Argument,
+                "hbvib_contact: {name}[{i}] = {other}, needs HBVIB_GROUND = -1; this kind acts in {name}[{place}] alone"
+            );
+        }
     }
-    match dofs[0] {
+    match dofs[place] {
         GROUND => Ok(None),
         dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
         dof => fail!(
             Index,
-            "hbvib_contact: {name}[0] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
+            "hbvib_contact: {name}[{place}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
             ndof - 1
         ),
     }
 }
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
-/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of HBVIB_CUBIC.
+/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of
+/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, dof_a[2], dof_b[2], kn, and gap or preload.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
@@ -116,10 +117,11 @@ pub unsafe extern "C" fn hbvib_model_add_contact(
         if !id.is_null() {
             check_pointer(id, 3, "id")?;
         }
+        let law = law(&c).blame(2)?;
         let contact = Contact {
-            dof_a: side(c.dof_a, model.ndof(), "dof_a").blame(2)?,
-            dof_b: side(c.dof_b, model.ndof(), "dof_b").blame(2)?,
-            ..law(&c).blame(2)?
+            dof_a: side(c.dof_a, law.kind, model.ndof(), "dof_a").blame(2)?,
+            dof_b: side(c.dof_b, law.kind, model.ndof(), "dof_b").blame(2)?,
+            ..law
         };
         let number = model.add_contact(&contact).blame(2)?;
         if !id.is_null() {

@@ -115,6 +115,9 @@ pub enum hbvib_contact_kind {
     /// Elastic Coulomb friction with constant normal load in one direction: a spring kt in series
     /// with a slider of limit mu * preload.
     HBVIB_JENKINS = 1,
+    /// Spring along the normal that opens: it pushes the sides apart with
+    /// N = max(preload + kn * (closing - gap), 0), where closing = x_b - x_a along n.
+    HBVIB_UNILATERAL = 4,
     /// Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
     HBVIB_CUBIC = 5,
 }
@@ -131,7 +134,7 @@ pub enum hbvib_special_dof {
 pub enum hbvib_contact_state {
     /// Without force.
     HBVIB_CONTACTS_FREE = 0,
-    /// Linear springs kt, as at small motion.
+    /// Linear springs, as at small motion: kt, or kn where HBVIB_UNILATERAL presses at rest.
     HBVIB_CONTACTS_STUCK = 1,
 }
 
@@ -226,24 +229,26 @@ pub struct hbvib_matrix {
 pub struct hbvib_contact {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// HBVIB_JENKINS or HBVIB_CUBIC.
+    /// HBVIB_JENKINS, HBVIB_UNILATERAL or HBVIB_CUBIC.
     pub kind: i32,
-    /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND. Both
-    /// laws use the first, the others must be HBVIB_GROUND.
+    /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND.
+    /// HBVIB_UNILATERAL acts along n, the others along t1; the places not used must be HBVIB_GROUND.
     pub dof_a: [i64; 3],
     /// Side b, likewise.
     pub dof_b: [i64; 3],
     /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
     pub sector_offset: i64,
-    /// Stiffness (tangential, at small motion), force per length, >= 0.
+    /// Stiffness (tangential, at small motion), force per length, >= 0; 0 for HBVIB_UNILATERAL.
     pub kt: f64,
-    /// Must be 0.
+    /// Normal stiffness of HBVIB_UNILATERAL, >= 0; 0 for others.
     pub kn: f64,
     /// Friction coefficient of HBVIB_JENKINS, >= 0; 0 for others.
     pub mu: f64,
-    /// Normal load of HBVIB_JENKINS, force, >= 0, infinite sticks for ever; 0 for others.
+    /// Normal load at rest, force, >= 0; of HBVIB_JENKINS, where infinite sticks for ever, and of
+    /// HBVIB_UNILATERAL; 0 for others.
     pub preload: f64,
-    /// Must be 0.
+    /// Closing at which HBVIB_UNILATERAL without preload begins to press, any sign: a negative one
+    /// presses at rest. 0 for others.
     pub gap: f64,
     /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
     pub cubic: f64,

@@ -18,7 +18,7 @@ pub mod modal;
 pub mod poles;
 pub mod tables;
 
-use crate::contact::{Law, Role};
+use crate::contact::{Contact, ContactKind, Law, Role};
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
@@ -77,6 +77,9 @@ pub struct Condensed {
     /// Stiffness per coordinate from which κ is made: the sum of kt of its contacts, or more where
     /// one is a cubic spring.
     stiffness: Vec<f64>,
+    /// Whether all laws of a coordinate may stick, as friction does.
+    drops: Vec<bool>,
+    preloaded: bool,
     reference: Reference,
     /// Share of the reference stiffness that the fundamental takes, per coordinate.
     share: Vec<f64>,
@@ -215,9 +218,11 @@ impl Condensed {
             options.keep_even_harmonics,
         )?;
         let (coordinate_of, representatives) = gather(model, &active)?;
+        let mut drops = try_vec(representatives.len(), true, "the contacts")?;
         let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
         for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
-            stiffness[coordinate] += model.contacts()[contact].kt;
+            stiffness[coordinate] += model.contacts()[contact].stiffness();
+            drops[coordinate] &= model.contacts()[contact].kind == ContactKind::Jenkins;
         }
         raise_for_springs(
             model,
@@ -265,6 +270,8 @@ impl Condensed {
             blocks,
             laws: Vec::new(),
             stiffness,
+            drops,
+            preloaded: model.contacts().iter().any(Contact::is_preloaded),
             reference,
             share,
             contacts: model.contacts().len(),
@@ -360,6 +367,19 @@ impl Condensed {
     #[must_use]
     pub fn stiffness(&self, coordinate: usize) -> f64 {
         self.stiffness[coordinate]
+    }
+
+    /// Whether a coordinate leaves Newton's equations while it sticks: its reference stiffness is then
+    /// that of the stuck contact.
+    #[must_use]
+    pub fn may_drop_out(&self, coordinate: usize) -> bool {
+        self.drops[coordinate] && self.reference == Reference::Stuck
+    }
+
+    /// Whether a contact presses at rest, so that the static solution is not zero.
+    #[must_use]
+    pub fn is_preloaded(&self) -> bool {
+        self.preloaded
     }
 
     /// The reference stiffness that was chosen.

@@ -6,6 +6,7 @@
 
 pub mod cubic;
 pub mod jenkins;
+pub mod unilateral;
 
 use crate::error::{Result, fail};
 use crate::fourier::Extremum;
@@ -13,6 +14,7 @@ use crate::harmonics::HarmonicSet;
 use cubic::Cubic;
 use jenkins::Jenkins;
 use num_complex::Complex64;
+use unilateral::Unilateral;
 
 /// Which law a contact obeys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +23,8 @@ pub enum ContactKind {
     Jenkins,
     /// Spring with a cubic term: f = kt·y + cubic·y³.
     Cubic,
+    /// Spring that is pressed once a gap has closed, and open otherwise.
+    Unilateral,
 }
 
 /// What a contact is for a solver.
@@ -30,7 +34,7 @@ pub enum Role {
     Inert,
     /// A linear spring of stiffness kt at any motion.
     Spring,
-    /// Nonlinear; of stiffness kt at small motion.
+    /// Nonlinear; at small motion of the stiffness that [`Contact::stiffness_at_rest`] tells.
     Active,
 }
 
@@ -45,13 +49,20 @@ pub struct Contact {
     pub dof_b: Option<usize>,
     /// Side b lies in sector s + offset (cyclic models).
     pub sector_offset: i64,
-    /// Stiffness at small motion, force per length, at least 0.
+    /// Stiffness at small motion, force per length, at least 0; 0 for a unilateral spring.
     pub kt: f64,
-    /// Friction coefficient, at least 0; 0 for a cubic spring.
+    /// Stiffness of a unilateral spring, force per length, at least 0; 0 for the others.
+    pub kn: f64,
+    /// Friction coefficient, at least 0; 0 for springs.
     pub mu: f64,
-    /// Normal load, force, at least 0; infinite sticks for ever; 0 for a cubic spring.
+    /// Normal load at rest, force, at least 0; infinite sticks for ever; 0 for a cubic spring. A
+    /// unilateral spring has N = max(preload + kn·(closing − gap), 0), where closing is the motion of
+    /// side b over that of side a.
     pub preload: f64,
-    /// Force per length cubed of a cubic spring, of any sign; 0 for a Jenkins contact.
+    /// Closing at which a unilateral spring without preload begins to press, of any sign; 0 for the
+    /// others.
+    pub gap: f64,
+    /// Force per length cubed of a cubic spring, of any sign; 0 for the others.
     pub cubic: f64,
 }
 
@@ -65,8 +76,10 @@ impl Contact {
             dof_b: b,
             sector_offset: 0,
             kt,
+            kn: 0.0,
             mu,
             preload,
+            gap: 0.0,
             cubic: 0.0,
         }
     }
@@ -82,6 +95,53 @@ impl Contact {
         }
     }
 
+    /// A unilateral spring of stiffness `kn` between side `a` and side `b` (`None` is the ground), which
+    /// presses when b has moved over a by more than `gap`.
+    #[must_use]
+    pub fn unilateral(a: Option<usize>, b: Option<usize>, kn: f64, gap: f64) -> Self {
+        Self {
+            kind: ContactKind::Unilateral,
+            dof_a: a,
+            kn,
+            gap,
+            ..Self::jenkins(0, b, 0.0, 0.0, 0.0)
+        }
+    }
+
+    /// Closing at which a unilateral spring begins to press, the preload counted in; negative for one
+    /// that presses at rest.
+    #[must_use]
+    pub fn clearance(&self) -> f64 {
+        if self.preload == 0.0 {
+            self.gap
+        } else {
+            self.gap - self.preload / self.kn
+        }
+    }
+
+    /// Whether the contact presses at rest: then it loads the structure without vibration.
+    #[must_use]
+    pub fn is_preloaded(&self) -> bool {
+        self.kind == ContactKind::Unilateral && self.role() == Role::Active && self.clearance() <= 0.0
+    }
+
+    /// Stiffness of the relative motion at small motion.
+    #[must_use]
+    pub fn stiffness_at_rest(&self) -> f64 {
+        match self.kind {
+            ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
+            ContactKind::Jenkins | ContactKind::Cubic => self.kt,
+            ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
+            ContactKind::Unilateral => 0.0,
+        }
+    }
+
+    /// Largest stiffness that the relative motion can meet, but for cubic terms.
+    #[must_use]
+    pub fn stiffness(&self) -> f64 {
+        self.kt.max(self.kn)
+    }
+
     /// What the constants of the law make of the contact.
     #[must_use]
     pub fn role(&self) -> Role {
@@ -90,7 +150,8 @@ impl Contact {
             ContactKind::Jenkins if self.slip_limit().is_infinite() => Role::Spring,
             ContactKind::Cubic if self.cubic == 0.0 && self.kt == 0.0 => Role::Inert,
             ContactKind::Cubic if self.cubic == 0.0 => Role::Spring,
-            ContactKind::Jenkins | ContactKind::Cubic => Role::Active,
+            ContactKind::Unilateral if self.kn == 0.0 => Role::Inert,
+            ContactKind::Jenkins | ContactKind::Cubic | ContactKind::Unilateral => Role::Active,
         }
     }
 
@@ -107,8 +168,9 @@ impl Contact {
     pub fn check_constants(&self) -> Result<()> {
         for (name, value, may_be_infinite) in [
             ("kt", self.kt, false),
+            ("kn", self.kn, false),
             ("mu", self.mu, false),
-            ("preload", self.preload, true),
+            ("preload", self.preload, self.kind != ContactKind::Unilateral),
         ] {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number >= 0");
@@ -117,17 +179,19 @@ impl Contact {
                 return fail!(Argument, "contact: {name} = {value}, needs a number >= 0");
             }
         }
-        if !self.cubic.is_finite() {
-            return fail!(NotFinite, "contact: cubic = {}, needs a finite number", self.cubic);
+        for (name, value) in [("cubic", self.cubic), ("gap", self.gap)] {
+            if !value.is_finite() {
+                return fail!(NotFinite, "contact: {name} = {value}, needs a finite number");
+            }
         }
-        let unused: &[_] = match self.kind {
-            ContactKind::Jenkins => &[("cubic", self.cubic, "Jenkins contact")],
-            ContactKind::Cubic => &[
-                ("mu", self.mu, "cubic spring"),
-                ("preload", self.preload, "cubic spring"),
-            ],
+        let (kt, kn, mu) = (("kt", self.kt), ("kn", self.kn), ("mu", self.mu));
+        let (preload, gap, cubic) = (("preload", self.preload), ("gap", self.gap), ("cubic", self.cubic));
+        let (unused, kind): (&[(&str, f64)], _) = match self.kind {
+            ContactKind::Jenkins => (&[kn, gap, cubic], "Jenkins contact"),
+            ContactKind::Cubic => (&[kn, mu, preload, gap], "cubic spring"),
+            ContactKind::Unilateral => (&[kt, mu, cubic], "unilateral spring"),
         };
-        for &(name, value, kind) in unused {
+        for &(name, value) in unused {
             if value != 0.0 {
                 return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
             }
@@ -170,6 +234,8 @@ pub enum Law {
     Jenkins(Jenkins),
     /// Linear and cubic spring.
     Cubic(Cubic),
+    /// Spring that opens.
+    Unilateral(Unilateral),
 }
 
 impl Law {
@@ -186,6 +252,10 @@ impl Law {
                 linear: contact.kt,
                 cubic: contact.cubic * length * length,
             }),
+            ContactKind::Unilateral => Self::Unilateral(Unilateral {
+                stiffness: contact.kn,
+                gap: contact.clearance() / length,
+            }),
         }
     }
 
@@ -194,6 +264,7 @@ impl Law {
     pub fn is_odd(&self) -> bool {
         match self {
             Self::Jenkins(_) | Self::Cubic(_) => true,
+            Self::Unilateral(_) => false,
         }
     }
 
@@ -212,6 +283,10 @@ impl Law {
                 cubic: law.cubic / (factor * factor),
                 ..law
             }),
+            Self::Unilateral(law) => Self::Unilateral(Unilateral {
+                gap: law.gap * factor,
+                ..law
+            }),
         }
     }
 
@@ -223,6 +298,7 @@ impl Law {
         match self {
             Self::Jenkins(law) => law.stiffness * half_range / law.limit,
             Self::Cubic(law) => law.sticking_factor(half_range + mean.abs(), reference),
+            Self::Unilateral(law) => (half_range - mean).max(0.0) / law.gap,
         }
     }
 
@@ -231,7 +307,7 @@ impl Law {
     /// events and speaks in pieces.
     pub fn nonlinear_spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]) -> Option<Smooth> {
         match self {
-            Self::Jenkins(_) => None,
+            Self::Jenkins(_) | Self::Unilateral(_) => None,
             Self::Cubic(law) => {
                 law.spectrum(set, motion, spectrum);
                 Some(Smooth {
@@ -248,6 +324,7 @@ impl Law {
         pieces.clear();
         match self {
             Self::Jenkins(law) => law.pieces(set, motion, reversals, pieces),
+            Self::Unilateral(law) => law.pieces(set, motion, reversals, pieces),
             Self::Cubic(_) => {}
         }
     }
@@ -258,6 +335,7 @@ impl Law {
         pieces.clear();
         match self {
             Self::Jenkins(law) => law.sampled_pieces(samples, pieces),
+            Self::Unilateral(law) => law.sampled_pieces(samples, pieces),
             Self::Cubic(_) => {}
         }
     }

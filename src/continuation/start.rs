@@ -1,7 +1,8 @@
 //! The first point of a branch: damped Newton from the problem's own starts, then a homotopy.
 //!
-//! The homotopy follows the solution from the stuck structure down to the given slip limits, by
-//! the same arc-length continuation that follows the branch afterwards.
+//! The homotopy follows the solution from small motion, where contacts stick, to the given problem, or
+//! from rest under constant loads as the vibrating forces grow, by the same arc-length continuation
+//! that follows the branch afterwards.
 
 use super::corrector::{Corrector, Outcome};
 use super::step_control::StepControl;
@@ -35,25 +36,27 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
     let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations)?;
     let mut v = try_vec(n + 1, 0.0, WHAT)?;
     for kind in [Start::Given, Start::Stuck, Start::Reference] {
-        if !problem.start(kind, p, &mut v[..n])? {
-            continue;
-        }
-        v[n] = p;
-        let stuck = if kind == Start::Stuck {
-            Some(try_copy(&v[..n], WHAT)?)
-        } else {
-            None
-        };
-        match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
-            Outcome::Converged(corrected) => {
-                v[n] = p;
-                return Ok(First::Found(Point::new(v, corrected, 0.0)));
+        let exists = problem.start(kind, p, &mut v[..n])?;
+        let mut easy = None;
+        if kind == Start::Stuck {
+            if !exists {
+                v[..n].fill(0.0);
             }
-            Outcome::Cancelled => return Ok(First::Cancelled),
-            Outcome::Failed => {}
+            easy = Some(try_copy(&v[..n], WHAT)?);
+        }
+        if exists {
+            v[n] = p;
+            match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
+                Outcome::Converged(corrected) => {
+                    v[n] = p;
+                    return Ok(First::Found(Point::new(v, corrected, 0.0)));
+                }
+                Outcome::Cancelled => return Ok(First::Cancelled),
+                Outcome::Failed => {}
+            }
         }
         // The homotopy is surer than a poorer start.
-        if let Some(u) = &stuck
+        if let Some(u) = &easy
             && let Some(first) = homotopy(problem, settings, u, &mut corrector, cancelled)?
         {
             return Ok(first);
@@ -61,7 +64,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
     }
     fail!(
         NoConvergence,
-        "no solution was found at the start, parameter {p}: Newton's method and the homotopy in the slip limit failed; start elsewhere, or raise max_newton"
+        "no solution was found at the start, parameter {p}: Newton's method and the homotopy from small motion failed; start elsewhere, or raise max_newton"
     )
 }
 
@@ -80,7 +83,7 @@ fn at_fixed(
     corrector.correct(problem, v, &row, metric, true, cancelled)
 }
 
-/// From the stuck solution `u` down to the given slip limits.
+/// From the easy problem, near `u`, to the given one.
 fn homotopy(
     problem: &mut dyn Problem,
     settings: &Settings,
@@ -89,12 +92,12 @@ fn homotopy(
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Option<First>> {
     let n = u.len();
-    let Some(begin) = problem.begin_homotopy(settings.start, u) else {
+    let Some((begin, end)) = problem.begin_homotopy(settings.start, u) else {
         return Ok(None);
     };
     let eased = Settings {
         start: begin,
-        end: 0.0,
+        end,
         steps: StepControl::new(0.0, 0.0, 0.0),
         ..*settings
     };

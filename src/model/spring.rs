@@ -72,7 +72,7 @@ impl Model {
             add(s.dof_a, s.dof_b, s.sector_offset, s.stiffness)?;
         }
         for c in stuck {
-            add(c.dof_a, c.dof_b, c.sector_offset, c.kt)?;
+            add(c.dof_a, c.dof_b, c.sector_offset, c.stiffness_at_rest())?;
         }
         if entries.is_empty() {
             return Ok(own);

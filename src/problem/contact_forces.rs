@@ -2,7 +2,7 @@
 //! every problem with contacts needs of the laws.
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::condense::{Condensed, Reference};
+use crate::condense::Condensed;
 use crate::contact::Law;
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
@@ -112,7 +112,7 @@ impl<'a> ContactForces<'a> {
     /// f = κ y, and nothing couples back.
     #[must_use]
     pub fn drops_out(&self, coordinate: usize) -> bool {
-        self.stuck[coordinate] && self.condensed.reference() == Reference::Stuck
+        self.stuck[coordinate] && self.condensed.may_drop_out(coordinate)
     }
 
     /// w = f − κ y of a coordinate in the i-th carried harmonic.

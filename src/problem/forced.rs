@@ -17,8 +17,12 @@ use num_complex::Complex64;
 #[derive(Clone, Copy, Debug)]
 enum Parameter {
     Omega,
-    /// ln of the factor on the slip limits, at a fixed frequency.
+    /// ln of the factor by which the laws see a smaller amplitude, at a fixed frequency.
     Ease {
+        omega: f64,
+    },
+    /// Factor on the forces that vibrate, at a fixed frequency; constant ones act in full.
+    Load {
         omega: f64,
     },
 }
@@ -102,6 +106,10 @@ impl Problem for Forced<'_> {
                 self.forces.ease(p.exp());
                 omega
             }
+            Parameter::Load { omega } => {
+                self.forces.ease(1.0);
+                omega
+            }
         };
         self.tables.tabulate(self.condensed, omega)?;
         self.forces.evaluate(u);
@@ -123,9 +131,16 @@ impl Problem for Forced<'_> {
                 let r = row * m + at;
                 let y_lin = table.value[coordinates * outputs + row];
                 linear += y_lin.norm_sqr();
-                put(&mut out.residual, r, mean, -y_lin);
-                if matches!(self.parameter, Parameter::Omega) {
-                    put(&mut out.d_parameter, r, mean, -table.slope[coordinates * outputs + row]);
+                match self.parameter {
+                    Parameter::Omega => {
+                        put(&mut out.residual, r, mean, -y_lin);
+                        put(&mut out.d_parameter, r, mean, -table.slope[coordinates * outputs + row]);
+                    }
+                    Parameter::Load { .. } if !mean => {
+                        put(&mut out.residual, r, mean, -p * y_lin);
+                        put(&mut out.d_parameter, r, mean, -y_lin);
+                    }
+                    Parameter::Ease { .. } | Parameter::Load { .. } => put(&mut out.residual, r, mean, -y_lin),
                 }
             }
             for column in 0..coordinates {
@@ -144,6 +159,7 @@ impl Problem for Forced<'_> {
                             put(&mut out.d_parameter, r, mean, table.slope[column * outputs + row] * w);
                         }
                         Parameter::Ease { .. } => put(&mut out.d_parameter, r, mean, g * eased),
+                        Parameter::Load { .. } => {}
                     }
                     self.forces.couple(i, (row, column), g, &mut out.jacobian, n);
                 }
@@ -164,7 +180,7 @@ impl Problem for Forced<'_> {
         let along_p = direction[u.len()];
         let rate = |z: Complex64| match self.parameter {
             Parameter::Omega => z * along_p,
-            Parameter::Ease { .. } => Complex64::ZERO,
+            Parameter::Ease { .. } | Parameter::Load { .. } => Complex64::ZERO,
         };
         let excited = coordinates * outputs + coordinates;
         let mut z = table.value[excited];
@@ -189,6 +205,8 @@ impl Problem for Forced<'_> {
                 u.copy_from_slice(given);
                 Ok(true)
             }
+            // What presses at rest has no solution of the form that scales: the load must grow.
+            Start::Stuck if self.condensed.is_preloaded() => Ok(false),
             Start::Stuck => {
                 // With infinite slip limits the problem is linear: one Newton step from rest.
                 u.fill(0.0);
@@ -224,13 +242,17 @@ impl Problem for Forced<'_> {
         }
     }
 
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<f64> {
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<(f64, f64)> {
+        if self.condensed.is_preloaded() {
+            self.parameter = Parameter::Load { omega: p };
+            return Some((0.0, 1.0));
+        }
         let start = (1.01 * self.forces.sticking_factor(u)).ln();
         if !(start > 0.0 && start.is_finite()) {
             return None;
         }
         self.parameter = Parameter::Ease { omega: p };
-        Some(start)
+        Some((start, 0.0))
     }
 
     fn end_homotopy(&mut self) {

@@ -44,7 +44,7 @@ impl Linearisation {
 pub enum Start {
     /// The caller's guess, where there is one.
     Given,
-    /// All contacts stuck.
+    /// All contacts as at small motion: stuck, or open.
     Stuck,
     /// All contacts replaced by their reference stiffness: bounded also where the stuck
     /// structure resonates without damping.
@@ -72,10 +72,11 @@ pub trait Problem {
     /// Those of [`Self::evaluate`].
     fn start(&mut self, kind: Start, p: f64, u: &mut [f64]) -> Result<bool>;
 
-    /// Turns the problem at fixed `p` into a homotopy whose parameter runs from the returned
-    /// value, where `u` (the stuck start) is the solution, to 0, where the problem is the given
-    /// one. `None`: there is nothing to ease. [`Self::end_homotopy`] turns it back.
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<f64>;
+    /// Turns the problem at fixed `p` into a homotopy whose parameter runs between the returned
+    /// values: at the first the problem is easy to solve from `u`, the stuck start or rest where
+    /// there is none, at the second it is the given one. `None`: there is nothing to ease.
+    /// [`Self::end_homotopy`] turns it back.
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<(f64, f64)>;
 
     /// Ends the homotopy.
     fn end_homotopy(&mut self);

@@ -293,14 +293,14 @@ impl Problem for Mode<'_> {
         Ok(true)
     }
 
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<f64> {
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<(f64, f64)> {
         let factor = self.forces.sticking_factor(&u[..u.len() - 2]) * 10f64.powf(p);
         let start = (1.01 * factor).ln();
         if !(start > 0.0 && start.is_finite()) {
             return None;
         }
         self.eased_at = Some(p);
-        Some(start)
+        Some((start, 0.0))
     }
 
     fn end_homotopy(&mut self) {

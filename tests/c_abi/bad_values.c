@@ -187,7 +187,40 @@ static void contacts(hbvib_model *model)
     REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "kn = 1");
     c = ring_contact();
     c.gap = NAN;
-    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "gap = NaN");
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_NOT_FINITE, 2, "gap = NaN");
+    c.gap = 1;
+    REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "gap = 1, needs 0");
+    /* A unilateral spring acts along n alone. */
+    {
+        double y[4] = {-0.5, 0, 1, 0}, f[4];
+        hbvib_contact stop;
+        WORKS("54", hbvib_contact_init(&stop, sizeof stop));
+        stop.kind = HBVIB_UNILATERAL;
+        stop.kn = 3;
+        stop.gap = 0.5;
+        stop.dof_b[2] = 1;
+        WORKS("54", hbvib_contact_evaluate(&stop, 1, 0, y, 2, f, 2, NULL, 0));
+        EXPECT("54", fabs(f[0] + 3 / PI) < 1e-15 && fabs(f[2] - 1.5) < 1e-15 && fabs(f[3]) < 1e-15);
+        stop.dof_b[0] = 1;
+        REFUSED("54", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_ARGUMENT, 2, "dof_b[0] = 1");
+        stop.dof_b[0] = HBVIB_GROUND;
+        stop.dof_b[2] = NDOF;
+        REFUSED("54", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_INDEX, 2, "dof_b[2] = 4");
+        stop.dof_b[2] = 1;
+        stop.kt = 1;
+        REFUSED("54", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_ARGUMENT, 2, "kt = 1, needs 0");
+        stop.kt = 0;
+        stop.mu = 0.1;
+        REFUSED("54", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_ARGUMENT, 2, "mu = 0.1, needs 0");
+        stop.mu = 0;
+        stop.kn = -1;
+        REFUSED("43", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_ARGUMENT, 2, "kn = -1");
+        stop.kn = 3;
+        stop.preload = INFINITY;
+        REFUSED("44", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_NOT_FINITE, 2, "preload = inf");
+        stop.preload = -1;
+        REFUSED("44", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_ARGUMENT, 2, "preload = -1");
+    }
     c = ring_contact();
     c.cubic = 2;
     REFUSED("54", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "cubic = 2, needs 0");
