@@ -776,12 +776,14 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
 /// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of
-/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, dof_a[2], dof_b[2], kn, and gap or preload.
+/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, kn, gap or preload, and the third places of dof_a and
+/// dof_b.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
+hbvib_status hbvib_contact_init(hbvib_contact *c,
+                                size_t size_of_c);
 
 /// Adds a contact. Equal contacts add up.
 ///

@@ -87,7 +87,8 @@ fn side(dofs: [i64; 3], kind: ContactKind, ndof: usize, name: &str) -> Result<Op
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
 /// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of
-/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, dof_a[2], dof_b[2], kn, and gap or preload.
+/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, kn, gap or preload, and the third places of dof_a and
+/// dof_b.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
