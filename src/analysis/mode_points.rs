@@ -6,7 +6,7 @@ use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::continuation::Point;
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
-use crate::linalg::norm;
+use crate::linalg::{inner, norm};
 use crate::postprocess::energy::{self, Balance};
 use crate::problem::mode::{LinearMode, Mode};
 use crate::problem::{Linearisation, Problem};
@@ -110,13 +110,13 @@ impl<'a> ModePoints<'a> {
         let i = self.fundamental();
         let first = &x[i * dofs..(i + 1) * dofs];
         self.condensed.blocks()[i].multiply_mass(first, &mut self.weighted);
-        let size = product(first, &self.weighted).re;
+        let size = inner(first, &self.weighted).re;
         let assurance = if self.before.is_empty() {
             1.0
         } else {
-            let overlap = product(&self.before, &self.weighted).norm_sqr();
+            let overlap = inner(&self.before, &self.weighted).norm_sqr();
             self.condensed.blocks()[i].multiply_mass(&self.before, &mut self.weighted);
-            overlap / (size * product(&self.before, &self.weighted).re)
+            overlap / (size * inner(&self.before, &self.weighted).re)
         };
         Ok(ModePoint {
             log10_amplitude: p,
@@ -216,9 +216,4 @@ fn record<'a>(
         iterations: point.iterations,
         slip_fractions,
     }
-}
-
-/// aᴴ b
-fn product(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }

@@ -10,6 +10,14 @@ pub mod matrix_view;
 pub mod quadratic;
 pub mod sparse;
 
+use num_complex::Complex64;
+
+/// aᴴ b
+#[must_use]
+pub fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
+    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
+}
+
 /// Euclidean norm that neither overflows nor underflows.
 #[must_use]
 pub fn norm(v: &[f64]) -> f64 {

@@ -7,6 +7,7 @@ use super::repeated::{self, Multiple};
 use super::spring::Wave;
 use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec};
 use crate::linalg::definite;
+use crate::linalg::inner;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::Csc;
 use crate::options::ModeChoice;
@@ -203,7 +204,7 @@ impl<'a> Known<'a> {
         let weighted = times(&self.pencil.mass, &scaled)?;
         let mut parts = Vec::new();
         for mode in self.modes.shapes.chunks_exact(n) {
-            let part: Complex64 = mode.iter().zip(&weighted).map(|(a, b)| a.conj() * b).sum();
+            let part = inner(mode, &weighted);
             try_push(&mut parts, part, WHAT)?;
         }
         let (mut best, mut most) = (0..0, 0.0);

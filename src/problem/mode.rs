@@ -19,7 +19,7 @@ use super::{Linearisation, Problem, Start, put};
 use crate::condense::Condensed;
 use crate::condense::modal::{Modal, along};
 use crate::error::{Result, try_vec};
-use crate::linalg::norm;
+use crate::linalg::{inner, norm};
 use crate::model::spring::Row;
 use num_complex::Complex64;
 use std::f64::consts::LN_10;
@@ -183,12 +183,12 @@ impl<'a> Mode<'a> {
         let dof = self.gauge.reference_dof;
         let scale = self.condensed.length() / self.linear.shape[dof].norm();
         let x = self.modal.x();
-        out.residual[amplitude] = product(&self.weighted, x).re - 1.0;
+        out.residual[amplitude] = inner(&self.weighted, x).re - 1.0;
         out.residual[phase] = scale * x[dof].im;
         for c in 0..self.condensed.coordinates() {
             let column = self.modal.column(c);
             // x̂ changes by −column·dw; Im z = Re(−i z).
-            let size = -2.0 * product(&self.weighted, column);
+            let size = -2.0 * inner(&self.weighted, column);
             let turn = Complex64::I * scale * column[dof];
             let eased = self.forces.by_ease(c, i) * by_parameter;
             for (row, g) in [(amplitude, size), (phase, turn)] {
@@ -200,15 +200,10 @@ impl<'a> Mode<'a> {
             (n - 2, rates.0, self.modal.by_omega()),
             (n - 1, rates.1, self.modal.by_damping()),
         ] {
-            out.jacobian[column * n + amplitude] = 2.0 * rate * product(&self.weighted, dx).re;
+            out.jacobian[column * n + amplitude] = 2.0 * rate * inner(&self.weighted, dx).re;
             out.jacobian[column * n + phase] = rate * scale * dx[dof].im;
         }
     }
-}
-
-/// aᴴ b
-fn product(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
 impl Problem for Mode<'_> {

@@ -3,6 +3,7 @@
 use super::SynthesisPoint;
 use crate::branch::mode::ModePoint;
 use crate::error::{Result, fail};
+use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
 use num_complex::Complex64;
 
@@ -50,7 +51,7 @@ impl Load {
             omega,
             damping,
             square,
-            work: x.iter().zip(&self.force).map(|(x, f)| x.conj() * f).sum(),
+            work: inner(x, &self.force),
             response: x[self.response_dof],
             log10: point.log10_amplitude,
             fundamental_share: point.fundamental_share,

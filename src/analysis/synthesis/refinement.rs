@@ -7,6 +7,7 @@ use crate::continuation::events::Locator;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
+use crate::linalg::inner;
 use crate::postprocess::energy::balance;
 use crate::problem::mode::Mode;
 use crate::problem::{Linearisation, Problem};
@@ -123,7 +124,7 @@ impl<'a> Refinement<'a> {
         let i = self.branch.carried().iter().position(|&h| h == 1).unwrap_or(0);
         let shape = &self.problem.shape()[i * dofs..(i + 1) * dofs];
         self.branch.condensed().blocks()[i].multiply_mass(shape, &mut self.x);
-        let size: f64 = shape.iter().zip(&self.x).map(|(a, b)| (a.conj() * b).re).sum();
+        let size = inner(shape, &self.x).re;
         let energy = balance(self.branch.condensed(), omega, self.problem.shape(), &[], &[]).twice_mean_kinetic;
         let point = ModePoint {
             log10_amplitude: p,
