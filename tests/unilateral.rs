@@ -4,7 +4,7 @@
 mod common;
 
 use common::{all_harmonics, harmonics, solve_at};
-use hbvib::analysis::{contact_evaluate, forced_response};
+use hbvib::analysis::{contact_evaluate, forced_response, nonlinear_mode};
 use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
@@ -12,7 +12,7 @@ use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::ForcedOptions;
+use hbvib::options::{ForcedOptions, ModeOptions};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -136,4 +136,42 @@ fn coexisting_solutions_of_a_stop_lie_on_one_branch() {
         );
         assert_eq!(branch.folds().len(), 2);
     }
+}
+
+/// Free of damping, the mass swings a time on its spring and a time on spring and stop, each a piece
+/// of a sine: the truth at any amplitude.
+#[test]
+fn the_mode_of_a_mass_with_a_stop_has_the_period_of_its_two_springs() {
+    let (kn, gap) = (3.0, 0.2);
+    let mut model = stopped(kn, gap, 0.0);
+    model
+        .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[0.0]))
+        .unwrap();
+    let range = ModeOptions {
+        log10_start: -2.0,
+        log10_stop: 1.0,
+        ..ModeOptions::default()
+    };
+    let branch = nonlinear_mode(&model, &harmonics(63), &range, &mut Hooks::default()).unwrap();
+    assert_eq!(branch.status(), Status::Ok);
+    let mut slipped = 0;
+    for point in 0..branch.points() {
+        let x = all_harmonics(&branch, point);
+        // The largest motion away from the stop, on a fine grid: it is flat there.
+        let n = 1 << 14;
+        let away = (0..n).map(|j| -value(&x, TAU * f64::from(j) / f64::from(n)));
+        let a = away.fold(f64::NEG_INFINITY, f64::max);
+        let period = if a <= gap {
+            TAU
+        } else {
+            slipped += 1;
+            let (w, v) = ((1.0 + kn).sqrt(), (a * a - gap * gap).sqrt());
+            let (rest, swing) = (gap / (1.0 + kn), (gap / (1.0 + kn)).hypot(v / (1.0 + kn).sqrt()));
+            TAU / 2.0 + 2.0 * (gap / a).asin() + 2.0 / w * (rest / swing).acos()
+        };
+        let error = branch.omega()[point] * period / TAU - 1.0;
+        assert!(error.abs() < 3e-6, "amplitude {a}: {error:e}");
+        assert!(branch.mode_at(point).unwrap().damping_ratio.abs() < 1e-12);
+    }
+    assert!(slipped > 10);
 }
