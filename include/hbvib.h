@@ -869,6 +869,32 @@ hbvib_status hbvib_model_add_springs(hbvib_model *model,
                                      const int64_t *sector_offset,
                                      const double *stiffness);
 
+/// Adds an Iwan joint with four parameters (Segalman 2005): Jenkins contacts in parallel whose slip
+/// limits are distributed so that the loss per cycle grows with the power 3 + chi of the amplitude.
+///
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
+/// sector_offset  sector of side b counted from that of side a; 0 in plain models.
+/// slip_force     force at which the whole joint slips, > 0.
+/// stiffness      tangent stiffness at rest, force per length, > 0.
+/// chi            -1 < chi <= 0.
+/// beta           stiffness that slips last over the rest of it, >= 0.
+/// elements       Jenkins contacts to make of it, 2 .. 10000; they span five decades of displacement.
+/// first_id       receives the number of the first of them, the others follow; may be NULL.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (parameters, both
+/// sides the same, sector_offset in a plain structure), HBVIB_E_DIMENSION (elements < 0),
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_iwan(hbvib_model *model,
+                                  int64_t dof_a,
+                                  int64_t dof_b,
+                                  int64_t sector_offset,
+                                  double slip_force,
+                                  double stiffness,
+                                  double chi,
+                                  double beta,
+                                  int64_t elements,
+                                  int64_t *first_id);
+
 /// Fills solver options with their defaults: harmonics = 9, exact events, automatic steps.
 ///
 /// o          the struct; untouched on error.

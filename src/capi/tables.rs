@@ -4,6 +4,7 @@ use super::boundary::{Blame, call, check_pointer, count, input};
 use super::handles::write;
 use super::types::{hbvib_model, hbvib_special_dof, hbvib_status};
 use crate::contact::Contact;
+use crate::contact::iwan::Iwan;
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::model::spring::Spring;
@@ -153,6 +154,78 @@ pub unsafe extern "C" fn hbvib_model_add_springs(
             let arrays = [("stiffness", 6), ("sector_offset", 5), ("dof_a", 3)];
             blame_constant(e, &arrays)
         })?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Adds an Iwan joint with four parameters (Segalman 2005): Jenkins contacts in parallel whose slip
+/// limits are distributed so that the loss per cycle grows with the power 3 + chi of the amplitude.
+///
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
+/// sector_offset  sector of side b counted from that of side a; 0 in plain models.
+/// slip_force     force at which the whole joint slips, > 0.
+/// stiffness      tangent stiffness at rest, force per length, > 0.
+/// chi            -1 < chi <= 0.
+/// beta           stiffness that slips last over the rest of it, >= 0.
+/// elements       Jenkins contacts to make of it, 2 .. 10000; they span five decades of displacement.
+/// first_id       receives the number of the first of them, the others follow; may be NULL.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (parameters, both
+/// sides the same, sector_offset in a plain structure), HBVIB_E_DIMENSION (elements < 0),
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_model_add_iwan(
+    model: *mut hbvib_model,
+    dof_a: i64,
+    dof_b: i64,
+    sector_offset: i64,
+    slip_force: f64,
+    stiffness: f64,
+    chi: f64,
+    beta: f64,
+    elements: i64,
+    first_id: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let ndof = model.ndof();
+        let side = |dof: i64, argument, name: &str| match dof {
+            GROUND => Ok(None),
+            dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
+            dof => fail!(Index, "{name} = {dof}, needs 0 .. {} or HBVIB_GROUND = -1", ndof - 1).blame(argument),
+        };
+        let between = Contact {
+            dof_a: side(dof_a, 2, "dof_a")?,
+            dof_b: side(dof_b, 3, "dof_b")?,
+            sector_offset,
+            ..Contact::jenkins(0, None, 0.0, 0.0, 0.0)
+        };
+        let joint = Iwan {
+            slip_force,
+            stiffness,
+            chi,
+            beta,
+        };
+        let elements = count(elements, 9, "elements")?;
+        if !first_id.is_null() {
+            check_pointer(first_id, 10, "first_id")?;
+        }
+        let first = model.add_iwan(&between, &joint, elements).map_err(|e| {
+            let names = [
+                ("slip_force", 5),
+                ("stiffness", 6),
+                ("chi", 7),
+                ("beta", 8),
+                ("elements", 9),
+                ("sector_offset", 4),
+                ("dof_a", 2),
+            ];
+            blame_constant(e, &names)
+        })?;
+        if !first_id.is_null() {
+            unsafe { first_id.write(first as i64) };
+        }
         Ok(Status::Ok)
     })
 }

@@ -5,6 +5,7 @@
 //! (Fourier coefficients, Jacobian) is the same for all laws and lives in [`crate::aft`].
 
 pub mod cubic;
+pub mod iwan;
 pub mod jenkins;
 pub mod unilateral;
 

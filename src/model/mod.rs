@@ -9,6 +9,7 @@ pub mod spring;
 pub mod start_mode;
 pub mod structure;
 
+use crate::contact::iwan::Iwan;
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, fail, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
@@ -141,6 +142,16 @@ impl Model {
         }
         try_extend(&mut self.contacts, contacts, "the contacts")?;
         Ok(self.contacts.len() - contacts.len())
+    }
+
+    /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts, whose numbers
+    /// follow each other, and returns the first.
+    ///
+    /// # Errors
+    /// Those of [`Iwan::elements`] and [`Self::add_contact`].
+    pub fn add_iwan(&mut self, between: &Contact, joint: &Iwan, elements: usize) -> Result<usize> {
+        self.check_sides("Iwan joint", between.dof_a, between.dof_b, between.sector_offset)?;
+        self.add_contacts(&joint.elements(between, elements)?)
     }
 
     fn check_contact(&self, contact: &Contact) -> Result<()> {

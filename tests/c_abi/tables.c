@@ -16,6 +16,34 @@ static double amplitude(hbvib_model *model)
     return found;
 }
 
+/* One call makes the contacts of a joint; a bad parameter is named and nothing is added. */
+static void iwan(void)
+{
+    hbvib_model *model = NULL;
+    int64_t first = -1;
+    hbvib_contact c = ring_contact();
+    int64_t id = -1;
+    WORKS("iwan", hbvib_model_clone(the_model, &model));
+    WORKS("iwan", hbvib_model_add_iwan(model, 2, HBVIB_GROUND, 0, 4, 1e3, -0.4, 0.3, 20, &first));
+    EXPECT("iwan", first == 1);
+    WORKS("iwan", hbvib_model_add_contact(model, &c, &id));
+    EXPECT("iwan", id == 21);
+    REFUSED("iwan", hbvib_model_add_iwan(NULL, 2, HBVIB_GROUND, 0, 4, 1e3, -0.4, 0.3, 20, &first), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("iwan", hbvib_model_add_iwan(model, NDOF, HBVIB_GROUND, 0, 4, 1e3, -0.4, 0.3, 20, &first), HBVIB_E_INDEX, 2, "dof_a = 4");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, -2, 0, 4, 1e3, -0.4, 0.3, 20, &first), HBVIB_E_INDEX, 3, "dof_b = -2");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, 2, 0, 4, 1e3, -0.4, 0.3, 20, &first), HBVIB_E_ARGUMENT, 2, "dof_a");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, 3, 0, 0, 1e3, -0.4, 0.3, 20, &first), HBVIB_E_ARGUMENT, 5, "slip_force = 0");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, 3, 0, 4, NAN, -0.4, 0.3, 20, &first), HBVIB_E_NOT_FINITE, 6, "stiffness");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, 3, 0, 4, 1e3, 0.1, 0.3, 20, &first), HBVIB_E_ARGUMENT, 7, "chi = 0.1");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, 3, 0, 4, 1e3, -0.4, -1, 20, &first), HBVIB_E_ARGUMENT, 8, "beta = -1");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, 3, 0, 4, 1e3, -0.4, 0.3, 1, &first), HBVIB_E_ARGUMENT, 9, "elements = 1");
+    REFUSED("iwan", hbvib_model_add_iwan(model, 2, 3, 0, 4, 1e3, -0.4, 0.3, -1, &first), HBVIB_E_DIMENSION, 9, "elements");
+    EXPECT("iwan", first == 1);
+    WORKS("iwan", hbvib_model_add_contact(model, &c, &id));
+    EXPECT("iwan", id == 22);
+    WORKS("iwan", hbvib_model_free(model));
+}
+
 int main(void)
 {
     hbvib_model *model, *more = NULL;
@@ -41,6 +69,7 @@ int main(void)
         WORKS("one by one", hbvib_model_add_contact(more, &c, NULL));
     }
     one_by_one = amplitude(more);
+    iwan();
     WORKS("free", hbvib_model_free(more));
     more = NULL;
     WORKS("clone", hbvib_model_clone(model, &more));
