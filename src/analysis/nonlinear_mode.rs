@@ -9,7 +9,7 @@ use crate::condense::Condensed;
 use crate::condense::modal::along;
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
-use crate::continuation::{Advance, Continuation, Settings};
+use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
@@ -26,6 +26,10 @@ const NODE: f64 = 1e-9;
 /// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset
 /// itself the branch has a corner, and where modes share a frequency no solution is isolated.
 const BEYOND_ONSET: f64 = 1.02;
+
+/// How far a branch that began to slip may come back below the onset, in log₁₀, on its way to an
+/// amplitude above it.
+const BELOW_ONSET: f64 = 3.0;
 
 /// Follows a nonlinear mode of `model` from `range.log10_start` to `range.log10_stop`.
 ///
@@ -217,12 +221,25 @@ fn run(
             return Ok(Status::StoppedMaxPoints);
         }
     }
-    match first_slipping(points.problem(), &settings, linear_up_to, solver.max_points, hooks)? {
-        First::Found(first) => {
+    let onset = if linear_up_to.is_finite() {
+        Some(points.linear_point(linear_up_to)?)
+    } else {
+        None
+    };
+    match first_slipping(points.problem(), &settings, onset.as_ref(), solver.max_points, hooks) {
+        Ok(First::Found(first)) => {
             hooks.log(LogLevel::Info, "first point with slip or a nonlinear force solved");
             task.run(points, first, hooks)
         }
-        First::Cancelled => Ok(Status::StoppedByCaller),
+        Ok(First::Cancelled) => Ok(Status::StoppedByCaller),
+        Err(e) => match onset {
+            // The amplitude turns as soon as contacts slip: the way leads round the corner.
+            Some(onset) if e.status == Status::NoConvergence && start <= linear_up_to => {
+                hooks.log(LogLevel::Info, "the amplitude turns at the onset of slip");
+                task.go_on(points, onset, hooks)
+            }
+            _ => Err(e),
+        },
     }
 }
 
@@ -231,23 +248,36 @@ fn run(
 fn first_slipping(
     problem: &mut dyn Problem,
     settings: &Settings,
-    linear_up_to: f64,
+    onset: Option<&Point>,
     max_points: usize,
     hooks: &Hooks<'_>,
 ) -> Result<First> {
+    let Some(onset) = onset else {
+        return start::solve(problem, settings, hooks.cancelled);
+    };
+    let linear_up_to = onset.parameter();
     let near = linear_up_to + BEYOND_ONSET.log10();
-    if near.is_infinite() || settings.start <= near {
+    if settings.start <= near {
         return start::solve(problem, settings, hooks.cancelled);
     }
-    let way = Settings {
+    let at_near = Settings {
         start: near,
         end: settings.start,
         ..*settings
     };
-    let mut continuation = match start::solve(problem, &way, hooks.cancelled)? {
-        First::Found(point) => Continuation::new(way, point)?,
-        First::Cancelled => return Ok(First::Cancelled),
+    let first = match start::solve(problem, &at_near, hooks.cancelled) {
+        Ok(First::Found(point)) => point,
+        Ok(First::Cancelled) => return Ok(First::Cancelled),
+        // The amplitude turns as soon as contacts slip: the way leads round the corner.
+        Err(e) if e.status == Status::NoConvergence => onset.try_clone()?,
+        Err(e) => return Err(e),
     };
+    // It may come back to amplitudes below the onset.
+    let way = Settings {
+        start: linear_up_to - BELOW_ONSET,
+        ..at_near
+    };
+    let mut continuation = Continuation::new(way, first)?;
     for _ in 0..max_points {
         match continuation.advance(problem, hooks.cancelled)? {
             Advance::Accepted { point, last: true } => return Ok(First::Found(point)),

@@ -18,7 +18,7 @@ use super::contact_forces::ContactForces;
 use super::{Linearisation, Problem, Start, put};
 use crate::condense::Condensed;
 use crate::condense::modal::{Modal, along};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, fail, try_vec};
 use crate::linalg::norm;
 use crate::model::spring::Row;
 use num_complex::Complex64;
@@ -37,6 +37,11 @@ const ONSET_ROUNDING: f64 = 1e-9;
 /// known to the rounding of the motions that are solved for, which may be thousands of times larger:
 /// a tolerance of 1e-10 then asks for no more than 1e-12 of them.
 const OF_MOTION: f64 = 1e-2;
+
+/// Frequency relative to the linear mode's below which a motion is no vibration. Where a structure
+/// softens until its stiffness is gone, the frequency falls towards zero at an amplitude that stays;
+/// inertia is then lost in the rounding of the stiffness, and D with it.
+const VANISHED: f64 = 1e-5;
 
 /// What fixes amplitude and phase of a mode.
 #[derive(Clone, Debug)]
@@ -231,6 +236,9 @@ impl Problem for Mode<'_> {
         let n = u.len();
         let motion = &u[..n - 2];
         let (omega, damping) = Self::frequency_and_damping(self.linear, u);
+        if !(omega >= VANISHED * self.linear.omega && omega.is_finite()) {
+            return fail!(Singular, "the angular frequency became {omega}: no vibration is left");
+        }
         let rates = (OMEGA_UNIT * omega, DAMPING_UNIT);
         self.forces.evaluate(motion);
         let set = self.condensed.set();
