@@ -318,3 +318,26 @@ fn a_caller_may_stop_at_any_point_and_keeps_what_was_found() {
     let branch = nonlinear_mode(&model, &solver, &RANGE, &mut Hooks::default()).unwrap();
     assert_eq!((branch.status(), branch.points()), (Status::StoppedMaxPoints, 7));
 }
+
+/// Without linear damping the linear mode needs no artificial damping, but slip will.
+#[test]
+fn stiffness_type_damping_is_refused_where_all_stiffness_is_in_springs_and_contacts() {
+    let mut model = Model::new(1).unwrap();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[2.0]))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[0.0]))
+        .unwrap();
+    model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 1.0)).unwrap();
+    let stiffness = ModeOptions {
+        damping_form: hbvib::options::DampingForm::Stiffness,
+        ..RANGE
+    };
+    refused(
+        follow(&model, &stiffness),
+        Status::Singular,
+        &["springs and contacts", "mass type"],
+    );
+    assert!(follow(&model, &RANGE).is_ok());
+}

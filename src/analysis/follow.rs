@@ -41,6 +41,11 @@ impl Task<'_> {
         if self.report(keeper, hooks, &first) {
             return Ok(Status::StoppedByCaller);
         }
+        self.go_on(keeper, first, hooks)
+    }
+
+    /// Follows the branch from the point stored last.
+    pub fn go_on(&self, keeper: &mut dyn Keeper, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
         let (start, end) = (self.settings.start, self.settings.end);
         if start.to_bits() == end.to_bits() {
             for (i, p) in self.at.iter().enumerate() {
@@ -62,7 +67,11 @@ impl Task<'_> {
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
                 Advance::Stopped(status) => return Ok(status),
             };
-            keeper.keep(&point)?;
+            match keeper.keep(&point) {
+                // Newton's last correction, which is not evaluated, led to where there is no solution.
+                Err(e) if e.status == Status::Singular => return Ok(Status::StoppedStepTooSmall),
+                kept => kept?,
+            }
             let stop = self.report(keeper, hooks, &point);
             if let Some(before) = continuation.previous() {
                 self.events(keeper, &mut locator, before, &point, end.is_some())?;

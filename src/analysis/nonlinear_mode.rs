@@ -10,7 +10,7 @@ use crate::condense::modal::along;
 use crate::contact::Contact;
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
-use crate::continuation::{Advance, Continuation, Settings};
+use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
@@ -27,6 +27,10 @@ const NODE: f64 = 1e-9;
 /// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset
 /// itself the branch has a corner, and where modes share a frequency no solution is isolated.
 const BEYOND_ONSET: f64 = 1.02;
+
+/// How far a branch that began to slip may come back below the onset, in log₁₀, on its way to an
+/// amplitude above it.
+const BELOW_ONSET: f64 = 3.0;
 
 /// Follows a nonlinear mode of `model` from `range.log10_start` to `range.log10_stop`.
 ///
@@ -101,7 +105,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         );
     }
     let mut problem = Mode::new(&condensed, &gauge, &linear, solver.samples)?;
-    let linear_up_to = problem.linear_up_to()?;
+    let (linear_up_to, nearly) = problem.linear_up_to()?;
     let info = ModeInfo {
         index: chosen.index,
         omega: chosen.omega,
@@ -125,7 +129,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     let ends = (range.log10_start, range.log10_stop);
     branch.set_mode(ModeData::new(info, linear.clone(), gauge.clone(), ends, problem.size()));
     let mut points = ModePoints::new(&condensed, &linear, problem, branch)?;
-    let status = run(&mut points, solver, range, linear_up_to, hooks)?;
+    let status = run(&mut points, solver, range, (linear_up_to, nearly), hooks)?;
     points.finish(status)
 }
 
@@ -174,7 +178,7 @@ fn run(
     points: &mut ModePoints<'_>,
     solver: &SolverOptions,
     range: &ModeOptions<'_>,
-    linear_up_to: f64,
+    (linear_up_to, nearly): (f64, f64),
     hooks: &mut Hooks<'_>,
 ) -> Result<Status> {
     let (start, end) = (range.log10_start, range.log10_stop);
@@ -224,37 +228,73 @@ fn run(
             return Ok(Status::StoppedMaxPoints);
         }
     }
-    match first_slipping(points.problem(), &settings, linear_up_to, solver.max_points, hooks)? {
-        First::Found(first) => {
+    let onset = if linear_up_to.is_finite() {
+        Some(points.linear_point(linear_up_to)?)
+    } else {
+        None
+    };
+    let near = match &onset {
+        Some(_) => linear_up_to + BEYOND_ONSET.log10(),
+        None => nearly,
+    };
+    match first_nonlinear(
+        points.problem(),
+        &settings,
+        near,
+        onset.as_ref(),
+        solver.max_points,
+        hooks,
+    ) {
+        Ok(First::Found(first)) => {
             hooks.log(LogLevel::Info, "first point with slip or a nonlinear force solved");
             task.run(points, first, hooks)
         }
-        First::Cancelled => Ok(Status::StoppedByCaller),
+        Ok(First::Cancelled) => Ok(Status::StoppedByCaller),
+        Err(e) => match onset {
+            // The amplitude turns as soon as contacts slip: the way leads round the corner.
+            Some(onset) if e.status == Status::NoConvergence && start <= linear_up_to => {
+                hooks.log(LogLevel::Info, "the amplitude turns at the onset of slip");
+                task.go_on(points, onset, hooks)
+            }
+            _ => Err(e),
+        },
     }
 }
 
 /// The point at `settings.start`, beyond the linear range. Newton's method from a linear mode far
-/// below may find another mode, so the branch is followed from the onset.
-fn first_slipping(
+/// below may find another mode, so the branch is followed from `near`, where the linear mode is a
+/// sure start: just beyond the onset of slip, or where smooth laws are nearly linear.
+fn first_nonlinear(
     problem: &mut dyn Problem,
     settings: &Settings,
-    linear_up_to: f64,
+    near: f64,
+    onset: Option<&Point>,
     max_points: usize,
     hooks: &Hooks<'_>,
 ) -> Result<First> {
-    let near = linear_up_to + BEYOND_ONSET.log10();
-    if near.is_infinite() || settings.start <= near {
+    if settings.start <= near || !near.is_finite() {
         return start::solve(problem, settings, hooks.cancelled);
     }
-    let way = Settings {
+    let at_near = Settings {
         start: near,
         end: settings.start,
         ..*settings
     };
-    let mut continuation = match start::solve(problem, &way, hooks.cancelled)? {
-        First::Found(point) => Continuation::new(way, point)?,
-        First::Cancelled => return Ok(First::Cancelled),
+    let first = match start::solve(problem, &at_near, hooks.cancelled) {
+        Ok(First::Found(point)) => point,
+        Ok(First::Cancelled) => return Ok(First::Cancelled),
+        // The amplitude turns as soon as contacts slip: the way leads round the corner.
+        Err(e) => match onset {
+            Some(onset) if e.status == Status::NoConvergence => onset.try_clone()?,
+            _ => return Err(e),
+        },
     };
+    // It may come back to amplitudes below the onset.
+    let way = Settings {
+        start: near - BELOW_ONSET,
+        ..at_near
+    };
+    let mut continuation = Continuation::new(way, first)?;
     for _ in 0..max_points {
         match continuation.advance(problem, hooks.cancelled)? {
             Advance::Accepted { point, last: true } => return Ok(First::Found(point)),
@@ -265,7 +305,7 @@ fn first_slipping(
     }
     fail!(
         NoConvergence,
-        "log10_start = {} was not reached from the onset of slip at {linear_up_to}; start below the onset, or raise max_newton or max_points",
+        "log10_start = {} was not reached from where the mode ceases to be linear, {near}; start below that, or raise max_newton or max_points",
         settings.start
     )
 }

@@ -45,7 +45,17 @@ const ROUNDING: f64 = 1e-12;
 /// The same, relative to the inertia, for a mixture of frequencies that only nearly are equal.
 const NEARLY_EQUAL: f64 = 3e-8;
 
+/// Strain energy of the structure itself, relative to that of the mode, that is rounding.
+const NO_STRAIN: f64 = 1e-12;
+
 const WHAT: &str = "the damped mode";
+
+fn no_artificial_damping<T>() -> Result<T> {
+    fail!(
+        Singular,
+        "artificial damping of the stiffness type does not act on the mode: its stiffness is in springs and contacts; use the mass type"
+    )
+}
 
 impl Model {
     /// The mode with the structure's damping, contacts stuck, that grows out of `start`, a mode of
@@ -81,6 +91,11 @@ impl Model {
         };
         let conservative = problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
         if conservative && problem.damping.max_abs() == 0.0 {
+            // Friction will need what linear damping does not.
+            let strain = quadratic(&problem.own, &undamped.shape);
+            if form == DampingForm::Stiffness && strain.abs() <= NO_STRAIN * undamped.omega * undamped.omega {
+                return no_artificial_damping();
+            }
             return Ok(undamped);
         }
         if start.multiplicity > 1 {
@@ -185,10 +200,7 @@ impl Damped {
             let (r, a, b) = (project(y), project(by_omega), project(by_damping));
             let determinant = a.re * b.im - a.im * b.re;
             if determinant.abs() <= 1e-12 * a.norm() * b.norm() {
-                return fail!(
-                    Singular,
-                    "artificial damping of the stiffness type does not act on the mode: its stiffness is in springs and contacts; use the mass type"
-                );
+                return no_artificial_damping();
             }
             let d_omega = (r.im * b.re - r.re * b.im) / determinant;
             let d_damping = (r.re * a.im - r.im * a.re) / determinant;

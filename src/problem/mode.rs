@@ -18,7 +18,7 @@ use super::contact_forces::ContactForces;
 use super::{Linearisation, Problem, Start, put};
 use crate::condense::Condensed;
 use crate::condense::modal::{Modal, along};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, fail, try_vec};
 use crate::linalg::{inner, norm};
 use crate::model::spring::Row;
 use num_complex::Complex64;
@@ -37,6 +37,11 @@ const ONSET_ROUNDING: f64 = 1e-9;
 /// known to the rounding of the motions that are solved for, which may be thousands of times larger:
 /// a tolerance of 1e-10 then asks for no more than 1e-12 of them.
 const OF_MOTION: f64 = 1e-2;
+
+/// Frequency relative to the linear mode's below which a motion is no vibration. Where a structure
+/// softens until its stiffness is gone, the frequency falls towards zero at an amplitude that stays;
+/// inertia is then lost in the rounding of the stiffness, and D with it.
+const VANISHED: f64 = 1e-5;
 
 /// What fixes amplitude and phase of a mode.
 #[derive(Clone, Debug)]
@@ -133,22 +138,24 @@ impl<'a> Mode<'a> {
         }
     }
 
-    /// log₁₀ of the amplitude up to which all laws are linear; −∞ where one of them never is.
+    /// log₁₀ of the amplitudes up to which all laws are linear, −∞ where one of them never is, and up
+    /// to which they nearly are, so that the linear mode is a sure start.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn linear_up_to(&mut self) -> Result<f64> {
+    pub fn linear_up_to(&mut self) -> Result<(f64, f64)> {
         let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
         self.linear_start(&mut u);
         let motion = &u[..u.len() - 2];
-        let onset = -self.forces.sticking_factor(motion).log10();
-        self.forces.ease(10f64.powf(ONSET_ROUNDING - onset));
+        let nearly = -self.forces.sticking_factor(motion).log10();
+        self.forces.ease(10f64.powf(ONSET_ROUNDING - nearly));
         self.forces.evaluate(motion);
-        Ok(if self.forces.all_stuck() {
-            onset
+        let exactly = if self.forces.all_stuck() {
+            nearly
         } else {
             f64::NEG_INFINITY
-        })
+        };
+        Ok((exactly, nearly))
     }
 
     fn fundamental(&self) -> usize {
@@ -226,6 +233,9 @@ impl Problem for Mode<'_> {
         let n = u.len();
         let motion = &u[..n - 2];
         let (omega, damping) = Self::frequency_and_damping(self.linear, u);
+        if !(omega >= VANISHED * self.linear.omega && omega.is_finite()) {
+            return fail!(Singular, "the angular frequency became {omega}: no vibration is left");
+        }
         let rates = (OMEGA_UNIT * omega, DAMPING_UNIT);
         self.forces.evaluate(motion);
         let set = self.condensed.set();
