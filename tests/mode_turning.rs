@@ -53,10 +53,10 @@ fn equivalent(y: f64) -> Complex64 {
 /// Asserts (K + k_eq(Y) W Wᵀ) x = ω²(1 + 2iD) x for one harmonic at every point.
 fn solves_the_closed_form(branch: &Branch) {
     let damping = branch.mode_field(ModeField::DampingRatio).unwrap();
-    for point in 0..branch.points() {
+    for (point, d) in damping.iter().enumerate() {
         let x = &all_harmonics(branch, point)[2..4];
         let omega = branch.omega()[point];
-        let inertia = omega * omega * Complex64::new(1.0, 2.0 * damping[point]);
+        let inertia = omega * omega * Complex64::new(1.0, 2.0 * d);
         let contact = equivalent(x[1].norm()) * x[1];
         let rest = [
             STIFFNESS[0] * x[0] + STIFFNESS[1] * x[1] - inertia * x[0],
