@@ -7,10 +7,12 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 mod energy;
+mod loops;
 pub mod mode;
 mod recovery;
 
 pub use energy::Energy;
+pub use loops::{ContactLoop, ContactSummary, MOST_TIMES};
 pub(crate) use recovery::Recovery;
 
 /// A solution beside the curve: a peak, a fold, or one at a parameter value asked for.

@@ -1,5 +1,6 @@
 //! What one harmonic sees of the structure: its matrices on one pattern, and the rows of the contacts.
 
+use super::roster::Roster;
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
@@ -37,6 +38,8 @@ pub struct HarmonicBlock {
     pub force: Vec<Complex64>,
     /// Rows of W, one per relative coordinate.
     pub rows: Vec<Row>,
+    /// Rows of the relative motions of linear contacts, which are no coordinates.
+    pub linear_rows: Vec<Row>,
 }
 
 impl HarmonicBlock {
@@ -58,20 +61,24 @@ impl HarmonicBlock {
 pub(super) fn harmonic_block(
     model: &Model,
     number: usize,
-    never_slipping: &[usize],
+    roster: &Roster,
     representatives: &[usize],
     kappa: impl Fn(usize) -> Complex64,
 ) -> Result<HarmonicBlock> {
     let structure = model.structure();
     let n = model.ndof();
-    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
+    let stuck = roster.never_slipping.iter().map(|&i| &model.contacts()[i]);
     let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
-    let mut rows = try_vec(representatives.len(), [None; 2], "the contacts")?;
-    for (r, &i) in rows.iter_mut().zip(representatives) {
-        let contact = &model.contacts()[i];
-        let phase = structure.phase(number, contact.sector_offset);
-        *r = relative_row(contact.dof_a, contact.dof_b, phase);
-    }
+    let rows_of = |contacts: &[usize]| -> Result<Vec<Row>> {
+        let mut rows = try_vec(contacts.len(), [None; 2], "the contacts")?;
+        for (r, &i) in rows.iter_mut().zip(contacts) {
+            let contact = &model.contacts()[i];
+            let phase = structure.phase(number, contact.sector_offset);
+            *r = relative_row(contact.dof_a, contact.dof_b, phase);
+        }
+        Ok(rows)
+    };
+    let rows = rows_of(representatives)?;
     let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
     let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
     let mut references = Vec::new();
@@ -103,5 +110,6 @@ pub(super) fn harmonic_block(
         artificial: Artificial::None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         rows,
+        linear_rows: rows_of(&roster.linear)?,
     })
 }

@@ -16,9 +16,10 @@ pub mod flexibility;
 pub mod interpolation;
 pub mod modal;
 pub mod poles;
+pub mod roster;
 pub mod tables;
 
-use crate::contact::{Contact, ContactKind, Law, Role};
+use crate::contact::{Contact, ContactKind, Law};
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
@@ -30,6 +31,7 @@ pub use block::{Artificial, HarmonicBlock};
 use coordinates::{gather, give, raise_for_springs};
 use flexibility::Workspace;
 use num_complex::Complex64;
+use roster::Roster;
 
 /// Unknowns above which it pays to look at the contacts from the stuck structure.
 const STUCK_ABOVE: usize = 64;
@@ -83,9 +85,7 @@ pub struct Condensed {
     reference: Reference,
     /// Share of the reference stiffness that the fundamental takes, per coordinate.
     share: Vec<f64>,
-    contacts: usize,
-    never_slipping: usize,
-    inert: usize,
+    roster: Roster,
     sectors: usize,
     in_step: usize,
 }
@@ -199,16 +199,8 @@ impl Condensed {
         omega: f64,
         mode: Option<(DampingForm, &[Complex64])>,
     ) -> Result<(Self, Vec<(usize, usize)>)> {
-        let mut inert = 0;
-        let mut never_slipping = Vec::new();
-        let mut active = Vec::new();
-        for (i, contact) in model.contacts().iter().enumerate() {
-            match contact.role() {
-                Role::Inert => inert += 1,
-                Role::Spring => try_push(&mut never_slipping, i, "the contacts")?,
-                Role::Active => try_push(&mut active, i, "the contacts")?,
-            }
-        }
+        let roster = Roster::new(model)?;
+        let active = &roster.active;
         let odd = active.iter().all(|&i| Law::new(&model.contacts()[i], 1.0).is_odd());
         let set = HarmonicSet::excited(
             forced,
@@ -217,10 +209,10 @@ impl Condensed {
             odd,
             options.keep_even_harmonics,
         )?;
-        let (coordinate_of, representatives) = gather(model, &active)?;
+        let (coordinate_of, representatives) = gather(model, active)?;
         let mut drops = try_vec(representatives.len(), true, "the contacts")?;
         let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
-        for (&coordinate, &contact) in coordinate_of.iter().zip(&active) {
+        for (&coordinate, &contact) in coordinate_of.iter().zip(active) {
             stiffness[coordinate] += model.contacts()[contact].stiffness();
             drops[coordinate] &= model.contacts()[contact].kind == ContactKind::Jenkins;
         }
@@ -228,8 +220,8 @@ impl Condensed {
             model,
             omega,
             &set,
-            &never_slipping,
-            (&active, &coordinate_of),
+            &roster.never_slipping,
+            (active, &coordinate_of),
             &mut stiffness,
         )?;
         let unknowns = representatives.len() * set.packed_len();
@@ -248,7 +240,7 @@ impl Condensed {
         let mut blocks = Vec::new();
         for &number in set.numbers() {
             let kappa = |c: usize| reference.kappa(stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
-            let mut block = harmonic_block(model, number, &never_slipping, &representatives, kappa)?;
+            let mut block = harmonic_block(model, number, &roster, &representatives, kappa)?;
             block.artificial = match mode {
                 None => Artificial::None,
                 Some((DampingForm::Mass, _)) => Artificial::Mass,
@@ -260,7 +252,7 @@ impl Condensed {
             try_push(&mut blocks, block, "the matrices per harmonic")?;
         }
         let mut contacts = Vec::new();
-        for pair in active.into_iter().zip(coordinate_of) {
+        for pair in active.iter().copied().zip(coordinate_of) {
             try_push(&mut contacts, pair, "the contacts")?;
         }
         let condensed = Self {
@@ -274,9 +266,7 @@ impl Condensed {
             preloaded: model.contacts().iter().any(Contact::is_preloaded),
             reference,
             share,
-            contacts: model.contacts().len(),
-            never_slipping: never_slipping.len(),
-            inert,
+            roster,
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
         };
@@ -340,7 +330,13 @@ impl Condensed {
     /// Number of contacts in the model, the removed ones included.
     #[must_use]
     pub fn contacts(&self) -> usize {
-        self.contacts
+        self.roster.contacts().len()
+    }
+
+    /// The contacts in the model, as they were.
+    #[must_use]
+    pub fn roster(&self) -> &Roster {
+        &self.roster
     }
 
     /// Sectors of the wheel; 1 for a plain structure.
@@ -395,9 +391,9 @@ impl Condensed {
             sectors: model.structure().sectors(),
             degrees_of_freedom: self.ndof,
             coordinates: self.coordinates(),
-            contacts: self.contacts,
-            never_slipping: self.never_slipping,
-            inert: self.inert,
+            contacts: self.contacts(),
+            never_slipping: self.roster.never_slipping.len(),
+            inert: self.roster.inert(),
             harmonics_asked: options.harmonics,
             harmonics_carried: self.set.numbers().len(),
             mean_carried: self.set.has_mean(),

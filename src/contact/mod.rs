@@ -7,6 +7,7 @@
 pub mod cubic;
 pub mod iwan;
 pub mod jenkins;
+pub mod state;
 pub mod unilateral;
 
 use crate::error::{Result, fail};

@@ -1,0 +1,51 @@
+//! The contacts of a model as they were when it was condensed, sorted by what a solver makes of them.
+
+use crate::contact::{Contact, Role};
+use crate::error::{Result, try_extend, try_push};
+use crate::model::Model;
+
+/// All contacts of a model. Those that are linear have no relative coordinate.
+#[derive(Clone, Debug, Default)]
+pub struct Roster {
+    all: Vec<Contact>,
+    pub(super) active: Vec<usize>,
+    pub(super) never_slipping: Vec<usize>,
+    pub(super) linear: Vec<usize>,
+}
+
+impl Roster {
+    pub(super) fn new(model: &Model) -> Result<Self> {
+        const WHAT: &str = "the contacts";
+        let mut roster = Self::default();
+        try_extend(&mut roster.all, model.contacts(), WHAT)?;
+        for (i, contact) in model.contacts().iter().enumerate() {
+            match contact.role() {
+                Role::Active => try_push(&mut roster.active, i, WHAT)?,
+                Role::Spring => {
+                    try_push(&mut roster.never_slipping, i, WHAT)?;
+                    try_push(&mut roster.linear, i, WHAT)?;
+                }
+                Role::Inert => try_push(&mut roster.linear, i, WHAT)?,
+            }
+        }
+        Ok(roster)
+    }
+
+    /// All contacts, in the order of the model.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.all
+    }
+
+    /// Number of contacts without force.
+    #[must_use]
+    pub fn inert(&self) -> usize {
+        self.linear.len() - self.never_slipping.len()
+    }
+
+    /// Position of a linear contact in [`super::HarmonicBlock::linear_rows`].
+    #[must_use]
+    pub fn linear(&self, contact: usize) -> Option<usize> {
+        self.linear.binary_search(&contact).ok()
+    }
+}
