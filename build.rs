@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 14] = [
+const SOURCES: [&str; 15] = [
     "types",
     "boundary",
     "matrix",
@@ -17,6 +17,7 @@ const SOURCES: [&str; 14] = [
     "results",
     "special",
     "energy",
+    "contact_results",
     "mode_results",
     "synthesis",
     "residual",

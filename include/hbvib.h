@@ -162,6 +162,17 @@ typedef enum {
   HBVIB_CONTACTS_STUCK = 1,
 } hbvib_contact_state;
 
+/// What a contact does at one time.
+typedef enum {
+  /// It sticks, or presses. Cubic springs, contacts that never slip and those without force are
+  /// always here.
+  HBVIB_STATE_STICK = 0,
+  /// It slips: the force is at the slip limit.
+  HBVIB_STATE_SLIP = 1,
+  /// It is open, without force.
+  HBVIB_STATE_OPEN = 2,
+} hbvib_state;
+
 /// Results that a branch holds for each point of the curve. Energies are of one sector.
 typedef enum {
   /// Angular frequency.
@@ -525,6 +536,33 @@ typedef struct {
   /// make up the work of the forces.
   double friction_loss;
 } hbvib_energy;
+
+/// Numbers of one contact over one period, in the caller's units, exact for the motion of the point.
+/// Fill it by hbvib_contact_summary_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Work per cycle that the contact takes from the motion; exactly 0 unless it slips. The sum
+  /// over all contacts is the friction_loss of hbvib_energy, up to the error of sampling where the
+  /// branch was solved with samples.
+  double work;
+  /// Share of the period that it slips, 0 to 1.
+  double slip_share;
+  /// Share of the period that it is open, 0 to 1.
+  double open_share;
+  /// Half the range of the relative motion, (max - min) / 2.
+  double half_range;
+  /// Smallest relative motion, side a minus side b.
+  double motion_min;
+  /// Largest relative motion.
+  double motion_max;
+  /// Smallest normal load. HBVIB_JENKINS has the preload, infinite included; HBVIB_CUBIC has none: 0.
+  double load_min;
+  /// Largest normal load.
+  double load_max;
+} hbvib_contact_summary;
 
 /// Numbers of one point of a nonlinear mode, in the caller's units; energies are of one sector. Fill
 /// it by hbvib_mode_point_init.
@@ -1113,6 +1151,64 @@ hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);
 /// Errors: HBVIB_E_INDEX (point), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
 hbvib_status hbvib_branch_energy(const hbvib_branch *branch, int64_t point, hbvib_energy *out);
+
+/// Fills the summary of a contact with zeros.
+///
+/// s          the struct; untouched on error.
+/// size_of_s  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_contact_summary_init(hbvib_contact_summary *s, size_t size_of_s);
+
+/// Motion of a degree of freedom over one period of the fundamental at a stored point, in the caller's
+/// unit of length: x[j] at omega t = 2 pi j / n.
+///
+/// point  number of a point of the curve, or of a peak, fold or solution wanted.
+/// dof    degree of freedom, from 0.
+/// n      number of times, 1 .. 2^24.
+/// x      receives n doubles; untouched on error.
+/// Errors: HBVIB_E_INDEX (point, dof), HBVIB_E_DIMENSION (n), HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_time_history(const hbvib_branch *branch,
+                                       int64_t point,
+                                       int64_t dof,
+                                       int64_t n,
+                                       double *x);
+
+/// Hysteresis loop of a contact over one period of the fundamental at a stored point: entry j at
+/// omega t = 2 pi j / n. The force is that of this contact alone and not cut off at harmonic H: the
+/// law at the motion of the point, its events located exactly (with samples, too). A cyclic model
+/// tells of sector 0. A contact that is linear at any motion has its linear force and sticks; the
+/// motion of the whole structure is recovered for it.
+///
+/// point    number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact  number from hbvib_model_add_contact.
+/// n        number of times, 1 .. 2^24.
+/// motion   receives n relative motions, side a minus side b, or NULL.
+/// force    receives n forces f, which stand in the row of side a as + f and in that of side b as
+///          - f, or NULL.
+/// state    receives n states, HBVIB_STATE_STICK and so on, or NULL. Not all three may be NULL.
+/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact), HBVIB_E_DIMENSION (n),
+/// HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number on one branch.
+hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
+                                       int64_t point,
+                                       int64_t contact,
+                                       int64_t n,
+                                       double *motion,
+                                       double *force,
+                                       int32_t *state);
+
+/// Work, shares of the period and ranges of a contact at a stored point.
+///
+/// point    number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact  number from hbvib_model_add_contact.
+/// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
+/// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_contact_summary(const hbvib_branch *branch,
+                                          int64_t point,
+                                          int64_t contact,
+                                          hbvib_contact_summary *out);
 
 /// Fills a point of a mode with zeros.
 ///

@@ -1,9 +1,10 @@
 //! Motion against time at a stored point, and what happens inside its contacts.
 
 use super::{Branch, Recovery};
-use crate::contact::Law;
+use crate::condense::modal::along;
 use crate::contact::cubic::Cubic;
 use crate::contact::state::State;
+use crate::contact::{Contact, Law};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::jet;
 use crate::harmonics::HarmonicSet;
@@ -19,8 +20,8 @@ pub const MOST_TIMES: usize = 1 << 24;
 pub struct ContactLoop {
     /// Relative motion of the sides, a minus b.
     pub motion: Vec<f64>,
-    /// Force that acts on side a against the motion, and on side b along with it: f in M ẍ + … + f = F. It is the whole
-    /// force of the law, not its first harmonics.
+    /// Force f, which stands in the row of side a as +f and in that of side b as −f. It is the whole
+    /// force of the law, not its carried harmonics.
     pub force: Vec<f64>,
     /// What the contact does. One that is linear at any motion or without force sticks.
     pub state: Vec<State>,
@@ -52,7 +53,7 @@ impl Branch {
     /// caller's unit.
     ///
     /// # Errors
-    /// `Index` for an unknown point or degree of freedom, `Argument` for n outside 1 ..=
+    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..=
     /// [`MOST_TIMES`], `OutOfMemory`; `Singular` at an undamped resonance that no contact feels.
     pub fn time_history(&self, point: usize, dof: usize, n: usize) -> Result<Vec<f64>> {
         self.check_point(point)?;
@@ -131,7 +132,7 @@ impl Branch {
         )
     }
 
-    fn check_contact(&self, point: usize, contact: usize) -> Result<&crate::contact::Contact> {
+    fn check_contact(&self, point: usize, contact: usize) -> Result<&Contact> {
         self.check_point(point)?;
         match self.condensed.roster().contacts().get(contact) {
             Some(kept) => Ok(kept),
@@ -149,10 +150,7 @@ impl Branch {
         let condensed = &self.condensed;
         let roster = condensed.roster();
         if let Some(at) = roster.linear(contact) {
-            let (set, packed) = self.recover(point, |i, x| {
-                let row = condensed.blocks()[i].linear_rows[at];
-                row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
-            })?;
+            let (set, packed) = self.recover(point, |i, x| along(&condensed.blocks()[i].linear_rows[at], x))?;
             let law = Law::Cubic(Cubic {
                 linear: roster.contacts()[contact].stiffness_as_spring(),
                 cubic: 0.0,
@@ -192,5 +190,5 @@ fn check_times(n: usize) -> Result<()> {
     if (1..=MOST_TIMES).contains(&n) {
         return Ok(());
     }
-    fail!(Argument, "n = {n}, needs 1 .. {MOST_TIMES} times")
+    fail!(Dimension, "n = {n}, needs 1 .. {MOST_TIMES} times")
 }

@@ -12,6 +12,7 @@
 
 pub mod boundary;
 pub mod contact;
+pub mod contact_results;
 pub mod energy;
 mod handles;
 pub mod matrix;

@@ -16,6 +16,7 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch, hbvib_branch
     hbvib_mode_options mode = amplitudes(1, 3);
     hbvib_mode_point mode_point;
     hbvib_mode_info mode_info;
+    hbvib_contact_summary summary;
     hbvib_view view;
     double numbers[8 * NDOF * NDOF] = {0};
     int64_t count = 0;
@@ -31,6 +32,7 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch, hbvib_branch
     REFUSED("1", hbvib_mode_options_init(NULL, sizeof mode), HBVIB_E_NULL, 1, "hbvib_mode_options");
     REFUSED("1", hbvib_mode_point_init(NULL, sizeof mode_point), HBVIB_E_NULL, 1, "hbvib_mode_point");
     REFUSED("1", hbvib_mode_info_init(NULL, sizeof mode_info), HBVIB_E_NULL, 1, "hbvib_mode_info");
+    REFUSED("1", hbvib_contact_summary_init(NULL, sizeof summary), HBVIB_E_NULL, 1, "hbvib_contact_summary");
 
     /* Row 2: the out handle. */
     REFUSED("2", hbvib_model_new(4, NULL), HBVIB_E_NULL, 2, "out");
@@ -92,6 +94,13 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch, hbvib_branch
     WORKS("1", hbvib_mode_info_init(&mode_info, sizeof mode_info));
     REFUSED("4", hbvib_branch_mode_info(NULL, &mode_info), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("1", hbvib_branch_mode_info(backbone, NULL), HBVIB_E_NULL, 2, "hbvib_mode_info");
+    REFUSED("4", hbvib_branch_time_history(NULL, 0, 0, 8, numbers), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_branch_time_history(branch, 0, 0, 8, NULL), HBVIB_E_NULL, 5, "x");
+    REFUSED("4", hbvib_branch_contact_loop(NULL, 0, 0, 8, numbers, NULL, NULL), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_branch_contact_loop(branch, 0, 0, 8, NULL, NULL, NULL), HBVIB_E_NULL, 5, "one of them");
+    WORKS("1", hbvib_contact_summary_init(&summary, sizeof summary));
+    REFUSED("4", hbvib_branch_contact_summary(NULL, 0, 0, &summary), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_branch_contact_summary(branch, 0, 0, NULL), HBVIB_E_NULL, 4, "hbvib_contact_summary");
 
     REFUSED("4", hbvib_forced_residual(NULL, NULL, 1, numbers, 40, numbers, 40, NULL, 0, NULL, 0), HBVIB_E_HANDLE, 1,
             "NULL");
@@ -236,6 +245,41 @@ static void sizes(hbvib_model *model)
         WORKS("17", hbvib_model_set_matrix(model, HBVIB_DAMPING, &zero));
         EXPECT("17", same_solution(model, &the_solution));
     }
+}
+
+/* Times, loops and summaries of a contact. */
+static void inside_contacts(hbvib_branch *branch)
+{
+    const int64_t wrong[] = {0, -1, (1 << 24) + 1, INT64_MAX, INT64_MIN};
+    hbvib_contact_summary summary;
+    double a[16] = {0}, b[16] = {0};
+    int32_t state[16] = {7};
+    size_t i;
+    WORKS("14", hbvib_contact_summary_init(&summary, sizeof summary));
+    for (i = 0; i < sizeof wrong / sizeof *wrong; i++) {
+        REFUSED("9", hbvib_branch_time_history(branch, 0, 0, wrong[i], a), HBVIB_E_DIMENSION, 4, "n = ");
+        REFUSED("9", hbvib_branch_contact_loop(branch, 0, 0, wrong[i], a, b, state), HBVIB_E_DIMENSION, 4, "n = ");
+    }
+    REFUSED("14", hbvib_branch_time_history(branch, 0, 0, 8, misaligned(a)), HBVIB_E_ARGUMENT, 5, "misaligned");
+    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 8, misaligned(a), b, state), HBVIB_E_ARGUMENT, 5, "misaligned");
+    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 8, a, misaligned(b), state), HBVIB_E_ARGUMENT, 6, "misaligned");
+    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 8, a, b, (int32_t *)((char *)state + 2)), HBVIB_E_ARGUMENT, 7,
+            "misaligned");
+    REFUSED("14", hbvib_branch_contact_summary(branch, 0, 0, (hbvib_contact_summary *)misaligned(a)), HBVIB_E_ARGUMENT, 4,
+            "misaligned");
+    REFUSED("16", hbvib_branch_contact_loop(branch, 0, 0, 8, a, a + 7, NULL), HBVIB_E_ARGUMENT, 6, "overlap");
+    REFUSED("16", hbvib_branch_contact_loop(branch, 0, 0, 8, NULL, a, (int32_t *)a), HBVIB_E_ARGUMENT, 7, "overlap");
+    REFUSED("39", hbvib_branch_time_history(branch, INT64_MAX, 0, 8, a), HBVIB_E_INDEX, 2, "point");
+    REFUSED("39", hbvib_branch_time_history(branch, -1, 0, 8, a), HBVIB_E_INDEX, 2, "point = -1");
+    REFUSED("39", hbvib_branch_time_history(branch, 0, NDOF, 8, a), HBVIB_E_INDEX, 3, "dof = 4");
+    REFUSED("39", hbvib_branch_contact_loop(branch, -1, 0, 8, a, b, state), HBVIB_E_INDEX, 2, "point = -1");
+    REFUSED("39", hbvib_branch_contact_loop(branch, 0, 1, 8, a, b, state), HBVIB_E_INDEX, 3, "contact = 1");
+    REFUSED("39", hbvib_branch_contact_summary(branch, INT64_MAX, 0, &summary), HBVIB_E_INDEX, 2, "point");
+    REFUSED("39", hbvib_branch_contact_summary(branch, 0, -1, &summary), HBVIB_E_INDEX, 3, "contact = -1");
+    EXPECT("39", summary.load_max == 0 && a[0] == 0 && b[0] == 0 && state[0] == 7);
+    summary.struct_size = 64;
+    REFUSED("66", hbvib_branch_contact_summary(branch, 0, 0, &summary), HBVIB_E_STRUCT_SIZE, 4, "struct_size = 64");
+    REFUSED("66", hbvib_contact_summary_init(&summary, 71), HBVIB_E_STRUCT_SIZE, 2, "struct_size = 71");
 }
 
 static void buffers(hbvib_model *model, hbvib_branch *branch, hbvib_branch *backbone)
@@ -391,6 +435,7 @@ int main(void)
     null_pointers(the_model, branch, backbone);
     sizes(the_model);
     buffers(the_model, branch, backbone);
+    inside_contacts(branch);
     WORKS("1", hbvib_branch_free(branch));
     WORKS("1", hbvib_branch_free(backbone));
     WORKS("1", hbvib_model_free(the_model));

@@ -60,6 +60,7 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     hbvib_energy energy;
     hbvib_mode_point point;
     hbvib_mode_info info;
+    hbvib_contact_summary summary;
     double numbers[80];
     int64_t count = -1;
     WORKS(row, hbvib_view_init(&view, sizeof view));
@@ -67,6 +68,7 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     WORKS(row, hbvib_energy_init(&energy, sizeof energy));
     WORKS(row, hbvib_mode_point_init(&point, sizeof point));
     WORKS(row, hbvib_mode_info_init(&info, sizeof info));
+    WORKS(row, hbvib_contact_summary_init(&summary, sizeof summary));
     REFUSED(row, hbvib_branch_free(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_points(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_status(b), HBVIB_E_HANDLE, 1, words);
@@ -80,6 +82,9 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     REFUSED(row, hbvib_branch_energy(b, 0, &energy), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_mode_point(b, 0, &point), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_mode_info(b, &info), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_time_history(b, 0, 0, 8, numbers), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_contact_loop(b, 0, 0, 8, numbers, NULL, NULL), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_contact_summary(b, 0, 0, &summary), HBVIB_E_HANDLE, 1, words);
     EXPECT(row, count == -1);
 }
 

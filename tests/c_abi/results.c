@@ -1,4 +1,4 @@
-/* What comes out: names and versions, special points, harmonics, views, modes, residuals. */
+/* What comes out: names and versions, special points, harmonics, views, loops, modes, residuals. */
 #include "common.h"
 
 static void names(void)
@@ -120,6 +120,48 @@ static void energy(hbvib_branch *branch)
     EXPECT("energy", e.wheel_potential_peak >= e.wheel_potential_mean && e.wheel_potential_peak < 24 * e.potential_peak);
 }
 
+/* The loop of the ring's contact, against its summary and the energies of the point. */
+static void inside_contact(hbvib_branch *branch)
+{
+    enum { TIMES = 4096 };
+    static double motion[TIMES], force[TIMES], again[TIMES], disk[TIMES], ring[TIMES];
+    static int32_t state[TIMES];
+    const hbvib_contact c = ring_contact();
+    const double limit = c.mu * c.preload;
+    hbvib_contact_summary s;
+    hbvib_energy e;
+    double area = 0, share, largest = 0;
+    int64_t point = -1, count = -1;
+    int slipping = 0, wrong = 0, j;
+    WORKS("loop", hbvib_branch_peaks(branch, 1, NULL, NULL, &point, &count));
+    WORKS("loop", hbvib_branch_contact_loop(branch, point, 0, TIMES, motion, force, state));
+    WORKS("loop", hbvib_branch_contact_loop(branch, point, 0, TIMES, NULL, again, NULL));
+    EXPECT("loop", memcmp(force, again, sizeof force) == 0);
+    WORKS("loop", hbvib_branch_time_history(branch, point, 2, TIMES, disk));
+    WORKS("loop", hbvib_branch_time_history(branch, point, 3, TIMES, ring));
+    for (j = 0; j < TIMES; j++) {
+        const int next = (j + 1) % TIMES;
+        area += (force[j] + force[next]) / 2 * (motion[next] - motion[j]);
+        slipping += state[j] == HBVIB_STATE_SLIP;
+        largest = fmax(largest, fabs(motion[j]));
+        wrong += state[j] != HBVIB_STATE_SLIP && state[j] != HBVIB_STATE_STICK;
+        wrong += fabs(force[j]) > limit * (1 + 1e-12);
+        wrong += state[j] == HBVIB_STATE_SLIP && fabs(fabs(force[j]) / limit - 1) > 1e-12;
+        wrong += fabs(disk[j] - ring[j] - motion[j]) > 1e-9 * (fabs(disk[j]) + fabs(ring[j]) + limit / c.kt);
+    }
+    EXPECT("loop", wrong == 0 && slipping > 0 && slipping < TIMES);
+    WORKS("loop", hbvib_contact_summary_init(&s, sizeof s));
+    WORKS("loop", hbvib_branch_contact_summary(branch, point, 0, &s));
+    WORKS("loop", hbvib_energy_init(&e, sizeof e));
+    WORKS("loop", hbvib_branch_energy(branch, point, &e));
+    WORKS("loop", hbvib_branch_slip_fraction(branch, point, &share, 1));
+    EXPECT("loop", fabs(s.work / e.friction_loss - 1) < 1e-10 && fabs(area / s.work - 1) < 1e-3);
+    EXPECT("loop", fabs(s.slip_share - share) < 1e-12 && fabs(slipping / (double)TIMES - share) < 0.01);
+    EXPECT("loop", s.open_share == 0 && s.load_min == c.preload && s.load_max == c.preload);
+    EXPECT("loop", s.half_range >= largest && s.half_range < largest * (1 + 1e-4));
+    EXPECT("loop", s.motion_max == s.half_range && s.motion_min == -s.half_range);
+}
+
 static void modes(hbvib_model *model)
 {
     double omega[NDOF], stuck[NDOF], shapes[2 * NDOF * NDOF], norm;
@@ -149,6 +191,7 @@ int main(void)
     residual(the_model, branch, at);
     no_mode(branch);
     energy(branch);
+    inside_contact(branch);
     modes(the_model);
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(the_model));

@@ -1,0 +1,230 @@
+//! Motion against time, and what happens inside a contact at a point.
+
+use super::boundary::{Blame, Range, call, check_pointer, disjoint, index};
+use super::handles::{KeptBranch, read};
+use super::sized::{Described, check_out, fill_out, init};
+use super::special::optional;
+use super::types::{hbvib_branch, hbvib_status};
+use crate::branch::MOST_TIMES;
+use crate::contact::state::State;
+use crate::error::{Result, Status, fail};
+
+/// What a contact does at one time.
+#[repr(C)]
+#[allow(non_camel_case_types)]
+pub enum hbvib_state {
+    /// It sticks, or presses. Cubic springs, contacts that never slip and those without force are
+    /// always here.
+    HBVIB_STATE_STICK = 0,
+    /// It slips: the force is at the slip limit.
+    HBVIB_STATE_SLIP = 1,
+    /// It is open, without force.
+    HBVIB_STATE_OPEN = 2,
+}
+
+/// Numbers of one contact over one period, in the caller's units, exact for the motion of the point.
+/// Fill it by hbvib_contact_summary_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct hbvib_contact_summary {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: i32,
+    /// Work per cycle that the contact takes from the motion; exactly 0 unless it slips. The sum
+    /// over all contacts is the friction_loss of hbvib_energy, up to the error of sampling where the
+    /// branch was solved with samples.
+    pub work: f64,
+    /// Share of the period that it slips, 0 to 1.
+    pub slip_share: f64,
+    /// Share of the period that it is open, 0 to 1.
+    pub open_share: f64,
+    /// Half the range of the relative motion, (max - min) / 2.
+    pub half_range: f64,
+    /// Smallest relative motion, side a minus side b.
+    pub motion_min: f64,
+    /// Largest relative motion.
+    pub motion_max: f64,
+    /// Smallest normal load. HBVIB_JENKINS has the preload, infinite included; HBVIB_CUBIC has none: 0.
+    pub load_min: f64,
+    /// Largest normal load.
+    pub load_max: f64,
+}
+
+unsafe impl Described for hbvib_contact_summary {
+    const NAME: &'static str = "hbvib_contact_summary";
+    const FIRST: usize = 72;
+
+    fn filled() -> Self {
+        Self {
+            struct_size: 0,
+            reserved: 0,
+            work: 0.0,
+            slip_share: 0.0,
+            open_share: 0.0,
+            half_range: 0.0,
+            motion_min: 0.0,
+            motion_max: 0.0,
+            load_min: 0.0,
+            load_max: 0.0,
+        }
+    }
+}
+
+/// Fills the summary of a contact with zeros.
+///
+/// s          the struct; untouched on error.
+/// size_of_s  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_contact_summary_init(s: *mut hbvib_contact_summary, size_of_s: usize) -> hbvib_status {
+    call(|| unsafe { init(s, size_of_s) })
+}
+
+/// Motion of a degree of freedom over one period of the fundamental at a stored point, in the caller's
+/// unit of length: x[j] at omega t = 2 pi j / n.
+///
+/// point  number of a point of the curve, or of a peak, fold or solution wanted.
+/// dof    degree of freedom, from 0.
+/// n      number of times, 1 .. 2^24.
+/// x      receives n doubles; untouched on error.
+/// Errors: HBVIB_E_INDEX (point, dof), HBVIB_E_DIMENSION (n), HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_time_history(
+    branch: *const hbvib_branch,
+    point: i64,
+    dof: i64,
+    n: i64,
+    x: *mut f64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let branch = &kept.branch;
+        let point = index(point, branch.stored(), 2, "point")?;
+        let dof = index(dof, branch.ndof(), 3, "dof")?;
+        let n = times(n, 4)?;
+        check_pointer(x, 5, "x")?;
+        let found = branch.time_history(point, dof, n)?;
+        unsafe { x.copy_from(found.as_ptr(), found.len()) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Hysteresis loop of a contact over one period of the fundamental at a stored point: entry j at
+/// omega t = 2 pi j / n. The force is that of this contact alone and not cut off at harmonic H: the
+/// law at the motion of the point, its events located exactly (with samples, too). A cyclic model
+/// tells of sector 0. A contact that is linear at any motion has its linear force and sticks; the
+/// motion of the whole structure is recovered for it.
+///
+/// point    number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact  number from hbvib_model_add_contact.
+/// n        number of times, 1 .. 2^24.
+/// motion   receives n relative motions, side a minus side b, or NULL.
+/// force    receives n forces f, which stand in the row of side a as + f and in that of side b as
+///          - f, or NULL.
+/// state    receives n states, HBVIB_STATE_STICK and so on, or NULL. Not all three may be NULL.
+/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact), HBVIB_E_DIMENSION (n),
+/// HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_contact_loop(
+    branch: *const hbvib_branch,
+    point: i64,
+    contact: i64,
+    n: i64,
+    motion: *mut f64,
+    force: *mut f64,
+    state: *mut i32,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let branch = &kept.branch;
+        let point = index(point, branch.stored(), 2, "point")?;
+        let contact = index(contact, branch.contacts(), 3, "contact")?;
+        let n = times(n, 4)?;
+        if motion.is_null() && force.is_null() && state.is_null() {
+            return fail!(Null, "motion, force and state are NULL, needs one of them").blame(5);
+        }
+        disjoint(
+            &[],
+            &[
+                Range::new(motion, n, 5, "motion")?,
+                Range::new(force, n, 6, "force")?,
+                Range::new(state, n, 7, "state")?,
+            ],
+        )?;
+        let motion = optional((motion, 5), "motion")?;
+        let force = optional((force, 6), "force")?;
+        let state = optional((state, 7), "state")?;
+        let found = branch.contact_loop(point, contact, n)?;
+        unsafe {
+            if let Some(p) = motion {
+                p.copy_from(found.motion.as_ptr(), n);
+            }
+            if let Some(p) = force {
+                p.copy_from(found.force.as_ptr(), n);
+            }
+            if let Some(p) = state {
+                for (j, &now) in found.state.iter().enumerate() {
+                    p.add(j).write(number(now));
+                }
+            }
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Work, shares of the period and ranges of a contact at a stored point.
+///
+/// point    number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact  number from hbvib_model_add_contact.
+/// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
+/// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_contact_summary(
+    branch: *const hbvib_branch,
+    point: i64,
+    contact: i64,
+    out: *mut hbvib_contact_summary,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let branch = &kept.branch;
+        let point = index(point, branch.stored(), 2, "point")?;
+        let contact = index(contact, branch.contacts(), 3, "contact")?;
+        unsafe { check_out(out, 4) }?;
+        let s = branch.contact_summary(point, contact)?;
+        let value = hbvib_contact_summary {
+            work: s.work,
+            slip_share: s.slip_share,
+            open_share: s.open_share,
+            half_range: s.half_range,
+            motion_min: s.motion_min,
+            motion_max: s.motion_max,
+            load_min: s.load_min,
+            load_max: s.load_max,
+            ..hbvib_contact_summary::filled()
+        };
+        unsafe { fill_out(out, value) };
+        Ok(Status::Ok)
+    })
+}
+
+/// A number of times of the caller.
+fn times(n: i64, argument: i32) -> Result<usize> {
+    match usize::try_from(n) {
+        Ok(times @ 1..=MOST_TIMES) => Ok(times),
+        _ => fail!(Dimension, "n = {n}, needs 1 .. {MOST_TIMES}").blame(argument),
+    }
+}
+
+fn number(state: State) -> i32 {
+    match state {
+        State::Stick => hbvib_state::HBVIB_STATE_STICK as i32,
+        State::Slip => hbvib_state::HBVIB_STATE_SLIP as i32,
+        State::Open => hbvib_state::HBVIB_STATE_OPEN as i32,
+    }
+}
