@@ -250,7 +250,13 @@ fn contacts_without_coordinate_are_recovered() {
         assert!(s.half_range > 0.0);
         if id == 1 || id == 3 {
             let k = if id == 1 { 3e6 } else { 0.0 };
-            assert!(found.force.iter().zip(&found.motion).all(|(f, y)| *f == k * y));
+            assert!(
+                found
+                    .force
+                    .iter()
+                    .zip(&found.motion)
+                    .all(|(f, y)| (f - k * y).abs() <= 1e-15 * k * size)
+            );
             assert!(found.state.iter().all(|s| *s == State::Stick));
             assert_eq!((s.work, s.slip_share, s.open_share), (0.0, 0.0, 0.0));
             assert_eq!((s.load_min, s.load_max), (contact.preload, contact.preload));
@@ -317,7 +323,7 @@ fn a_cubic_spring_has_a_curve_for_a_loop() {
         (s.work, s.slip_share, s.open_share, s.load_min, s.load_max),
         (0.0, 0.0, 0.0, 0.0, 0.0)
     );
-    assert!(s.half_range > 0.0 && s.motion_min == -s.motion_max);
+    assert!(s.half_range > 0.0 && s.motion_min + s.motion_max == 0.0);
     assert_eq!(model.contacts()[0].kind, ContactKind::Cubic);
 }
 
