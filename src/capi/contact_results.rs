@@ -83,7 +83,7 @@ pub unsafe extern "C" fn hbvib_contact_summary_init(s: *mut hbvib_contact_summar
 }
 
 /// Motion of a degree of freedom over one period of the fundamental at a stored point, in the caller's
-/// unit of length: x[j] at omega t = 2 pi j / n.
+/// unit of length: entry j at omega t = 2 pi j / n.
 ///
 /// point  number of a point of the curve, or of a peak, fold or solution wanted.
 /// dof    degree of freedom, from 0.
