@@ -1160,7 +1160,7 @@ hbvib_status hbvib_branch_energy(const hbvib_branch *branch, int64_t point, hbvi
 hbvib_status hbvib_contact_summary_init(hbvib_contact_summary *s, size_t size_of_s);
 
 /// Motion of a degree of freedom over one period of the fundamental at a stored point, in the caller's
-/// unit of length: x[j] at omega t = 2 pi j / n.
+/// unit of length: entry j at omega t = 2 pi j / n.
 ///
 /// point  number of a point of the curve, or of a peak, fold or solution wanted.
 /// dof    degree of freedom, from 0.
