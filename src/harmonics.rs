@@ -71,6 +71,12 @@ impl HarmonicSet {
         &self.numbers
     }
 
+    /// Position of the fundamental, harmonic 1, among the carried ones; 0 where it is not carried.
+    #[must_use]
+    pub fn fundamental(&self) -> usize {
+        self.numbers.iter().position(|&h| h == 1).unwrap_or(0)
+    }
+
     /// Common divisor g of the carried harmonics.
     #[must_use]
     pub fn base(&self) -> usize {

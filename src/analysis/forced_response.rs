@@ -12,6 +12,7 @@ use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::model::Model;
+use crate::model::spring::along;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::forced::Forced;
@@ -228,7 +229,7 @@ fn relative_motion(condensed: &Condensed, guess: &[Complex64]) -> Result<Vec<f64
     for (i, block) in condensed.blocks().iter().enumerate() {
         let x = &guess[block.number * n..(block.number + 1) * n];
         for (c, row) in block.rows.iter().enumerate() {
-            let y: Complex64 = row.iter().flatten().map(|&(p, a)| a * x[p]).sum();
+            let y = along(row, x);
             set.set(&mut packed[c * m..(c + 1) * m], i, y / condensed.length());
         }
     }

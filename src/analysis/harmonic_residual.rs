@@ -7,7 +7,7 @@ use crate::error::{Result, fail, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, Wave, relative_row};
+use crate::model::spring::{Row, Wave, along, relative_row};
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 use num_complex::Complex64;
@@ -171,7 +171,7 @@ impl ContactTerms {
             for h in 0..=solver.harmonics {
                 let phase = model.structure().phase(h, contact.sector_offset);
                 let row = relative_row(contact.dof_a, contact.dof_b, phase);
-                let y: Complex64 = row.iter().flatten().map(|&(p, a)| a * x[h * n + p]).sum();
+                let y = along(&row, &x[h * n..(h + 1) * n]);
                 set.set(&mut packed, h, y);
                 crate::error::try_push(&mut rows, row, "the contacts")?;
             }

@@ -107,7 +107,7 @@ impl<'a> ModePoints<'a> {
         }
         let unit = a * self.condensed.length();
         let balance: Balance = energy::balance(self.condensed, omega, x, &self.forces, &u[..n - 2]);
-        let i = self.fundamental();
+        let i = self.condensed.set().fundamental();
         let first = &x[i * dofs..(i + 1) * dofs];
         self.condensed.blocks()[i].multiply_mass(first, &mut self.weighted);
         let size = inner(first, &self.weighted).re;
@@ -130,14 +130,9 @@ impl<'a> ModePoints<'a> {
         })
     }
 
-    fn fundamental(&self) -> usize {
-        let numbers = self.condensed.set().numbers();
-        numbers.iter().position(|&h| h == 1).unwrap_or(0)
-    }
-
     /// Numbers the special points after the curve.
     pub fn finish(mut self, status: Status) -> Result<Branch> {
-        let fundamental = self.fundamental();
+        let fundamental = self.condensed.set().fundamental();
         for kept in &self.specials {
             let record = record(
                 self.linear,
@@ -176,7 +171,7 @@ impl Keeper for ModePoints<'_> {
             data.push(mode)?;
         }
         let slip = self.problem.forces().slip_fractions();
-        let i = self.fundamental();
+        let i = self.condensed.set().fundamental();
         let amplitude = self.response[i];
         let record = record(self.linear, point, &self.motion, &self.response, slip, amplitude);
         self.branch.push_curve(&record)?;

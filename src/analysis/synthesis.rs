@@ -131,12 +131,15 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     };
     let mut states = Vec::new();
     let mut recovery = Recovery::new(branch)?;
-    let fundamental = branch.carried().iter().position(|&h| h == 1).unwrap_or(0);
+    let fundamental = branch.condensed().set().fundamental();
     let mut x = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
     for point in 0..branch.points() {
         recovery.go_to(point);
         recovery.harmonic(fundamental, &mut x)?;
-        let state = load.state(branch.omega()[point], data.point(point), &x)?;
+        let Some(numbers) = data.point(point) else {
+            return fail!(Internal, "point {point} of the mode has no numbers");
+        };
+        let state = load.state(branch.omega()[point], &numbers, &x);
         try_push(&mut states, state, WHAT)?;
     }
     let mut synthesis = Synthesis {

@@ -1,13 +1,13 @@
 //! Motion against time at a stored point, and what happens inside its contacts.
 
 use super::{Branch, Recovery};
-use crate::condense::modal::along;
 use crate::contact::cubic::Cubic;
 use crate::contact::state::State;
 use crate::contact::{Contact, Law};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::jet;
 use crate::harmonics::HarmonicSet;
+use crate::model::spring::along;
 use crate::postprocess::loops::Orbit;
 use num_complex::Complex64;
 use std::f64::consts::TAU;

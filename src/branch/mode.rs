@@ -71,15 +71,15 @@ pub(crate) struct ModeData {
     pub gauge: Gauge,
     /// The range of log₁₀ amplitude.
     pub range: (f64, f64),
+    /// The numbers of all stored points, an array for each of them, so that they can be borrowed.
     fields: [Vec<f64>; FIELDS],
-    points: Vec<ModePoint>,
     /// Unknowns and parameter of each point of the curve, then its tangent.
     states: Vec<f64>,
     state_len: usize,
 }
 
-/// Number of fields that are kept as arrays of their own, to be borrowed.
-const FIELDS: usize = 7;
+/// Numbers of a [`ModePoint`].
+const FIELDS: usize = 8;
 
 impl ModeData {
     pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: (f64, f64), unknowns: usize) -> Self {
@@ -89,7 +89,6 @@ impl ModeData {
             gauge,
             range,
             fields: Default::default(),
-            points: Vec::new(),
             states: Vec::new(),
             state_len: unknowns + 1,
         }
@@ -101,7 +100,6 @@ impl ModeData {
         for field in &mut self.fields {
             field.try_reserve(1).map_err(|_| Error::out_of_memory(WHAT))?;
         }
-        self.points.try_reserve(1).map_err(|_| Error::out_of_memory(WHAT))?;
         let values = [
             point.log10_amplitude,
             point.modal_amplitude,
@@ -110,11 +108,11 @@ impl ModeData {
             point.friction_loss,
             point.structural_loss,
             point.assurance,
+            point.fundamental_share,
         ];
         for (field, value) in self.fields.iter_mut().zip(values) {
             field.push(value);
         }
-        self.points.push(point);
         Ok(())
     }
 
@@ -131,8 +129,18 @@ impl ModeData {
         Some(both.split_at(self.state_len))
     }
 
-    pub fn point(&self, point: usize) -> Option<&ModePoint> {
-        self.points.get(point)
+    pub fn point(&self, point: usize) -> Option<ModePoint> {
+        let at = |field: ModeField| self.fields[field as usize].get(point).copied();
+        Some(ModePoint {
+            log10_amplitude: at(ModeField::Log10Amplitude)?,
+            modal_amplitude: at(ModeField::ModalAmplitude)?,
+            damping_ratio: at(ModeField::DampingRatio)?,
+            energy: at(ModeField::Energy)?,
+            fundamental_share: at(ModeField::FundamentalShare)?,
+            friction_loss: at(ModeField::FrictionLoss)?,
+            structural_loss: at(ModeField::StructuralLoss)?,
+            assurance: at(ModeField::Assurance)?,
+        })
     }
 }
 
@@ -153,6 +161,8 @@ pub enum ModeField {
     StructuralLoss,
     /// [`ModePoint::assurance`]
     Assurance,
+    /// [`ModePoint::fundamental_share`]
+    FundamentalShare,
 }
 
 impl Branch {
@@ -170,7 +180,7 @@ impl Branch {
 
     /// The mode's numbers at a stored point, special ones included.
     #[must_use]
-    pub fn mode_at(&self, point: usize) -> Option<&ModePoint> {
+    pub fn mode_at(&self, point: usize) -> Option<ModePoint> {
         self.mode.as_ref().and_then(|m| m.point(point))
     }
 

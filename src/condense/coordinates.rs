@@ -1,11 +1,10 @@
 //! The relative coordinates: contacts between the same two places share one.
 
-use super::modal::along;
 use crate::contact::ContactKind;
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::model::Model;
-use crate::model::spring::{Wave, relative_row};
+use crate::model::spring::{Wave, along, relative_row};
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 

@@ -4,12 +4,12 @@
 //! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
 //! −2ihDK.
 
-use super::modal::along;
 use super::{Artificial, Condensed, HarmonicBlock};
 use crate::error::{Error, Result, fail, try_push, try_vec};
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::{self, ComplexSum};
 use crate::linalg::sparse::Csc;
+use crate::model::spring::along;
 use num_complex::Complex64;
 
 /// By what a derivative of Z_κ is taken.

@@ -7,7 +7,7 @@
 use super::Condensed;
 use super::dynamic::{By, DynamicStiffness, add_slope_product, product};
 use crate::error::{Result, try_vec};
-use crate::model::spring::Row;
+use crate::model::spring::{Row, along};
 use num_complex::Complex64;
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
@@ -145,7 +145,7 @@ impl Workspace {
             .zip(self.table.value.chunks_exact_mut(outputs))
         {
             for (value, row) in table.iter_mut().zip(rows.clone()) {
-                *value = row.iter().flatten().map(|&(p, a)| a * column[p]).sum();
+                *value = along(row, column);
             }
         }
         if !slopes {

@@ -24,6 +24,7 @@ use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
 use crate::model::Model;
+use crate::model::spring::along;
 use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, SolverOptions};
 use block::harmonic_block;
@@ -183,9 +184,7 @@ impl Condensed {
         let (mut condensed, contacts) = Self::unscaled(model, options, &[1], 0.0, Some((form, shape)))?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
-        let motion = rows
-            .iter()
-            .fold(0.0_f64, |m, row| m.max(modal::along(row, shape).norm()));
+        let motion = rows.iter().fold(0.0_f64, |m, row| m.max(along(row, shape).norm()));
         condensed.set_length(model, power_of_two(motion), &contacts)?;
         Ok((condensed, motion))
     }

@@ -7,7 +7,6 @@
 use super::Condensed;
 use super::dynamic::{By, DynamicStiffness, add_slope_product};
 use crate::error::{Result, try_vec};
-use crate::model::spring::Row;
 use num_complex::Complex64;
 
 /// x and its derivatives in one harmonic.
@@ -107,10 +106,4 @@ impl Modal {
         let n = self.x.len();
         &self.columns[coordinate * n..(coordinate + 1) * n]
     }
-}
-
-/// r·x
-#[must_use]
-pub fn along(row: &Row, x: &[Complex64]) -> Complex64 {
-    row.iter().flatten().map(|&(p, a)| a * x[p]).sum()
 }

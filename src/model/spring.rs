@@ -29,6 +29,12 @@ pub fn relative_row(a: Option<usize>, b: Option<usize>, phase: Complex64) -> Row
     [a.map(|dof| (dof, Complex64::ONE)), b.map(|dof| (dof, -phase))]
 }
 
+/// r·x, the relative motion of a row.
+#[must_use]
+pub fn along(row: &Row, x: &[Complex64]) -> Complex64 {
+    row.iter().flatten().map(|&(p, a)| a * x[p]).sum()
+}
+
 /// A wave on the structure: how a sector offset turns the phase, and its stiffness matrix.
 #[derive(Clone, Copy, Debug)]
 pub enum Wave {

@@ -17,10 +17,10 @@
 use super::contact_forces::ContactForces;
 use super::{Linearisation, Problem, Start, put};
 use crate::condense::Condensed;
-use crate::condense::modal::{Modal, along};
+use crate::condense::modal::Modal;
 use crate::error::{Result, fail, try_vec};
 use crate::linalg::{inner, norm};
-use crate::model::spring::Row;
+use crate::model::spring::{Row, along};
 use num_complex::Complex64;
 use std::f64::consts::LN_10;
 
@@ -128,7 +128,7 @@ impl<'a> Mode<'a> {
         let set = self.condensed.set();
         let m = set.packed_len();
         u.fill(0.0);
-        let fundamental = self.fundamental();
+        let fundamental = self.condensed.set().fundamental();
         let rows = &self.condensed.blocks()[fundamental].rows;
         let phase = self.linear.shape[self.gauge.reference_dof];
         let turn = phase.conj() / (phase.norm() * self.condensed.length());
@@ -158,13 +158,9 @@ impl<'a> Mode<'a> {
         Ok((exactly, nearly))
     }
 
-    fn fundamental(&self) -> usize {
-        self.condensed.set().numbers().iter().position(|&h| h == 1).unwrap_or(0)
-    }
-
     /// B x̂ of the fundamental, times L².
     fn weigh(&mut self) {
-        let i = self.fundamental();
+        let i = self.condensed.set().fundamental();
         let x = self.modal.x();
         let length = self.condensed.length();
         self.weighted.fill(Complex64::ZERO);
@@ -186,7 +182,7 @@ impl<'a> Mode<'a> {
         self.weigh();
         let n = out.residual.len();
         let (amplitude, phase) = (n - 2, n - 1);
-        let i = self.fundamental();
+        let i = self.condensed.set().fundamental();
         let dof = self.gauge.reference_dof;
         let scale = self.condensed.length() / self.linear.shape[dof].norm();
         let x = self.modal.x();

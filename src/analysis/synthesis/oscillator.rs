@@ -2,7 +2,6 @@
 
 use super::SynthesisPoint;
 use crate::branch::mode::ModePoint;
-use crate::error::{Result, fail};
 use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
 use num_complex::Complex64;
@@ -31,10 +30,7 @@ pub(super) struct State {
 }
 
 impl Load {
-    pub fn state(&self, omega: f64, point: Option<&ModePoint>, x: &[Complex64]) -> Result<State> {
-        let Some(point) = point else {
-            return fail!(Internal, "a point of the mode has no numbers");
-        };
+    pub fn state(&self, omega: f64, point: &ModePoint, x: &[Complex64]) -> State {
         let square = point.modal_amplitude * point.modal_amplitude;
         let mut damping = point.damping_ratio + self.ratio;
         if let Some(c) = &self.damping {
@@ -47,7 +43,7 @@ impl Load {
             }
             damping += 0.5 * form / (omega * square);
         }
-        Ok(State {
+        State {
             omega,
             damping,
             square,
@@ -55,7 +51,7 @@ impl Load {
             response: x[self.response_dof],
             log10: point.log10_amplitude,
             fundamental_share: point.fundamental_share,
-        })
+        }
     }
 }
 

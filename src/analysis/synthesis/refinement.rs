@@ -121,7 +121,7 @@ impl<'a> Refinement<'a> {
         let (omega, damping_ratio) = Mode::frequency_and_damping(&self.data.linear, &v[..n]);
         let unit = 10f64.powf(p) * self.branch.condensed().length();
         let dofs = self.branch.ndof();
-        let i = self.branch.carried().iter().position(|&h| h == 1).unwrap_or(0);
+        let i = self.branch.condensed().set().fundamental();
         let shape = &self.problem.shape()[i * dofs..(i + 1) * dofs];
         self.branch.condensed().blocks()[i].multiply_mass(shape, &mut self.x);
         let size = inner(shape, &self.x).re;
@@ -136,6 +136,6 @@ impl<'a> Refinement<'a> {
         for (to, from) in self.x.iter_mut().zip(shape) {
             *to = from * unit;
         }
-        self.load.state(omega, Some(&point), &self.x).map(Some)
+        Ok(Some(self.load.state(omega, &point, &self.x)))
     }
 }
