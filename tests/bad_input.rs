@@ -144,16 +144,16 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
         for (bad, status, words) in [
             (
                 Contact {
-                    dof_a: Some(4),
-                    ..contact
+                    dof_a: [Some(4), None, None],
+                    ..contact.clone()
                 },
                 Status::Index,
                 "dof_a = 4",
             ),
             (
                 Contact {
-                    dof_b: Some(9),
-                    ..contact
+                    dof_b: [Some(9), None, None],
+                    ..contact.clone()
                 },
                 Status::Index,
                 "dof_b = 9",
@@ -161,16 +161,16 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             (
                 Contact {
                     dof_b: contact.dof_a,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::Argument,
                 "same degree of freedom",
             ),
             (
                 Contact {
-                    dof_a: None,
-                    dof_b: None,
-                    ..contact
+                    dof_a: [None; 3],
+                    dof_b: [None; 3],
+                    ..contact.clone()
                 },
                 Status::Argument,
                 "ground",
@@ -351,17 +351,17 @@ fn arrays_of_the_wrong_length_are_refused_before_anything_is_written() {
     let contact = BASE.contact();
     let mut f = vec![mark; 4];
     refused(
-        contact_evaluate(&contact, 3, 0, &x[..3], &mut f, None),
+        contact_evaluate(&contact, 3, 0, 1.0, &x[..3], &mut f, None),
         Status::Dimension,
         &["motion has 3"],
     );
     refused(
-        contact_evaluate(&contact, 3, 6, &x[..4], &mut f, None),
+        contact_evaluate(&contact, 3, 6, 1.0, &x[..4], &mut f, None),
         Status::Argument,
         &["samples = 6"],
     );
     refused(
-        contact_evaluate(&contact, 3, 0, &bad[..4], &mut f, None),
+        contact_evaluate(&contact, 3, 0, 1.0, &bad[..4], &mut f, None),
         Status::NotFinite,
         &["motion[3]"],
     );
@@ -373,6 +373,7 @@ fn arrays_of_the_wrong_length_are_refused_before_anything_is_written() {
             },
             3,
             0,
+            1.0,
             &x[..4],
             &mut f,
             None,

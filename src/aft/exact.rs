@@ -1,11 +1,11 @@
 //! Exact evaluation: reversals and slip times located, Fourier integrals in closed form.
 //!
-//! It knows no law by name: [`Law::pieces`] returns intervals, and each contributes
+//! It knows no law by name: [`Pieces::pieces`] returns intervals, and each contributes
 //! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices;
 //! the other half repeats it with opposite sign and doubles every integral that is used.
 
 use super::{Assembly, Evaluation};
-use crate::contact::{Law, Piece};
+use crate::contact::law::{Piece, Pieces};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::{Extremum, Reversals};
 use crate::harmonics::HarmonicSet;
@@ -67,10 +67,8 @@ impl Exact {
     }
 
     /// Force and Jacobian of `law` for the prepared motion; see [`super`].
-    pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        if self.assembly.smooth(law, set, motion, out) {
-            return;
-        }
+    pub fn evaluate(&mut self, law: &dyn Pieces, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        self.pieces.clear();
         law.pieces(set, motion, &self.extrema, &mut self.pieces);
         self.assembly.start(out);
         let fold = if set.is_odd() { 2.0 } else { 1.0 };

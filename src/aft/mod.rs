@@ -13,30 +13,40 @@
 
 pub mod exact;
 pub mod sampled;
-mod smooth;
+mod spectral;
 
-use crate::contact::{Law, Piece};
+use crate::contact::{Form, Law, Piece};
 use crate::error::{Result, try_vec};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
 
-/// Way of evaluating laws, with its tables.
-pub enum Evaluator {
+/// Ways of evaluating laws, with their tables.
+pub struct Evaluator {
+    /// Laws on one relative motion.
+    scalar: Scalar,
+    smooth: Assembly,
+}
+
+/// Way of evaluating laws on one relative motion.
+enum Scalar {
     /// Events located, integrals in closed form.
     Exact(Box<exact::Exact>),
     /// Equidistant samples.
     Sampled(Box<sampled::Sampled>),
 }
 
-/// Harmonics of a contact force and what belongs to them, all in packed form.
+/// Harmonics of a contact force and what belongs to them, all in packed form, one direction of the law
+/// after the other.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
     /// F
     pub force: Vec<f64>,
     /// ∂F/∂X, column-major.
     pub jacobian: Vec<f64>,
-    /// F − ∂F/∂X · X, the derivative of F by the logarithm of the factor in [`Law::eased`].
+    /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law as seen at a motion s times smaller.
     pub offset: Vec<f64>,
+    /// ∂F/∂ω at fixed X; zero unless the law knows velocities.
+    pub by_omega: Vec<f64>,
     /// Share of the period that is spent slipping, 0 for a stuck contact.
     pub slip_fraction: f64,
     /// Whether the contact sticks through the period: one piece without anchor, F = kt·X. Never so
@@ -45,16 +55,17 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Memory for signals of `set`.
+    /// Memory for the signals of `set` in a number of directions.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
-        let m = set.packed_len();
+    pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
+        let m = set.packed_len().saturating_mul(directions);
         Ok(Self {
             force: try_vec(m, 0.0, "a contact force")?,
             jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
             offset: try_vec(m, 0.0, "a contact force")?,
+            by_omega: try_vec(m, 0.0, "a contact force")?,
             slip_fraction: 0.0,
             stuck: false,
         })
@@ -62,40 +73,58 @@ impl Evaluation {
 }
 
 impl Evaluator {
-    /// Tables for motions of `set`; `samples` = 0 locates the events exactly.
+    /// Tables for motions of `set` under `laws`; `samples` = 0 locates events exactly where the law has
+    /// them.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet, samples: usize) -> Result<Self> {
-        Ok(if samples == 0 {
-            Self::Exact(Box::new(exact::Exact::new(set)?))
-        } else {
-            Self::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
+    pub fn new<'l>(set: &HarmonicSet, samples: usize, _laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        Ok(Self {
+            scalar: if samples == 0 {
+                Scalar::Exact(Box::new(exact::Exact::new(set)?))
+            } else {
+                Scalar::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
+            },
+            smooth: Assembly::new(set)?,
         })
     }
 
-    /// Takes a packed motion in: its reversals or samples serve every law on the coordinate.
+    /// Takes the packed motion of one relative coordinate in: its reversals or samples serve every
+    /// law on the coordinate alone.
     pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
-        match self {
-            Self::Exact(way) => way.prepare(set, motion),
-            Self::Sampled(way) => way.prepare(set, motion),
+        match &mut self.scalar {
+            Scalar::Exact(way) => way.prepare(set, motion),
+            Scalar::Sampled(way) => way.prepare(set, motion),
         }
     }
 
-    /// Force and Jacobian of `law` for the motion that was prepared.
-    pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        match self {
-            Self::Exact(way) => way.evaluate(law, set, motion, out),
-            Self::Sampled(way) => way.evaluate(law, set, motion, out),
+    /// Force and Jacobian of `law` at packed motions, one direction after the other, and an angular
+    /// frequency. A law of one direction needs its motion prepared.
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn Law,
+        set: &HarmonicSet,
+        motion: &[f64],
+        _omega: f64,
+        out: &mut Evaluation,
+    ) -> Result<()> {
+        match (law.form(), &mut self.scalar) {
+            (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
+            (Form::Pieces(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
+            (Form::Pieces(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
         }
+        Ok(())
     }
 
     /// Half the range (max − min)/2 of the motion that was prepared.
     #[must_use]
     pub fn half_range(&self, set: &HarmonicSet) -> f64 {
-        match self {
-            Self::Exact(way) => way.half_range(set),
-            Self::Sampled(way) => way.half_range(),
+        match &self.scalar {
+            Scalar::Exact(way) => way.half_range(set),
+            Scalar::Sampled(way) => way.half_range(),
         }
     }
 }

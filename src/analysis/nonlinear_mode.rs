@@ -156,7 +156,7 @@ fn gauge(model: &Model, range: &ModeOptions<'_>, linear: &mut LinearMode) -> Res
         Amplitude::Contact(id) => {
             let contact = &model.contacts()[id];
             let phase = model.structure().phase(1, contact.sector_offset);
-            let row = relative_row(contact.dof_a, contact.dof_b, phase);
+            let row = relative_row(&contact.direction(0), phase);
             let motion = along(&row, shape).norm();
             if motion <= NODE * largest {
                 return fail!(

@@ -1,21 +1,23 @@
-//! Contact laws: what a host says of a contact, and the vocabulary that every law speaks.
+//! Contact laws: what a host says of a contact.
 //!
-//! A law turns a periodic motion into [`Piece`]s, intervals on which its force is affine in the
-//! motion; a [`Smooth`] law has none and gives the spectrum of its stiffness. Everything after that
-//! (Fourier coefficients, Jacobian) is the same for all laws and lives in [`crate::aft`].
+//! A [`Contact`] names the degrees of freedom of its sides and the constants of its law in the host's
+//! units; [`Contact::law`] makes of it what a solver evaluates, a [`Law`] in the solver's units. One
+//! file each: the laws, the [`sides`], and the [`law`] vocabulary that they share.
 
 pub mod cubic;
 pub mod iwan;
 pub mod jenkins;
+pub mod law;
+pub mod sides;
 pub mod state;
 pub mod unilateral;
 
 use crate::error::{Result, fail};
-use crate::fourier::Extremum;
-use crate::harmonics::HarmonicSet;
 use cubic::Cubic;
 use jenkins::Jenkins;
-use num_complex::Complex64;
+pub use law::{Form, Law, Piece};
+use sides::{Direction, Frame};
+use std::sync::Arc;
 use unilateral::Unilateral;
 
 /// Which law a contact obeys.
@@ -40,15 +42,19 @@ pub enum Role {
     Active,
 }
 
-/// A contact between two degrees of freedom, or between one and the ground.
-#[derive(Clone, Copy, Debug)]
+/// A contact between two sides, one of which may be the ground.
+#[derive(Clone, Debug)]
 pub struct Contact {
     /// The law.
     pub kind: ContactKind,
-    /// Degree of freedom on side a; `None` is the ground.
-    pub dof_a: Option<usize>,
-    /// Degree of freedom on side b; `None` is the ground.
-    pub dof_b: Option<usize>,
+    /// Degrees of freedom of side a along t1, t2 and n; `None` is the ground. A unilateral spring acts
+    /// along n, laws of one direction along t1; places that are not used are `None`.
+    pub dof_a: [Option<usize>; 3],
+    /// Degrees of freedom of side b, likewise.
+    pub dof_b: [Option<usize>; 3],
+    /// Directions t1, t2 and n in the axes of the three degrees of freedom of each side, all of which
+    /// may then be used; `None`: the degrees of freedom lie along t1, t2 and n themselves.
+    pub frame: Option<Frame>,
     /// Side b lies in sector s + offset (cyclic models).
     pub sector_offset: i64,
     /// Stiffness at small motion, force per length, at least 0; 0 for a unilateral spring.
@@ -74,8 +80,9 @@ impl Contact {
     pub fn jenkins(a: usize, b: Option<usize>, kt: f64, mu: f64, preload: f64) -> Self {
         Self {
             kind: ContactKind::Jenkins,
-            dof_a: Some(a),
-            dof_b: b,
+            dof_a: [Some(a), None, None],
+            dof_b: [b, None, None],
+            frame: None,
             sector_offset: 0,
             kt,
             kn: 0.0,
@@ -103,10 +110,11 @@ impl Contact {
     pub fn unilateral(a: Option<usize>, b: Option<usize>, kn: f64, gap: f64) -> Self {
         Self {
             kind: ContactKind::Unilateral,
-            dof_a: a,
+            dof_a: [None, None, a],
+            dof_b: [None, None, b],
             kn,
             gap,
-            ..Self::jenkins(0, b, 0.0, 0.0, 0.0)
+            ..Self::jenkins(0, None, 0.0, 0.0, 0.0)
         }
     }
 
@@ -127,9 +135,58 @@ impl Contact {
         self.kind == ContactKind::Unilateral && self.role() == Role::Active && self.clearance() <= 0.0
     }
 
-    /// Stiffness of the relative motion at small motion.
+    /// The places (t1, t2, n as 0, 1, 2) in which the law acts, in the order of its motions.
     #[must_use]
-    pub fn stiffness_at_rest(&self) -> f64 {
+    pub fn places(&self) -> &'static [usize] {
+        match self.kind {
+            ContactKind::Jenkins | ContactKind::Cubic => &[0],
+            ContactKind::Unilateral => &[2],
+        }
+    }
+
+    /// Number of relative motions that the law knows.
+    #[must_use]
+    pub fn directions(&self) -> usize {
+        self.places().len()
+    }
+
+    /// The k-th of them.
+    #[must_use]
+    pub fn direction(&self, k: usize) -> Direction {
+        let place = self.places()[k];
+        match &self.frame {
+            None => Direction::between(self.dof_a[place], self.dof_b[place]),
+            Some(frame) => Direction {
+                a: frame.side(self.dof_a, place),
+                b: frame.side(self.dof_b, place),
+            },
+        }
+    }
+
+    /// The law, with lengths in units of `length` and forces in units of `length` times the caller's
+    /// stiffness.
+    #[must_use]
+    pub fn law(&self, length: f64) -> Arc<dyn Law> {
+        match self.kind {
+            ContactKind::Jenkins => Arc::new(Jenkins {
+                stiffness: self.kt,
+                limit: self.slip_limit() / length,
+            }),
+            ContactKind::Cubic => Arc::new(Cubic {
+                linear: self.kt,
+                cubic: self.cubic * length * length,
+            }),
+            ContactKind::Unilateral => Arc::new(Unilateral {
+                stiffness: self.kn,
+                gap: self.clearance() / length,
+            }),
+        }
+    }
+
+    /// Stiffness of the k-th motion by the l-th at small motion.
+    #[must_use]
+    pub fn stiffness_at_rest(&self, k: usize, l: usize) -> f64 {
+        debug_assert!(k == 0 && l == 0);
         match self.kind {
             ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
@@ -138,10 +195,23 @@ impl Contact {
         }
     }
 
-    /// Largest stiffness that the relative motion can meet, but for cubic terms.
+    /// Largest stiffness that the k-th motion can meet, but for terms that grow with the motion.
     #[must_use]
-    pub fn stiffness(&self) -> f64 {
-        self.kt.max(self.kn)
+    pub fn stiffness(&self, k: usize) -> f64 {
+        if self.places()[k] == 2 { self.kn } else { self.kt }
+    }
+
+    /// Whether the k-th motion, while the contact sticks, meets exactly [`Self::stiffness`], as friction
+    /// does.
+    #[must_use]
+    pub fn may_stick(&self, k: usize) -> bool {
+        k == 0 && matches!(self.kind, ContactKind::Jenkins)
+    }
+
+    /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
+    #[must_use]
+    pub fn is_spring(&self) -> bool {
+        matches!(self.kind, ContactKind::Cubic)
     }
 
     /// What the constants of the law make of the contact.
@@ -198,147 +268,25 @@ impl Contact {
                 return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
             }
         }
-        Ok(())
+        self.check_places(kind)
     }
-}
 
-/// An interval on which the force is f(τ) = slope·(x(τ) − x(anchor)) + offset.
-///
-/// With exact events `start`, `end` and `anchor` are times in τ; with sampling they are sample
-/// numbers, and the piece holds the samples start ≤ j < end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
-    /// Begin of the interval.
-    pub start: f64,
-    /// End of the interval.
-    pub end: f64,
-    /// Tangent stiffness.
-    pub slope: f64,
-    /// Where the motion is measured from; `None`: from zero.
-    pub anchor: Option<f64>,
-    /// Force at the anchor.
-    pub offset: f64,
-}
-
-/// A law whose force is linear·x plus a term that is homogeneous in x: f(s·x) = s^degree·f(x).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Smooth {
-    /// Stiffness of the linear term.
-    pub linear: f64,
-    /// Degree of the other term.
-    pub degree: f64,
-}
-
-/// Law of one scalar relative motion. All quantities are in the solver's units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
-    /// Elastic Coulomb friction.
-    Jenkins(Jenkins),
-    /// Linear and cubic spring.
-    Cubic(Cubic),
-    /// Spring that opens.
-    Unilateral(Unilateral),
-}
-
-impl Law {
-    /// The law of a contact, with lengths in units of `length` and forces in units of
-    /// `length` times the caller's stiffness.
-    #[must_use]
-    pub fn new(contact: &Contact, length: f64) -> Self {
-        match contact.kind {
-            ContactKind::Jenkins => Self::Jenkins(Jenkins {
-                stiffness: contact.kt,
-                limit: contact.slip_limit() / length,
-            }),
-            ContactKind::Cubic => Self::Cubic(Cubic {
-                linear: contact.kt,
-                cubic: contact.cubic * length * length,
-            }),
-            ContactKind::Unilateral => Self::Unilateral(Unilateral {
-                stiffness: contact.kn,
-                gap: contact.clearance() / length,
-            }),
+    /// Degrees of freedom along directions in which the law does not act are a mistake.
+    fn check_places(&self, kind: &str) -> Result<()> {
+        if self.frame.is_some() {
+            return Ok(());
         }
-    }
-
-    /// Whether f(−x) = −f(x).
-    #[must_use]
-    pub fn is_odd(&self) -> bool {
-        match self {
-            Self::Jenkins(_) | Self::Cubic(_) => true,
-            Self::Unilateral(_) => false,
-        }
-    }
-
-    /// The law as seen at a motion `factor` times smaller: eased(s)(x) = s·law(x/s). A large factor
-    /// gives the law at rest, a linear spring; 1 gives the law itself; between them runs the homotopy
-    /// that finds a first point. From the identity follows, for any law with force F and Jacobian J,
-    /// dF/d(ln s) = F − J X.
-    #[must_use]
-    pub fn eased(&self, factor: f64) -> Self {
-        match *self {
-            Self::Jenkins(law) => Self::Jenkins(Jenkins {
-                limit: law.limit * factor,
-                ..law
-            }),
-            Self::Cubic(law) => Self::Cubic(Cubic {
-                cubic: law.cubic / (factor * factor),
-                ..law
-            }),
-            Self::Unilateral(law) => Self::Unilateral(Unilateral {
-                gap: law.gap * factor,
-                ..law
-            }),
-        }
-    }
-
-    /// The factor of [`Self::eased`] at which the law just is a linear spring for a motion of the given
-    /// half range (max − min)/2 and mean: friction sticks, a cubic term is small against the
-    /// stiffness `reference`.
-    #[must_use]
-    pub fn sticking_factor(&self, half_range: f64, mean: f64, reference: f64) -> f64 {
-        match self {
-            Self::Jenkins(law) => law.stiffness * half_range / law.limit,
-            Self::Cubic(law) => law.sticking_factor(half_range + mean.abs(), reference),
-            Self::Unilateral(law) => (half_range - mean).max(0.0) / law.gap,
-        }
-    }
-
-    /// For a law without events: fills the spectrum Sₙ = (1/2π)∫ s(x(τ)) e^{−inτ} dτ, n ≥ 0, of the
-    /// tangent stiffness s of its homogeneous term. `None`, and nothing is written: the law has
-    /// events and speaks in pieces.
-    pub fn nonlinear_spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]) -> Option<Smooth> {
-        match self {
-            Self::Jenkins(_) | Self::Unilateral(_) => None,
-            Self::Cubic(law) => {
-                law.spectrum(set, motion, spectrum);
-                Some(Smooth {
-                    linear: law.linear,
-                    degree: 3.0,
-                })
+        for (name, dofs) in [("dof_a", self.dof_a), ("dof_b", self.dof_b)] {
+            for (i, dof) in dofs.iter().enumerate() {
+                if let Some(dof) = dof.filter(|_| !self.places().contains(&i)) {
+                    return fail!(
+                        Argument,
+                        "contact: {name}[{i}] = {dof}, needs to be empty; a {kind} does not act along {}",
+                        ["t1", "t2", "n"][i]
+                    );
+                }
             }
         }
-    }
-
-    /// Exact pieces over one turn (half a turn for sets of odd harmonics) from the reversals of
-    /// the motion; none for a smooth law.
-    pub fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>) {
-        pieces.clear();
-        match self {
-            Self::Jenkins(law) => law.pieces(set, motion, reversals, pieces),
-            Self::Unilateral(law) => law.pieces(set, motion, reversals, pieces),
-            Self::Cubic(_) => {}
-        }
-    }
-
-    /// Pieces in sample numbers over one turn from equidistant samples of the motion; none for a
-    /// smooth law.
-    pub fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
-        pieces.clear();
-        match self {
-            Self::Jenkins(law) => law.sampled_pieces(samples, pieces),
-            Self::Unilateral(law) => law.sampled_pieces(samples, pieces),
-            Self::Cubic(_) => {}
-        }
+        Ok(())
     }
 }
