@@ -132,7 +132,7 @@ fn a_slider_under_one_harmonic_takes_four_limits_times_the_slip() {
     contact_evaluate(&contact, 1, 0, 1.0, &y, &mut law, None).unwrap();
     assert!((law[1].re / 5.0 - 0.504_632).abs() < 5e-7, "{}", law[1].re / 5.0);
     let omega = 1.3;
-    let mut model = oscillator(&[contact.clone()]);
+    let mut model = oscillator(core::slice::from_ref(&contact));
     let linear = Complex64::new(4.0 - omega * omega, 0.05 * omega);
     model.add_force(0, 1, linear * 5.0 + law[1]).unwrap();
     let branch = solve_at(&model, &exactly(1), omega);
