@@ -120,7 +120,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     let response = solver.response_dof.unwrap_or(gauge.reference_dof);
     let mut branch = Branch::new(
         Arc::clone(&condensed),
-        condensed.reduction(model, solver),
+        condensed.reduction(model, solver)?,
         solver.samples,
         solver.harmonics,
         response,

@@ -117,6 +117,8 @@ pub struct Reduction {
     pub even_removed: bool,
     /// Real unknowns of the nonlinear problem.
     pub unknowns: usize,
+    /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
+    pub held_by_contacts: usize,
 }
 
 impl Condensed {
@@ -378,9 +380,16 @@ impl Condensed {
     }
 
     /// What was removed.
-    #[must_use]
-    pub fn reduction(&self, model: &Model, options: &SolverOptions) -> Reduction {
-        Reduction {
+    ///
+    /// # Errors
+    /// Those of [`Model::rigid_modes`].
+    pub fn reduction(&self, model: &Model, options: &SolverOptions) -> Result<Reduction> {
+        let held_by_contacts = if self.set.has_mean() && self.coordinates() > 0 {
+            model.rigid_modes(0)?
+        } else {
+            0
+        };
+        Ok(Reduction {
             sectors: model.structure().sectors(),
             degrees_of_freedom: self.ndof,
             coordinates: self.coordinates(),
@@ -392,6 +401,7 @@ impl Condensed {
             mean_carried: self.set.has_mean(),
             even_removed: self.set.is_odd(),
             unknowns: self.coordinates() * self.set.packed_len(),
-        }
+            held_by_contacts,
+        })
     }
 }

@@ -121,7 +121,7 @@ static void struct_sizes(void)
     REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 56");
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 40");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
-    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
+    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 104");
     REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_point_init(&point, 80), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
@@ -155,7 +155,7 @@ static void struct_sizes(void)
     WORKS("67", hbvib_reduction_init(&reduction, sizeof reduction));
     WORKS("67", hbvib_branch_reduction(branch, &reduction));
     EXPECT("67", reduction.sectors == 24 && reduction.degrees_of_freedom == 4 && reduction.coordinates == 1 &&
-                     reduction.harmonics_carried == 5 && reduction.unknowns == 10 && reduction.even_removed == 1 &&
+                     reduction.harmonics_carried == 5 && reduction.unknowns == 10 && reduction.even_removed == 1 && reduction.held_by_contacts == 0 &&
                      reduction.struct_size == sizeof reduction && reduction.response_dof == 0);
     WORKS("67", hbvib_branch_free(branch));
 
