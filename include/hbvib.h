@@ -505,6 +505,8 @@ typedef struct {
   int32_t mean_carried;
   /// 1 if even harmonics were left out because law and forcing are odd, else 0.
   int32_t even_removed;
+  /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
+  int64_t held_by_contacts;
 } hbvib_reduction;
 
 /// Energies and losses of one point, in the caller's units. Fill it by hbvib_energy_init. In a
