@@ -71,7 +71,22 @@ impl Exact {
         if self.assembly.smooth(law, set, motion, out) {
             return;
         }
-        law.pieces(set, motion, &self.extrema, &mut self.pieces);
+        self.evaluate_pieces(set, motion, out, |reversals, pieces| {
+            law.pieces(set, motion, reversals, pieces);
+        });
+    }
+
+    /// Force and Jacobian of a law that `locate` tells in pieces, from the reversals of the prepared
+    /// motion.
+    pub fn evaluate_pieces(
+        &mut self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        locate: impl FnOnce(&[Extremum], &mut Vec<Piece>),
+    ) {
+        self.pieces.clear();
+        locate(&self.extrema, &mut self.pieces);
         self.assembly.start(out);
         let fold = if set.is_odd() { 2.0 } else { 1.0 };
         for piece in &self.pieces {

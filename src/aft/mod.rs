@@ -14,6 +14,7 @@
 pub mod exact;
 pub mod sampled;
 mod smooth;
+mod toeplitz;
 
 use crate::contact::{Law, Piece};
 use crate::error::{Result, try_vec};
@@ -28,15 +29,20 @@ pub enum Evaluator {
     Sampled(Box<sampled::Sampled>),
 }
 
-/// Harmonics of a contact force and what belongs to them, all in packed form.
+/// Harmonics of a contact force and what belongs to them, all in packed form, direction after
+/// direction.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
-    /// F
+    /// Directions d of the relative motion; m is the packed length of one signal.
+    pub directions: usize,
+    /// F, d·m numbers.
     pub force: Vec<f64>,
-    /// ∂F/∂X, column-major.
+    /// ∂F/∂X, (d·m)², column-major.
     pub jacobian: Vec<f64>,
     /// F − ∂F/∂X · X, the derivative of F by the logarithm of the factor in [`Law::eased`].
     pub offset: Vec<f64>,
+    /// ∂F/∂ω at fixed X, d·m numbers; 0 for laws that do not feel the velocity.
+    pub by_omega: Vec<f64>,
     /// Share of the period that is spent slipping, 0 for a stuck contact.
     pub slip_fraction: f64,
     /// Whether the contact sticks through the period: one piece without anchor, F = kt·X. Never so
@@ -45,16 +51,18 @@ pub struct Evaluation {
 }
 
 impl Evaluation {
-    /// Memory for signals of `set`.
+    /// Memory for `directions` signals of `set`.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
-        let m = set.packed_len();
+    pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
+        let m = set.packed_len().saturating_mul(directions);
         Ok(Self {
+            directions,
             force: try_vec(m, 0.0, "a contact force")?,
             jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
             offset: try_vec(m, 0.0, "a contact force")?,
+            by_omega: try_vec(m, 0.0, "a contact force")?,
             slip_fraction: 0.0,
             stuck: false,
         })
@@ -177,35 +185,7 @@ impl Assembly {
     /// Adds T(S) to the Jacobian and forms the force.
     fn finish(&self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
         let m = motion.len();
-        let mean = usize::from(set.has_mean());
-        let s = &self.spectrum;
-        let jacobian = &mut out.jacobian;
-        if mean == 1 {
-            jacobian[0] += s[0].re;
-            for k in 0..set.oscillating() {
-                let sp = s[set.reduced(k)];
-                let at = 1 + 2 * k;
-                // Row 0: F₀ = Re Σ conj(Sₘ)·Xₘ; column 0: Fₕ = 2 Sₕ X₀.
-                jacobian[at * m] += sp.re;
-                jacobian[(at + 1) * m] += sp.im;
-                jacobian[at] += 2.0 * sp.re;
-                jacobian[at + 1] += 2.0 * sp.im;
-            }
-        }
-        for c in 0..set.oscillating() {
-            let pc = set.reduced(c);
-            let (re_column, im_column) = (mean + 2 * c, mean + 2 * c + 1);
-            for r in 0..set.oscillating() {
-                let pr = set.reduced(r);
-                let minus = if pr >= pc { s[pr - pc] } else { s[pc - pr].conj() };
-                let plus = s[pr + pc];
-                let row = mean + 2 * r;
-                jacobian[re_column * m + row] += minus.re + plus.re;
-                jacobian[re_column * m + row + 1] += minus.im + plus.im;
-                jacobian[im_column * m + row] += plus.im - minus.im;
-                jacobian[im_column * m + row + 1] += minus.re - plus.re;
-            }
-        }
+        toeplitz::add(set, &self.spectrum, &mut out.jacobian, m);
         out.force.copy_from_slice(&out.offset);
         for (column, x) in out.jacobian.chunks_exact(m).zip(motion) {
             for (f, j) in out.force.iter_mut().zip(column) {

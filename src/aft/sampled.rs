@@ -66,7 +66,20 @@ impl Sampled {
         if self.assembly.smooth(law, set, motion, out) {
             return;
         }
-        law.sampled_pieces(&self.samples, &mut self.pieces);
+        self.evaluate_pieces(set, motion, out, |samples, pieces| law.sampled_pieces(samples, pieces));
+    }
+
+    /// Force and Jacobian of a law that `locate` tells in pieces, from the samples of the prepared
+    /// motion.
+    pub fn evaluate_pieces(
+        &mut self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        locate: impl FnOnce(&[f64], &mut Vec<Piece>),
+    ) {
+        self.pieces.clear();
+        locate(&self.samples, &mut self.pieces);
         self.assembly.start(out);
         let n = self.samples.len();
         for piece in &self.pieces {
