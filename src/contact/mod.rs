@@ -8,6 +8,7 @@ pub mod cubic;
 pub mod iwan;
 pub mod jenkins;
 pub mod state;
+pub mod table;
 pub mod unilateral;
 
 use crate::error::{Result, fail};
