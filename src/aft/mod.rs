@@ -12,9 +12,11 @@
 //! law gives S at once, without pieces.
 
 pub mod exact;
+pub mod pointwise;
 pub mod sampled;
 mod smooth;
 mod toeplitz;
+mod transform;
 
 use crate::contact::{Law, Piece};
 use crate::error::{Result, try_vec};

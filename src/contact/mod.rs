@@ -7,9 +7,13 @@
 pub mod cubic;
 pub mod iwan;
 pub mod jenkins;
+pub mod pointwise;
+pub mod polynomial;
+pub mod regularised;
 pub mod state;
 pub mod table;
 pub mod unilateral;
+pub mod user;
 
 use crate::error::{Result, fail};
 use crate::fourier::Extremum;
