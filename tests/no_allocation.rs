@@ -7,11 +7,18 @@
 mod common;
 
 use common::{BASE, harmonics};
+use hbvib::aft::Evaluation;
+use hbvib::aft::pointwise::PointwiseEvaluator;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::contact::Contact;
+use hbvib::contact::pointwise::Pointwise;
+use hbvib::contact::polynomial::Polynomial;
+use hbvib::contact::regularised::TanhFriction;
+use hbvib::contact::user::{Call, User, UserForce};
 use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Metric, Settings};
+use hbvib::harmonics::HarmonicSet;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::linalg::norm;
 use hbvib::model::Model;
@@ -25,6 +32,7 @@ use num_complex::Complex64;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Counts the allocations of each thread; tests run in threads of their own.
 struct Counting;
@@ -284,5 +292,42 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
             );
         }
         assert!(iterations >= 5, "only {iterations} iterations were seen");
+    }
+}
+
+#[test]
+fn evaluating_laws_without_memory_asks_for_none() {
+    let laws: [(&str, Box<dyn Pointwise>); 3] = [
+        (
+            "polynomial",
+            Box::new(Polynomial::tensors(2, &[], &[0.3; 8], &[-0.2; 16]).unwrap()),
+        ),
+        ("tanh", Box::new(TanhFriction::new(0.7, 0.4, 0).unwrap())),
+        ("callback", Box::new(User::new(Arc::new(Drag), 2, 0).unwrap())),
+    ];
+    for (name, law) in laws {
+        // By a table of sines and by a fast transform.
+        for highest in [3, 63] {
+            let set = HarmonicSet::all(highest).unwrap();
+            let motion = vec![0.1; law.directions() * set.packed_len()];
+            let mut out = Evaluation::new(&set, law.directions()).unwrap();
+            let mut evaluator = PointwiseEvaluator::new(&set, &*law).unwrap();
+            let evaluation = || evaluator.evaluate(&*law, &set, 1.1, &motion, &mut out).unwrap();
+            let (count, ()) = allocations(evaluation);
+            assert_eq!(count, 0, "{name}, H = {highest}");
+        }
+    }
+}
+
+/// A damper told by a callback.
+struct Drag;
+
+impl UserForce for Drag {
+    fn evaluate(&self, call: &mut Call<'_>) -> i32 {
+        call.f.copy_from_slice(call.v);
+        for (k, slope) in call.df_dv.iter_mut().enumerate() {
+            *slope = f64::from(u8::from(k % 4 == 0 || k % 4 == 3));
+        }
+        0
     }
 }

@@ -22,19 +22,19 @@ pub struct Exact {
 }
 
 impl Exact {
-    /// Memory for motions of `set`.
+    /// Memory for motions of `set` under laws of up to `most_pieces` pieces.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
+    pub fn new(set: &HarmonicSet, most_pieces: usize) -> Result<Self> {
         let highest = set.highest_reduced();
         let assembly = Assembly::new(set)?;
-        // x' has at most 2·highest roots per turn, each the end of at most two pieces.
+        // x' has at most 2·highest roots per turn.
         let mut extrema = Vec::new();
         let mut pieces = Vec::new();
         extrema
             .try_reserve_exact(2 * highest + 4)
-            .and_then(|()| pieces.try_reserve_exact(4 * highest + 8))
+            .and_then(|()| pieces.try_reserve_exact(most_pieces))
             .map_err(|_| Error::out_of_memory("the pieces of a motion"))?;
         Ok(Self {
             reversals: Reversals::new(set)?,

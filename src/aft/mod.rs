@@ -12,19 +12,27 @@
 //! law gives S at once, without pieces.
 
 pub mod exact;
+pub mod pointwise;
 pub mod sampled;
 mod spectral;
+mod toeplitz;
+mod transform;
 
 use crate::contact::{Form, Law, Piece};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
+use pointwise::PointwiseEvaluator;
 
 /// Ways of evaluating laws, with their tables.
 pub struct Evaluator {
     /// Laws on one relative motion.
     scalar: Scalar,
     smooth: Assembly,
+    /// Laws without memory, by their directions and samples.
+    pointwise: Vec<PointwiseEvaluator>,
+    /// Samples asked for.
+    samples: usize,
 }
 
 /// Way of evaluating laws on one relative motion.
@@ -39,9 +47,11 @@ enum Scalar {
 /// after the other.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
-    /// F
+    /// Directions d of the relative motion; m is the packed length of one signal.
+    pub directions: usize,
+    /// F, d·m numbers.
     pub force: Vec<f64>,
-    /// ∂F/∂X, column-major.
+    /// ∂F/∂X, (d·m)², column-major.
     pub jacobian: Vec<f64>,
     /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law as seen at a motion s times smaller.
     pub offset: Vec<f64>,
@@ -62,6 +72,7 @@ impl Evaluation {
     pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
         let m = set.packed_len().saturating_mul(directions);
         Ok(Self {
+            directions,
             force: try_vec(m, 0.0, "a contact force")?,
             jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
             offset: try_vec(m, 0.0, "a contact force")?,
@@ -78,14 +89,32 @@ impl Evaluator {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new<'l>(set: &HarmonicSet, samples: usize, _laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+    pub fn new<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        let highest = set.highest_reduced();
+        let mut pointwise: Vec<PointwiseEvaluator> = Vec::new();
+        let mut most_pieces = 0;
+        for law in laws {
+            match law.form() {
+                Form::Spectral(_) => {}
+                Form::Pieces(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
+                Form::Pointwise(law) => {
+                    let wanted = law.samples(highest, samples);
+                    if !pointwise.iter().any(|way| way.suits(law, wanted)) {
+                        let way = PointwiseEvaluator::new(set, law, wanted)?;
+                        try_push(&mut pointwise, way, "the contact laws")?;
+                    }
+                }
+            }
+        }
         Ok(Self {
             scalar: if samples == 0 {
-                Scalar::Exact(Box::new(exact::Exact::new(set)?))
+                Scalar::Exact(Box::new(exact::Exact::new(set, most_pieces)?))
             } else {
                 Scalar::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
             },
             smooth: Assembly::new(set)?,
+            pointwise,
+            samples,
         })
     }
 
@@ -108,13 +137,20 @@ impl Evaluator {
         law: &dyn Law,
         set: &HarmonicSet,
         motion: &[f64],
-        _omega: f64,
+        omega: f64,
         out: &mut Evaluation,
     ) -> Result<()> {
         match (law.form(), &mut self.scalar) {
             (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
             (Form::Pieces(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
             (Form::Pieces(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
+            (Form::Pointwise(law), _) => {
+                let wanted = law.samples(set.highest_reduced(), self.samples);
+                let Some(way) = self.pointwise.iter_mut().find(|way| way.suits(law, wanted)) else {
+                    return fail!(Internal, "no memory for the samples of a contact law");
+                };
+                return way.evaluate(law, set, omega, motion, out);
+            }
         }
         Ok(())
     }
@@ -206,35 +242,7 @@ impl Assembly {
     /// Adds T(S) to the Jacobian and forms the force.
     fn finish(&self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
         let m = motion.len();
-        let mean = usize::from(set.has_mean());
-        let s = &self.spectrum;
-        let jacobian = &mut out.jacobian;
-        if mean == 1 {
-            jacobian[0] += s[0].re;
-            for k in 0..set.oscillating() {
-                let sp = s[set.reduced(k)];
-                let at = 1 + 2 * k;
-                // Row 0: F₀ = Re Σ conj(Sₘ)·Xₘ; column 0: Fₕ = 2 Sₕ X₀.
-                jacobian[at * m] += sp.re;
-                jacobian[(at + 1) * m] += sp.im;
-                jacobian[at] += 2.0 * sp.re;
-                jacobian[at + 1] += 2.0 * sp.im;
-            }
-        }
-        for c in 0..set.oscillating() {
-            let pc = set.reduced(c);
-            let (re_column, im_column) = (mean + 2 * c, mean + 2 * c + 1);
-            for r in 0..set.oscillating() {
-                let pr = set.reduced(r);
-                let minus = if pr >= pc { s[pr - pc] } else { s[pc - pr].conj() };
-                let plus = s[pr + pc];
-                let row = mean + 2 * r;
-                jacobian[re_column * m + row] += minus.re + plus.re;
-                jacobian[re_column * m + row + 1] += minus.im + plus.im;
-                jacobian[im_column * m + row] += plus.im - minus.im;
-                jacobian[im_column * m + row + 1] += minus.re - plus.re;
-            }
-        }
+        toeplitz::add(set, &self.spectrum, &mut out.jacobian, m);
         out.force.copy_from_slice(&out.offset);
         for (column, x) in out.jacobian.chunks_exact(m).zip(motion) {
             for (f, j) in out.force.iter_mut().zip(column) {

@@ -280,7 +280,7 @@ impl Block<'_> {
 
 /// A law in the caller's units at packed motions.
 fn evaluate(contact: &Contact, set: &HarmonicSet, samples: usize, omega: f64, packed: &[f64]) -> Result<Evaluation> {
-    let law = contact.law(1.0);
+    let law = contact.law(1.0)?;
     let mut evaluation = Evaluation::new(set, contact.directions())?;
     let mut evaluator = Evaluator::new(set, samples, core::iter::once(&*law))?;
     evaluator.prepare(set, &packed[..set.packed_len()]);

@@ -63,6 +63,8 @@ fn law(c: &hbvib_contact) -> Result<Contact> {
         preload: c.preload,
         gap: c.gap,
         cubic: c.cubic,
+        velocity: 0.0,
+        dofs: Vec::new(),
     })
 }
 

@@ -203,7 +203,10 @@ impl Condensed {
     ) -> Result<(Self, Vec<Placed>)> {
         let roster = Roster::new(model)?;
         let active = &roster.active;
-        let odd = active.iter().all(|&i| model.contacts()[i].law(1.0).is_odd());
+        let mut odd = true;
+        for &i in active {
+            odd &= model.contacts()[i].law(1.0)?.is_odd();
+        }
         let set = HarmonicSet::excited(
             forced,
             options.harmonics,
@@ -275,7 +278,7 @@ impl Condensed {
                 try_push(&mut coordinates, at.coordinate, WHAT)?;
             }
             let contact = one[0].contact;
-            let law = model.contacts()[contact].law(length);
+            let law = model.contacts()[contact].law(length)?;
             let placed = PlacedLaw {
                 coordinates,
                 contact,

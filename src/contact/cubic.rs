@@ -8,14 +8,9 @@
 //! k + ¾·c·A². An oscillator on such a spring is Duffing's; see Krack & Gross, Harmonic Balance
 //! for Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6.
 
-use super::law::{Form, Law, Range, Spectral};
+use super::law::{Form, Law, Range, SMALL, Spectral};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
-
-/// Share of the reference stiffness below which the cubic term counts as small. From here the
-/// homotopy may have to pass the resonance, at an amplitude Q times that of the linear structure,
-/// where the term is Q² times larger; it must not be felt there, up to Q of a million.
-const SMALL: f64 = 1e-12;
 
 /// Constants of a cubic spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,7 +32,7 @@ impl Law for Cubic {
 
     /// From here on the cubic term is small against `reference`.
     fn sticking_factor(&self, ranges: &[Range], reference: f64) -> f64 {
-        (ranges[0].half + ranges[0].mean.abs()) * (self.cubic.abs() / (SMALL * reference)).sqrt()
+        ranges[0].size() * (self.cubic.abs() / (SMALL * reference)).sqrt()
     }
 }
 

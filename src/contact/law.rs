@@ -5,6 +5,7 @@
 //! coefficients and Jacobian follow is the same for all laws of a [`Form`] and lives in
 //! [`crate::aft`], which knows no law by name. All quantities are in the solver's units.
 
+use super::pointwise::Pointwise;
 use super::state::State;
 use crate::fourier::Extremum;
 use crate::harmonics::HarmonicSet;
@@ -24,8 +25,8 @@ pub trait Law: Debug + Send + Sync {
     /// How the law is evaluated.
     fn form(&self) -> Form<'_>;
 
-    /// The factor s from which on s·f(x/s) is (nearly) that of linear springs, for motions of the given
-    /// ranges: friction sticks, a polynomial term is small against the stiffness `reference`.
+    /// The factor s from which on s·f(x/s) is (nearly) linear, for motions of the given ranges: friction
+    /// sticks, a polynomial term is small against the stiffness `reference`.
     fn sticking_factor(&self, ranges: &[Range], reference: f64) -> f64;
 }
 
@@ -36,7 +37,23 @@ pub struct Range {
     pub half: f64,
     /// Mean.
     pub mean: f64,
+    /// A bound of the velocity.
+    pub speed: f64,
 }
+
+impl Range {
+    /// A bound of the motion's magnitude.
+    #[must_use]
+    pub fn size(&self) -> f64 {
+        self.half + self.mean.abs()
+    }
+}
+
+/// Share of the reference stiffness below which a nonlinear term counts as small. From here the
+/// homotopy may have to pass the resonance, at an amplitude Q times that of the linear structure,
+/// where the term is larger by a power of Q; it must not be felt there, up to Q of a million for a
+/// cubic one.
+pub const SMALL: f64 = 1e-12;
 
 /// The forms in which laws answer.
 pub enum Form<'a> {
@@ -44,6 +61,8 @@ pub enum Form<'a> {
     Pieces(&'a dyn Pieces),
     /// A spectrum of the stiffness on one relative motion: exact.
     Spectral(&'a dyn Spectral),
+    /// Force and tangents at equidistant times, without memory.
+    Pointwise(&'a dyn Pointwise),
 }
 
 /// A law on one relative motion whose force is affine in it between events.
@@ -54,6 +73,12 @@ pub trait Pieces {
 
     /// Pieces in sample numbers over one turn from equidistant samples of the motion.
     fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>);
+
+    /// A bound of the number of pieces for motions up to the reduced harmonic `highest`, whose derivative
+    /// has at most 2·highest roots per turn.
+    fn most_pieces(&self, highest: usize) -> usize {
+        4 * highest + 8
+    }
 
     /// What the contact does on a piece of it.
     fn state(&self, piece: &Piece) -> State;

@@ -8,20 +8,30 @@ pub mod cubic;
 pub mod iwan;
 pub mod jenkins;
 pub mod law;
+pub mod patch;
+pub mod pointwise;
+pub mod polynomial;
+pub mod regularised;
 pub mod sides;
 pub mod state;
+pub mod table;
 pub mod unilateral;
+pub mod user;
 
 use crate::error::{Result, fail};
 use cubic::Cubic;
 use jenkins::Jenkins;
 pub use law::{Form, Law, Piece};
+use polynomial::Polynomial;
+use regularised::TanhFriction;
 use sides::{Direction, Frame};
 use std::sync::Arc;
+use table::Table;
 use unilateral::Unilateral;
+use user::User;
 
 /// Which law a contact obeys.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub enum ContactKind {
     /// Elastic Coulomb friction with constant normal load in one direction.
     Jenkins,
@@ -29,6 +39,14 @@ pub enum ContactKind {
     Cubic,
     /// Spring that is pressed once a gap has closed, and open otherwise.
     Unilateral,
+    /// Friction with Coulomb's jump smoothed: f = μN₀·tanh(v/velocity).
+    Regularised,
+    /// Spring whose force is straight between the points of a table.
+    Table(Table),
+    /// Springs and dampers of polynomial form over one or several motions.
+    Polynomial(Polynomial),
+    /// A law of the host.
+    User(User),
 }
 
 /// What a contact is for a solver.
@@ -72,6 +90,12 @@ pub struct Contact {
     pub gap: f64,
     /// Force per length cubed of a cubic spring, of any sign; 0 for the others.
     pub cubic: f64,
+    /// Velocity at which regularised friction reaches 76 % (tanh 1) of its limit, above 0; 0 for the
+    /// others.
+    pub velocity: f64,
+    /// Degrees of freedom whose motions over the ground a law of the host or a polynomial knows, in its
+    /// order. Empty: the law knows one motion, that between `dof_a` and `dof_b` along t1.
+    pub dofs: Vec<usize>,
 }
 
 impl Contact {
@@ -90,6 +114,39 @@ impl Contact {
             preload,
             gap: 0.0,
             cubic: 0.0,
+            velocity: 0.0,
+            dofs: Vec::new(),
+        }
+    }
+
+    /// A law without constants of its own between degree of freedom `a` and `b` (or the ground): a
+    /// table, or a polynomial or law of the host over one motion.
+    #[must_use]
+    pub fn between(a: usize, b: Option<usize>, kind: ContactKind) -> Self {
+        Self {
+            kind,
+            ..Self::jenkins(a, b, 0.0, 0.0, 0.0)
+        }
+    }
+
+    /// A polynomial or law of the host over the motions of degrees of freedom.
+    #[must_use]
+    pub fn over(dofs: Vec<usize>, kind: ContactKind) -> Self {
+        Self {
+            kind,
+            dof_a: [None; 3],
+            dofs,
+            ..Self::jenkins(0, None, 0.0, 0.0, 0.0)
+        }
+    }
+
+    /// Regularised friction of limit μN₀ between degree of freedom `a` and `b` (or the ground).
+    #[must_use]
+    pub fn regularised(a: usize, b: Option<usize>, mu: f64, preload: f64, velocity: f64) -> Self {
+        Self {
+            kind: ContactKind::Regularised,
+            velocity,
+            ..Self::jenkins(a, b, 0.0, mu, preload)
         }
     }
 
@@ -132,27 +189,35 @@ impl Contact {
     /// Whether the contact presses at rest: then it loads the structure without vibration.
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
-        self.kind == ContactKind::Unilateral && self.role() == Role::Active && self.clearance() <= 0.0
+        match &self.kind {
+            ContactKind::Unilateral => self.role() == Role::Active && self.clearance() <= 0.0,
+            ContactKind::Table(table) => table.force(0.0) != 0.0,
+            _ => false,
+        }
     }
 
     /// The places (t1, t2, n as 0, 1, 2) in which the law acts, in the order of its motions.
     #[must_use]
     pub fn places(&self) -> &'static [usize] {
         match self.kind {
-            ContactKind::Jenkins | ContactKind::Cubic => &[0],
             ContactKind::Unilateral => &[2],
+            _ if self.dofs.is_empty() => &[0],
+            _ => &[],
         }
     }
 
     /// Number of relative motions that the law knows.
     #[must_use]
     pub fn directions(&self) -> usize {
-        self.places().len()
+        self.places().len().max(self.dofs.len())
     }
 
     /// The k-th of them.
     #[must_use]
     pub fn direction(&self, k: usize) -> Direction {
+        if let Some(&dof) = self.dofs.get(k) {
+            return Direction::between(Some(dof), None);
+        }
         let place = self.places()[k];
         match &self.frame {
             None => Direction::between(self.dof_a[place], self.dof_b[place]),
@@ -165,9 +230,11 @@ impl Contact {
 
     /// The law, with lengths in units of `length` and forces in units of `length` times the caller's
     /// stiffness.
-    #[must_use]
-    pub fn law(&self, length: f64) -> Arc<dyn Law> {
-        match self.kind {
+    ///
+    /// # Errors
+    /// Those of [`Self::check_constants`].
+    pub fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(match &self.kind {
             ContactKind::Jenkins => Arc::new(Jenkins {
                 stiffness: self.kt,
                 limit: self.slip_limit() / length,
@@ -180,25 +247,44 @@ impl Contact {
                 stiffness: self.kn,
                 gap: self.clearance() / length,
             }),
-        }
+            ContactKind::Regularised => {
+                let law = TanhFriction::new(self.slip_limit(), self.velocity)?;
+                Arc::new(law.in_units(length))
+            }
+            ContactKind::Table(table) => Arc::new(table.in_units(length)),
+            ContactKind::Polynomial(polynomial) => Arc::new(polynomial.in_units(length)),
+            ContactKind::User(user) => Arc::new(user.in_units(length)),
+        })
     }
 
-    /// Stiffness of the k-th motion by the l-th at small motion.
+    /// Stiffness of the force in the k-th direction by the l-th motion at small motion. A law of the
+    /// host is not asked, and counts as 0.
     #[must_use]
     pub fn stiffness_at_rest(&self, k: usize, l: usize) -> f64 {
-        debug_assert!(k == 0 && l == 0);
-        match self.kind {
+        match &self.kind {
             ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
             ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
-            ContactKind::Unilateral => 0.0,
+            ContactKind::Table(table) => table.stiffness_at_rest(),
+            ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
+            ContactKind::Unilateral | ContactKind::Regularised | ContactKind::User(_) => 0.0,
         }
     }
 
     /// Largest stiffness that the k-th motion can meet, but for terms that grow with the motion.
     #[must_use]
     pub fn stiffness(&self, k: usize) -> f64 {
-        if self.places()[k] == 2 { self.kn } else { self.kt }
+        match &self.kind {
+            ContactKind::Table(table) => table.largest_stiffness(),
+            _ if self.places().get(k) == Some(&2) => self.kn,
+            _ => self.kt,
+        }
+    }
+
+    /// Whether the law needs the direction t1, not just the plane of it.
+    #[must_use]
+    pub fn needs_tangent(&self) -> bool {
+        self.places().contains(&0) && !self.places().contains(&1)
     }
 
     /// Whether the k-th motion, while the contact sticks, meets exactly [`Self::stiffness`], as friction
@@ -211,7 +297,7 @@ impl Contact {
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
     #[must_use]
     pub fn is_spring(&self) -> bool {
-        matches!(self.kind, ContactKind::Cubic)
+        !matches!(self.kind, ContactKind::Jenkins | ContactKind::Unilateral)
     }
 
     /// What the constants of the law make of the contact.
@@ -223,7 +309,20 @@ impl Contact {
             ContactKind::Cubic if self.cubic == 0.0 && self.kt == 0.0 => Role::Inert,
             ContactKind::Cubic if self.cubic == 0.0 => Role::Spring,
             ContactKind::Unilateral if self.kn == 0.0 => Role::Inert,
-            ContactKind::Jenkins | ContactKind::Cubic | ContactKind::Unilateral => Role::Active,
+            ContactKind::Regularised if self.slip_limit() == 0.0 => Role::Inert,
+            _ => Role::Active,
+        }
+    }
+
+    /// What the contact is called if it has no normal load.
+    #[must_use]
+    pub fn without_load(&self) -> Option<&'static str> {
+        match self.kind {
+            ContactKind::Cubic => Some("cubic spring"),
+            ContactKind::Table(_) => Some("table"),
+            ContactKind::Polynomial(_) => Some("polynomial"),
+            ContactKind::User(_) => Some("law of the host"),
+            _ => None,
         }
     }
 
@@ -242,7 +341,8 @@ impl Contact {
             ("kt", self.kt, false),
             ("kn", self.kn, false),
             ("mu", self.mu, false),
-            ("preload", self.preload, self.kind != ContactKind::Unilateral),
+            ("preload", self.preload, matches!(self.kind, ContactKind::Jenkins)),
+            ("velocity", self.velocity, false),
         ] {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number >= 0");
@@ -258,15 +358,35 @@ impl Contact {
         }
         let (kt, kn, mu) = (("kt", self.kt), ("kn", self.kn), ("mu", self.mu));
         let (preload, gap, cubic) = (("preload", self.preload), ("gap", self.gap), ("cubic", self.cubic));
-        let (unused, kind): (&[(&str, f64)], _) = match self.kind {
-            ContactKind::Jenkins => (&[kn, gap, cubic], "Jenkins contact"),
-            ContactKind::Cubic => (&[kn, mu, preload, gap], "cubic spring"),
-            ContactKind::Unilateral => (&[kt, mu, cubic], "unilateral spring"),
+        let velocity = ("velocity", self.velocity);
+        let (unused, kind): (&[(&str, f64)], _) = match &self.kind {
+            ContactKind::Jenkins => (&[kn, gap, cubic, velocity], "Jenkins contact"),
+            ContactKind::Cubic => (&[kn, mu, preload, gap, velocity], "cubic spring"),
+            ContactKind::Unilateral => (&[kt, mu, cubic, velocity], "unilateral spring"),
+            ContactKind::Regularised => (&[kt, kn, gap, cubic], "regularised friction"),
+            ContactKind::Table(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "table"),
+            ContactKind::Polynomial(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "polynomial"),
+            ContactKind::User(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "law of the host"),
         };
         for &(name, value) in unused {
             if value != 0.0 {
                 return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
             }
+        }
+        if let ContactKind::Regularised = self.kind {
+            TanhFriction::new(self.slip_limit(), self.velocity)?;
+        }
+        let wanted = match &self.kind {
+            ContactKind::Polynomial(law) => law.directions(),
+            ContactKind::User(law) => law.directions(),
+            _ => self.places().len(),
+        };
+        if self.directions() != wanted {
+            return fail!(
+                Dimension,
+                "contact: {} degrees of freedom for a {kind} of {wanted} motions",
+                self.directions()
+            );
         }
         self.check_places(kind)
     }

@@ -26,10 +26,11 @@ impl Contact {
     /// load does not change, 0 for one that has none.
     #[must_use]
     pub fn normal_load(&self, y: f64) -> f64 {
-        match self.kind {
+        match &self.kind {
             ContactKind::Jenkins => self.preload,
             ContactKind::Unilateral if self.role() == Role::Active => (self.kn * (-y - self.clearance())).max(0.0),
-            ContactKind::Unilateral | ContactKind::Cubic => 0.0,
+            ContactKind::Regularised => self.preload,
+            _ => 0.0,
         }
     }
 }

@@ -11,7 +11,7 @@ pub mod structure;
 
 use crate::contact::iwan::Iwan;
 use crate::contact::sides::Direction;
-use crate::contact::{Contact, ContactKind};
+use crate::contact::Contact;
 use crate::error::{Result, fail, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use excitation::Excitation;
@@ -235,10 +235,10 @@ impl Model {
         let Some(contact) = self.contacts.get_mut(id) else {
             return fail!(Index, "contact id = {id}, but the model has {count} contacts");
         };
-        if contact.kind == ContactKind::Cubic {
+        if let Some(kind) = contact.without_load() {
             return fail!(
                 Argument,
-                "preload of contact id = {id}, but that is a cubic spring, which has none"
+                "preload of contact id = {id}, but that is a {kind}, which has none"
             );
         }
         let changed = Contact {

@@ -278,12 +278,11 @@ impl<'a> ContactForces<'a> {
         }
     }
 
-    /// The factor of [`Self::ease`] from which on the given motion is (nearly) that of linear
-    /// springs.
+    /// The factor of [`Self::ease`] from which on the forces of the given motion are (nearly) linear.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn sticking_factor(&mut self, motion: &[f64]) -> Result<f64> {
+    pub fn sticking_factor(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
         let set = self.condensed.set();
         let m = set.packed_len();
         let mut ranges = Vec::new();
@@ -292,6 +291,7 @@ impl<'a> ContactForces<'a> {
             let range = Range {
                 half: self.evaluator.half_range(set),
                 mean: if set.has_mean() { y[0] } else { 0.0 },
+                speed: set.speed(y, omega),
             };
             try_push(&mut ranges, range, "the contacts")?;
         }

@@ -248,7 +248,7 @@ impl Problem for Forced<'_> {
             self.parameter = Parameter::Load { omega: p };
             return Ok(Some((0.0, 1.0)));
         }
-        let start = (1.01 * self.forces.sticking_factor(u)?).ln();
+        let start = (1.01 * self.forces.sticking_factor(u, p)?).ln();
         if !(start > 0.0 && start.is_finite()) {
             return Ok(None);
         }

@@ -147,7 +147,7 @@ impl<'a> Mode<'a> {
         let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
         self.linear_start(&mut u);
         let motion = &u[..u.len() - 2];
-        let nearly = -self.forces.sticking_factor(motion)?.log10();
+        let nearly = -self.forces.sticking_factor(motion, self.linear.omega)?.log10();
         self.forces.ease(10f64.powf(ONSET_ROUNDING - nearly));
         self.forces.evaluate(motion, self.linear.omega)?;
         let exactly = if self.forces.all_stuck() {
@@ -298,7 +298,7 @@ impl Problem for Mode<'_> {
     }
 
     fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
-        let factor = self.forces.sticking_factor(&u[..u.len() - 2])? * 10f64.powf(p);
+        let factor = self.forces.sticking_factor(&u[..u.len() - 2], self.linear.omega)? * 10f64.powf(p);
         let start = (1.01 * factor).ln();
         if !(start > 0.0 && start.is_finite()) {
             return Ok(None);
