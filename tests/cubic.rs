@@ -32,7 +32,7 @@ fn sets(highest: usize) -> [HarmonicSet; 4] {
 }
 
 fn evaluate(law: &Law, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Evaluation {
-    let mut out = Evaluation::new(set).unwrap();
+    let mut out = Evaluation::new(set, 1).unwrap();
     let mut evaluator = Evaluator::new(set, samples).unwrap();
     evaluator.prepare(set, motion);
     evaluator.evaluate(law, set, motion, &mut out);

@@ -9,8 +9,11 @@
 //!
 //! because the force is continuous where pieces meet, so that moving events contribute nothing
 //! (Petrov & Ewins 2003, doi:10.1115/1.1539868). T(S) maps Xₘ to Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ). A smooth
-//! law gives S at once, without pieces.
+//! law gives S at once, without pieces. Friction under a varying normal load has one such sum per
+//! pair of directions; see [`coupled`].
 
+mod block;
+pub mod coupled;
 pub mod exact;
 pub mod sampled;
 mod smooth;
@@ -18,6 +21,7 @@ mod smooth;
 use crate::contact::{Law, Piece};
 use crate::error::{Result, try_vec};
 use crate::harmonics::HarmonicSet;
+use block::{Block, add_stiffness, apply, pack};
 use num_complex::Complex64;
 
 /// Way of evaluating laws, with its tables.
@@ -28,36 +32,57 @@ pub enum Evaluator {
     Sampled(Box<sampled::Sampled>),
 }
 
-/// Harmonics of a contact force and what belongs to them, all in packed form.
+/// Harmonics of a contact force and what belongs to them, all in packed form, one direction after
+/// the other.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
+    /// Directions of the motion, each with its force.
+    pub directions: usize,
     /// F
     pub force: Vec<f64>,
     /// ∂F/∂X, column-major.
     pub jacobian: Vec<f64>,
     /// F − ∂F/∂X · X, the derivative of F by the logarithm of the factor in [`Law::eased`].
     pub offset: Vec<f64>,
-    /// Share of the period that is spent slipping, 0 for a stuck contact.
+    /// ∂F/∂ω at constant X; zero for forces that do not depend on the rate of the motion.
+    pub by_omega: Vec<f64>,
+    /// Share of the period that is spent slipping, 0 for a stuck contact. A unilateral spring, which
+    /// does not slip, tells here the share that it is open.
     pub slip_fraction: f64,
-    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X. Never so
-    /// for a smooth law.
+    /// Share of the period that a contact of several directions is open.
+    pub open_fraction: f64,
+    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed
+    /// throughout, where the normal load varies). Never so for a smooth law.
     pub stuck: bool,
 }
 
 impl Evaluation {
-    /// Memory for signals of `set`.
+    /// Memory for signals of `set` in `directions` directions.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
-        let m = set.packed_len();
+    pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
+        let m = directions.saturating_mul(set.packed_len());
         Ok(Self {
+            directions,
             force: try_vec(m, 0.0, "a contact force")?,
             jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
             offset: try_vec(m, 0.0, "a contact force")?,
+            by_omega: try_vec(m, 0.0, "a contact force")?,
             slip_fraction: 0.0,
+            open_fraction: 0.0,
             stuck: false,
         })
+    }
+
+    /// Clears what the last evaluation left.
+    fn clear(&mut self) {
+        self.jacobian.fill(0.0);
+        self.offset.fill(0.0);
+        self.by_omega.fill(0.0);
+        self.slip_fraction = 0.0;
+        self.open_fraction = 0.0;
+        self.stuck = false;
     }
 }
 
@@ -123,10 +148,7 @@ impl Assembly {
     /// Clears what the last evaluation left.
     fn start(&mut self, out: &mut Evaluation) {
         self.spectrum.fill(Complex64::ZERO);
-        out.jacobian.fill(0.0);
-        out.offset.fill(0.0);
-        out.slip_fraction = 0.0;
-        out.stuck = false;
+        out.clear();
     }
 
     /// Adds a piece whose transforms tₙ = (1/2π)∫ e^{−inτ} dτ are given for the n of the
@@ -141,76 +163,30 @@ impl Assembly {
     ) {
         if piece.slope == 0.0 {
             out.slip_fraction += transform[0].re;
-        } else {
-            for (s, t) in self.spectrum.iter_mut().zip(transform) {
-                *s += piece.slope * t;
-            }
         }
+        add_stiffness(&mut self.spectrum, piece.slope, transform);
         if piece.offset == 0.0 && anchor.is_none() {
-            out.stuck = transform[0].re > 1.0 - 1e-12;
+            out.stuck = is_whole(transform[0].re);
             return;
         }
-        let mean = usize::from(set.has_mean());
-        if mean == 1 {
-            self.g[0] = transform[0].re;
-        }
-        for (k, pair) in self.g[mean..].chunks_exact_mut(2).enumerate() {
-            let t = 2.0 * transform[set.reduced(k)];
-            pair[0] = t.re;
-            pair[1] = t.im;
-        }
+        pack(set, transform, &mut self.g);
         for (o, g) in out.offset.iter_mut().zip(&self.g) {
             *o += piece.offset * g;
         }
         if let Some(tau) = anchor {
             set.basis(tau, &mut self.anchor);
-            let m = self.g.len();
-            for (column, c) in out.jacobian.chunks_exact_mut(m).zip(&self.anchor) {
-                let factor = piece.slope * c;
-                for (j, g) in column.iter_mut().zip(&self.g) {
-                    *j -= factor * g;
-                }
-            }
+            Block::new(&mut out.jacobian, 1, self.g.len(), [0, 0]).add_product(-piece.slope, &self.g, &self.anchor);
         }
     }
 
     /// Adds T(S) to the Jacobian and forms the force.
     fn finish(&self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        let m = motion.len();
-        let mean = usize::from(set.has_mean());
-        let s = &self.spectrum;
-        let jacobian = &mut out.jacobian;
-        if mean == 1 {
-            jacobian[0] += s[0].re;
-            for k in 0..set.oscillating() {
-                let sp = s[set.reduced(k)];
-                let at = 1 + 2 * k;
-                // Row 0: F₀ = Re Σ conj(Sₘ)·Xₘ; column 0: Fₕ = 2 Sₕ X₀.
-                jacobian[at * m] += sp.re;
-                jacobian[(at + 1) * m] += sp.im;
-                jacobian[at] += 2.0 * sp.re;
-                jacobian[at + 1] += 2.0 * sp.im;
-            }
-        }
-        for c in 0..set.oscillating() {
-            let pc = set.reduced(c);
-            let (re_column, im_column) = (mean + 2 * c, mean + 2 * c + 1);
-            for r in 0..set.oscillating() {
-                let pr = set.reduced(r);
-                let minus = if pr >= pc { s[pr - pc] } else { s[pc - pr].conj() };
-                let plus = s[pr + pc];
-                let row = mean + 2 * r;
-                jacobian[re_column * m + row] += minus.re + plus.re;
-                jacobian[re_column * m + row + 1] += minus.im + plus.im;
-                jacobian[im_column * m + row] += plus.im - minus.im;
-                jacobian[im_column * m + row + 1] += minus.re - plus.re;
-            }
-        }
-        out.force.copy_from_slice(&out.offset);
-        for (column, x) in out.jacobian.chunks_exact(m).zip(motion) {
-            for (f, j) in out.force.iter_mut().zip(column) {
-                *f += j * x;
-            }
-        }
+        Block::new(&mut out.jacobian, 1, motion.len(), [0, 0]).add_toeplitz(set, &self.spectrum);
+        apply(&out.jacobian, motion, &out.offset, &mut out.force);
     }
+}
+
+/// Whether a share of the period is all of it, but for rounding.
+fn is_whole(share: f64) -> bool {
+    share > 1.0 - 1e-12
 }

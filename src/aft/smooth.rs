@@ -18,11 +18,8 @@ impl Assembly {
         let Some(smooth) = law.nonlinear_spectrum(set, motion, &mut self.spectrum) else {
             return false;
         };
-        out.jacobian.fill(0.0);
-        out.offset.fill(0.0);
-        out.slip_fraction = 0.0;
-        // Even an eased law that is linear by now: its stiffness need not be the reference's.
-        out.stuck = false;
+        // Never stuck, even an eased law that is linear by now: its stiffness need not be the reference's.
+        out.clear();
         self.finish(set, motion, out);
         // The force now holds T(S)·X.
         let m = motion.len();

@@ -175,7 +175,7 @@ impl ContactTerms {
                 set.set(&mut packed, h, y);
                 crate::error::try_push(&mut rows, row, "the contacts")?;
             }
-            let mut evaluation = Evaluation::new(&set)?;
+            let mut evaluation = Evaluation::new(&set, 1)?;
             evaluator.prepare(&set, &packed);
             evaluator.evaluate(&Law::new(contact, 1.0), &set, &packed, &mut evaluation);
             crate::error::try_push(&mut terms, (rows, evaluation), "the contacts")?;
@@ -261,7 +261,7 @@ pub fn contact_evaluate(
     for (i, &z) in motion.iter().enumerate() {
         set.set(&mut packed, i, z);
     }
-    let mut evaluation = Evaluation::new(&set)?;
+    let mut evaluation = Evaluation::new(&set, 1)?;
     let mut evaluator = Evaluator::new(&set, samples)?;
     evaluator.prepare(&set, &packed);
     evaluator.evaluate(&Law::new(contact, 1.0), &set, &packed, &mut evaluation);

@@ -34,7 +34,7 @@ impl<'a> Recovery<'a> {
             laws: if coordinates == 0 {
                 None
             } else {
-                Some((Evaluator::new(set, branch.samples)?, Evaluation::new(set)?))
+                Some((Evaluator::new(set, branch.samples)?, Evaluation::new(set, 1)?))
             },
             point: 0,
             forces: try_vec(coordinates * set.packed_len(), 0.0, WHAT)?,

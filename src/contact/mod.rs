@@ -5,8 +5,10 @@
 //! (Fourier coefficients, Jacobian) is the same for all laws and lives in [`crate::aft`].
 
 pub mod cubic;
+pub mod friction;
 pub mod iwan;
 pub mod jenkins;
+mod slider;
 pub mod state;
 pub mod unilateral;
 

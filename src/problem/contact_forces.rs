@@ -36,7 +36,7 @@ impl<'a> ContactForces<'a> {
         let coordinates = condensed.coordinates();
         let mut sums = Vec::new();
         for _ in 0..coordinates {
-            try_push(&mut sums, Evaluation::new(set)?, "the contact forces")?;
+            try_push(&mut sums, Evaluation::new(set, 1)?, "the contact forces")?;
         }
         let mut laws = Vec::new();
         for placed in condensed.laws() {
@@ -51,7 +51,7 @@ impl<'a> ContactForces<'a> {
             factor: 1.0,
             slip_fractions: try_vec(laws.len(), 0.0, "the contacts")?,
             laws,
-            law: Evaluation::new(comb)?,
+            law: Evaluation::new(comb, 1)?,
             sums,
             stuck: try_vec(coordinates, false, "the contacts")?,
         })
