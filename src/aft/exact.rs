@@ -71,28 +71,24 @@ impl Exact {
         self.pieces.clear();
         law.pieces(set, motion, &self.extrema, &mut self.pieces);
         self.assembly.start(out);
-        let fold = if set.is_odd() { 2.0 } else { 1.0 };
+        let turn = TAU / set.stride() as f64;
         for piece in &self.pieces {
-            transform(piece.start, piece.end, fold / TAU, set.stride(), &mut self.transform);
-            self.assembly.add(set, piece, &self.transform, piece.anchor, out);
+            transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
+            let state = law.state(piece);
+            self.assembly.add(set, (piece, state), &self.transform, piece.anchor, out);
         }
         self.assembly.finish(set, motion, out);
     }
 }
 
-/// scale·∫ₐᵇ e^{−inτ} dτ for all n. With odd harmonics the piece stands for its mirror image too;
-/// then even n belong to the stiffness spectrum and odd n to g, and both double.
-fn transform(a: f64, b: f64, scale: f64, stride: usize, out: &mut [Complex64]) {
-    // A whole turn (or half of one) has no harmonics but the mean.
-    let whole = a == 0.0 && b >= TAU / stride as f64;
+/// scale·∫ₐᵇ e^{−inτ} dτ for all n. With odd harmonics and `turn` = π the piece stands for its mirror
+/// image too; then even n belong to the stiffness spectrum and odd n to g, and both double.
+pub(super) fn transform([a, b]: [f64; 2], scale: f64, turn: f64, out: &mut [Complex64]) {
     out.fill(Complex64::ZERO);
     out[0] = (scale * (b - a)).into();
-    if whole {
-        if stride == 2 {
-            // Odd n over the half turn: only offsets of a clamped slider would use them, and an
-            // odd motion never clamps.
-            return;
-        }
+    // A whole turn has no harmonics but the mean. Odd n over half a turn: only offsets of a clamped
+    // slider would use them, and an odd motion never clamps.
+    if a == 0.0 && b >= turn {
         return;
     }
     let (ea, eb) = (Complex64::cis(-a), Complex64::cis(-b));

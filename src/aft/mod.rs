@@ -9,8 +9,11 @@
 //!
 //! because the force is continuous where pieces meet, so that moving events contribute nothing
 //! (Petrov & Ewins 2003, doi:10.1115/1.1539868). T(S) maps Xₘ to Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ). A smooth
-//! law gives S at once, without pieces.
+//! law gives S at once, without pieces. Friction under a varying normal load has one such sum per
+//! pair of directions; see [`coupled`].
 
+mod block;
+pub mod coupled;
 pub mod exact;
 pub mod pointwise;
 pub mod sampled;
@@ -18,9 +21,12 @@ mod spectral;
 mod toeplitz;
 mod transform;
 
+use crate::contact::state::State;
 use crate::contact::{Form, Law, Piece};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
+use block::{Block, add_stiffness, apply, pack};
+use coupled::Coupled;
 use num_complex::Complex64;
 use pointwise::PointwiseEvaluator;
 
@@ -29,6 +35,8 @@ pub struct Evaluator {
     /// Laws on one relative motion.
     scalar: Scalar,
     smooth: Assembly,
+    /// Friction under a varying normal load.
+    coupled: Option<Box<Coupled>>,
     /// Laws without memory, by their directions and samples.
     pointwise: Vec<PointwiseEvaluator>,
     /// Samples asked for.
@@ -59,8 +67,10 @@ pub struct Evaluation {
     pub by_omega: Vec<f64>,
     /// Share of the period that is spent slipping, 0 for a stuck contact.
     pub slip_fraction: f64,
-    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X. Never so
-    /// for a smooth law.
+    /// Share of the period that is spent open.
+    pub open_fraction: f64,
+    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed
+    /// throughout, where the normal load varies). Never so for a smooth law.
     pub stuck: bool,
 }
 
@@ -78,8 +88,28 @@ impl Evaluation {
             offset: try_vec(m, 0.0, "a contact force")?,
             by_omega: try_vec(m, 0.0, "a contact force")?,
             slip_fraction: 0.0,
+            open_fraction: 0.0,
             stuck: false,
         })
+    }
+
+    /// Counts a share of the period that is spent in a state.
+    fn count(&mut self, state: State, share: f64) {
+        match state {
+            State::Stick => {}
+            State::Slip => self.slip_fraction += share,
+            State::Open => self.open_fraction += share,
+        }
+    }
+
+    /// Clears what the last evaluation left.
+    fn clear(&mut self) {
+        self.jacobian.fill(0.0);
+        self.offset.fill(0.0);
+        self.by_omega.fill(0.0);
+        self.slip_fraction = 0.0;
+        self.open_fraction = 0.0;
+        self.stuck = false;
     }
 }
 
@@ -93,10 +123,13 @@ impl Evaluator {
         let highest = set.highest_reduced();
         let mut pointwise: Vec<PointwiseEvaluator> = Vec::new();
         let mut most_pieces = 0;
+        let mut coupled = None;
         for law in laws {
             match law.form() {
                 Form::Spectral(_) => {}
                 Form::Pieces(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
+                Form::Coupled(_) if coupled.is_none() => coupled = Some(Box::new(Coupled::new(set)?)),
+                Form::Coupled(_) => {}
                 Form::Pointwise(law) => {
                     let wanted = law.samples(highest, samples);
                     if !pointwise.iter().any(|way| way.suits(law, wanted)) {
@@ -113,6 +146,7 @@ impl Evaluator {
                 Scalar::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
             },
             smooth: Assembly::new(set)?,
+            coupled,
             pointwise,
             samples,
         })
@@ -144,6 +178,12 @@ impl Evaluator {
             (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
             (Form::Pieces(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
             (Form::Pieces(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
+            (Form::Coupled(law), _) => {
+                let Some(way) = &mut self.coupled else {
+                    return fail!(Internal, "no memory for the pieces of a contact law");
+                };
+                way.evaluate(law, set, motion, out);
+            }
             (Form::Pointwise(law), _) => {
                 let wanted = law.samples(set.highest_reduced(), self.samples);
                 let Some(way) = self.pointwise.iter_mut().find(|way| way.suits(law, wanted)) else {
@@ -188,10 +228,7 @@ impl Assembly {
     /// Clears what the last evaluation left.
     fn start(&mut self, out: &mut Evaluation) {
         self.spectrum.fill(Complex64::ZERO);
-        out.jacobian.fill(0.0);
-        out.offset.fill(0.0);
-        out.slip_fraction = 0.0;
-        out.stuck = false;
+        out.clear();
     }
 
     /// Adds a piece whose transforms tₙ = (1/2π)∫ e^{−inτ} dτ are given for the n of the
@@ -199,55 +236,35 @@ impl Assembly {
     fn add(
         &mut self,
         set: &HarmonicSet,
-        piece: &Piece,
+        (piece, state): (&Piece, State),
         transform: &[Complex64],
         anchor: Option<f64>,
         out: &mut Evaluation,
     ) {
-        if piece.slope == 0.0 {
-            out.slip_fraction += transform[0].re;
-        } else {
-            for (s, t) in self.spectrum.iter_mut().zip(transform) {
-                *s += piece.slope * t;
-            }
-        }
+        out.count(state, transform[0].re);
+        add_stiffness(&mut self.spectrum, piece.slope, transform);
         if piece.offset == 0.0 && anchor.is_none() {
-            out.stuck = transform[0].re > 1.0 - 1e-12;
+            out.stuck = is_whole(transform[0].re);
             return;
         }
-        let mean = usize::from(set.has_mean());
-        if mean == 1 {
-            self.g[0] = transform[0].re;
-        }
-        for (k, pair) in self.g[mean..].chunks_exact_mut(2).enumerate() {
-            let t = 2.0 * transform[set.reduced(k)];
-            pair[0] = t.re;
-            pair[1] = t.im;
-        }
+        pack(set, transform, &mut self.g);
         for (o, g) in out.offset.iter_mut().zip(&self.g) {
             *o += piece.offset * g;
         }
         if let Some(tau) = anchor {
             set.basis(tau, &mut self.anchor);
-            let m = self.g.len();
-            for (column, c) in out.jacobian.chunks_exact_mut(m).zip(&self.anchor) {
-                let factor = piece.slope * c;
-                for (j, g) in column.iter_mut().zip(&self.g) {
-                    *j -= factor * g;
-                }
-            }
+            Block::new(&mut out.jacobian, 1, self.g.len(), [0, 0]).add_product(-piece.slope, &self.g, &self.anchor);
         }
     }
 
     /// Adds T(S) to the Jacobian and forms the force.
     fn finish(&self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        let m = motion.len();
-        toeplitz::add(set, &self.spectrum, &mut out.jacobian, m);
-        out.force.copy_from_slice(&out.offset);
-        for (column, x) in out.jacobian.chunks_exact(m).zip(motion) {
-            for (f, j) in out.force.iter_mut().zip(column) {
-                *f += j * x;
-            }
-        }
+        Block::new(&mut out.jacobian, 1, motion.len(), [0, 0]).add_toeplitz(set, &self.spectrum);
+        apply(&out.jacobian, motion, &out.offset, &mut out.force);
     }
+}
+
+/// Whether a share of the period is all of it, but for rounding.
+fn is_whole(share: f64) -> bool {
+    share > 1.0 - 1e-12
 }

@@ -126,10 +126,7 @@ impl PointwiseEvaluator {
             scratch: &mut self.scratch,
         };
         law.evaluate(omega, self.transform.held(), &self.u, &self.v, samples)?;
-        out.jacobian.fill(0.0);
-        out.by_omega.fill(0.0);
-        out.slip_fraction = 0.0;
-        out.stuck = false;
+        out.clear();
         self.forces(set, out);
         self.tangents(set, omega, out);
         // F − J·X

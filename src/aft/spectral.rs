@@ -16,11 +16,8 @@ impl Assembly {
     /// Evaluates a law without events.
     pub(super) fn spectral(&mut self, law: &dyn Spectral, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
         law.spectrum(set, motion, &mut self.spectrum);
-        out.jacobian.fill(0.0);
-        out.offset.fill(0.0);
-        out.slip_fraction = 0.0;
-        // Even at rest: its stiffness need not be the reference's.
-        out.stuck = false;
+        // Never stuck, even at rest: its stiffness need not be the reference's.
+        out.clear();
         self.finish(set, motion, out);
         // The force now holds T(S)·X.
         let (linear, degree) = (law.linear(), law.degree());

@@ -5,6 +5,7 @@
 //! coefficients and Jacobian follow is the same for all laws of a [`Form`] and lives in
 //! [`crate::aft`], which knows no law by name. All quantities are in the solver's units.
 
+use super::friction::Friction;
 use super::pointwise::Pointwise;
 use super::state::State;
 use crate::fourier::Extremum;
@@ -61,6 +62,8 @@ pub enum Form<'a> {
     Pieces(&'a dyn Pieces),
     /// A spectrum of the stiffness on one relative motion: exact.
     Spectral(&'a dyn Spectral),
+    /// Friction in one direction under a normal load that varies: exact.
+    Coupled(&'a Friction),
     /// Force and tangents at equidistant times, without memory.
     Pointwise(&'a dyn Pointwise),
 }

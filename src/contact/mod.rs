@@ -5,6 +5,7 @@
 //! file each: the laws, the [`sides`], and the [`law`] vocabulary that they share.
 
 pub mod cubic;
+pub mod friction;
 pub mod iwan;
 pub mod jenkins;
 pub mod law;
@@ -13,6 +14,7 @@ pub mod pointwise;
 pub mod polynomial;
 pub mod regularised;
 pub mod sides;
+mod slider;
 pub mod state;
 pub mod table;
 pub mod unilateral;
@@ -20,6 +22,7 @@ pub mod user;
 
 use crate::error::{Result, fail};
 use cubic::Cubic;
+use friction::Friction;
 use jenkins::Jenkins;
 pub use law::{Form, Law, Piece};
 use polynomial::Polynomial;
@@ -39,6 +42,9 @@ pub enum ContactKind {
     Cubic,
     /// Spring that is pressed once a gap has closed, and open otherwise.
     Unilateral,
+    /// Elastic Coulomb friction in one tangential direction, t1, under a normal load along n that varies
+    /// and may vanish.
+    Friction,
     /// Friction with Coulomb's jump smoothed: f = μN₀·tanh(v/velocity).
     Regularised,
     /// Spring whose force is straight between the points of a table.
@@ -140,6 +146,25 @@ impl Contact {
         }
     }
 
+    /// Friction of stiffness `kt` along a direction under a normal load of stiffness `kn`, between the
+    /// degrees of freedom (tangential, normal) of side `a` and side `b`; `None` is the ground.
+    #[must_use]
+    pub fn friction(
+        a: [Option<usize>; 2],
+        b: [Option<usize>; 2],
+        (kt, kn): (f64, f64),
+        mu: f64,
+        preload: f64,
+    ) -> Self {
+        Self {
+            kind: ContactKind::Friction,
+            dof_a: [a[0], None, a[1]],
+            dof_b: [b[0], None, b[1]],
+            kn,
+            ..Self::jenkins(0, None, kt, mu, preload)
+        }
+    }
+
     /// Regularised friction of limit μN₀ between degree of freedom `a` and `b` (or the ground).
     #[must_use]
     pub fn regularised(a: usize, b: Option<usize>, mu: f64, preload: f64, velocity: f64) -> Self {
@@ -186,11 +211,19 @@ impl Contact {
         }
     }
 
+    /// n₀ of a load N = max(n₀ − kn·y, 0) that varies; negative where a gap is open at rest.
+    #[must_use]
+    pub fn load(&self) -> f64 {
+        self.preload - self.kn * self.gap
+    }
+
     /// Whether the contact presses at rest: then it loads the structure without vibration.
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
         match &self.kind {
-            ContactKind::Unilateral => self.role() == Role::Active && self.clearance() <= 0.0,
+            ContactKind::Unilateral | ContactKind::Friction => {
+                self.role() == Role::Active && self.clearance() <= 0.0
+            }
             ContactKind::Table(table) => table.force(0.0) != 0.0,
             _ => false,
         }
@@ -201,6 +234,7 @@ impl Contact {
     pub fn places(&self) -> &'static [usize] {
         match self.kind {
             ContactKind::Unilateral => &[2],
+            ContactKind::Friction => &[0, 2],
             _ if self.dofs.is_empty() => &[0],
             _ => &[],
         }
@@ -247,6 +281,12 @@ impl Contact {
                 stiffness: self.kn,
                 gap: self.clearance() / length,
             }),
+            ContactKind::Friction => Arc::new(Friction {
+                kt: self.kt,
+                kn: self.kn,
+                mu: self.mu,
+                load: self.load() / length,
+            }),
             ContactKind::Regularised => {
                 let law = TanhFriction::new(self.slip_limit(), self.velocity)?;
                 Arc::new(law.in_units(length))
@@ -265,6 +305,8 @@ impl Contact {
             ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
             ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
+            ContactKind::Friction if k == l && self.load() > 0.0 => self.stiffness(k),
+            ContactKind::Friction => 0.0,
             ContactKind::Table(table) => table.stiffness_at_rest(),
             ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
             ContactKind::Unilateral | ContactKind::Regularised | ContactKind::User(_) => 0.0,
@@ -291,13 +333,16 @@ impl Contact {
     /// does.
     #[must_use]
     pub fn may_stick(&self, k: usize) -> bool {
-        k == 0 && matches!(self.kind, ContactKind::Jenkins)
+        k == 0 && matches!(self.kind, ContactKind::Jenkins | ContactKind::Friction)
     }
 
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
     #[must_use]
     pub fn is_spring(&self) -> bool {
-        !matches!(self.kind, ContactKind::Jenkins | ContactKind::Unilateral)
+        !matches!(
+            self.kind,
+            ContactKind::Jenkins | ContactKind::Unilateral | ContactKind::Friction
+        )
     }
 
     /// What the constants of the law make of the contact.
@@ -308,7 +353,7 @@ impl Contact {
             ContactKind::Jenkins if self.slip_limit().is_infinite() => Role::Spring,
             ContactKind::Cubic if self.cubic == 0.0 && self.kt == 0.0 => Role::Inert,
             ContactKind::Cubic if self.cubic == 0.0 => Role::Spring,
-            ContactKind::Unilateral if self.kn == 0.0 => Role::Inert,
+            ContactKind::Unilateral | ContactKind::Friction if self.kn == 0.0 => Role::Inert,
             ContactKind::Regularised if self.slip_limit() == 0.0 => Role::Inert,
             _ => Role::Active,
         }
@@ -363,6 +408,7 @@ impl Contact {
             ContactKind::Jenkins => (&[kn, gap, cubic, velocity], "Jenkins contact"),
             ContactKind::Cubic => (&[kn, mu, preload, gap, velocity], "cubic spring"),
             ContactKind::Unilateral => (&[kt, mu, cubic, velocity], "unilateral spring"),
+            ContactKind::Friction => (&[cubic, velocity], "friction contact"),
             ContactKind::Regularised => (&[kt, kn, gap, cubic], "regularised friction"),
             ContactKind::Table(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "table"),
             ContactKind::Polynomial(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "polynomial"),
@@ -372,6 +418,12 @@ impl Contact {
             if value != 0.0 {
                 return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
             }
+        }
+        if matches!(self.kind, ContactKind::Friction) && self.kn == 0.0 {
+            return fail!(
+                Argument,
+                "contact: kn = 0, needs a number > 0 for friction under a varying load; a constant one is that of a Jenkins contact"
+            );
         }
         if let ContactKind::Regularised = self.kind {
             TanhFriction::new(self.slip_limit(), self.velocity)?;
