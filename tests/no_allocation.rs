@@ -302,7 +302,7 @@ fn evaluating_laws_without_memory_asks_for_none() {
             "polynomial",
             Box::new(Polynomial::tensors(2, &[], &[0.3; 8], &[-0.2; 16]).unwrap()),
         ),
-        ("tanh", Box::new(TanhFriction::new(0.7, 0.4, 0).unwrap())),
+        ("tanh", Box::new(TanhFriction::new(0.7, 0.4).unwrap())),
         ("callback", Box::new(User::new(Arc::new(Drag), 2, 0).unwrap())),
     ];
     for (name, law) in laws {
@@ -311,7 +311,7 @@ fn evaluating_laws_without_memory_asks_for_none() {
             let set = HarmonicSet::all(highest).unwrap();
             let motion = vec![0.1; law.directions() * set.packed_len()];
             let mut out = Evaluation::new(&set, law.directions()).unwrap();
-            let mut evaluator = PointwiseEvaluator::new(&set, &*law).unwrap();
+            let mut evaluator = PointwiseEvaluator::new(&set, &*law, law.samples(set.highest_reduced(), 0)).unwrap();
             let evaluation = || evaluator.evaluate(&*law, &set, 1.1, &motion, &mut out).unwrap();
             let (count, ()) = allocations(evaluation);
             assert_eq!(count, 0, "{name}, H = {highest}");

@@ -7,14 +7,15 @@ mod pointwise;
 mod stencil;
 
 use hbvib::aft::pointwise::PointwiseEvaluator;
-use hbvib::contact::pointwise::{AtRest, Pointwise};
+use hbvib::contact::pointwise::Pointwise;
 use hbvib::contact::polynomial::Polynomial;
 use hbvib::contact::regularised::TanhFriction;
 use hbvib::contact::user::User;
 use hbvib::error::Status;
 use hbvib::harmonics::HarmonicSet;
 use pointwise::{
-    coupled, dense, evaluate, gap, largest, mixed, motion, pendulum, quintic, refused, sets, suits, term, van_der_pol,
+    coupled, dense, evaluate, evaluate_at, gap, largest, mixed, motion, pendulum, quintic, refused, sets, suits, term,
+    van_der_pol,
 };
 use std::f64::consts::TAU;
 use stencil::Stencil;
@@ -26,7 +27,7 @@ fn laws() -> Vec<(&'static str, Box<dyn Pointwise>)> {
         ("quintic", Box::new(quintic())),
         ("coupled", Box::new(coupled())),
         ("mixed", Box::new(mixed())),
-        ("tanh", Box::new(TanhFriction::new(0.7, 0.4, 0).unwrap())),
+        ("tanh", Box::new(TanhFriction::new(0.7, 0.4).unwrap())),
         ("callback", Box::new(pendulum().1)),
     ]
 }
@@ -72,7 +73,7 @@ fn half_a_turn_serves_odd_motions() {
     for law in [
         &van_der_pol() as &dyn Pointwise,
         &quintic(),
-        &TanhFriction::new(0.7, 0.4, 0).unwrap(),
+        &TanhFriction::new(0.7, 0.4).unwrap(),
     ] {
         let x = motion(&odd, 1, 4);
         let mut spread = vec![0.0; all.packed_len()];
@@ -116,8 +117,8 @@ fn regularised_friction_is_that_of_dense_sampling_as_exactly_as_its_samples_prom
         let speed: f64 = 0.5;
         let expected = dense(&set, 1, omega, &x, |_, v| vec![limit * (v[0] / speed).tanh()]);
         let error = |samples: usize| {
-            let law = TanhFriction::new(limit, speed, samples).unwrap();
-            gap(&evaluate(&law, &set, omega, &x).force, &expected)
+            let law = TanhFriction::new(limit, speed).unwrap();
+            gap(&evaluate_at(samples, &law, &set, omega, &x).force, &expected)
         };
         println!(
             "tanh: automatic samples {:.1e}, 4096 samples {:.1e}",
@@ -133,8 +134,8 @@ fn regularised_friction_is_that_of_dense_sampling_as_exactly_as_its_samples_prom
     let reference = dense(&set, 1, omega, &x, |_, v| vec![(v[0] / speed).tanh()]);
     let delta = (TAU / 4.0 * speed / (omega * f64::hypot(x[0], x[1]))).asinh();
     for n in [64, 128, 256] {
-        let law = TanhFriction::new(1.0, speed, n).unwrap();
-        let error = gap(&evaluate(&law, &set, omega, &x).force, &reference);
+        let law = TanhFriction::new(1.0, speed).unwrap();
+        let error = gap(&evaluate_at(n, &law, &set, omega, &x).force, &reference);
         let bound = (-(n as f64 - 1.0) * delta).exp();
         println!("tanh, {n} samples: error {error:.2e}, e^(-(N-H)delta) {bound:.2e}");
         assert!(error < 10.0 * bound + 1e-13, "{n}: {error:e} {bound:e}");
@@ -165,30 +166,11 @@ fn units_of_length_do_not_matter_and_those_of_an_eased_law_are_smaller() {
         for ((offset, a), b) in here.offset.iter().zip(&above).zip(&below) {
             assert!((offset - (a - b) / (2.0 * h)).abs() < 1e-7 * largest(&here.jacobian));
         }
-        // No length at all leaves the law at rest: linear.
-        let rest = at(f64::INFINITY);
-        let at_rest = AtRest::of(&*law(1.0), 0.9).unwrap();
-        assert!(largest(&rest.offset) < 1e-14 && largest(&at_rest.force) == 0.0);
-        let m = set.packed_len();
-        for i in 0..d {
-            for j in 0..d {
-                // Column of the real part of harmonic 1: stiffness in place, damping across.
-                let entry = |row: usize| rest.jacobian[(j * m + 1) * d * m + i * m + row];
-                assert!((entry(1) - at_rest.stiffness[i * d + j]).abs() < 1e-14);
-                assert!((entry(2) - 0.9 * at_rest.damping[i * d + j]).abs() < 1e-14);
-                assert!(entry(3).abs() < 1e-14);
-            }
-        }
     };
     for law in [van_der_pol(), quintic(), coupled(), mixed()] {
         easing(&|l| Box::new(law.in_units(l)));
-        let d = law.directions();
-        let (mut stiffness, mut damping) = (vec![1.0; d * d], vec![1.0; d * d]);
-        law.at_rest(&mut stiffness, &mut damping);
-        let asked = AtRest::of(&law, 1.0).unwrap();
-        assert_eq!((stiffness, damping), (asked.stiffness, asked.damping));
     }
-    let friction = TanhFriction::new(0.7, 0.4, 0).unwrap();
+    let friction = TanhFriction::new(0.7, 0.4).unwrap();
     easing(&|l| Box::new(friction.in_units(l)));
     let (_, user) = pendulum();
     easing(&|l| Box::new(user.in_units(l)));
@@ -245,25 +227,25 @@ fn bad_constants_are_refused_by_name() {
         Status::Argument,
         &["damper", "16"],
     );
-    refused(&TanhFriction::new(1.0, 0.0, 0), Status::Argument, &["velocity = 0"]);
-    refused(&TanhFriction::new(-1.0, 1.0, 0), Status::Argument, &["limit = -1"]);
-    refused(
-        &TanhFriction::new(f64::NAN, 1.0, 0),
-        Status::NotFinite,
-        &["limit = NaN"],
-    );
-    refused(&TanhFriction::new(1e300, 1e-300, 0), Status::NotFinite, &["inf"]);
+    refused(&TanhFriction::new(1.0, 0.0), Status::Argument, &["velocity = 0"]);
+    refused(&TanhFriction::new(-1.0, 1.0), Status::Argument, &["limit = -1"]);
+    refused(&TanhFriction::new(f64::NAN, 1.0), Status::NotFinite, &["limit = NaN"]);
+    refused(&TanhFriction::new(1e300, 1e-300), Status::NotFinite, &["inf"]);
     let (force, _) = pendulum();
     refused(&User::new(force.clone(), 0, 0), Status::Argument, &["directions = 0"]);
     let few = User::new(force, 2, 8).unwrap();
     let set = HarmonicSet::all(4).unwrap();
     refused(
-        &PointwiseEvaluator::new(&set, &few),
+        &PointwiseEvaluator::new(&set, &few, few.samples(4, 0)),
         Status::Argument,
         &["samples = 8", "at least 9"],
     );
     for samples in [usize::MAX, usize::MAX / 2, 1 << 58] {
         let many = User { samples, ..few.clone() };
-        refused(&PointwiseEvaluator::new(&set, &many), Status::OutOfMemory, &["samples"]);
+        refused(
+            &PointwiseEvaluator::new(&set, &many, samples),
+            Status::OutOfMemory,
+            &["samples"],
+        );
     }
 }

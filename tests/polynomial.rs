@@ -110,7 +110,7 @@ fn more_samples_than_a_polynomial_asks_for_change_nothing() {
         for set in sets(7).iter().filter(|set| suits(&law, set)) {
             let x = motion(set, law.directions(), 3);
             let highest = set.highest_reduced();
-            let least = law.samples(highest);
+            let least = law.samples(highest, 0);
             assert_eq!(least, (law.degree() as usize + 1) * highest + 1);
             let exact = evaluate(&law, set, 0.9, &x);
             // A fast transform has the last.

@@ -7,8 +7,9 @@ mod stencil;
 use hbvib::aft::exact::Exact;
 use hbvib::aft::sampled::Sampled;
 use hbvib::aft::{Evaluation, Evaluator};
+use hbvib::contact::Contact;
+use hbvib::contact::law::{Law, Piece, Pieces};
 use hbvib::contact::table::Table;
-use hbvib::contact::{Contact, Law};
 use hbvib::error::Status;
 use hbvib::fourier::Reversals;
 use hbvib::harmonics::HarmonicSet;
@@ -24,13 +25,15 @@ fn motion(set: &HarmonicSet, seed: usize) -> Vec<f64> {
 
 fn evaluate(law: &Table, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
     let mut out = Evaluation::new(set, 1).unwrap();
-    let mut way = Exact::new(set).unwrap();
+    let most = law.most_pieces(set.highest_reduced());
+    let mut way = Exact::new(set, most).unwrap();
     way.prepare(set, motion);
-    way.evaluate_pieces(set, motion, &mut out, |reversals, pieces| {
-        law.pieces(set, motion, reversals, pieces);
-        let bound = law.most_pieces(set.highest_reduced());
-        assert!(pieces.len() <= bound, "{} pieces, bound {bound}", pieces.len());
-    });
+    way.evaluate(law, set, motion, &mut out);
+    assert!(
+        way.pieces().len() <= most,
+        "{} pieces, bound {most}",
+        way.pieces().len()
+    );
     out
 }
 
@@ -38,9 +41,7 @@ fn sampled(law: &Table, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Ev
     let mut out = Evaluation::new(set, 1).unwrap();
     let mut way = Sampled::new(set, samples).unwrap();
     way.prepare(set, motion);
-    way.evaluate_pieces(set, motion, &mut out, |samples, pieces| {
-        law.sampled_pieces(samples, pieces);
-    });
+    way.evaluate(law, set, motion, &mut out);
     out
 }
 
@@ -87,16 +88,16 @@ fn two_lines_are_a_unilateral_spring() {
     for (kn, g) in [(2.0, 0.3), (2.0, -0.2), (0.7, 0.0), (1.0, 5.0), (1.0, -5.0)] {
         // f = −kn·max(−x − g, 0)
         let table = Table::new(&[-g - 1.0, -g, -g + 1.0], &[-kn, 0.0, 0.0]).unwrap();
-        let spring = Law::new(&Contact::unilateral(Some(0), None, kn, g), 1.0);
+        let spring = Contact::unilateral(Some(0), None, kn, g).law(1.0).unwrap();
         assert!((table.largest_stiffness() - kn).abs() < 1e-14);
         for highest in [1, 3, 9, 40] {
             let set = HarmonicSet::all(highest).unwrap();
             let x = motion(&set, highest);
             let mut expected = Evaluation::new(&set, 1).unwrap();
             for samples in [0, 256] {
-                let mut evaluator = Evaluator::new(&set, samples).unwrap();
+                let mut evaluator = Evaluator::new(&set, samples, std::iter::once(&*spring)).unwrap();
                 evaluator.prepare(&set, &x);
-                evaluator.evaluate(&spring, &set, &x, &mut expected);
+                evaluator.evaluate(&*spring, &set, &x, 1.0, &mut expected).unwrap();
                 let found = if samples == 0 {
                     evaluate(&table, &set, &x)
                 } else {
@@ -299,7 +300,7 @@ fn a_motion_that_rests_or_just_touches_a_point_meets_no_gap() {
         for swing in [0.15, 0.3, 0.6, 0.9] {
             for nudge in [0.0, 1e-16, -1e-16, 1e-12, -1e-12] {
                 x[1] = swing + nudge;
-                let mut pieces = Vec::new();
+                let mut pieces: Vec<Piece> = Vec::new();
                 let mut reversals = Vec::new();
                 Reversals::new(&set).unwrap().find(&set, &x, &mut reversals);
                 law.pieces(&set, &x, &reversals, &mut pieces);

@@ -21,7 +21,7 @@ fn a_callback_gives_the_harmonics_of_dense_sampling_and_is_called_once_per_perio
     let x = motion(&set, 2, 1);
     let omega = 0.7;
     let mut out = Evaluation::new(&set, 2).unwrap();
-    let mut evaluator = PointwiseEvaluator::new(&set, &law).unwrap();
+    let mut evaluator = PointwiseEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
     for _ in 0..3 {
         evaluator.evaluate(&law, &set, omega, &x, &mut out).unwrap();
     }
@@ -37,7 +37,7 @@ fn a_callback_gives_the_harmonics_of_dense_sampling_and_is_called_once_per_perio
     );
     println!(
         "callback: {} samples {few:.1e}, 1024 samples {many:.1e}",
-        law.samples(4)
+        law.samples(4, 0)
     );
     assert!(few < 1e-4 && many < 1e-13);
     assert_eq!([0, 1, 4, 5, 7].map(automatic_samples), [64, 64, 64, 128, 128]);
@@ -89,7 +89,7 @@ fn a_callback_that_is_a_polynomial_gives_its_harmonics() {
         }
     }
     let nowhere = User { directions: 0, ..law };
-    let refusal = PointwiseEvaluator::new(&HarmonicSet::all(1).unwrap(), &nowhere);
+    let refusal = PointwiseEvaluator::new(&HarmonicSet::all(1).unwrap(), &nowhere, 64);
     refused(&refusal, Status::Argument, &["directions = 0"]);
 }
 
@@ -126,7 +126,7 @@ fn failures_of_a_callback_keep_its_code_and_name_the_place() {
     let answer = |force: Failing, x: &[f64]| {
         let law = User::new(Arc::new(force), 2, 0).unwrap();
         let mut out = Evaluation::new(&set, 2).unwrap();
-        let mut evaluator = PointwiseEvaluator::new(&set, &law).unwrap();
+        let mut evaluator = PointwiseEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
         evaluator.evaluate(&law, &set, 1.0, x, &mut out).map(|()| out)
     };
     let error = |force: Failing| answer(force, &x).expect_err("a failure");

@@ -50,6 +50,12 @@ impl Exact {
         self.reversals.find(set, motion, &mut self.extrema);
     }
 
+    /// The pieces of the law evaluated last.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
     /// Half the range of the prepared motion.
     #[must_use]
     pub fn half_range(&self, set: &HarmonicSet) -> f64 {
@@ -75,7 +81,8 @@ impl Exact {
         for piece in &self.pieces {
             transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
             let state = law.state(piece);
-            self.assembly.add(set, (piece, state), &self.transform, piece.anchor, out);
+            self.assembly
+                .add(set, (piece, state), &self.transform, piece.anchor, out);
         }
         self.assembly.finish(set, motion, out);
     }

@@ -82,7 +82,8 @@ impl Sampled {
                 *t /= n as f64;
             }
             let anchor = piece.anchor.map(|j| TAU * j / n as f64);
-            self.assembly.add(set, (piece, law.state(piece)), &self.transform, anchor, out);
+            self.assembly
+                .add(set, (piece, law.state(piece)), &self.transform, anchor, out);
         }
         self.assembly.finish(set, motion, out);
     }

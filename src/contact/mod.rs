@@ -149,13 +149,7 @@ impl Contact {
     /// Friction of stiffness `kt` along a direction under a normal load of stiffness `kn`, between the
     /// degrees of freedom (tangential, normal) of side `a` and side `b`; `None` is the ground.
     #[must_use]
-    pub fn friction(
-        a: [Option<usize>; 2],
-        b: [Option<usize>; 2],
-        (kt, kn): (f64, f64),
-        mu: f64,
-        preload: f64,
-    ) -> Self {
+    pub fn friction(a: [Option<usize>; 2], b: [Option<usize>; 2], (kt, kn): (f64, f64), mu: f64, preload: f64) -> Self {
         Self {
             kind: ContactKind::Friction,
             dof_a: [a[0], None, a[1]],
@@ -221,9 +215,7 @@ impl Contact {
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
         match &self.kind {
-            ContactKind::Unilateral | ContactKind::Friction => {
-                self.role() == Role::Active && self.clearance() <= 0.0
-            }
+            ContactKind::Unilateral | ContactKind::Friction => self.role() == Role::Active && self.clearance() <= 0.0,
             ContactKind::Table(table) => table.force(0.0) != 0.0,
             _ => false,
         }

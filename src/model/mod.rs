@@ -9,9 +9,9 @@ pub mod spring;
 pub mod start_mode;
 pub mod structure;
 
+use crate::contact::Contact;
 use crate::contact::iwan::Iwan;
 use crate::contact::sides::Direction;
-use crate::contact::Contact;
 use crate::error::{Result, fail, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use excitation::Excitation;

@@ -239,7 +239,7 @@ impl Wheel {
                     dof_a: contact.dof_a.map(|a| a.map(|d| s * self.n + d)),
                     dof_b: contact.dof_b.map(|b| b.map(|d| other * self.n + d)),
                     sector_offset: 0,
-                    ..*contact
+                    ..contact.clone()
                 })
                 .unwrap();
         }

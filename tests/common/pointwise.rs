@@ -34,8 +34,13 @@ pub fn sets(highest: usize) -> [HarmonicSet; 4] {
 }
 
 pub fn evaluate(law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
+    evaluate_at(0, law, set, omega, motion)
+}
+
+/// The same with samples asked for.
+pub fn evaluate_at(asked: usize, law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
-    let mut evaluator = PointwiseEvaluator::new(set, law).unwrap();
+    let mut evaluator = PointwiseEvaluator::new(set, law, law.samples(set.highest_reduced(), asked)).unwrap();
     evaluator.evaluate(law, set, omega, motion, &mut out).unwrap();
     out
 }
