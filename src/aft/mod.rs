@@ -12,8 +12,11 @@
 //! law gives S at once, without pieces.
 
 pub mod exact;
+pub mod marched;
+mod periodic;
 pub mod pointwise;
 pub mod sampled;
+mod sensitivity;
 mod spectral;
 mod toeplitz;
 mod transform;

@@ -5,9 +5,12 @@
 //! file each: the laws, the [`sides`], and the [`law`] vocabulary that they share.
 
 pub mod cubic;
+pub mod friction_plane;
+mod friction_step;
 pub mod iwan;
 pub mod jenkins;
 pub mod law;
+pub mod marched;
 pub mod patch;
 pub mod pointwise;
 pub mod polynomial;
