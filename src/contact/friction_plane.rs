@@ -39,15 +39,6 @@ impl FrictionPlane {
             self.load
         }
     }
-
-    /// The law as seen at a motion `factor` times smaller, eased(s)(x) = s·law(x/s).
-    #[must_use]
-    pub fn eased(&self, factor: f64) -> Self {
-        Self {
-            load: self.load * factor,
-            ..*self
-        }
-    }
 }
 
 impl Marched for FrictionPlane {
