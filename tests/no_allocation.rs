@@ -8,9 +8,11 @@ mod common;
 
 use common::{BASE, harmonics};
 use hbvib::aft::Evaluation;
+use hbvib::aft::marched::MarchedWay;
 use hbvib::aft::pointwise::PointwiseEvaluator;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::contact::Contact;
+use hbvib::contact::friction_plane::FrictionPlane;
 use hbvib::contact::pointwise::Pointwise;
 use hbvib::contact::polynomial::Polynomial;
 use hbvib::contact::regularised::TanhFriction;
@@ -329,5 +331,28 @@ impl UserForce for Drag {
             *slope = f64::from(u8::from(k % 4 == 0 || k % 4 == 3));
         }
         0
+    }
+}
+
+#[test]
+fn a_law_marched_over_samples_asks_for_no_memory() {
+    let set = HarmonicSet::all(5).unwrap();
+    // With separation, with slip alone, and stuck.
+    for load in [0.4, 4.0, 1e3] {
+        let law = FrictionPlane {
+            kt: 1.3,
+            kn: 0.9,
+            mu: 0.4,
+            load,
+            has_normal: true,
+        };
+        let motion: Vec<f64> = (0..33).map(|i| (0.7 + f64::from(i)).sin()).collect();
+        let mut way = MarchedWay::new(&set, &law, 128).unwrap();
+        let mut out = Evaluation::new(&set, 3).unwrap();
+        let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out));
+        result.unwrap();
+        assert_eq!(count, 0, "load {load}");
+        assert_eq!(way.open_fraction() > 0.0, load < 1.0);
+        assert_eq!((out.slip_fraction > 0.0, out.stuck), (load < 10.0, load > 10.0));
     }
 }

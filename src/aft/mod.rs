@@ -15,8 +15,11 @@
 mod block;
 pub mod coupled;
 pub mod exact;
+pub mod marched;
+mod periodic;
 pub mod pointwise;
 pub mod sampled;
+mod sensitivity;
 mod spectral;
 mod toeplitz;
 mod transform;
@@ -27,6 +30,7 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use block::{Block, add_stiffness, apply, pack};
 use coupled::Coupled;
+use marched::MarchedWay;
 use num_complex::Complex64;
 use pointwise::PointwiseEvaluator;
 
@@ -37,6 +41,8 @@ pub struct Evaluator {
     smooth: Assembly,
     /// Friction under a varying normal load.
     coupled: Option<Box<Coupled>>,
+    /// Laws with states, by their directions, states and samples.
+    marched: Vec<MarchedWay>,
     /// Laws without memory, by their directions and samples.
     pointwise: Vec<PointwiseEvaluator>,
     /// Samples asked for.
@@ -124,12 +130,20 @@ impl Evaluator {
         let mut pointwise: Vec<PointwiseEvaluator> = Vec::new();
         let mut most_pieces = 0;
         let mut coupled = None;
+        let mut marched: Vec<MarchedWay> = Vec::new();
         for law in laws {
             match law.form() {
                 Form::Spectral(_) => {}
                 Form::Pieces(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
                 Form::Coupled(_) if coupled.is_none() => coupled = Some(Box::new(Coupled::new(set)?)),
                 Form::Coupled(_) => {}
+                Form::Marched(law) => {
+                    let wanted = law.samples(highest, samples);
+                    if !marched.iter().any(|way| way.suits(law, wanted)) {
+                        let way = MarchedWay::new(set, law, wanted)?;
+                        try_push(&mut marched, way, "the contact laws")?;
+                    }
+                }
                 Form::Pointwise(law) => {
                     let wanted = law.samples(highest, samples);
                     if !pointwise.iter().any(|way| way.suits(law, wanted)) {
@@ -147,6 +161,7 @@ impl Evaluator {
             },
             smooth: Assembly::new(set)?,
             coupled,
+            marched,
             pointwise,
             samples,
         })
@@ -183,6 +198,13 @@ impl Evaluator {
                     return fail!(Internal, "no memory for the pieces of a contact law");
                 };
                 way.evaluate(law, set, motion, out);
+            }
+            (Form::Marched(law), _) => {
+                let wanted = law.samples(set.highest_reduced(), self.samples);
+                let Some(way) = self.marched.iter_mut().find(|way| way.suits(law, wanted)) else {
+                    return fail!(Internal, "no memory for the march of a contact law");
+                };
+                return way.evaluate(law, omega, motion, out);
             }
             (Form::Pointwise(law), _) => {
                 let wanted = law.samples(set.highest_reduced(), self.samples);

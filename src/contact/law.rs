@@ -6,6 +6,7 @@
 //! [`crate::aft`], which knows no law by name. All quantities are in the solver's units.
 
 use super::friction::Friction;
+use super::marched::Marched;
 use super::pointwise::Pointwise;
 use super::state::State;
 use crate::fourier::Extremum;
@@ -64,6 +65,8 @@ pub enum Form<'a> {
     Spectral(&'a dyn Spectral),
     /// Friction in one direction under a normal load that varies: exact.
     Coupled(&'a Friction),
+    /// Force, states and the derivatives of their steps, marched over equidistant times.
+    Marched(&'a dyn Marched),
     /// Force and tangents at equidistant times, without memory.
     Pointwise(&'a dyn Pointwise),
 }

@@ -6,9 +6,12 @@
 
 pub mod cubic;
 pub mod friction;
+pub mod friction_plane;
+mod friction_step;
 pub mod iwan;
 pub mod jenkins;
 pub mod law;
+pub mod marched;
 pub mod patch;
 pub mod pointwise;
 pub mod polynomial;
@@ -23,6 +26,7 @@ pub mod user;
 use crate::error::{Result, fail};
 use cubic::Cubic;
 use friction::Friction;
+use friction_plane::FrictionPlane;
 use jenkins::Jenkins;
 pub use law::{Form, Law, Piece};
 use polynomial::Polynomial;
@@ -45,6 +49,10 @@ pub enum ContactKind {
     /// Elastic Coulomb friction in one tangential direction, t1, under a normal load along n that varies
     /// and may vanish.
     Friction,
+    /// Elastic Coulomb friction in the plane of t1 and t2, whose force turns with the slip, under a
+    /// normal load along n that varies and may vanish; without a degree of freedom along n the load is
+    /// constant.
+    FrictionPlane,
     /// Friction with Coulomb's jump smoothed: f = μN₀·tanh(v/velocity).
     Regularised,
     /// Spring whose force is straight between the points of a table.
@@ -159,6 +167,25 @@ impl Contact {
         }
     }
 
+    /// The same in the plane of two tangential directions, between the degrees of freedom along t1, t2
+    /// and n.
+    #[must_use]
+    pub fn friction_plane(
+        a: [Option<usize>; 3],
+        b: [Option<usize>; 3],
+        (kt, kn): (f64, f64),
+        mu: f64,
+        preload: f64,
+    ) -> Self {
+        Self {
+            kind: ContactKind::FrictionPlane,
+            dof_a: a,
+            dof_b: b,
+            kn,
+            ..Self::jenkins(0, None, kt, mu, preload)
+        }
+    }
+
     /// Regularised friction of limit μN₀ between degree of freedom `a` and `b` (or the ground).
     #[must_use]
     pub fn regularised(a: usize, b: Option<usize>, mu: f64, preload: f64, velocity: f64) -> Self {
@@ -205,6 +232,15 @@ impl Contact {
         }
     }
 
+    /// Whether a side can move along n.
+    fn has_normal(&self) -> bool {
+        let place = |dofs: [Option<usize>; 3]| match &self.frame {
+            None => dofs[2].is_some(),
+            Some(frame) => frame.side(dofs, 2).iter().any(Option::is_some),
+        };
+        place(self.dof_a) || place(self.dof_b)
+    }
+
     /// n₀ of a load N = max(n₀ − kn·y, 0) that varies; negative where a gap is open at rest.
     #[must_use]
     pub fn load(&self) -> f64 {
@@ -215,7 +251,9 @@ impl Contact {
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
         match &self.kind {
-            ContactKind::Unilateral | ContactKind::Friction => self.role() == Role::Active && self.clearance() <= 0.0,
+            ContactKind::Unilateral | ContactKind::Friction | ContactKind::FrictionPlane => {
+                self.role() == Role::Active && self.kn > 0.0 && self.load() >= 0.0
+            }
             ContactKind::Table(table) => table.force(0.0) != 0.0,
             _ => false,
         }
@@ -227,6 +265,8 @@ impl Contact {
         match self.kind {
             ContactKind::Unilateral => &[2],
             ContactKind::Friction => &[0, 2],
+            ContactKind::FrictionPlane if self.has_normal() => &[0, 1, 2],
+            ContactKind::FrictionPlane => &[0, 1],
             _ if self.dofs.is_empty() => &[0],
             _ => &[],
         }
@@ -279,6 +319,13 @@ impl Contact {
                 mu: self.mu,
                 load: self.load() / length,
             }),
+            ContactKind::FrictionPlane => Arc::new(FrictionPlane {
+                kt: self.kt,
+                kn: self.kn,
+                mu: self.mu,
+                load: self.load() / length,
+                has_normal: self.has_normal(),
+            }),
             ContactKind::Regularised => {
                 let law = TanhFriction::new(self.slip_limit(), self.velocity)?;
                 Arc::new(law.in_units(length))
@@ -297,8 +344,8 @@ impl Contact {
             ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
             ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
-            ContactKind::Friction if k == l && self.load() > 0.0 => self.stiffness(k),
-            ContactKind::Friction => 0.0,
+            ContactKind::Friction | ContactKind::FrictionPlane if k == l && self.load() > 0.0 => self.stiffness(k),
+            ContactKind::Friction | ContactKind::FrictionPlane => 0.0,
             ContactKind::Table(table) => table.stiffness_at_rest(),
             ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
             ContactKind::Unilateral | ContactKind::Regularised | ContactKind::User(_) => 0.0,
@@ -325,7 +372,11 @@ impl Contact {
     /// does.
     #[must_use]
     pub fn may_stick(&self, k: usize) -> bool {
-        k == 0 && matches!(self.kind, ContactKind::Jenkins | ContactKind::Friction)
+        match self.kind {
+            ContactKind::Jenkins | ContactKind::Friction => k == 0,
+            ContactKind::FrictionPlane => k < 2,
+            _ => false,
+        }
     }
 
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
@@ -333,7 +384,7 @@ impl Contact {
     pub fn is_spring(&self) -> bool {
         !matches!(
             self.kind,
-            ContactKind::Jenkins | ContactKind::Unilateral | ContactKind::Friction
+            ContactKind::Jenkins | ContactKind::Unilateral | ContactKind::Friction | ContactKind::FrictionPlane
         )
     }
 
@@ -346,6 +397,7 @@ impl Contact {
             ContactKind::Cubic if self.cubic == 0.0 && self.kt == 0.0 => Role::Inert,
             ContactKind::Cubic if self.cubic == 0.0 => Role::Spring,
             ContactKind::Unilateral | ContactKind::Friction if self.kn == 0.0 => Role::Inert,
+            ContactKind::FrictionPlane if self.kn == 0.0 && (self.kt == 0.0 || self.slip_limit() == 0.0) => Role::Inert,
             ContactKind::Regularised if self.slip_limit() == 0.0 => Role::Inert,
             _ => Role::Active,
         }
@@ -400,7 +452,7 @@ impl Contact {
             ContactKind::Jenkins => (&[kn, gap, cubic, velocity], "Jenkins contact"),
             ContactKind::Cubic => (&[kn, mu, preload, gap, velocity], "cubic spring"),
             ContactKind::Unilateral => (&[kt, mu, cubic, velocity], "unilateral spring"),
-            ContactKind::Friction => (&[cubic, velocity], "friction contact"),
+            ContactKind::Friction | ContactKind::FrictionPlane => (&[cubic, velocity], "friction contact"),
             ContactKind::Regularised => (&[kt, kn, gap, cubic], "regularised friction"),
             ContactKind::Table(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "table"),
             ContactKind::Polynomial(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "polynomial"),
@@ -411,12 +463,7 @@ impl Contact {
                 return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
             }
         }
-        if matches!(self.kind, ContactKind::Friction) && self.kn == 0.0 {
-            return fail!(
-                Argument,
-                "contact: kn = 0, needs a number > 0 for friction under a varying load; a constant one is that of a Jenkins contact"
-            );
-        }
+        self.check_normal()?;
         if let ContactKind::Regularised = self.kind {
             TanhFriction::new(self.slip_limit(), self.velocity)?;
         }
@@ -433,6 +480,27 @@ impl Contact {
             );
         }
         self.check_places(kind)
+    }
+
+    /// The normal direction of friction: with a stiffness, or none at all.
+    fn check_normal(&self) -> Result<()> {
+        let plane = matches!(self.kind, ContactKind::FrictionPlane);
+        let needs_stiffness = matches!(self.kind, ContactKind::Friction) || (plane && self.has_normal());
+        if needs_stiffness && self.kn == 0.0 {
+            return fail!(
+                Argument,
+                "contact: kn = 0, needs a number > 0 for friction under a load that varies"
+            );
+        }
+        if plane && !self.has_normal() && (self.kn != 0.0 || self.gap != 0.0) {
+            return fail!(
+                Argument,
+                "contact: kn = {}, gap = {}, need 0 for friction without a degree of freedom along n",
+                self.kn,
+                self.gap
+            );
+        }
+        Ok(())
     }
 
     /// Degrees of freedom along directions in which the law does not act are a mistake.

@@ -2,7 +2,7 @@
 
 use crate::error::{Result, fail};
 
-/// One side of a relative motion, Σ coefficient·x[dof]; empty is the ground.
+/// One side of a relative motion, Σ coefficient · x of a degree of freedom; empty is the ground.
 pub type Side = [Option<(usize, f64)>; 3];
 
 /// A relative motion y, side a minus side b.

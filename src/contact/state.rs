@@ -27,9 +27,8 @@ impl Contact {
     #[must_use]
     pub fn normal_load(&self, y: f64) -> f64 {
         match &self.kind {
-            ContactKind::Jenkins => self.preload,
+            ContactKind::Jenkins | ContactKind::Regularised => self.preload,
             ContactKind::Unilateral if self.role() == Role::Active => (self.kn * (-y - self.clearance())).max(0.0),
-            ContactKind::Regularised => self.preload,
             _ => 0.0,
         }
     }

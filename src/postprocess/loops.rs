@@ -79,7 +79,7 @@ impl<'a> Orbit<'a> {
         let known = match self.law.form() {
             Form::Pieces(law) => law.at(motion),
             Form::Spectral(law) => Some((law.at(motion), State::Stick)),
-            Form::Pointwise(_) | Form::Coupled(_) => None,
+            Form::Pointwise(_) | Form::Coupled(_) | Form::Marched(_) => None,
         };
         let (force, state) = known.unwrap_or_else(|| self.remembered(tau, motion));
         Instant { motion, force, state }
@@ -105,7 +105,7 @@ impl<'a> Orbit<'a> {
     fn state(&self, piece: &Piece) -> State {
         match self.law.form() {
             Form::Pieces(law) => law.state(piece),
-            Form::Spectral(_) | Form::Pointwise(_) | Form::Coupled(_) => State::Stick,
+            Form::Spectral(_) | Form::Pointwise(_) | Form::Coupled(_) | Form::Marched(_) => State::Stick,
         }
     }
 
