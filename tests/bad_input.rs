@@ -178,16 +178,23 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             (
                 Contact {
                     kt: f64::INFINITY,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::NotFinite,
                 "kt",
             ),
-            (Contact { kt: -1.0, ..contact }, Status::Argument, "kt = -1"),
+            (
+                Contact {
+                    kt: -1.0,
+                    ..contact.clone()
+                },
+                Status::Argument,
+                "kt = -1",
+            ),
             (
                 Contact {
                     mu: f64::NAN,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::NotFinite,
                 "mu",
@@ -195,7 +202,7 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             (
                 Contact {
                     preload: -2.0,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::Argument,
                 "preload = -2",
@@ -243,7 +250,7 @@ fn a_refused_cubic_spring_leaves_the_model_as_it_was() {
             (
                 Contact {
                     cubic: f64::INFINITY,
-                    ..spring
+                    ..spring.clone()
                 },
                 Status::NotFinite,
                 "cubic = inf",
@@ -251,30 +258,43 @@ fn a_refused_cubic_spring_leaves_the_model_as_it_was() {
             (
                 Contact {
                     cubic: f64::NAN,
-                    ..friction
+                    ..friction.clone()
                 },
                 Status::NotFinite,
                 "cubic = NaN",
             ),
             (
-                Contact { cubic: 2.0, ..friction },
+                Contact {
+                    cubic: 2.0,
+                    ..friction.clone()
+                },
                 Status::Argument,
                 "cubic = 2, needs 0 for a Jenkins contact",
             ),
             (
-                Contact { mu: 0.3, ..spring },
+                Contact {
+                    mu: 0.3,
+                    ..spring.clone()
+                },
                 Status::Argument,
                 "mu = 0.3, needs 0 for a cubic spring",
             ),
             (
                 Contact {
                     preload: f64::INFINITY,
-                    ..spring
+                    ..spring.clone()
                 },
                 Status::Argument,
                 "preload = inf, needs 0 for a cubic spring",
             ),
-            (Contact { kt: -1.0, ..spring }, Status::Argument, "kt = -1"),
+            (
+                Contact {
+                    kt: -1.0,
+                    ..spring.clone()
+                },
+                Status::Argument,
+                "kt = -1",
+            ),
         ] {
             refused(model.add_contact(&bad), status, &[words]);
         }
@@ -369,7 +389,7 @@ fn arrays_of_the_wrong_length_are_refused_before_anything_is_written() {
         contact_evaluate(
             &Contact {
                 kt: f64::NAN,
-                ..contact
+                ..contact.clone()
             },
             3,
             0,

@@ -165,7 +165,11 @@ fn far_from_its_cubic_term_the_spring_is_linear() {
     let law = Contact::cubic(0, None, KT, K3).law(1.0).unwrap();
     // The homotopy begins where the cubic term is tiny against the reference.
     let reference = 5.0;
-    let range = Range { half: 1.5, mean: -0.5 };
+    let range = Range {
+        half: 1.5,
+        mean: -0.5,
+        speed: 0.0,
+    };
     let factor = law.sticking_factor(&[range], reference);
     let term = K3.abs() * (2.0 / factor).powi(2);
     assert!((term / reference / 1e-12 - 1.0).abs() < 1e-12);

@@ -280,7 +280,7 @@ fn condensed_case(
             ContactKind::Jenkins => contact.slip_limit() / contact.kt,
             // The cubic term equals the linear one.
             ContactKind::Cubic => (contact.kt / contact.cubic.abs()).sqrt(),
-            ContactKind::Unilateral => contact.gap.abs(),
+            _ => contact.gap.abs(),
         })
         .fold(f64::INFINITY, f64::min)
         / condensed.length();

@@ -80,7 +80,7 @@ impl Case {
         skewed.contacts.push(Contact {
             kt: 0.7,
             preload: 0.2,
-            ..skewed.contacts[1]
+            ..skewed.contacts[1].clone()
         });
         skewed.contacts.push(Contact::jenkins(1, None, 1.0, 0.4, 0.3));
         let mut model = skewed.model(self.with_damping);

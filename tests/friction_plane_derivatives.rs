@@ -5,6 +5,7 @@ mod plane;
 
 use hbvib::aft::Evaluation;
 use hbvib::contact::friction_plane::FrictionPlane;
+use hbvib::contact::law::Law;
 use hbvib::contact::marched::{March, Marched};
 use hbvib::harmonics::HarmonicSet;
 use plane::{OMEGA, Random, evaluate, largest, law};
@@ -136,7 +137,7 @@ fn the_jacobian_is_the_derivative_of_the_sampled_force() {
             let motion = random.motion(&set, d, [0.8, 3.0, 20.0][round % 3]);
             let (out, mut way) = evaluate(&law, &set, samples, &motion);
             most = most.max(way.marches());
-            opened += usize::from(way.open_fraction() > 0.0);
+            opened += usize::from(out.open_fraction > 0.0);
             slipped_in_part += usize::from(out.slip_fraction > 0.0 && out.slip_fraction < 0.9);
             slipped += usize::from(out.slip_fraction > 0.9);
             let scale = largest(&out.jacobian).max(1.0);

@@ -6,6 +6,7 @@ mod plane;
 
 use hbvib::aft::Evaluation;
 use hbvib::aft::marched::MarchedWay;
+use hbvib::contact::law::{Form, Law, Range};
 use hbvib::contact::marched::{March, Marched};
 use hbvib::error::Result;
 use hbvib::harmonics::HarmonicSet;
@@ -46,15 +47,28 @@ fn the_states_become_periodic_for_every_motion() {
 }
 
 /// A spring and a dashpot in series beside a dashpot: z' = k v − z/T by the trapezoidal rule, f = z + c v.
+#[derive(Debug)]
 struct Maxwell {
     k: f64,
     time: f64,
     c: f64,
 }
 
+impl Law for Maxwell {
+    fn is_odd(&self) -> bool {
+        true
+    }
+    fn form(&self) -> Form<'_> {
+        Form::Marched(self)
+    }
+    fn sticking_factor(&self, _: &[Range], _: f64) -> f64 {
+        1.0
+    }
+}
+
 impl Marched for Maxwell {
-    fn directions(&self) -> usize {
-        1
+    fn samples(&self, _: usize, asked: usize) -> usize {
+        asked
     }
     fn states(&self) -> usize {
         1

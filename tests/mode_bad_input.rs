@@ -156,9 +156,12 @@ fn a_mode_that_moves_no_contact_is_refused() {
     for contact in [
         Contact {
             preload: f64::INFINITY,
-            ..middle
+            ..middle.clone()
         },
-        Contact { mu: 0.0, ..middle },
+        Contact {
+            mu: 0.0,
+            ..middle.clone()
+        },
         Contact {
             kt: 0.0,
             ..middle.clone()

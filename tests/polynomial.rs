@@ -4,26 +4,27 @@
 mod pointwise;
 
 use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::pointwise::{Pointwise, Samples};
+use hbvib::contact::pointwise::Pointwise;
 use hbvib::contact::polynomial::Polynomial;
 use hbvib::contact::{Contact, Law};
 use hbvib::harmonics::HarmonicSet;
 use pointwise::{
-    at_one_time, coupled, dense, evaluate, gap, largest, mixed, motion, quintic, sets, suits, tensor, term, van_der_pol,
+    at_one_time, coupled, dense, evaluate, evaluate_with, gap, largest, mixed, motion, quintic, sets, suits, tensor,
+    term, van_der_pol,
 };
 
 #[test]
 fn a_cubic_polynomial_is_the_cubic_spring() {
     let (kt, k3) = (0.7, -2.3);
     let law = Polynomial::scalar(&[kt, 0.0, k3], &[]).unwrap();
-    let spring = Law::new(&Contact::cubic(0, None, kt, k3), 1.0);
+    let spring = Contact::cubic(0, None, kt, k3).law(1.0).unwrap();
     for highest in [3, 9, 40, 63] {
         for (which, set) in sets(highest).iter().enumerate() {
             let x = motion(set, 1, which + highest);
             let mut expected = Evaluation::new(set, 1).unwrap();
-            let mut evaluator = Evaluator::new(set, 0).unwrap();
+            let mut evaluator = Evaluator::new(set, 0, std::iter::once(&*spring)).unwrap();
             evaluator.prepare(set, &x);
-            evaluator.evaluate(&spring, set, &x, &mut expected);
+            evaluator.evaluate(&*spring, set, &x, 1.3, &mut expected).unwrap();
             let found = evaluate(&law, set, 1.3, &x);
             for (a, b) in [
                 (&found.force, &expected.force),
@@ -81,31 +82,6 @@ fn a_polynomial_is_the_sum_that_its_terms_say() {
 
 #[test]
 fn more_samples_than_a_polynomial_asks_for_change_nothing() {
-    struct More<'a>(&'a Polynomial, usize);
-    impl Pointwise for More<'_> {
-        fn directions(&self) -> usize {
-            self.0.directions()
-        }
-        fn uses_velocity(&self) -> bool {
-            self.0.uses_velocity()
-        }
-        fn is_odd(&self) -> bool {
-            self.0.is_odd()
-        }
-        fn samples(&self, _highest: usize) -> usize {
-            self.1
-        }
-        fn evaluate(
-            &self,
-            omega: f64,
-            samples: usize,
-            u: &[f64],
-            v: &[f64],
-            out: Samples<'_>,
-        ) -> hbvib::error::Result<()> {
-            self.0.evaluate(omega, samples, u, v, out)
-        }
-    }
     for law in [van_der_pol(), quintic(), coupled(), mixed()] {
         for set in sets(7).iter().filter(|set| suits(&law, set)) {
             let x = motion(set, law.directions(), 3);
@@ -115,12 +91,12 @@ fn more_samples_than_a_polynomial_asks_for_change_nothing() {
             let exact = evaluate(&law, set, 0.9, &x);
             // A fast transform has the last.
             for n in [least + 1, least + 6, 8192] {
-                let more = evaluate(&More(&law, n), set, 0.9, &x);
+                let more = evaluate_with(n, &law, set, 0.9, &x);
                 assert!(gap(&more.force, &exact.force) < 1e-13);
                 assert!(gap(&more.jacobian, &exact.jacobian) < 1e-13);
             }
             // Fewer are too few: some harmonic is mistaken for another.
-            let fewer = evaluate(&More(&law, 2 * highest + 1), set, 0.9, &x);
+            let fewer = evaluate_with(2 * highest + 1, &law, set, 0.9, &x);
             assert!(gap(&fewer.jacobian, &exact.jacobian) > 1e-3);
         }
     }

@@ -5,7 +5,7 @@
 use hbvib::aft::Evaluation;
 use hbvib::aft::marched::MarchedWay;
 use hbvib::contact::friction_plane::FrictionPlane;
-use hbvib::contact::marched::Marched;
+use hbvib::contact::law::Law;
 use hbvib::harmonics::HarmonicSet;
 
 pub const OMEGA: f64 = 1.7;

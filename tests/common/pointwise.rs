@@ -39,8 +39,13 @@ pub fn evaluate(law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f6
 
 /// The same with samples asked for.
 pub fn evaluate_at(asked: usize, law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
+    evaluate_with(law.samples(set.highest_reduced(), asked), law, set, omega, motion)
+}
+
+/// The same with so many samples.
+pub fn evaluate_with(samples: usize, law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
-    let mut evaluator = PointwiseEvaluator::new(set, law, law.samples(set.highest_reduced(), asked)).unwrap();
+    let mut evaluator = PointwiseEvaluator::new(set, law, samples).unwrap();
     evaluator.evaluate(law, set, omega, motion, &mut out).unwrap();
     out
 }
