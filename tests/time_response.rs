@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{BASE, Blisk, all_harmonics, complex, data, harmonics, largest, number, relative_gap, solve_at};
+use common::{BASE, all_harmonics, complex, data, harmonics, largest, number, relative_gap, solve_at, sweep};
 use hbvib::analysis::time_response::{TimeResponse, time_response};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
@@ -61,11 +61,7 @@ fn stop(kn: f64, gap: f64) -> Contact {
 #[test]
 fn a_linear_structure_moves_as_its_frequency_response_says() {
     // Mass with coupling, damping without symmetry, forces in three harmonics and a constant one.
-    let (m, c, k) = (
-        [2.0, 0.3, 0.3, 1.0],
-        [0.3, 0.1, -0.05, 0.2],
-        [5.0, -2.0, -2.0, 4.0],
-    );
+    let (m, c, k) = ([2.0, 0.3, 0.3, 1.0], [0.3, 0.1, -0.05, 0.2], [5.0, -2.0, -2.0, 4.0]);
     let mut model = Model::new(2).unwrap();
     model.set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &m)).unwrap();
     let general = MatrixView::dense(2, &c).part(Part::General);
@@ -102,7 +98,10 @@ fn a_linear_structure_moves_as_its_frequency_response_says() {
             expected[2 * h + 1] = (z(0) * f[1] - z(1) * f[0]) / determinant;
         }
         let error = relative_gap(&found.harmonics, &expected);
-        println!("{omega}: {error:.1e}, residual {:.1e}, {} periods", found.residual, found.periods);
+        println!(
+            "{omega}: {error:.1e}, residual {:.1e}, {} periods",
+            found.residual, found.periods
+        );
         assert!(error < 1e-12);
         for (i, x) in found.samples.chunks_exact(2).enumerate() {
             for (dof, x) in x.iter().enumerate() {
@@ -119,8 +118,20 @@ fn a_linear_structure_moves_as_its_frequency_response_says() {
 #[test]
 fn friction_agrees_with_event_driven_integrations_of_others() {
     let cases: [(&str, Model, f64, f64, f64); 4] = [
-        ("kt/k 1e3", oscillator(&jenkins(1e3, 0.2), &[(1, 0.5)]), 0.9, 2.161_790_724_147_932, 1e-9),
-        ("kt/k 1e6", oscillator(&jenkins(1e6, 0.2), &[(1, 0.5)]), 0.9, 2.178_382_925_129_319, 1e-9),
+        (
+            "kt/k 1e3",
+            oscillator(&jenkins(1e3, 0.2), &[(1, 0.5)]),
+            0.9,
+            2.161_790_724_147_932,
+            1e-9,
+        ),
+        (
+            "kt/k 1e6",
+            oscillator(&jenkins(1e6, 0.2), &[(1, 0.5)]),
+            0.9,
+            2.178_382_925_129_319,
+            1e-9,
+        ),
         (
             "undamped at resonance",
             damped_oscillator(0.0, &jenkins(1.0, 0.3), &[(1, 0.35)]),
@@ -147,18 +158,115 @@ fn friction_agrees_with_event_driven_integrations_of_others() {
     }
 }
 
+/// The last point of a sweep, as a start.
+fn swept(model: &Model, highest: usize, from: f64, to: f64) -> Vec<Complex64> {
+    let branch = sweep(model, &harmonics(highest), from, to, &[]);
+    all_harmonics(&branch, branch.points() - 1)
+}
+
 #[test]
-fn sector() {
+fn both_states_of_a_gap_oscillator_are_found_from_their_side() {
+    let model = oscillator(&stop(3.0, 0.2), &[(1, 0.02)]);
+    for (from, expected) in [(0.9, 0.401_335_298_905_242_4), (1.4, 0.061_858_390_314_775_365)] {
+        let start = swept(&model, 15, from, 1.15);
+        let found = solve(
+            &model,
+            &TimeOptions {
+                start: Some(&start),
+                ..at(1.15)
+            },
+        );
+        let error = (found.harmonics[1].norm() / expected - 1.0).abs();
+        println!(
+            "from {from}: {error:.1e}, {} periods, {} events",
+            found.periods, found.events
+        );
+        assert!(error < 1e-10);
+    }
+}
+
+#[test]
+fn duffings_peak_is_that_of_two_other_methods() {
+    let model = damped_oscillator(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)]);
+    let omega = 1.268_716_736_0;
+    let start = swept(&model, 7, 1.0, omega);
+    let now = std::time::Instant::now();
+    let found = solve(
+        &model,
+        &TimeOptions {
+            start: Some(&start),
+            ..at(omega)
+        },
+    );
+    let error = found.harmonics[1].norm() - 2.830_198_059_4;
+    println!(
+        "{error:.1e}, residual {:.1e}, {} periods, {:?}",
+        found.residual,
+        found.periods,
+        now.elapsed()
+    );
+    assert!(error.abs() < 1e-9 * 2.83);
+}
+
+#[test]
+fn the_blisk_moves_as_in_the_event_driven_integration_of_the_whole_wheel() {
     let reference = data("frf_base.json");
     let start = std::time::Instant::now();
+    let mut worst = 0.0_f64;
     for point in reference["curve_F5"]["points"].as_array().unwrap() {
-        let f = number(&point["f_Hz"]);
+        let omega = TAU * number(&point["f_Hz"]);
         let expected = complex(&point["td"]);
         let model = BASE.sector();
-        let hb = all_harmonics(&solve_at(&model, &harmonics(15), TAU * f), 0);
-        let options = TimeOptions { start: Some(&hb), ..at(TAU * f) };
-        let found = solve(&model, &options);
+        let close = all_harmonics(&solve_at(&model, &harmonics(9), omega), 0);
+        let found = solve(
+            &model,
+            &TimeOptions {
+                start: Some(&close),
+                ..at(omega)
+            },
+        );
         let error = (found.harmonics[4] - expected).norm() / expected.norm();
-        println!("{f:.2} Hz: {error:.1e}, residual {:.1e}, {} periods, {} events, {:?}", found.residual, found.periods, found.events, start.elapsed());
+        worst = worst.max(error);
+        assert!(error < 1e-8);
     }
+    println!("{worst:.1e} {:?}", start.elapsed());
+}
+
+#[test]
+fn z() {
+    let omega = TAU * 208.85;
+    let model = BASE.sector();
+    let start = std::time::Instant::now();
+    let found = solve(
+        &model,
+        &TimeOptions {
+            harmonics: 31,
+            ..at(omega)
+        },
+    );
+    println!("rest {} periods {:?}", found.periods, start.elapsed());
+    let start = std::time::Instant::now();
+    let wheel = solve(
+        &BASE.wheel(),
+        &TimeOptions {
+            harmonics: 31,
+            ..at(omega)
+        },
+    );
+    println!("rest {} periods {:?}", wheel.periods, start.elapsed());
+    println!(
+        "{:.1e}",
+        relative_gap(&wheel.harmonics[96..100], &found.harmonics[4..8])
+    );
+    let start = std::time::Instant::now();
+    let wheel = solve(
+        &BASE.sector(),
+        &TimeOptions {
+            harmonics: 31,
+            method: SteadyMethod::Marching,
+            ..at(omega)
+        },
+    );
+    println!("march {} periods {:?}", wheel.periods, start.elapsed());
+    println!("{:.1e}", relative_gap(&wheel.harmonics[4..8], &found.harmonics[4..8]));
 }

@@ -1,9 +1,11 @@
 //! Contacts in time: what each law does within a piece, when it leaves the piece, and what follows.
 //!
-//! Within a piece the force is f = k·y + o in the relative motion y = side a − side b: a Jenkins
-//! contact sticks, f = kt·(y − u) with its slider at u, or slips, f = ±μN₀; a unilateral spring is open,
-//! f = 0, or closed, f = kn·(y + clearance). A piece ends where one of its *margins*, polynomials in
-//! time like the motion, falls through zero. The force is continuous there, and so is the whole
+//! Within a piece the force is linear in the relative motion y = side a − side b: a Jenkins contact
+//! sticks, f = kt·(y − u) with its slider at u, or slips, f = ±μN₀; a unilateral spring is open, f = 0, or
+//! closed, f = kn·(y + clearance). What a Jenkins contact remembers is the stretch e = y − u of its spring:
+//! of y and u themselves a stiff spring would see the rounding.
+//!
+//! A piece ends where one of its *margins*, polynomials in time like the motion, falls through zero. The force is continuous there, and so is the whole
 //! right-hand side: sensitivities pass events unchanged (the saltation matrix is the identity; see
 //! Leine & Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004).
 //!
@@ -48,13 +50,15 @@ pub(super) struct Element {
     pub family: usize,
 }
 
-/// Force within a piece: slope·y + offset, of which −memory·u comes from the slider at u.
+/// Force within a step: f = force + slope·(y − origin).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Piece {
     /// Tangent stiffness.
     pub slope: f64,
-    /// Force at y = 0.
-    pub offset: f64,
+    /// Force at the begin of the step.
+    pub force: f64,
+    /// Relative motion at the begin of the step.
+    pub origin: f64,
     /// Derivative of −f by the position of the slider.
     pub memory: f64,
 }
@@ -143,15 +147,20 @@ impl Element {
         }
     }
 
-    /// The force in a mode, with the slider at u.
-    pub fn piece(&self, mode: Mode, u: f64) -> Piece {
-        let (slope, offset, memory) = match (self.law, mode) {
-            (Law::Jenkins { kt, .. }, Mode::Stick) => (kt, -kt * u, kt),
+    /// The force in a mode from y on, the spring of the slider stretched by e.
+    pub fn piece(&self, mode: Mode, y: f64, e: f64) -> Piece {
+        let (slope, force, memory) = match (self.law, mode) {
+            (Law::Jenkins { kt, .. }, Mode::Stick) => (kt, kt * e, kt),
             (Law::Jenkins { limit, .. }, Mode::Slip(sign)) => (0.0, sign * limit, 0.0),
-            (Law::Unilateral { kn, clearance }, Mode::Closed) => (kn, kn * clearance, 0.0),
+            (Law::Unilateral { kn, clearance }, Mode::Closed) => (kn, kn * (y + clearance), 0.0),
             _ => (0.0, 0.0, 0.0),
         };
-        Piece { slope, offset, memory }
+        Piece {
+            slope,
+            force,
+            origin: y,
+            memory,
+        }
     }
 
     /// The slider after any motion that ends at y, from u: the play operator.
@@ -162,19 +171,21 @@ impl Element {
         }
     }
 
-    /// The mode at a state, whose slider comes within its range; `true`: it had to be dragged there, or
-    /// slips, so that it is where y puts it.
-    pub fn begin(&self, y: f64, rate: f64, u: &mut f64) -> (Mode, bool) {
+    /// The mode at a state, whose stretch comes within its range; `true`: it had to be cut, or the contact
+    /// slips, so that y alone tells where the slider is.
+    pub fn begin(&self, y: f64, rate: f64, e: &mut f64) -> (Mode, bool) {
         match self.law {
             Law::Jenkins { kt, limit } => {
-                let dragged = self.drag(y, *u);
-                let moved = dragged != *u;
-                *u = dragged;
-                let sign = (y - dragged).signum();
-                if (y - dragged).abs() * kt >= limit && sign * rate > 0.0 {
+                let range = limit / kt;
+                let sign = e.signum();
+                let (at_limit, beyond) = (e.abs() >= range, e.abs() > range);
+                if at_limit {
+                    *e = sign * range;
+                }
+                if at_limit && sign * rate > 0.0 {
                     (Mode::Slip(sign), true)
                 } else {
-                    (Mode::Stick, moved)
+                    (Mode::Stick, beyond)
                 }
             }
             Law::Unilateral { clearance, .. } if y < -clearance => (Mode::Closed, false),
@@ -195,11 +206,11 @@ impl Element {
     /// Turns the polynomial of the relative motion into that of a margin, which is positive as long as
     /// the piece lasts: to the slip limit in the positive and the negative direction while it sticks, the
     /// speed of the slider while it slips, the distance while it is open, the compression while closed.
-    pub fn margin(&self, mode: Mode, u: f64, which: usize, y: &mut [f64]) {
+    pub fn margin(&self, mode: Mode, e: f64, which: usize, y: &mut [f64]) {
         match (self.law, mode) {
             (Law::Jenkins { kt, limit }, Mode::Stick) => {
                 let sign = if which == 0 { 1.0 } else { -1.0 };
-                y[0] -= u;
+                y[0] = e;
                 for c in y.iter_mut() {
                     *c *= -sign;
                 }
@@ -224,28 +235,28 @@ impl Element {
         }
     }
 
-    /// The mode after margin `which` has fallen to zero at y, and how many zeros the new margins have at
-    /// their begin by construction: (margin, number).
+    /// The mode after margin `which` has fallen to zero, and how many zeros the new margins have at their
+    /// begin by construction: (margin, number).
     ///
-    /// Slip ends where the slider's speed does, so that y − u stands at the limit with slope zero.
-    pub fn leave(&self, mode: Mode, which: usize, y: f64, u: &mut f64) -> (Mode, (usize, usize)) {
+    /// Slip ends where the slider's speed does, so that the stretch stands at the limit with slope zero.
+    pub fn leave(&self, mode: Mode, which: usize, e: &mut f64) -> (Mode, (usize, usize)) {
         match (self.law, mode) {
-            (Law::Jenkins { .. }, Mode::Stick) => (Mode::Slip(if which == 0 { 1.0 } else { -1.0 }), (0, 0)),
-            (Law::Jenkins { kt, limit }, Mode::Slip(sign)) => {
-                *u = y - sign * limit / kt;
-                (Mode::Stick, (usize::from(sign < 0.0), 2))
+            (Law::Jenkins { kt, limit }, Mode::Stick) => {
+                let sign = if which == 0 { 1.0 } else { -1.0 };
+                *e = sign * limit / kt;
+                (Mode::Slip(sign), (0, 0))
             }
+            (Law::Jenkins { .. }, Mode::Slip(sign)) => (Mode::Stick, (usize::from(sign < 0.0), 2)),
             (Law::Unilateral { .. }, Mode::Open) => (Mode::Closed, (0, 1)),
             (Law::Unilateral { .. }, Mode::Closed) => (Mode::Open, (0, 1)),
             _ => (mode, (0, 0)),
         }
     }
 
-    /// The slider while it slips at y; elsewhere it is where it was.
-    pub fn slider(&self, mode: Mode, y: f64, u: f64) -> f64 {
-        match (self.law, mode) {
-            (Law::Jenkins { kt, limit }, Mode::Slip(sign)) => y - sign * limit / kt,
-            _ => u,
+    /// The stretch after y has grown by `growth` within a piece.
+    pub fn stretch(&self, mode: Mode, growth: f64, e: &mut f64) {
+        if self.has_memory() && mode == Mode::Stick {
+            *e += growth;
         }
     }
 }

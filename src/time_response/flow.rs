@@ -3,7 +3,7 @@
 
 use super::contacts::{Element, Mode, Piece, along};
 use super::implicit::Implicit;
-use super::piecewise::{Taylor, pieces};
+use super::piecewise::Taylor;
 use super::record::Recorder;
 use super::segment::{DEGREE, Segment, first_fall};
 use super::system::System;
@@ -24,12 +24,12 @@ const SIMULTANEOUS: f64 = 1e-13;
 /// Steps between two looks at the cancel flag.
 const BETWEEN_LOOKS: usize = 256;
 
-/// Displacements, velocities and sliders.
+/// Displacements, velocities and the stretches of the sliders' springs.
 #[derive(Clone, Debug)]
 pub(super) struct State {
     pub x: Vec<f64>,
     pub v: Vec<f64>,
-    pub u: Vec<f64>,
+    pub e: Vec<f64>,
 }
 
 impl State {
@@ -38,7 +38,7 @@ impl State {
         Ok(Self {
             x: try_vec(system.order(), 0.0, WHAT)?,
             v: try_vec(system.order(), 0.0, WHAT)?,
-            u: try_vec(system.elements.len(), 0.0, WHAT)?,
+            e: try_vec(system.elements.len(), 0.0, WHAT)?,
         })
     }
 
@@ -47,7 +47,7 @@ impl State {
         Ok(Self {
             x: try_copy(&self.x, WHAT)?,
             v: try_copy(&self.v, WHAT)?,
-            u: try_copy(&self.u, WHAT)?,
+            e: try_copy(&self.e, WHAT)?,
         })
     }
 
@@ -55,16 +55,17 @@ impl State {
     pub fn set(&mut self, other: &Self) {
         self.x.copy_from_slice(&other.x);
         self.v.copy_from_slice(&other.v);
-        self.u.copy_from_slice(&other.u);
+        self.e.copy_from_slice(&other.e);
     }
 
     /// Numbers in it.
     pub fn len(&self) -> usize {
-        self.x.len() + self.v.len() + self.u.len()
+        self.x.len() + self.v.len() + self.e.len()
     }
 }
 
-/// Derivatives of a state by the state that it began with, column by column, each (δx, δv, δu).
+/// Derivatives of a state by the state that it began with, column by column: (δx, δv, δe), on the way with
+/// the sliders' δu = r·δx − δe in place of δe, which do not change while they rest.
 pub(super) struct Sensitivity {
     pub columns: Vec<f64>,
 }
@@ -122,7 +123,8 @@ impl Flow {
         };
         let none = Piece {
             slope: 0.0,
-            offset: 0.0,
+            force: 0.0,
+            origin: 0.0,
             memory: 0.0,
         };
         Ok(Self {
@@ -153,7 +155,7 @@ impl Flow {
     ) -> Result<Travel> {
         let end = system.lapse();
         let mut travel = Travel::default();
-        system.begin(&state.x, &state.v, &mut state.u, &mut self.modes, &mut self.slaved);
+        system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.slaved);
         self.zeros.fill((0, 0));
         if let Some(s) = sensitivity.as_deref_mut() {
             self.identity(system, state, s);
@@ -179,7 +181,9 @@ impl Flow {
             for (largest, values) in [(&mut travel.largest.0, &state.x), (&mut travel.largest.1, &state.v)] {
                 *largest = values.iter().fold(*largest, |m, x| m.max(x.abs()));
             }
-            pieces(system, &self.modes, &state.u, &mut self.pieces);
+            for (i, e) in system.elements.iter().enumerate() {
+                self.pieces[i] = e.piece(self.modes[i], along(&e.row, &state.x), state.e[i]);
+            }
             self.step(system, state, t, end - t)?;
             let theta = self.next_event(system, state);
             let h = self.segment.length;
@@ -189,6 +193,9 @@ impl Flow {
             if theta > 0.0 {
                 if let Some(s) = sensitivity.as_deref_mut() {
                     self.carry(system, theta, s)?;
+                }
+                for (i, e) in system.elements.iter().enumerate() {
+                    e.stretch(self.modes[i], self.segment.growth(&e.row, theta), &mut state.e[i]);
                 }
                 self.segment.at(theta, &mut state.x, &mut state.v);
                 self.zeros.fill((0, 0));
@@ -205,14 +212,14 @@ impl Flow {
                 t + theta * h
             };
         }
-        // A slider that still slips is where the motion puts it.
-        for (i, e) in system.elements.iter().enumerate() {
-            state.u[i] = e.slider(self.modes[i], along(&e.row, &state.x), state.u[i]);
-            if matches!(self.modes[i], Mode::Slip(_))
-                && let Some(s) = sensitivity.as_deref_mut()
-            {
-                enslave(e, i, state, s);
+        if let Some(s) = sensitivity {
+            // A slider that still slips is where the motion puts it.
+            for (i, e) in system.elements.iter().enumerate() {
+                if matches!(self.modes[i], Mode::Slip(_)) {
+                    enslave(e, i, state, s);
+                }
             }
+            exchange(system, state, s);
         }
         Ok(travel)
     }
@@ -239,7 +246,7 @@ impl Flow {
             let used = self.segment.degree + 1;
             for which in 0..Element::margins(mode) {
                 let mut margin = y;
-                e.margin(mode, state.u[i], which, &mut margin[..used]);
+                e.margin(mode, state.e[i], which, &mut margin[..used]);
                 let zeros = if self.zeros[i].0 == which { self.zeros[i].1 } else { 0 };
                 if let Some(theta) = first_fall(&margin[..used], zeros)
                     && self.falls[i].is_none_or(|(before, _)| theta < before)
@@ -272,9 +279,8 @@ impl Flow {
             if at > theta + SIMULTANEOUS {
                 continue;
             }
-            let y = along(&e.row, &state.x);
             let before = self.modes[i];
-            (self.modes[i], self.zeros[i]) = e.leave(before, which, y, &mut state.u[i]);
+            (self.modes[i], self.zeros[i]) = e.leave(before, which, &mut state.e[i]);
             if matches!(before, Mode::Slip(_)) {
                 if let Some(s) = sensitivity.as_deref_mut() {
                     enslave(e, i, state, s);
@@ -293,10 +299,9 @@ impl Flow {
         for i in 0..m {
             s.columns[i * m + i] = 1.0;
         }
-        let first = 2 * state.x.len();
+        exchange(system, state, s);
         for (i, e) in system.elements.iter().enumerate() {
             if self.slaved[i] {
-                s.columns[(first + i) * m + first + i] = 0.0;
                 enslave(e, i, state, s);
             }
         }
@@ -327,5 +332,16 @@ fn enslave(e: &Element, i: usize, state: &State, s: &mut Sensitivity) {
     let at = 2 * state.x.len() + i;
     for column in s.columns.chunks_exact_mut(m) {
         column[at] = along(&e.row, column);
+    }
+}
+
+/// Between the stretches' sensitivities and the sliders', which is the same step both ways:
+/// δu = r·δx − δe, δe = r·δx − δu.
+fn exchange(system: &System, state: &State, s: &mut Sensitivity) {
+    let (m, first) = (state.len(), 2 * state.x.len());
+    for column in s.columns.chunks_exact_mut(m) {
+        for (i, e) in system.elements.iter().enumerate() {
+            column[first + i] = along(&e.row, column) - column[first + i];
+        }
     }
 }

@@ -189,7 +189,7 @@ impl Implicit {
                 let y = along(&element.row, &self.x);
                 let (smooth, tangent) = element.smooth(y);
                 self.tangents[i * count + e] = tangent;
-                let force = piece.slope * y + piece.offset + smooth;
+                let force = piece.force + piece.slope * (y - piece.origin) + smooth;
                 for &(dof, a) in element.row.iter().flatten() {
                     r[dof] += a * force;
                 }

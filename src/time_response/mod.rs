@@ -106,7 +106,7 @@ fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) -> Result<S
     }
     let times = POINTS_PER_WAVE * (all.len() / n);
     let mut part = try_vec(n, 0.0, WHAT)?;
-    for i in 0..2 * times {
+    for i in 0..=2 * times {
         part.fill(0.0);
         for (h, x) in all.chunks_exact(n).enumerate() {
             let turn = Complex64::cis(TAU * ((h * i) % times) as f64 / times as f64);
@@ -114,8 +114,13 @@ fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) -> Result<S
                 *part += (x * turn).re;
             }
         }
-        for (u, e) in state.u.iter_mut().zip(&system.elements) {
-            *u = e.drag(along(&e.row, &part), *u);
+        for (stretch, e) in state.e.iter_mut().zip(&system.elements) {
+            if e.has_memory() {
+                // The slider is kept until the end, where the spring spans from it to y.
+                let y = along(&e.row, &part);
+                let slider = e.drag(y, *stretch);
+                *stretch = if i < 2 * times { slider } else { y - slider };
+            }
         }
     }
     Ok(state)

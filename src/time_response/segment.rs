@@ -60,6 +60,12 @@ impl Segment {
         }
     }
 
+    /// y(θ) − y(0) of a relative motion, without cancellation.
+    pub fn growth(&self, row: &[Option<(usize, f64)>; 2], theta: f64) -> f64 {
+        let sum = |sum: f64, k: usize| sum * theta + along(row, self.term(k));
+        theta * (1..=self.degree).rev().fold(0.0, sum)
+    }
+
     /// Rescales to the step of `factor` times the length.
     pub fn rescale(&mut self, factor: f64) {
         let mut power = 1.0;

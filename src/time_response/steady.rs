@@ -3,7 +3,7 @@
 //! Unknown is the state z at the begin of a lapse, the equation S G(z) = z with the flow G over the lapse
 //! and the shift S that gives every sector the motion of the one it follows. The monodromy ∂G/∂z is
 //! carried along piece by piece and is exact, since the field is continuous at events. A slider that
-//! never moves keeps any position: its equation is void, and it stays where the start has put it.
+//! never moves may rest anywhere: its equation is void, and it stays where the start has put it.
 
 use super::flow::{Flow, Sensitivity, State, Travel};
 use super::system::System;
@@ -146,14 +146,14 @@ impl<'a, 'h> Search<'a, 'h> {
         let system = &*self.system;
         shift(system, system.ndof, &self.image.x, &mut self.shifted.x);
         shift(system, system.ndof, &self.image.v, &mut self.shifted.v);
-        shift(system, 1, &self.image.u, &mut self.shifted.u);
+        shift(system, 1, &self.image.e, &mut self.shifted.e);
         let unit = |x: f64| if x > 0.0 { x } else { 1.0 };
         self.scale = (unit(travel.largest.0), unit(travel.largest.1));
         self.residual = 0.0;
         for (a, b, scale) in [
             (&self.shifted.x, &self.state.x, self.scale.0),
             (&self.shifted.v, &self.state.v, self.scale.1),
-            (&self.shifted.u, &self.state.u, self.scale.0),
+            (&self.shifted.e, &self.state.e, self.scale.0),
         ] {
             for (a, b) in a.iter().zip(b) {
                 let gap = (a - b).abs() / scale;
@@ -266,8 +266,16 @@ impl<'a, 'h> Search<'a, 'h> {
                 _ if void => 0.0,
                 i if i < n => self.shifted.x[i] - self.state.x[i],
                 i if i < 2 * n => (self.shifted.v[i - n] - self.state.v[i - n]) / unit(i),
-                i => self.shifted.u[i - 2 * n] - self.state.u[i - 2 * n],
+                i => self.shifted.e[i - 2 * n] - self.state.e[i - 2 * n],
             };
+        }
+        // Where the slider rests its spring follows the motion: δe = r·δx.
+        for (i, e) in system.elements.iter().enumerate() {
+            if rests(2 * n + i) && e.has_memory() {
+                for &(dof, a) in e.row.iter().flatten() {
+                    matrix[dof * m + 2 * n + i] -= a;
+                }
+            }
         }
         if lu.factor().is_err() {
             return false;
@@ -283,11 +291,11 @@ impl<'a, 'h> Search<'a, 'h> {
     fn advance(&mut self, base: &State, step: &[f64], share: f64) {
         let n = base.x.len();
         let (x, rest) = step.split_at(n);
-        let (v, u) = rest.split_at(n);
+        let (v, e) = rest.split_at(n);
         for (to, from, step) in [
             (&mut self.state.x, &base.x, x),
             (&mut self.state.v, &base.v, v),
-            (&mut self.state.u, &base.u, u),
+            (&mut self.state.e, &base.e, e),
         ] {
             for ((to, from), step) in to.iter_mut().zip(from).zip(step) {
                 *to = from + share * step;

@@ -189,11 +189,11 @@ impl System {
         }
     }
 
-    /// Modes at a state; sliders come within their range. `slaved` notes those that are where the motion
-    /// puts them.
-    pub fn begin(&self, x: &[f64], v: &[f64], u: &mut [f64], modes: &mut [Mode], slaved: &mut [bool]) {
+    /// Modes at a state; stretches come within their range. `slaved` notes the contacts whose slider is
+    /// where the motion puts it.
+    pub fn begin(&self, x: &[f64], v: &[f64], stretch: &mut [f64], modes: &mut [Mode], slaved: &mut [bool]) {
         for (i, e) in self.elements.iter().enumerate() {
-            (modes[i], slaved[i]) = e.begin(along(&e.row, x), along(&e.row, v), &mut u[i]);
+            (modes[i], slaved[i]) = e.begin(along(&e.row, x), along(&e.row, v), &mut stretch[i]);
         }
     }
 }
