@@ -16,6 +16,9 @@ use num_complex::Complex64;
 /// Share of the largest term at which the last terms of a step must be.
 const NEGLIGIBLE: f64 = 1e-18;
 
+/// Rounds of shortening a step whose largest terms shrink with it.
+const ROUNDS: usize = 100;
+
 /// Share of the largest term at which the series of a sensitivity is cut off.
 const CUT: f64 = 1e-17;
 
@@ -124,20 +127,33 @@ impl Taylor {
         Ok(())
     }
 
-    /// Factor on the length at which the last two terms become negligible; 0 where they overflow.
+    /// Factor on the length at which the last two terms are negligible against the largest of the
+    /// shortened step; 0 where they overflow.
     fn ratio(step: &Segment) -> f64 {
-        let size = |k: usize| step.term(k).iter().fold(0.0_f64, |m, c| m.max(c.abs()));
-        let largest = (0..=DEGREE)
-            .map(size)
-            .fold(0.0, |m: f64, s| if s.is_nan() { s } else { m.max(s) });
-        if !largest.is_finite() || step.coefficients.iter().any(|c| !c.is_finite()) {
-            return 0.0;
+        let mut sizes = [0.0_f64; DEGREE + 1];
+        for (k, size) in sizes.iter_mut().enumerate() {
+            if step.term(k).iter().any(|c| !c.is_finite()) {
+                return 0.0;
+            }
+            *size = step.term(k).iter().fold(0.0, |m, c| m.max(c.abs()));
         }
         let mut ratio = f64::INFINITY;
-        for k in [DEGREE - 1, DEGREE] {
-            let last = size(k);
-            if last > 0.0 {
-                ratio = ratio.min((NEGLIGIBLE * largest / last).powf(1.0 / k as f64));
+        // The largest term shrinks with the step, but by a far lower power than the last.
+        for _ in 0..ROUNDS {
+            let mut largest = 0.0_f64;
+            let mut power = 1.0;
+            for size in sizes {
+                largest = largest.max(size * power);
+                power *= ratio.min(1.0);
+            }
+            let before = ratio;
+            for k in [DEGREE - 1, DEGREE] {
+                if sizes[k] > 0.0 {
+                    ratio = ratio.min((NEGLIGIBLE * largest / sizes[k]).powf(1.0 / k as f64));
+                }
+            }
+            if ratio > 0.9 * before {
+                break;
             }
         }
         ratio
