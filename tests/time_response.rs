@@ -3,7 +3,10 @@
 
 mod common;
 
-use common::{BASE, all_harmonics, complex, data, harmonics, largest, number, relative_gap, solve_at, sweep};
+use common::{
+    BASE, Blisk, SECTORS, all_harmonics, complex, data, harmonics, largest, number, phase, relative_gap, solve_at,
+    sweep,
+};
 use hbvib::analysis::time_response::{TimeResponse, time_response};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
@@ -181,7 +184,8 @@ fn both_states_of_a_gap_oscillator_are_found_from_their_side() {
             "from {from}: {error:.1e}, {} periods, {} events",
             found.periods, found.events
         );
-        assert!(error < 1e-10);
+        // The stored fundamental comes from samples of the motion, which alias as deep as this.
+        assert!(error < 1e-9);
     }
 }
 
@@ -232,41 +236,145 @@ fn the_blisk_moves_as_in_the_event_driven_integration_of_the_whole_wheel() {
     println!("{worst:.1e} {:?}", start.elapsed());
 }
 
+/// The peak of the fundamental over frequency near `omega`, by the parabola through three points.
+fn peak(model: &Model, omega: f64, step: f64, start: &[Complex64]) -> (f64, f64) {
+    let amplitude = |omega: f64| {
+        let options = TimeOptions {
+            start: Some(start),
+            harmonics: 1,
+            ..at(omega)
+        };
+        solve(model, &options).harmonics[4].norm()
+    };
+    let [a, b, c] = [-1.0, 0.0, 1.0].map(|k| amplitude(omega + k * step));
+    let shift = 0.5 * (a - c) / (a - 2.0 * b + c);
+    (omega + shift * step, b - 0.25 * (a - c) * shift)
+}
+
 #[test]
-fn z() {
-    let omega = TAU * 208.85;
-    let model = BASE.sector();
-    let start = std::time::Instant::now();
+fn the_peaks_of_the_blisk_are_those_of_the_whole_wheel_in_time() {
+    let reference = data("frf_base.json");
+    for (name, force) in [("F1", 1.0), ("F5", 5.0), ("F20", 20.0)] {
+        let truth = &reference["peaks"][name]["peak_td"];
+        let omega = TAU * number(&truth["f_Hz"]);
+        let model = Blisk { force, ..BASE }.sector();
+        let close = all_harmonics(&solve_at(&model, &harmonics(15), omega), 0);
+        // Steps of a fifth of the half-power width keep the parabola's own error below the claim.
+        let (place, height) = peak(&model, omega, 2e-5 * omega, &close);
+        let error = (height / number(&truth["amp_b2_fund_m"]) - 1.0).abs();
+        let away = (place - omega).abs() / TAU;
+        println!("{name}: {error:.1e}, {away:.1e} Hz away");
+        assert!(error < 1e-8, "{name}: {error:.1e}");
+        // As sharp as the stored frequency.
+        assert!(away < 2e-4, "{name}: {away:.1e} Hz");
+    }
+}
+
+#[test]
+fn all_harmonics_of_a_point_and_its_events_are_those_of_the_whole_wheel_in_time() {
+    let reference = data("point_F5_208p85.json");
+    let truth = &reference["td"];
+    let omega = TAU * number(&truth["f_Hz"]);
     let found = solve(
-        &model,
-        &TimeOptions {
-            harmonics: 31,
-            ..at(omega)
-        },
-    );
-    println!("rest {} periods {:?}", found.periods, start.elapsed());
-    let start = std::time::Instant::now();
-    let wheel = solve(
-        &BASE.wheel(),
-        &TimeOptions {
-            harmonics: 31,
-            ..at(omega)
-        },
-    );
-    println!("rest {} periods {:?}", wheel.periods, start.elapsed());
-    println!(
-        "{:.1e}",
-        relative_gap(&wheel.harmonics[96..100], &found.harmonics[4..8])
-    );
-    let start = std::time::Instant::now();
-    let wheel = solve(
         &BASE.sector(),
         &TimeOptions {
             harmonics: 31,
-            method: SteadyMethod::Marching,
             ..at(omega)
         },
     );
-    println!("march {} periods {:?}", wheel.periods, start.elapsed());
-    println!("{:.1e}", relative_gap(&wheel.harmonics[4..8], &found.harmonics[4..8]));
+    for (h, dofs) in truth["X"].as_object().unwrap() {
+        let h: usize = h.parse().unwrap();
+        let expected: Vec<Complex64> = dofs.as_array().unwrap().iter().map(complex).collect();
+        let error = relative_gap(&found.harmonics[4 * h..4 * (h + 1)], &expected);
+        println!("harmonic {h}: {error:.1e}");
+        assert!(error < 1e-8, "harmonic {h}: {error:.1e}");
+    }
+    let events = truth["sector1_events_phase_newstate"].as_array().unwrap().len();
+    assert_eq!(found.events, events);
+}
+
+#[test]
+fn a_sector_in_its_wave_is_the_wheel_as_a_plain_structure() {
+    let omega = TAU * 208.85;
+    let sector = BASE.sector();
+    let wheel = BASE.wheel();
+    let found = solve(&sector, &at(omega));
+    let mut start = Vec::new();
+    for (h, x) in found.harmonics.chunks_exact(4).enumerate() {
+        for s in 0..SECTORS {
+            start.extend(x.iter().map(|x| x * phase(h, BASE.engine_order, s, SECTORS)));
+        }
+    }
+    let now = std::time::Instant::now();
+    let all = solve(
+        &wheel,
+        &TimeOptions {
+            start: Some(&start),
+            ..at(omega)
+        },
+    );
+    // The harmonics above the ninth were left out of the start.
+    println!("{} periods, {:?}", all.periods, now.elapsed());
+    let error = relative_gap(&all.harmonics, &start);
+    println!("{error:.1e} {:.1e}", relative_gap(&all.harmonics[96..], &start[96..]));
+    assert!(error < 1e-10);
+    assert_eq!(all.events, SECTORS * found.events);
+}
+
+#[test]
+fn marching_and_shooting_end_in_the_same_motion() {
+    let contacts = [jenkins(1.0, 0.3), stop(3.0, 0.1), Contact::cubic(0, None, 0.5, 0.2)];
+    for contact in contacts {
+        let model = damped_oscillator(0.1, &contact, &[(0, 0.05), (1, 1.0)]);
+        let options = TimeOptions {
+            method: SteadyMethod::Marching,
+            ..at(0.8)
+        };
+        let (marched, shot) = (solve(&model, &options), solve(&model, &at(0.8)));
+        let error = relative_gap(&marched.harmonics, &shot.harmonics);
+        println!(
+            "{:?}: {error:.1e}, {} and {} periods",
+            contact.kind, marched.periods, shot.periods
+        );
+        assert!(error < 1e-9);
+        assert!(marched.periods > shot.periods);
+    }
+}
+
+#[test]
+fn springs_that_never_change_give_linear_motions() {
+    let linear = |stiffness: f64, mean: f64| {
+        let x = 0.2 / (Complex64::new(1.0 + stiffness - 1.21, 0.022));
+        (x, mean)
+    };
+    let free = linear(0.0, 0.0);
+    // Closed throughout: a mean force of kn·gap on a spring of 1 + kn.
+    let pressed = linear(1000.0, -0.5 * 1000.0 / 1001.0);
+    for (name, contact, (x, mean)) in [
+        ("no friction", jenkins(1.0, 0.0), free),
+        ("sticks for ever", jenkins(1.0, f64::INFINITY), linear(1.0, 0.0)),
+        ("sticks", jenkins(1.0, 10.0), linear(1.0, 0.0)),
+        ("no stiffness", jenkins(0.0, 0.3), free),
+        ("wide gap", stop(3.0, 10.0), free),
+        ("pressed", stop(1000.0, -0.5), pressed),
+    ] {
+        let found = solve(&oscillator(&contact, &[(1, 0.2)]), &at(1.1));
+        let error = (found.harmonics[1] - x).norm() / x.norm().max(mean.abs());
+        let mean_error = (found.harmonics[0].re - mean).abs();
+        println!("{name}: {error:.1e}, mean {mean_error:.1e}, {} events", found.events);
+        assert!(error < 1e-12 && mean_error < 1e-12, "{name}");
+        assert_eq!(found.events, 0);
+    }
+}
+
+#[test]
+fn a_slider_that_never_slips_stays_where_a_virgin_one_is() {
+    // Stuck under a constant load: half of it on each spring.
+    let model = oscillator(&jenkins(1.0, 0.3), &[(0, 0.1), (1, 0.05)]);
+    let close = all_harmonics(&solve_at(&model, &harmonics(3), 0.9), 0);
+    for start in [None, Some(&close[..])] {
+        let found = solve(&model, &TimeOptions { start, ..at(0.9) });
+        assert!((found.harmonics[0].re - 0.05).abs() < 1e-13);
+        assert_eq!(found.events, 0);
+    }
 }

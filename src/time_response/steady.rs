@@ -9,7 +9,7 @@ use super::flow::{Flow, Sensitivity, State, Travel};
 use super::system::System;
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, Progress};
-use crate::linalg::lu::Lu;
+use crate::linalg::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
 
 /// Newton iterations before marching takes over.
@@ -17,6 +17,10 @@ const MOST_ITERATIONS: usize = 30;
 
 /// Smallest share of a Newton step that is tried.
 const SHORTEST: f64 = 1.0 / 64.0;
+
+/// Directions whose monodromy is this near to 1 are left alone, such as the free rotation of a ring that
+/// friction alone holds: the whole motion may be shifted along them.
+const NEUTRAL: f64 = 1e-9;
 
 /// Periods that are marched when Newton's method has failed for the first time; each time twice as many.
 const FIRST_MARCH: usize = 8;
@@ -180,7 +184,7 @@ impl<'a, 'h> Search<'a, 'h> {
     fn shoot(&mut self) -> Result<Outcome> {
         let m = self.state.len();
         let mut sensitivity = Sensitivity::new(&self.state)?;
-        let mut lu = Lu::<f64>::new(m, 1)?;
+        let mut equations = LeastSquares::new(m)?;
         let mut step = try_vec(m, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
         for _ in 0..MOST_ITERATIONS {
@@ -190,7 +194,7 @@ impl<'a, 'h> Search<'a, 'h> {
             }
             let residual = self.residual;
             let converged = residual <= self.options.tolerance;
-            if !self.correction(&sensitivity, &mut lu, &mut step) {
+            if !self.correction(&sensitivity, &mut equations, &mut step) {
                 return Ok(if converged { Outcome::Found } else { Outcome::Failed });
             }
             base.set(&self.state);
@@ -226,7 +230,7 @@ impl<'a, 'h> Search<'a, 'h> {
     }
 
     /// Solves (I − S ∂G/∂z) step = S G(z) − z; `false`: it has no solution.
-    fn correction(&mut self, s: &Sensitivity, lu: &mut Lu<f64>, step: &mut [f64]) -> bool {
+    fn correction(&mut self, s: &Sensitivity, equations: &mut LeastSquares, step: &mut [f64]) -> bool {
         let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
         // Velocities are measured in displacements, so that pivots compare.
         let unit = |i: usize| {
@@ -254,7 +258,7 @@ impl<'a, 'h> Search<'a, 'h> {
                 2 * n + shifted_from(system, 1, i - 2 * n)
             }
         };
-        let matrix = lu.matrix();
+        let matrix = equations.matrix();
         matrix.fill(0.0);
         for i in 0..m {
             let (void, from) = (rests(i), source(i));
@@ -277,10 +281,7 @@ impl<'a, 'h> Search<'a, 'h> {
                 }
             }
         }
-        if lu.factor().is_err() {
-            return false;
-        }
-        lu.solve(step);
+        equations.solve(step, NEUTRAL);
         for (i, step) in step.iter_mut().enumerate() {
             *step *= unit(i);
         }
