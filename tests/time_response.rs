@@ -194,7 +194,6 @@ fn duffings_peak_is_that_of_two_other_methods() {
     let model = damped_oscillator(0.05, &Contact::cubic(0, None, 0.0, 0.1), &[(1, 0.18)]);
     let omega = 1.268_716_736_0;
     let start = swept(&model, 7, 1.0, omega);
-    let now = std::time::Instant::now();
     let found = solve(
         &model,
         &TimeOptions {
@@ -204,10 +203,8 @@ fn duffings_peak_is_that_of_two_other_methods() {
     );
     let error = found.harmonics[1].norm() - 2.830_198_059_4;
     println!(
-        "{error:.1e}, residual {:.1e}, {} periods, {:?}",
-        found.residual,
-        found.periods,
-        now.elapsed()
+        "{error:.1e}, residual {:.1e}, {} periods",
+        found.residual, found.periods,
     );
     assert!(error.abs() < 1e-9 * 2.83);
 }
@@ -215,7 +212,6 @@ fn duffings_peak_is_that_of_two_other_methods() {
 #[test]
 fn the_blisk_moves_as_in_the_event_driven_integration_of_the_whole_wheel() {
     let reference = data("frf_base.json");
-    let start = std::time::Instant::now();
     let mut worst = 0.0_f64;
     for point in reference["curve_F5"]["points"].as_array().unwrap() {
         let omega = TAU * number(&point["f_Hz"]);
@@ -233,7 +229,7 @@ fn the_blisk_moves_as_in_the_event_driven_integration_of_the_whole_wheel() {
         worst = worst.max(error);
         assert!(error < 1e-8);
     }
-    println!("{worst:.1e} {:?}", start.elapsed());
+    println!("worst of all points: {worst:.1e}");
 }
 
 /// The peak of the fundamental over frequency near `omega`, by the parabola through three points.
@@ -305,7 +301,6 @@ fn a_sector_in_its_wave_is_the_wheel_as_a_plain_structure() {
             start.extend(x.iter().map(|x| x * phase(h, BASE.engine_order, s, SECTORS)));
         }
     }
-    let now = std::time::Instant::now();
     let all = solve(
         &wheel,
         &TimeOptions {
@@ -313,10 +308,8 @@ fn a_sector_in_its_wave_is_the_wheel_as_a_plain_structure() {
             ..at(omega)
         },
     );
-    // The harmonics above the ninth were left out of the start.
-    println!("{} periods, {:?}", all.periods, now.elapsed());
     let error = relative_gap(&all.harmonics, &start);
-    println!("{error:.1e} {:.1e}", relative_gap(&all.harmonics[96..], &start[96..]));
+    println!("{error:.1e}");
     assert!(error < 1e-10);
     assert_eq!(all.events, SECTORS * found.events);
 }

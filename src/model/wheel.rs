@@ -40,7 +40,7 @@ impl Structure {
     pub fn unrolled(&self, which: MatrixKind) -> Result<Csc> {
         let (alpha, beta) = self.rayleigh;
         let own = if self.blocks[which as usize].diameters.is_empty() {
-            let given = self.from_blocks(which)?;
+            let given = self.sectors_around(which)?;
             if which == MatrixKind::Damping && (alpha, beta) != (0.0, 0.0) {
                 let mass = self.unrolled(MatrixKind::Mass)?;
                 let stiffness = self.unrolled(MatrixKind::Stiffness)?;
@@ -56,7 +56,7 @@ impl Structure {
                 given
             }
         } else {
-            self.from_diameters(which)?
+            self.blocks_of_waves(which)?
         };
         for j in 0..own.cols {
             if let Some((i, v)) = own.column(j).find(|(_, v)| v.im != 0.0) {
@@ -72,7 +72,7 @@ impl Structure {
     }
 
     /// Places the blocks of a sector all around.
-    fn from_blocks(&self, which: MatrixKind) -> Result<Csc> {
+    fn sectors_around(&self, which: MatrixKind) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let blocks = &self.blocks[which as usize];
         let mut entries = Vec::new();
@@ -104,7 +104,7 @@ impl Structure {
 
     /// The blocks of a ring from the matrices of its waves: with A(φ) = Σ Bⱼ e^{−ijφ} the block that
     /// couples a sector to the j-th after it is Bⱼ = 1/n Σ_d A(2πd/n) e^{+2πijd/n}.
-    fn from_diameters(&self, which: MatrixKind) -> Result<Csc> {
+    fn blocks_of_waves(&self, which: MatrixKind) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let divisor = self.sectors() / sectors;
         let share = 1.0 / sectors as f64;

@@ -75,7 +75,7 @@ impl Implicit {
                     "the time step fell below {shortest:.1e} at time {t}: the motion grows beyond all bounds"
                 );
             }
-            if !self.collocate(system, pieces, x, v, t, h)? {
+            if !self.collocate(system, pieces, x, v, t, h) {
                 self.trial = 0.25 * h;
                 continue;
             }
@@ -124,7 +124,7 @@ impl Implicit {
     }
 
     /// Newton's method for the accelerations, with the tangents of the step's begin; `false`: it failed.
-    fn collocate(&mut self, system: &System, pieces: &[Piece], x: &[f64], v: &[f64], t: f64, h: f64) -> Result<bool> {
+    fn collocate(&mut self, system: &System, pieces: &[Piece], x: &[f64], v: &[f64], t: f64, h: f64) -> bool {
         let count = system.elements.len();
         for (e, element) in system.elements.iter().enumerate() {
             let (_, tangent) = element.smooth(along(&element.row, x));
@@ -133,7 +133,7 @@ impl Implicit {
             }
         }
         if self.factor(system, pieces, h).is_err() {
-            return Ok(false);
+            return false;
         }
         self.accelerations.fill(0.0);
         let mut before = f64::INFINITY;
@@ -147,15 +147,15 @@ impl Implicit {
                 size = size.max(a.abs());
             }
             if !size.is_finite() || (iteration > 3 && change > before && change > 1e-8 * size) {
-                return Ok(false);
+                return false;
             }
             if change <= 2.0 * f64::EPSILON * size || (change > 0.5 * before && change <= 1e-11 * size) {
                 self.evaluate(system, pieces, x, v, t, h);
-                return Ok(true);
+                return true;
             }
             before = change;
         }
-        Ok(false)
+        false
     }
 
     /// M a + C v + K x + f − F at the nodes, and the tangents there.

@@ -172,8 +172,8 @@ fn halves(b: &[f64]) -> ([f64; DEGREE + 1], [f64; DEGREE + 1]) {
     let n = b.len() - 1;
     let (mut left, mut right) = ([0.0; DEGREE + 1], [0.0; DEGREE + 1]);
     right[..=n].copy_from_slice(b);
-    for i in 0..=n {
-        left[i] = right[0];
+    for (i, left) in left.iter_mut().enumerate().take(n + 1) {
+        *left = right[0];
         for k in 0..n - i {
             right[k] = 0.5 * (right[k] + right[k + 1]);
         }
@@ -205,7 +205,7 @@ fn root(c: &[f64], mut from: f64, mut to: f64) -> f64 {
         } else {
             0.5 * (from + to)
         };
-        if next == theta || to - from <= f64::EPSILON * to {
+        if (next - theta).abs() <= f64::EPSILON * to || to - from <= f64::EPSILON * to {
             return next;
         }
         theta = next;
