@@ -671,7 +671,8 @@ typedef struct {
   int32_t reserved;
   /// 2 pi / omega.
   double period;
-  /// Largest change over a period, relative to the largest displacement and velocity.
+  /// Largest change over a period, relative to the largest displacement and velocity; infinite where
+  /// the caller stopped before the first was over.
   double residual;
   /// Periods that were integrated.
   int64_t periods;

@@ -335,6 +335,21 @@ fn marching_and_shooting_end_in_the_same_motion() {
 }
 
 #[test]
+fn loads_and_lengths_of_any_unit_scale_the_motion() {
+    let model = |s: f64| oscillator(&jenkins(1.0, 0.3 * s), &[(1, 0.2 * s)]);
+    let reference = solve(&model(1.0), &at(1.25)).harmonics;
+    for s in [1e-150, 1e-12, 1e6, 1e150] {
+        let mut x = solve(&model(s), &at(1.25)).harmonics;
+        for x in &mut x {
+            *x /= s;
+        }
+        let error = relative_gap(&x, &reference);
+        println!("{s:e}: {error:.1e}");
+        assert!(error < 1e-12);
+    }
+}
+
+#[test]
 fn springs_that_never_change_give_linear_motions() {
     let linear = |stiffness: f64, mean: f64| {
         let x = 0.2 / (Complex64::new(1.0 + stiffness - 1.21, 0.022));

@@ -264,7 +264,7 @@ fn a_beam_that_lifts_off_its_support_is_what_harmonic_balance_tends_to() {
 }
 
 #[test]
-fn stuck_and_slipping_points_of_a_branch_are_checked_from_themselves() {
+fn points_of_a_branch_are_checked_from_themselves() {
     let model = sector(2, 1, false);
     let branch = sweep(&model, &harmonics(15), 1.4, 3.1, &[]);
     for point in (0..branch.points()).step_by(branch.points() / 5) {
@@ -277,10 +277,8 @@ fn stuck_and_slipping_points_of_a_branch_are_checked_from_themselves() {
             slip(&branch, point),
             truth.periods
         );
-        assert!(error < 1e-2);
-        assert_eq!(truth.events == 0, slip(&branch, point) == 0.0);
-        if truth.events == 0 {
-            assert!(error < 1e-11);
-        }
+        assert!(truth.events > 0 && error < 1e-4);
+        // The start leaves nothing to march for.
+        assert!(truth.periods <= 2);
     }
 }

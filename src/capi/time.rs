@@ -62,7 +62,8 @@ pub struct hbvib_time_info {
     pub reserved: i32,
     /// 2 pi / omega.
     pub period: f64,
-    /// Largest change over a period, relative to the largest displacement and velocity.
+    /// Largest change over a period, relative to the largest displacement and velocity; infinite where
+    /// the caller stopped before the first was over.
     pub residual: f64,
     /// Periods that were integrated.
     pub periods: i64,

@@ -85,10 +85,18 @@ impl Sensitivity {
 pub(super) struct Travel {
     /// Changes of piece.
     pub events: usize,
-    /// Largest displacement and velocity at the begins of the steps.
+    /// Largest displacement and velocity at the ends of the steps.
     pub largest: (f64, f64),
     /// Whether the caller asked to stop before the end.
     pub cancelled: bool,
+}
+
+impl Travel {
+    fn see(&mut self, state: &State) {
+        for (largest, values) in [(&mut self.largest.0, &state.x), (&mut self.largest.1, &state.v)] {
+            *largest = values.iter().fold(*largest, |m, x| m.max(x.abs()));
+        }
+    }
 }
 
 enum Stepper {
@@ -155,6 +163,7 @@ impl Flow {
     ) -> Result<Travel> {
         let end = system.lapse();
         let mut travel = Travel::default();
+        travel.see(state);
         system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.slaved);
         self.zeros.fill((0, 0));
         if let Some(s) = sensitivity.as_deref_mut() {
@@ -178,9 +187,6 @@ impl Flow {
                     system.omega
                 );
             }
-            for (largest, values) in [(&mut travel.largest.0, &state.x), (&mut travel.largest.1, &state.v)] {
-                *largest = values.iter().fold(*largest, |m, x| m.max(x.abs()));
-            }
             for (i, e) in system.elements.iter().enumerate() {
                 self.pieces[i] = e.piece(self.modes[i], along(&e.row, &state.x), state.e[i]);
             }
@@ -198,9 +204,10 @@ impl Flow {
                     e.stretch(self.modes[i], self.segment.growth(&e.row, theta), &mut state.e[i]);
                 }
                 self.segment.at(theta, &mut state.x, &mut state.v);
+                travel.see(state);
                 self.zeros.fill((0, 0));
             }
-            let happened = self.switch(system, state, theta, sensitivity.as_deref_mut());
+            let happened = self.switch(system, state, sensitivity.as_deref_mut());
             travel.events += happened;
             at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
             if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {
@@ -266,19 +273,10 @@ impl Flow {
     }
 
     /// Takes the contacts whose piece has ended into the next one; their number.
-    fn switch(
-        &mut self,
-        system: &System,
-        state: &mut State,
-        theta: f64,
-        mut sensitivity: Option<&mut Sensitivity>,
-    ) -> usize {
+    fn switch(&mut self, system: &System, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
         let mut happened = 0;
         for (i, e) in system.elements.iter().enumerate() {
-            let Some((at, which)) = self.falls[i] else { continue };
-            if at > theta + SIMULTANEOUS {
-                continue;
-            }
+            let Some((_, which)) = self.falls[i] else { continue };
             let before = self.modes[i];
             (self.modes[i], self.zeros[i]) = e.leave(before, which, &mut state.e[i]);
             if matches!(before, Mode::Slip(_)) {

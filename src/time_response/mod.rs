@@ -37,7 +37,7 @@ pub struct TimeResponse {
     pub period: f64,
     /// Largest change of a displacement, velocity or slider over one period, relative to the largest
     /// displacement or velocity. In a travelling wave it is compared already after the part of the period
-    /// in which another sector comes to do the same.
+    /// in which another sector comes to do the same. Infinite where the caller stopped before.
     pub residual: f64,
     /// Periods that were integrated, rounded up.
     pub periods: usize,
