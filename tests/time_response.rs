@@ -315,6 +315,18 @@ fn a_sector_in_its_wave_is_the_wheel_as_a_plain_structure() {
 }
 
 #[test]
+#[ignore = "takes minutes: 216 sensitivities over hundreds of periods"]
+fn the_wheel_comes_into_the_wave_from_rest() {
+    let omega = TAU * 208.85;
+    let (wheel, sector) = (solve(&BASE.wheel(), &at(omega)), solve(&BASE.sector(), &at(omega)));
+    let first: Vec<Complex64> = wheel.harmonics.chunks_exact(96).flat_map(|x| x[..4].to_vec()).collect();
+    // The ring may rest anywhere around the wheel.
+    let error = relative_gap(&first[4..], &sector.harmonics[4..]);
+    println!("{error:.1e}, {} periods", wheel.periods);
+    assert!(error < 1e-10);
+}
+
+#[test]
 fn marching_and_shooting_end_in_the_same_motion() {
     let contacts = [jenkins(1.0, 0.3), stop(3.0, 0.1), Contact::cubic(0, None, 0.5, 0.2)];
     for contact in contacts {
