@@ -328,6 +328,11 @@ typedef struct {
   double gap;
   /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
   double cubic;
+  /// Direction n in the axes of the three degrees of freedom of each side, of any length. Zero, with
+  /// `tangent`: the degrees of freedom lie along t1, t2 and n themselves.
+  double normal[3];
+  /// Direction t1, orthogonal to `normal`; zero: any in the plane. t2 is n x t1.
+  double tangent[3];
 } hbvib_contact;
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
@@ -509,6 +514,8 @@ typedef struct {
   int32_t mean_carried;
   /// 1 if even harmonics were left out because law and forcing are odd, else 0.
   int32_t even_removed;
+  /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
+  int64_t held_by_contacts;
 } hbvib_reduction;
 
 /// Energies and losses of one point, in the caller's units. Fill it by hbvib_energy_init. In a
@@ -892,27 +899,31 @@ hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c,
 /// Threads: one at a time per model.
 hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double preload);
 
-/// Force of one contact law on a prescribed relative motion y(t) = Re sum Y_h exp(i h omega t),
-/// once it has become periodic, and its Jacobian. Degrees of freedom in the description are not
-/// looked at.
+/// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
+/// it has become periodic, and its Jacobian. Degrees of freedom in the description are not looked
+/// at. d is the number of motions of the law, in the order t1, t2, n: 1 for HBVIB_JENKINS,
+/// HBVIB_UNILATERAL and HBVIB_CUBIC.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
-/// samples     0: events are located exactly; else samples per period, at least 2H + 1. A law
-///             without events (HBVIB_CUBIC) is exact either way.
-/// motion      H + 1 complex numbers Y_0 .. Y_H; the imaginary part of Y_0 has no effect.
-/// motion_len  complex numbers in it, H + 1.
-/// force       receives H + 1 complex numbers F_0 .. F_H.
-/// force_len   complex numbers in it, H + 1.
-/// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 (H + 1);
+/// samples     0: events are located exactly where the law has them; else samples per period, at
+///             least 2H + 1. A law without events (HBVIB_CUBIC) is exact either way.
+/// omega       angular frequency, >= 0; matters to laws that know velocities.
+/// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
+///             part of Y_0 has no effect.
+/// motion_len  complex numbers in it, d (H + 1).
+/// force       receives d (H + 1) complex numbers, F_0 .. F_H of one direction after the other.
+/// force_len   complex numbers in it, d (H + 1).
+/// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
 ///             or NULL.
-/// jac_len     doubles in it, (2 (H + 1))^2; 0 with NULL.
-/// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, overlapping arrays),
+/// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
+/// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c,
                                     int64_t harmonics,
                                     int64_t samples,
+                                    double omega,
                                     const double *motion,
                                     int64_t motion_len,
                                     double *force,

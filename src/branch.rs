@@ -333,7 +333,7 @@ impl Branch {
         }
         let mut found = try_vec(needed, Complex64::ZERO, "the harmonics")?;
         let mut recovery = Recovery::new(self)?;
-        recovery.go_to(point);
+        recovery.go_to(point)?;
         for (i, &h) in self.carried().iter().enumerate() {
             recovery.harmonic(i, &mut found[h * n..(h + 1) * n])?;
         }

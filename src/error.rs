@@ -189,6 +189,11 @@ pub struct Error {
     pub status: Status,
     /// Number of the offending argument of the C function, counted from 1; 0 if none.
     pub argument: i32,
+    /// Code that a callback of the host returned; 0 if none did.
+    pub callback: i32,
+    /// Whether the same call may succeed at another motion: a callback said so, or its numbers were
+    /// not finite. A solver then tries a smaller step before it gives up.
+    pub recoverable: bool,
     text: Text,
 }
 
@@ -202,8 +207,28 @@ impl Error {
         Self {
             status,
             argument: 0,
+            callback: 0,
+            recoverable: false,
             text,
         }
+    }
+
+    /// A callback of the host returned `code` instead of 0: above 0 it may succeed elsewhere, below 0
+    /// it gives up for good.
+    #[must_use]
+    pub fn from_callback(code: i32, message: fmt::Arguments<'_>) -> Self {
+        Self {
+            callback: code,
+            recoverable: code > 0,
+            ..Self::new(Status::Callback, message)
+        }
+    }
+
+    /// The same error, which another motion may not meet.
+    #[must_use]
+    pub fn recoverable(mut self) -> Self {
+        self.recoverable = true;
+        self
     }
 
     /// The same error, blaming the C function's argument number `argument` (from 1).

@@ -347,7 +347,13 @@ fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64,
         if last < EVENT_TOLERANCE {
             let (value, slope) = f(tau);
             let polished = tau - value / slope;
-            return if (polished - tau).abs() <= last { polished } else { tau };
+            // Twice: bisection that creeps up to an end of the bracket, the root but for rounding, stops
+            // as far from it as its last step was long.
+            return if (polished - tau).abs() <= 2.0 * last {
+                polished
+            } else {
+                tau
+            };
         }
     }
     tau
@@ -429,6 +435,31 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn a_crossing_is_found_to_rounding_wherever_its_bracket_ends() {
+        // cos t = cos c between its reversals at 0 and π, or the root itself an end but for rounding.
+        let set = HarmonicSet::all(3).unwrap();
+        let mut worst = 0.0_f64;
+        for k in 1..400 {
+            let c = PI * f64::from(k) / 400.0;
+            for size in [0.3, 0.7, 1.9] {
+                for (a, b) in [
+                    (0.0, PI),
+                    (c - 1e-16, PI),
+                    (0.0, c + 1e-16),
+                    (c - 1e-10, PI),
+                    (0.0, c + 1e-10),
+                ] {
+                    let packed = [0.0, size, 0.0, 0.0, 0.0, 0.0, 0.0];
+                    let level = size * c.cos();
+                    let at = crossing(&set, &packed, a, b, size * a.cos(), size * b.cos(), level);
+                    worst = worst.max((at - c).abs() * c.sin());
+                }
+            }
+        }
+        assert!(worst < 1e-15, "{worst:e}");
     }
 
     #[test]

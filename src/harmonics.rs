@@ -158,6 +158,13 @@ impl HarmonicSet {
         }
     }
 
+    /// A bound of the velocity of a packed signal at an angular frequency.
+    #[must_use]
+    pub fn speed(&self, packed: &[f64], omega: f64) -> f64 {
+        let at = |i: usize| self.numbers[i] as f64 * self.get(packed, i).norm();
+        omega * (0..self.numbers.len()).map(at).sum::<f64>()
+    }
+
     /// Fills `row` with c(τ), the values of the packed basis: x(τ) = c(τ)·packed.
     pub fn basis(&self, tau: f64, row: &mut [f64]) {
         let mut at = 0;

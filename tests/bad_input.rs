@@ -144,16 +144,16 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
         for (bad, status, words) in [
             (
                 Contact {
-                    dof_a: Some(4),
-                    ..contact
+                    dof_a: [Some(4), None, None],
+                    ..contact.clone()
                 },
                 Status::Index,
                 "dof_a = 4",
             ),
             (
                 Contact {
-                    dof_b: Some(9),
-                    ..contact
+                    dof_b: [Some(9), None, None],
+                    ..contact.clone()
                 },
                 Status::Index,
                 "dof_b = 9",
@@ -161,16 +161,16 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             (
                 Contact {
                     dof_b: contact.dof_a,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::Argument,
                 "same degree of freedom",
             ),
             (
                 Contact {
-                    dof_a: None,
-                    dof_b: None,
-                    ..contact
+                    dof_a: [None; 3],
+                    dof_b: [None; 3],
+                    ..contact.clone()
                 },
                 Status::Argument,
                 "ground",
@@ -178,16 +178,23 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             (
                 Contact {
                     kt: f64::INFINITY,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::NotFinite,
                 "kt",
             ),
-            (Contact { kt: -1.0, ..contact }, Status::Argument, "kt = -1"),
+            (
+                Contact {
+                    kt: -1.0,
+                    ..contact.clone()
+                },
+                Status::Argument,
+                "kt = -1",
+            ),
             (
                 Contact {
                     mu: f64::NAN,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::NotFinite,
                 "mu",
@@ -195,7 +202,7 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
             (
                 Contact {
                     preload: -2.0,
-                    ..contact
+                    ..contact.clone()
                 },
                 Status::Argument,
                 "preload = -2",
@@ -243,7 +250,7 @@ fn a_refused_cubic_spring_leaves_the_model_as_it_was() {
             (
                 Contact {
                     cubic: f64::INFINITY,
-                    ..spring
+                    ..spring.clone()
                 },
                 Status::NotFinite,
                 "cubic = inf",
@@ -251,30 +258,43 @@ fn a_refused_cubic_spring_leaves_the_model_as_it_was() {
             (
                 Contact {
                     cubic: f64::NAN,
-                    ..friction
+                    ..friction.clone()
                 },
                 Status::NotFinite,
                 "cubic = NaN",
             ),
             (
-                Contact { cubic: 2.0, ..friction },
+                Contact {
+                    cubic: 2.0,
+                    ..friction.clone()
+                },
                 Status::Argument,
                 "cubic = 2, needs 0 for a Jenkins contact",
             ),
             (
-                Contact { mu: 0.3, ..spring },
+                Contact {
+                    mu: 0.3,
+                    ..spring.clone()
+                },
                 Status::Argument,
                 "mu = 0.3, needs 0 for a cubic spring",
             ),
             (
                 Contact {
                     preload: f64::INFINITY,
-                    ..spring
+                    ..spring.clone()
                 },
                 Status::Argument,
                 "preload = inf, needs 0 for a cubic spring",
             ),
-            (Contact { kt: -1.0, ..spring }, Status::Argument, "kt = -1"),
+            (
+                Contact {
+                    kt: -1.0,
+                    ..spring.clone()
+                },
+                Status::Argument,
+                "kt = -1",
+            ),
         ] {
             refused(model.add_contact(&bad), status, &[words]);
         }
@@ -351,17 +371,17 @@ fn arrays_of_the_wrong_length_are_refused_before_anything_is_written() {
     let contact = BASE.contact();
     let mut f = vec![mark; 4];
     refused(
-        contact_evaluate(&contact, 3, 0, &x[..3], &mut f, None),
+        contact_evaluate(&contact, 3, 0, 1.0, &x[..3], &mut f, None),
         Status::Dimension,
         &["motion has 3"],
     );
     refused(
-        contact_evaluate(&contact, 3, 6, &x[..4], &mut f, None),
+        contact_evaluate(&contact, 3, 6, 1.0, &x[..4], &mut f, None),
         Status::Argument,
         &["samples = 6"],
     );
     refused(
-        contact_evaluate(&contact, 3, 0, &bad[..4], &mut f, None),
+        contact_evaluate(&contact, 3, 0, 1.0, &bad[..4], &mut f, None),
         Status::NotFinite,
         &["motion[3]"],
     );
@@ -369,10 +389,11 @@ fn arrays_of_the_wrong_length_are_refused_before_anything_is_written() {
         contact_evaluate(
             &Contact {
                 kt: f64::NAN,
-                ..contact
+                ..contact.clone()
             },
             3,
             0,
+            1.0,
             &x[..4],
             &mut f,
             None,

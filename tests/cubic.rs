@@ -5,7 +5,8 @@ mod common;
 use common::relative_gap;
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::analysis::harmonic_residual::contact_evaluate;
-use hbvib::contact::{Contact, Law};
+use hbvib::contact::Contact;
+use hbvib::contact::law::{Law, Range};
 use hbvib::harmonics::HarmonicSet;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -31,11 +32,11 @@ fn sets(highest: usize) -> [HarmonicSet; 4] {
     ]
 }
 
-fn evaluate(law: &Law, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Evaluation {
-    let mut out = Evaluation::new(set).unwrap();
-    let mut evaluator = Evaluator::new(set, samples).unwrap();
+fn evaluate(law: &dyn Law, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Evaluation {
+    let mut out = Evaluation::new(set, 1).unwrap();
+    let mut evaluator = Evaluator::new(set, samples, std::iter::once(law)).unwrap();
     evaluator.prepare(set, motion);
-    evaluator.evaluate(law, set, motion, &mut out);
+    evaluator.evaluate(law, set, motion, 1.0, &mut out).unwrap();
     out
 }
 
@@ -70,10 +71,10 @@ fn the_harmonics_of_the_force_are_those_of_the_polynomial() {
         for (which, set) in sets(highest).iter().enumerate() {
             for (kt, k3) in [(KT, K3), (0.0, 1.9), (KT, 0.0), (3.0, 1e-9)] {
                 let x = motion(set, which + highest);
-                let law = Law::new(&Contact::cubic(0, None, kt, k3), 1.0);
+                let law = Contact::cubic(0, None, kt, k3).law(1.0).unwrap();
                 let expected = quadrature(set, &x, |x| kt * x + k3 * x * x * x);
                 for samples in [0, 2 * highest + 1, 1024] {
-                    let found = evaluate(&law, set, samples, &x);
+                    let found = evaluate(&*law, set, samples, &x);
                     let gap = gap(&found.force, &expected);
                     assert!(gap < 1e-13, "H = {highest}, set {which}, {samples} samples: {gap:.1e}");
                     assert!(found.slip_fraction == 0.0 && !found.stuck);
@@ -88,12 +89,21 @@ fn one_harmonic_sees_the_describing_function() {
     let x = Complex64::from_polar(1.7, 0.4);
     let motion = [Complex64::ZERO, x];
     let mut f = [Complex64::ZERO; 2];
-    contact_evaluate(&Contact::cubic(0, None, KT, K3), 1, 0, &motion, &mut f, None).unwrap();
+    contact_evaluate(&Contact::cubic(0, None, KT, K3), 1, 0, 1.0, &motion, &mut f, None).unwrap();
     let expected = [Complex64::ZERO, (KT + 0.75 * K3 * x.norm_sqr()) * x];
     assert!(relative_gap(&f, &expected) < 1e-15);
     // About a mean: (x₀ + y)³ has the mean x₀³ + ³⁄₂ x₀ A².
     let mean = 0.3;
-    contact_evaluate(&Contact::cubic(0, None, KT, K3), 1, 0, &[mean.into(), x], &mut f, None).unwrap();
+    contact_evaluate(
+        &Contact::cubic(0, None, KT, K3),
+        1,
+        0,
+        1.0,
+        &[mean.into(), x],
+        &mut f,
+        None,
+    )
+    .unwrap();
     let static_force = KT * mean + K3 * (mean.powi(3) + 1.5 * mean * x.norm_sqr());
     assert!((f[0].re - static_force).abs() < 1e-14 && f[0].im == 0.0);
 }
@@ -105,8 +115,8 @@ fn units_of_length_do_not_matter() {
     let set = HarmonicSet::all(5).unwrap();
     let x = motion(&set, 3);
     let scaled: Vec<f64> = x.iter().map(|x| x / length).collect();
-    let mut expected = evaluate(&Law::new(&contact, 1.0), &set, 0, &x).force;
-    let found = evaluate(&Law::new(&contact, length), &set, 0, &scaled).force;
+    let mut expected = evaluate(&*contact.law(1.0).unwrap(), &set, 0, &x).force;
+    let found = evaluate(&*contact.law(length).unwrap(), &set, 0, &scaled).force;
     for f in &mut expected {
         *f /= length;
     }
@@ -114,32 +124,32 @@ fn units_of_length_do_not_matter() {
 }
 
 #[test]
-fn an_eased_law_is_the_law_at_a_smaller_motion_and_the_offset_its_slope() {
+fn the_offset_is_the_slope_of_the_law_as_seen_at_a_smaller_motion() {
     let laws = [
         Contact::cubic(0, None, KT, K3),
         Contact::cubic(0, None, 0.0, 1.9),
         Contact::jenkins(0, None, 1.3, 0.5, 0.8),
     ];
     for set in sets(9) {
-        for contact in laws {
-            let law = Law::new(&contact, 1.0);
+        for contact in &laws {
+            let law = contact.law(1.0).unwrap();
             let x = motion(&set, 1);
+            let seen = |s: f64| {
+                let smaller: Vec<f64> = x.iter().map(|x| x / s).collect();
+                let mut found = evaluate(&*law, &set, 0, &smaller);
+                for part in [&mut found.force, &mut found.offset] {
+                    part.iter_mut().for_each(|f| *f *= s);
+                }
+                found
+            };
             for factor in [0.6_f64, 1.0, 1.7] {
-                let at = |s: f64| evaluate(&law.eased(s), &set, 0, &x);
-                let eased = at(factor);
-                let smaller: Vec<f64> = x.iter().map(|x| x / factor).collect();
-                let expected: Vec<f64> = evaluate(&law, &set, 0, &smaller)
-                    .force
-                    .iter()
-                    .map(|f| factor * f)
-                    .collect();
-                assert!(gap(&eased.force, &expected) < 1e-12);
                 let h = 1e-5;
-                let (above, below) = (at(factor * f64::exp(h)).force, at(factor * f64::exp(-h)).force);
-                for ((offset, a), b) in eased.offset.iter().zip(&above).zip(&below) {
+                let found = seen(factor);
+                let (above, below) = (seen(factor * f64::exp(h)).force, seen(factor * f64::exp(-h)).force);
+                for ((offset, a), b) in found.offset.iter().zip(&above).zip(&below) {
                     let slope = (a - b) / (2.0 * h);
                     assert!(
-                        (offset - slope).abs() < 1e-7 * largest(&eased.force),
+                        (offset - slope).abs() < 1e-7 * largest(&found.force),
                         "{offset} {slope}"
                     );
                 }
@@ -152,15 +162,19 @@ fn an_eased_law_is_the_law_at_a_smaller_motion_and_the_offset_its_slope() {
 fn far_from_its_cubic_term_the_spring_is_linear() {
     let set = HarmonicSet::all(5).unwrap();
     let x = motion(&set, 2);
-    let law = Law::new(&Contact::cubic(0, None, KT, K3), 1.0);
-    let rest = evaluate(&law.eased(f64::INFINITY), &set, 0, &x);
-    let spring: Vec<f64> = x.iter().map(|x| KT * x).collect();
-    assert!(gap(&rest.force, &spring) == 0.0 && largest(&rest.offset) == 0.0);
+    let law = Contact::cubic(0, None, KT, K3).law(1.0).unwrap();
     // The homotopy begins where the cubic term is tiny against the reference.
     let reference = 5.0;
-    let factor = law.sticking_factor(1.5, -0.5, reference);
-    let Law::Cubic(eased) = law.eased(factor) else {
-        panic!("another law");
+    let range = Range {
+        half: 1.5,
+        mean: -0.5,
+        speed: 0.0,
     };
-    assert!((eased.cubic.abs() * 4.0 / reference / 1e-12 - 1.0).abs() < 1e-12);
+    let factor = law.sticking_factor(&[range], reference);
+    let term = K3.abs() * (2.0 / factor).powi(2);
+    assert!((term / reference / 1e-12 - 1.0).abs() < 1e-12);
+    let smaller: Vec<f64> = x.iter().map(|x| x / factor).collect();
+    let found = evaluate(&*law, &set, 0, &smaller);
+    let spring: Vec<f64> = smaller.iter().map(|x| KT * x).collect();
+    assert!(gap(&found.force, &spring) < 1e-10 && largest(&found.offset) < 1e-10 * largest(&spring));
 }

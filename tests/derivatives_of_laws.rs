@@ -48,7 +48,7 @@ fn motion(numbers: &[f64]) -> Vec<Complex64> {
 /// Force coefficients as pairs, and their Jacobian.
 fn law(contact: &Contact, x: &[Complex64], jacobian: Option<&mut [f64]>) -> Vec<f64> {
     let mut f = vec![Complex64::ZERO; x.len()];
-    contact_evaluate(contact, x.len() - 1, 0, x, &mut f, jacobian).unwrap();
+    contact_evaluate(contact, x.len() - 1, 0, 1.0, x, &mut f, jacobian).unwrap();
     parts(&f)
 }
 

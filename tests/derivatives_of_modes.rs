@@ -80,7 +80,7 @@ impl Case {
         skewed.contacts.push(Contact {
             kt: 0.7,
             preload: 0.2,
-            ..skewed.contacts[1]
+            ..skewed.contacts[1].clone()
         });
         skewed.contacts.push(Contact::jenkins(1, None, 1.0, 0.4, 0.3));
         let mut model = skewed.model(self.with_damping);
@@ -94,7 +94,7 @@ impl Case {
         };
         let contact = self.by_contact.map(|id| {
             let c = &skewed.contacts[id];
-            relative_row(c.dof_a, c.dof_b, model.structure().phase(1, c.sector_offset))
+            relative_row(&c.direction(0), model.structure().phase(1, c.sector_offset))
         });
         let gauge = Gauge {
             contact,
@@ -122,7 +122,7 @@ impl Case {
         let direction: Vec<f64> = (0..=n).map(|_| real()).collect();
         if self.homotopy {
             let large: Vec<f64> = u.iter().map(|u| 1e3 * u).collect();
-            prop_assert!(problem.begin_homotopy(p, &large).is_some());
+            prop_assert!(problem.begin_homotopy(p, &large).unwrap().is_some());
             check_problem(&mut problem, &u, 2.0 * self.log10.abs(), &direction)?;
             problem.end_homotopy();
         }

@@ -52,8 +52,8 @@ impl Problem for Duffing {
         Ok(true)
     }
 
-    fn begin_homotopy(&mut self, _: f64, _: &[f64]) -> Option<(f64, f64)> {
-        None
+    fn begin_homotopy(&mut self, _: f64, _: &[f64]) -> hbvib::error::Result<Option<(f64, f64)>> {
+        Ok(None)
     }
 
     fn end_homotopy(&mut self) {}

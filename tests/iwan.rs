@@ -29,7 +29,7 @@ fn force(elements: &[Contact], a: f64) -> (Complex64, f64) {
     let mut sum = Complex64::ZERO;
     for contact in elements {
         let mut f = [Complex64::ZERO; 2];
-        contact_evaluate(contact, 1, 0, &y, &mut f, None).unwrap();
+        contact_evaluate(contact, 1, 0, 1.0, &y, &mut f, None).unwrap();
         sum += f[1];
     }
     (sum, PI * (sum * a).im)

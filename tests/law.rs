@@ -20,7 +20,7 @@ fn contact() -> Contact {
 
 fn force(motion: &[Complex64], samples: usize) -> Vec<Complex64> {
     let mut f = vec![Complex64::ZERO; motion.len()];
-    contact_evaluate(&contact(), motion.len() - 1, samples, motion, &mut f, None).unwrap();
+    contact_evaluate(&contact(), motion.len() - 1, samples, 1.0, motion, &mut f, None).unwrap();
     f
 }
 
@@ -193,7 +193,7 @@ fn sampling_near_nyquist_is_not_what_exact_events_do() {
     let contact = Contact::jenkins(0, None, 1.0, 1.0, 0.3);
     let evaluate = |samples: usize| {
         let mut f = vec![Complex64::ZERO; 8];
-        contact_evaluate(&contact, 7, samples, &motion, &mut f, None).unwrap();
+        contact_evaluate(&contact, 7, samples, 1.0, &motion, &mut f, None).unwrap();
         f
     };
     let gap = relative_gap(&evaluate(0), &expected);

@@ -146,20 +146,26 @@ fn a_mode_that_moves_no_contact_is_refused() {
     };
     let middle = Contact::jenkins(1, None, 1.0, 1.0, 0.1);
     refused(
-        follow(&row(Some(middle)), &second),
+        follow(&row(Some(middle.clone())), &second),
         Status::Argument,
         &["mode 1", "moves no contact"],
     );
-    assert_eq!(follow(&row(Some(middle)), &RANGE).unwrap().status(), Status::Ok);
+    assert_eq!(follow(&row(Some(middle.clone())), &RANGE).unwrap().status(), Status::Ok);
     // No contact at all, and contacts that never slip or never resist.
     refused(follow(&row(None), &RANGE), Status::Argument, &["moves no contact"]);
     for contact in [
         Contact {
             preload: f64::INFINITY,
-            ..middle
+            ..middle.clone()
         },
-        Contact { mu: 0.0, ..middle },
-        Contact { kt: 0.0, ..middle },
+        Contact {
+            mu: 0.0,
+            ..middle.clone()
+        },
+        Contact {
+            kt: 0.0,
+            ..middle.clone()
+        },
     ] {
         refused(
             follow(&row(Some(contact)), &RANGE),

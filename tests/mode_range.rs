@@ -150,14 +150,14 @@ fn contacts_of_different_slip_limits_begin_to_slip_one_after_the_other() {
         // The order is that of slip limit over stiffness and motion. While one contact slides the
         // others see it as if it were not there: the onset of the next is that of the structure
         // without those that slide, but for the little that they still hold.
-        let mut left = Vec::from(contacts);
+        let mut left = Vec::from(contacts.clone());
         for (i, contact) in contacts.iter().enumerate() {
             let without = two_masses(&left);
             let modes = without.linear_modes(0, ContactState::Stuck).unwrap();
             let shape = &modes.shapes[2 * family..2 * family + 2];
-            let motion = match contact.dof_b {
+            let motion = match contact.dof_b[0] {
                 Some(b) => (shape[0] - shape[b]).norm(),
-                None => shape[contact.dof_a.unwrap()].norm(),
+                None => shape[contact.dof_a[0].unwrap()].norm(),
             };
             let expected = (limits[i] / contact.kt / motion).log10();
             let (below, above) = first_slip(&branch, i);

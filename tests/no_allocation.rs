@@ -7,11 +7,20 @@
 mod common;
 
 use common::{BASE, harmonics};
+use hbvib::aft::Evaluation;
+use hbvib::aft::marched::MarchedWay;
+use hbvib::aft::pointwise::PointwiseEvaluator;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::contact::Contact;
+use hbvib::contact::friction_plane::FrictionPlane;
+use hbvib::contact::pointwise::Pointwise;
+use hbvib::contact::polynomial::Polynomial;
+use hbvib::contact::regularised::TanhFriction;
+use hbvib::contact::user::{Call, User, UserForce};
 use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Metric, Settings};
+use hbvib::harmonics::HarmonicSet;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::linalg::norm;
 use hbvib::model::Model;
@@ -25,6 +34,7 @@ use num_complex::Complex64;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Counts the allocations of each thread; tests run in threads of their own.
 struct Counting;
@@ -284,5 +294,65 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
             );
         }
         assert!(iterations >= 5, "only {iterations} iterations were seen");
+    }
+}
+
+#[test]
+fn evaluating_laws_without_memory_asks_for_none() {
+    let laws: [(&str, Box<dyn Pointwise>); 3] = [
+        (
+            "polynomial",
+            Box::new(Polynomial::tensors(2, &[], &[0.3; 8], &[-0.2; 16]).unwrap()),
+        ),
+        ("tanh", Box::new(TanhFriction::new(0.7, 0.4).unwrap())),
+        ("callback", Box::new(User::new(Arc::new(Drag), 2, 0).unwrap())),
+    ];
+    for (name, law) in laws {
+        // By a table of sines and by a fast transform.
+        for highest in [3, 63] {
+            let set = HarmonicSet::all(highest).unwrap();
+            let motion = vec![0.1; law.directions() * set.packed_len()];
+            let mut out = Evaluation::new(&set, law.directions()).unwrap();
+            let mut evaluator = PointwiseEvaluator::new(&set, &*law, law.samples(set.highest_reduced(), 0)).unwrap();
+            let evaluation = || evaluator.evaluate(&*law, &set, 1.1, &motion, &mut out).unwrap();
+            let (count, ()) = allocations(evaluation);
+            assert_eq!(count, 0, "{name}, H = {highest}");
+        }
+    }
+}
+
+/// A damper told by a callback.
+struct Drag;
+
+impl UserForce for Drag {
+    fn evaluate(&self, call: &mut Call<'_>) -> i32 {
+        call.f.copy_from_slice(call.v);
+        for (k, slope) in call.df_dv.iter_mut().enumerate() {
+            *slope = f64::from(u8::from(k % 4 == 0 || k % 4 == 3));
+        }
+        0
+    }
+}
+
+#[test]
+fn a_law_marched_over_samples_asks_for_no_memory() {
+    let set = HarmonicSet::all(5).unwrap();
+    // With separation, with slip alone, and stuck.
+    for load in [0.4, 4.0, 1e3] {
+        let law = FrictionPlane {
+            kt: 1.3,
+            kn: 0.9,
+            mu: 0.4,
+            load,
+            has_normal: true,
+        };
+        let motion: Vec<f64> = (0..33).map(|i| (0.7 + f64::from(i)).sin()).collect();
+        let mut way = MarchedWay::new(&set, &law, 128).unwrap();
+        let mut out = Evaluation::new(&set, 3).unwrap();
+        let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out));
+        result.unwrap();
+        assert_eq!(count, 0, "load {load}");
+        assert_eq!(out.open_fraction > 0.0, load < 1.0);
+        assert_eq!((out.slip_fraction > 0.0, out.stuck), (load < 10.0, load > 10.0));
     }
 }

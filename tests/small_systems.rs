@@ -189,3 +189,29 @@ fn a_massless_ring_is_the_limit_of_a_light_one() {
         assert!((a - b).norm() < 1e-6 * largest);
     }
 }
+
+/// The same-H solution, from an independent harmonic balance; and the motion in time to 1e-7.
+#[test]
+fn the_mean_of_a_slipping_contact_is_unique_and_that_of_a_stuck_one_the_virgin_sliders() {
+    let slipping = solve(&BASE.model(&[(0, 0.1), (1, 0.2)]), 1.25, 31, false).unwrap();
+    close(slipping[0].re, 0.1, 1e-9);
+    close(slipping[1].norm(), 0.579_898_538_987_928_6, 1e-9);
+    close(slipping[1].norm(), 0.579_898_529_742_581_4, 1e-7);
+    let stuck = solve(&BASE.model(&[(0, 0.1), (1, 0.05)]), 0.9, 31, false).unwrap();
+    close(stuck[0].re, 0.1 / (1.0 + BASE.kt), 1e-12);
+}
+
+/// The same-H solution: many contacts that switch at once are one contact.
+#[test]
+fn a_hundred_equal_contacts_are_one() {
+    let mut one = Oscillator { kt: 0.0, ..BASE }.model(&[(1, 0.5)]);
+    let mut many = one.try_clone().unwrap();
+    one.add_contact(&Contact::jenkins(0, None, 1.0, 1.0, 0.3)).unwrap();
+    for _ in 0..100 {
+        many.add_contact(&Contact::jenkins(0, None, 0.01, 1.0, 0.003)).unwrap();
+    }
+    for model in [one, many] {
+        let x = solve(&model, 1.25, 3, false).unwrap();
+        close(x[1].norm(), 1.122_791_677_463_721_2, 1e-9);
+    }
+}

@@ -96,26 +96,40 @@ fn limits_of_the_law_are_linear_systems() {
             "no load",
             Contact {
                 preload: 0.0,
-                ..contact
+                ..contact.clone()
             },
             0.0,
         ),
-        ("no friction", Contact { mu: 0.0, ..contact }, 0.0),
+        (
+            "no friction",
+            Contact {
+                mu: 0.0,
+                ..contact.clone()
+            },
+            0.0,
+        ),
         (
             "no friction under infinite load",
             Contact {
                 mu: 0.0,
                 preload: f64::INFINITY,
-                ..contact
+                ..contact.clone()
             },
             0.0,
         ),
-        ("no stiffness", Contact { kt: 0.0, ..contact }, 0.0),
+        (
+            "no stiffness",
+            Contact {
+                kt: 0.0,
+                ..contact.clone()
+            },
+            0.0,
+        ),
         (
             "infinite load",
             Contact {
                 preload: f64::INFINITY,
-                ..contact
+                ..contact.clone()
             },
             contact.kt,
         ),
@@ -139,7 +153,13 @@ fn nearly_infinite_and_nearly_zero_limits_approach_the_linear_systems() {
     let contact = case.contact();
     let omega = TAU * 208.9;
     let at = |preload: f64| {
-        let model = with_contact(&case, Contact { preload, ..contact });
+        let model = with_contact(
+            &case,
+            Contact {
+                preload,
+                ..contact.clone()
+            },
+        );
         all_harmonics(&solve_at(&model, &harmonics(5), omega), 0)[NDOF..2 * NDOF].to_vec()
     };
     assert!(relative_gap(&at(1e12), &linear(&case, contact.kt, omega)) < 1e-12);

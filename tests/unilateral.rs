@@ -50,7 +50,7 @@ fn harmonics_of_the_force_are_those_of_quadrature() {
         // On the ground's side: the closing is −x, so that a positive x opens.
         let contact = Contact::unilateral(Some(0), None, kn, gap);
         let mut force = vec![Complex64::ZERO; x.len()];
-        contact_evaluate(&contact, x.len() - 1, 0, &x, &mut force, None).unwrap();
+        contact_evaluate(&contact, x.len() - 1, 0, 1.0, &x, &mut force, None).unwrap();
         let n = 1 << 18;
         let mut exact = vec![Complex64::ZERO; x.len()];
         for j in 0..n {

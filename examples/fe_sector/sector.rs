@@ -71,7 +71,7 @@ impl Size {
 }
 
 /// A pair of nodes that touch, on the rim and on the ring.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Pair {
     /// Position round the wheel, rad.
     pub theta: f64,
@@ -147,7 +147,7 @@ impl Sector {
             model.add_springs(&springs)?;
         }
         if interface == Interface::Friction {
-            let contacts: Vec<Contact> = self.pairs.iter().flat_map(|p| p.friction).collect();
+            let contacts: Vec<Contact> = self.pairs.iter().flat_map(|p| p.friction.clone()).collect();
             model.add_contacts(&contacts)?;
         }
         Ok(model)

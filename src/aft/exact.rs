@@ -1,11 +1,11 @@
 //! Exact evaluation: reversals and slip times located, Fourier integrals in closed form.
 //!
-//! It knows no law by name: [`Law::pieces`] returns intervals, and each contributes
+//! It knows no law by name: [`Pieces::pieces`] returns intervals, and each contributes
 //! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices;
 //! the other half repeats it with opposite sign and doubles every integral that is used.
 
 use super::{Assembly, Evaluation};
-use crate::contact::{Law, Piece};
+use crate::contact::law::{Piece, Pieces};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::{Extremum, Reversals};
 use crate::harmonics::HarmonicSet;
@@ -22,19 +22,19 @@ pub struct Exact {
 }
 
 impl Exact {
-    /// Memory for motions of `set`.
+    /// Memory for motions of `set` under laws of up to `most_pieces` pieces.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
+    pub fn new(set: &HarmonicSet, most_pieces: usize) -> Result<Self> {
         let highest = set.highest_reduced();
         let assembly = Assembly::new(set)?;
-        // x' has at most 2·highest roots per turn, each the end of at most two pieces.
+        // x' has at most 2·highest roots per turn.
         let mut extrema = Vec::new();
         let mut pieces = Vec::new();
         extrema
             .try_reserve_exact(2 * highest + 4)
-            .and_then(|()| pieces.try_reserve_exact(4 * highest + 8))
+            .and_then(|()| pieces.try_reserve_exact(most_pieces))
             .map_err(|_| Error::out_of_memory("the pieces of a motion"))?;
         Ok(Self {
             reversals: Reversals::new(set)?,
@@ -48,6 +48,12 @@ impl Exact {
     /// Finds the reversals of a packed motion.
     pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
         self.reversals.find(set, motion, &mut self.extrema);
+    }
+
+    /// The pieces of the law evaluated last.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
     }
 
     /// Half the range of the prepared motion.
@@ -67,34 +73,29 @@ impl Exact {
     }
 
     /// Force and Jacobian of `law` for the prepared motion; see [`super`].
-    pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        if self.assembly.smooth(law, set, motion, out) {
-            return;
-        }
+    pub fn evaluate(&mut self, law: &dyn Pieces, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        self.pieces.clear();
         law.pieces(set, motion, &self.extrema, &mut self.pieces);
         self.assembly.start(out);
-        let fold = if set.is_odd() { 2.0 } else { 1.0 };
+        let turn = TAU / set.stride() as f64;
         for piece in &self.pieces {
-            transform(piece.start, piece.end, fold / TAU, set.stride(), &mut self.transform);
-            self.assembly.add(set, piece, &self.transform, piece.anchor, out);
+            transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
+            let state = law.state(piece);
+            self.assembly
+                .add(set, (piece, state), &self.transform, piece.anchor, out);
         }
         self.assembly.finish(set, motion, out);
     }
 }
 
-/// scale·∫ₐᵇ e^{−inτ} dτ for all n. With odd harmonics the piece stands for its mirror image too;
-/// then even n belong to the stiffness spectrum and odd n to g, and both double.
-fn transform(a: f64, b: f64, scale: f64, stride: usize, out: &mut [Complex64]) {
-    // A whole turn (or half of one) has no harmonics but the mean.
-    let whole = a == 0.0 && b >= TAU / stride as f64;
+/// scale·∫ₐᵇ e^{−inτ} dτ for all n. With odd harmonics and `turn` = π the piece stands for its mirror
+/// image too; then even n belong to the stiffness spectrum and odd n to g, and both double.
+pub(super) fn transform([a, b]: [f64; 2], scale: f64, turn: f64, out: &mut [Complex64]) {
     out.fill(Complex64::ZERO);
     out[0] = (scale * (b - a)).into();
-    if whole {
-        if stride == 2 {
-            // Odd n over the half turn: only offsets of a clamped slider would use them, and an
-            // odd motion never clamps.
-            return;
-        }
+    // A whole turn has no harmonics but the mean. Odd n over half a turn: only offsets of a clamped
+    // slider would use them, and an odd motion never clamps.
+    if a == 0.0 && b >= turn {
         return;
     }
     let (ea, eb) = (Complex64::cis(-a), Complex64::cis(-b));

@@ -9,93 +9,220 @@
 //!
 //! because the force is continuous where pieces meet, so that moving events contribute nothing
 //! (Petrov & Ewins 2003, doi:10.1115/1.1539868). T(S) maps Xₘ to Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ). A smooth
-//! law gives S at once, without pieces.
+//! law gives S at once, without pieces. Friction under a varying normal load has one such sum per
+//! pair of directions; see [`coupled`].
 
+mod block;
+pub mod coupled;
 pub mod exact;
+pub mod marched;
+mod periodic;
+pub mod pointwise;
 pub mod sampled;
-mod smooth;
+mod sensitivity;
+mod spectral;
+mod toeplitz;
+mod transform;
 
-use crate::contact::{Law, Piece};
-use crate::error::{Result, try_vec};
+use crate::contact::state::State;
+use crate::contact::{Form, Law, Piece};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
+use block::{Block, add_stiffness, apply, pack};
+use coupled::Coupled;
+use marched::MarchedWay;
 use num_complex::Complex64;
+use pointwise::PointwiseEvaluator;
 
-/// Way of evaluating laws, with its tables.
-pub enum Evaluator {
+/// Ways of evaluating laws, with their tables.
+pub struct Evaluator {
+    /// Laws on one relative motion.
+    scalar: Scalar,
+    smooth: Assembly,
+    /// Friction under a varying normal load.
+    coupled: Option<Box<Coupled>>,
+    /// Laws with states, by their directions, states and samples.
+    marched: Vec<MarchedWay>,
+    /// Laws without memory, by their directions and samples.
+    pointwise: Vec<PointwiseEvaluator>,
+    /// Samples asked for.
+    samples: usize,
+}
+
+/// Way of evaluating laws on one relative motion.
+enum Scalar {
     /// Events located, integrals in closed form.
     Exact(Box<exact::Exact>),
     /// Equidistant samples.
     Sampled(Box<sampled::Sampled>),
 }
 
-/// Harmonics of a contact force and what belongs to them, all in packed form.
+/// Harmonics of a contact force and what belongs to them, all in packed form, one direction of the law
+/// after the other.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
-    /// F
+    /// Directions d of the relative motion; m is the packed length of one signal.
+    pub directions: usize,
+    /// F, d·m numbers.
     pub force: Vec<f64>,
-    /// ∂F/∂X, column-major.
+    /// ∂F/∂X, (d·m)², column-major.
     pub jacobian: Vec<f64>,
-    /// F − ∂F/∂X · X, the derivative of F by the logarithm of the factor in [`Law::eased`].
+    /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law as seen at a motion s times smaller.
     pub offset: Vec<f64>,
+    /// ∂F/∂ω at fixed X; zero unless the law knows velocities.
+    pub by_omega: Vec<f64>,
     /// Share of the period that is spent slipping, 0 for a stuck contact.
     pub slip_fraction: f64,
-    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X. Never so
-    /// for a smooth law.
+    /// Share of the period that is spent open.
+    pub open_fraction: f64,
+    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed
+    /// throughout, where the normal load varies). Never so for a smooth law.
     pub stuck: bool,
 }
 
 impl Evaluation {
-    /// Memory for signals of `set`.
+    /// Memory for the signals of `set` in a number of directions.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
-        let m = set.packed_len();
+    pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
+        let m = set.packed_len().saturating_mul(directions);
         Ok(Self {
+            directions,
             force: try_vec(m, 0.0, "a contact force")?,
             jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
             offset: try_vec(m, 0.0, "a contact force")?,
+            by_omega: try_vec(m, 0.0, "a contact force")?,
             slip_fraction: 0.0,
+            open_fraction: 0.0,
             stuck: false,
         })
+    }
+
+    /// Counts a share of the period that is spent in a state.
+    fn count(&mut self, state: State, share: f64) {
+        match state {
+            State::Stick => {}
+            State::Slip => self.slip_fraction += share,
+            State::Open => self.open_fraction += share,
+        }
+    }
+
+    /// Clears what the last evaluation left.
+    fn clear(&mut self) {
+        self.jacobian.fill(0.0);
+        self.offset.fill(0.0);
+        self.by_omega.fill(0.0);
+        self.slip_fraction = 0.0;
+        self.open_fraction = 0.0;
+        self.stuck = false;
     }
 }
 
 impl Evaluator {
-    /// Tables for motions of `set`; `samples` = 0 locates the events exactly.
+    /// Tables for motions of `set` under `laws`; `samples` = 0 locates events exactly where the law has
+    /// them.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet, samples: usize) -> Result<Self> {
-        Ok(if samples == 0 {
-            Self::Exact(Box::new(exact::Exact::new(set)?))
-        } else {
-            Self::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
+    pub fn new<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        let highest = set.highest_reduced();
+        let mut pointwise: Vec<PointwiseEvaluator> = Vec::new();
+        let mut most_pieces = 0;
+        let mut coupled = None;
+        let mut marched: Vec<MarchedWay> = Vec::new();
+        for law in laws {
+            match law.form() {
+                Form::Spectral(_) => {}
+                Form::Pieces(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
+                Form::Coupled(_) if coupled.is_none() => coupled = Some(Box::new(Coupled::new(set)?)),
+                Form::Coupled(_) => {}
+                Form::Marched(law) => {
+                    let wanted = law.samples(highest, samples);
+                    if !marched.iter().any(|way| way.suits(law, wanted)) {
+                        let way = MarchedWay::new(set, law, wanted)?;
+                        try_push(&mut marched, way, "the contact laws")?;
+                    }
+                }
+                Form::Pointwise(law) => {
+                    let wanted = law.samples(highest, samples);
+                    if !pointwise.iter().any(|way| way.suits(law, wanted)) {
+                        let way = PointwiseEvaluator::new(set, law, wanted)?;
+                        try_push(&mut pointwise, way, "the contact laws")?;
+                    }
+                }
+            }
+        }
+        Ok(Self {
+            scalar: if samples == 0 {
+                Scalar::Exact(Box::new(exact::Exact::new(set, most_pieces)?))
+            } else {
+                Scalar::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
+            },
+            smooth: Assembly::new(set)?,
+            coupled,
+            marched,
+            pointwise,
+            samples,
         })
     }
 
-    /// Takes a packed motion in: its reversals or samples serve every law on the coordinate.
+    /// Takes the packed motion of one relative coordinate in: its reversals or samples serve every
+    /// law on the coordinate alone.
     pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
-        match self {
-            Self::Exact(way) => way.prepare(set, motion),
-            Self::Sampled(way) => way.prepare(set, motion),
+        match &mut self.scalar {
+            Scalar::Exact(way) => way.prepare(set, motion),
+            Scalar::Sampled(way) => way.prepare(set, motion),
         }
     }
 
-    /// Force and Jacobian of `law` for the motion that was prepared.
-    pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        match self {
-            Self::Exact(way) => way.evaluate(law, set, motion, out),
-            Self::Sampled(way) => way.evaluate(law, set, motion, out),
+    /// Force and Jacobian of `law` at packed motions, one direction after the other, and an angular
+    /// frequency. A law of one direction needs its motion prepared.
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn Law,
+        set: &HarmonicSet,
+        motion: &[f64],
+        omega: f64,
+        out: &mut Evaluation,
+    ) -> Result<()> {
+        match (law.form(), &mut self.scalar) {
+            (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
+            (Form::Pieces(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
+            (Form::Pieces(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
+            (Form::Coupled(law), _) => {
+                let Some(way) = &mut self.coupled else {
+                    return fail!(Internal, "no memory for the pieces of a contact law");
+                };
+                way.evaluate(law, set, motion, out);
+            }
+            (Form::Marched(law), _) => {
+                let wanted = law.samples(set.highest_reduced(), self.samples);
+                let Some(way) = self.marched.iter_mut().find(|way| way.suits(law, wanted)) else {
+                    return fail!(Internal, "no memory for the march of a contact law");
+                };
+                return way.evaluate(law, omega, motion, out);
+            }
+            (Form::Pointwise(law), _) => {
+                let wanted = law.samples(set.highest_reduced(), self.samples);
+                let Some(way) = self.pointwise.iter_mut().find(|way| way.suits(law, wanted)) else {
+                    return fail!(Internal, "no memory for the samples of a contact law");
+                };
+                return way.evaluate(law, set, omega, motion, out);
+            }
         }
+        Ok(())
     }
 
     /// Half the range (max − min)/2 of the motion that was prepared.
     #[must_use]
     pub fn half_range(&self, set: &HarmonicSet) -> f64 {
-        match self {
-            Self::Exact(way) => way.half_range(set),
-            Self::Sampled(way) => way.half_range(),
+        match &self.scalar {
+            Scalar::Exact(way) => way.half_range(set),
+            Scalar::Sampled(way) => way.half_range(),
         }
     }
 }
@@ -123,10 +250,7 @@ impl Assembly {
     /// Clears what the last evaluation left.
     fn start(&mut self, out: &mut Evaluation) {
         self.spectrum.fill(Complex64::ZERO);
-        out.jacobian.fill(0.0);
-        out.offset.fill(0.0);
-        out.slip_fraction = 0.0;
-        out.stuck = false;
+        out.clear();
     }
 
     /// Adds a piece whose transforms tₙ = (1/2π)∫ e^{−inτ} dτ are given for the n of the
@@ -134,83 +258,35 @@ impl Assembly {
     fn add(
         &mut self,
         set: &HarmonicSet,
-        piece: &Piece,
+        (piece, state): (&Piece, State),
         transform: &[Complex64],
         anchor: Option<f64>,
         out: &mut Evaluation,
     ) {
-        if piece.slope == 0.0 {
-            out.slip_fraction += transform[0].re;
-        } else {
-            for (s, t) in self.spectrum.iter_mut().zip(transform) {
-                *s += piece.slope * t;
-            }
-        }
+        out.count(state, transform[0].re);
+        add_stiffness(&mut self.spectrum, piece.slope, transform);
         if piece.offset == 0.0 && anchor.is_none() {
-            out.stuck = transform[0].re > 1.0 - 1e-12;
+            out.stuck = is_whole(transform[0].re);
             return;
         }
-        let mean = usize::from(set.has_mean());
-        if mean == 1 {
-            self.g[0] = transform[0].re;
-        }
-        for (k, pair) in self.g[mean..].chunks_exact_mut(2).enumerate() {
-            let t = 2.0 * transform[set.reduced(k)];
-            pair[0] = t.re;
-            pair[1] = t.im;
-        }
+        pack(set, transform, &mut self.g);
         for (o, g) in out.offset.iter_mut().zip(&self.g) {
             *o += piece.offset * g;
         }
         if let Some(tau) = anchor {
             set.basis(tau, &mut self.anchor);
-            let m = self.g.len();
-            for (column, c) in out.jacobian.chunks_exact_mut(m).zip(&self.anchor) {
-                let factor = piece.slope * c;
-                for (j, g) in column.iter_mut().zip(&self.g) {
-                    *j -= factor * g;
-                }
-            }
+            Block::new(&mut out.jacobian, 1, self.g.len(), [0, 0]).add_product(-piece.slope, &self.g, &self.anchor);
         }
     }
 
     /// Adds T(S) to the Jacobian and forms the force.
     fn finish(&self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        let m = motion.len();
-        let mean = usize::from(set.has_mean());
-        let s = &self.spectrum;
-        let jacobian = &mut out.jacobian;
-        if mean == 1 {
-            jacobian[0] += s[0].re;
-            for k in 0..set.oscillating() {
-                let sp = s[set.reduced(k)];
-                let at = 1 + 2 * k;
-                // Row 0: F₀ = Re Σ conj(Sₘ)·Xₘ; column 0: Fₕ = 2 Sₕ X₀.
-                jacobian[at * m] += sp.re;
-                jacobian[(at + 1) * m] += sp.im;
-                jacobian[at] += 2.0 * sp.re;
-                jacobian[at + 1] += 2.0 * sp.im;
-            }
-        }
-        for c in 0..set.oscillating() {
-            let pc = set.reduced(c);
-            let (re_column, im_column) = (mean + 2 * c, mean + 2 * c + 1);
-            for r in 0..set.oscillating() {
-                let pr = set.reduced(r);
-                let minus = if pr >= pc { s[pr - pc] } else { s[pc - pr].conj() };
-                let plus = s[pr + pc];
-                let row = mean + 2 * r;
-                jacobian[re_column * m + row] += minus.re + plus.re;
-                jacobian[re_column * m + row + 1] += minus.im + plus.im;
-                jacobian[im_column * m + row] += plus.im - minus.im;
-                jacobian[im_column * m + row + 1] += minus.re - plus.re;
-            }
-        }
-        out.force.copy_from_slice(&out.offset);
-        for (column, x) in out.jacobian.chunks_exact(m).zip(motion) {
-            for (f, j) in out.force.iter_mut().zip(column) {
-                *f += j * x;
-            }
-        }
+        Block::new(&mut out.jacobian, 1, motion.len(), [0, 0]).add_toeplitz(set, &self.spectrum);
+        apply(&out.jacobian, motion, &out.offset, &mut out.force);
     }
+}
+
+/// Whether a share of the period is all of it, but for rounding.
+fn is_whole(share: f64) -> bool {
+    share > 1.0 - 1e-12
 }

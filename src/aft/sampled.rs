@@ -3,7 +3,7 @@
 //! for laws without exact events. Smooth laws are not sampled: their harmonics are exact.
 
 use super::{Assembly, Evaluation};
-use crate::contact::{Law, Piece};
+use crate::contact::law::{Piece, Pieces};
 use crate::error::{Error, Result, try_vec};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
@@ -62,10 +62,8 @@ impl Sampled {
     }
 
     /// Force and Jacobian of `law` for the prepared motion; see [`super`].
-    pub fn evaluate(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        if self.assembly.smooth(law, set, motion, out) {
-            return;
-        }
+    pub fn evaluate(&mut self, law: &dyn Pieces, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        self.pieces.clear();
         law.sampled_pieces(&self.samples, &mut self.pieces);
         self.assembly.start(out);
         let n = self.samples.len();
@@ -84,7 +82,8 @@ impl Sampled {
                 *t /= n as f64;
             }
             let anchor = piece.anchor.map(|j| TAU * j / n as f64);
-            self.assembly.add(set, piece, &self.transform, anchor, out);
+            self.assembly
+                .add(set, (piece, law.state(piece)), &self.transform, anchor, out);
         }
         self.assembly.finish(set, motion, out);
     }

@@ -62,7 +62,7 @@ pub fn forced_response(
         solver.samples,
         given,
     )?;
-    let reduction = condensed.reduction(model, solver);
+    let reduction = condensed.reduction(model, solver)?;
     let branch = Branch::new(
         Arc::clone(&condensed),
         reduction,

@@ -2,8 +2,8 @@
 //! continuation of their own, and for tests. Nothing is removed or condensed here.
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::contact::{Contact, Law};
-use crate::error::{Result, fail, try_vec};
+use crate::contact::Contact;
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
@@ -59,10 +59,10 @@ pub fn forced_residual(
         }
     }
     // Everything that can fail is prepared before the caller's arrays are touched.
-    let contact = ContactTerms::new(model, solver, x)?;
+    let contact = ContactTerms::new(model, solver, omega, x)?;
     let mut dynamic = Vec::new();
     for h in 0..=highest {
-        crate::error::try_push(&mut dynamic, Dynamic::new(model, h, omega)?, "the dynamic stiffness")?;
+        try_push(&mut dynamic, Dynamic::new(model, h, omega)?, "the dynamic stiffness")?;
     }
 
     r.fill(Complex64::ZERO);
@@ -99,7 +99,7 @@ pub fn forced_residual(
             }
         }
     }
-    contact.add(n, r, jacobian);
+    contact.add(n, r, jacobian, d_omega);
     Ok(())
 }
 
@@ -156,66 +156,119 @@ impl Dynamic {
 /// Forces and Jacobians of all contacts at a motion.
 struct ContactTerms {
     set: HarmonicSet,
-    terms: Vec<(Vec<Row>, Evaluation)>,
+    /// Per contact the rows of its directions, harmonic after harmonic, and its evaluation.
+    terms: Vec<(Vec<Vec<Row>>, Evaluation)>,
 }
 
 impl ContactTerms {
-    fn new(model: &Model, solver: &SolverOptions, x: &[Complex64]) -> Result<Self> {
+    fn new(model: &Model, solver: &SolverOptions, omega: f64, x: &[Complex64]) -> Result<Self> {
+        const WHAT: &str = "the contacts";
         let n = model.ndof();
         let set = HarmonicSet::all(solver.harmonics)?;
-        let mut evaluator = Evaluator::new(&set, solver.samples)?;
-        let mut packed = try_vec(set.packed_len(), 0.0, "a contact motion")?;
+        let m = set.packed_len();
         let mut terms = Vec::new();
         for contact in model.contacts() {
+            let directions = contact.directions();
+            let mut packed = try_vec(m.saturating_mul(directions), 0.0, "a contact motion")?;
             let mut rows = Vec::new();
-            for h in 0..=solver.harmonics {
-                let phase = model.structure().phase(h, contact.sector_offset);
-                let row = relative_row(contact.dof_a, contact.dof_b, phase);
-                let y = along(&row, &x[h * n..(h + 1) * n]);
-                set.set(&mut packed, h, y);
-                crate::error::try_push(&mut rows, row, "the contacts")?;
+            for (k, packed) in packed.chunks_exact_mut(m).enumerate() {
+                let direction = contact.direction(k);
+                let mut own = Vec::new();
+                for h in 0..=solver.harmonics {
+                    let row = relative_row(&direction, model.structure().phase(h, contact.sector_offset));
+                    set.set(packed, h, along(&row, &x[h * n..(h + 1) * n]));
+                    try_push(&mut own, row, WHAT)?;
+                }
+                try_push(&mut rows, own, WHAT)?;
             }
-            let mut evaluation = Evaluation::new(&set)?;
-            evaluator.prepare(&set, &packed);
-            evaluator.evaluate(&Law::new(contact, 1.0), &set, &packed, &mut evaluation);
-            crate::error::try_push(&mut terms, (rows, evaluation), "the contacts")?;
+            let evaluation = evaluate(contact, &set, solver.samples, omega, &packed)?;
+            try_push(&mut terms, (rows, evaluation), WHAT)?;
         }
         Ok(Self { set, terms })
     }
 
-    /// Adds Wᴴ f and Wᴴ (∂f/∂y) W.
-    fn add(&self, n: usize, r: &mut [Complex64], mut jacobian: Option<&mut [f64]>) {
+    /// Adds Wᴴ f and Wᴴ (∂f/∂y) W, and Wᴴ ∂f/∂ω.
+    fn add(
+        &self,
+        n: usize,
+        r: &mut [Complex64],
+        mut jacobian: Option<&mut [f64]>,
+        mut d_omega: Option<&mut [Complex64]>,
+    ) {
         let order = 2 * r.len();
         let m = self.set.packed_len();
         for (rows, evaluation) in &self.terms {
-            for (h, row) in rows.iter().enumerate() {
-                let f = self.set.get(&evaluation.force, h);
-                for &(p, a) in row.iter().flatten() {
-                    let term = a.conj() * f;
-                    r[h * n + p] += if h == 0 { term.re.into() } else { term };
+            for (k, own) in rows.iter().enumerate() {
+                self.add_force(own, &evaluation.force[k * m..(k + 1) * m], n, r);
+                if let Some(d) = d_omega.as_deref_mut() {
+                    self.add_force(own, &evaluation.by_omega[k * m..(k + 1) * m], n, d);
                 }
             }
             let Some(jacobian) = jacobian.as_deref_mut() else {
                 continue;
             };
-            for (h, row) in rows.iter().enumerate() {
-                for (k, column) in rows.iter().enumerate() {
-                    for &(p, a) in row.iter().flatten() {
-                        for &(q, b) in column.iter().flatten() {
-                            // dx = (1, i) gives dy = b·dx as a packed pair.
-                            for part in 0..if k == 0 { 1 } else { 2 } {
-                                let dy = if part == 0 { b } else { b * Complex64::I };
-                                let at = self.set.offset(k) * m;
-                                let mut df = self.set.get(&evaluation.jacobian[at..at + m], h) * dy.re;
-                                if k > 0 {
-                                    df += self.set.get(&evaluation.jacobian[at + m..at + 2 * m], h) * dy.im;
-                                }
-                                let df = a.conj() * df;
-                                let target = (2 * (k * n + q) + part) * order + 2 * (h * n + p);
-                                jacobian[target] += df.re;
-                                if h > 0 {
-                                    jacobian[target + 1] += df.im;
-                                }
+            for (k, force) in rows.iter().enumerate() {
+                for (l, motion) in rows.iter().enumerate() {
+                    let block = Block {
+                        set: &self.set,
+                        jacobian: &evaluation.jacobian,
+                        order: m * rows.len(),
+                        force: k * m,
+                        motion: l * m,
+                    };
+                    block.add(force, motion, n, jacobian, order);
+                }
+            }
+        }
+    }
+
+    /// Adds rᴴ f of one direction.
+    fn add_force(&self, rows: &[Row], packed: &[f64], n: usize, r: &mut [Complex64]) {
+        for (h, row) in rows.iter().enumerate() {
+            let f = self.set.get(packed, h);
+            for &(p, a) in row.iter().flatten() {
+                let term = a.conj() * f;
+                r[h * n + p] += if h == 0 { term.re.into() } else { term };
+            }
+        }
+    }
+}
+
+/// ∂f/∂y of one direction of force by one of motion, inside the Jacobian of a law.
+struct Block<'a> {
+    set: &'a HarmonicSet,
+    jacobian: &'a [f64],
+    order: usize,
+    force: usize,
+    motion: usize,
+}
+
+impl Block<'_> {
+    /// The harmonic h of the force in one packed column.
+    fn get(&self, column: usize, h: usize) -> Complex64 {
+        let begin = (self.motion + column) * self.order + self.force;
+        self.set.get(&self.jacobian[begin..begin + self.set.packed_len()], h)
+    }
+
+    /// Adds rᴴ (∂f/∂y) r to a Jacobian of the given order.
+    fn add(&self, force: &[Row], motion: &[Row], n: usize, jacobian: &mut [f64], order: usize) {
+        for (h, row) in force.iter().enumerate() {
+            for (k, column) in motion.iter().enumerate() {
+                for &(p, a) in row.iter().flatten() {
+                    for &(q, b) in column.iter().flatten() {
+                        // dx = (1, i) gives dy = b·dx as a packed pair.
+                        for part in 0..if k == 0 { 1 } else { 2 } {
+                            let dy = if part == 0 { b } else { b * Complex64::I };
+                            let at = self.set.offset(k);
+                            let mut df = self.get(at, h) * dy.re;
+                            if k > 0 {
+                                df += self.get(at + 1, h) * dy.im;
+                            }
+                            let df = a.conj() * df;
+                            let target = (2 * (k * n + q) + part) * order + 2 * (h * n + p);
+                            jacobian[target] += df.re;
+                            if h > 0 {
+                                jacobian[target + 1] += df.im;
                             }
                         }
                     }
@@ -225,16 +278,29 @@ impl ContactTerms {
     }
 }
 
-/// Force coefficients of one law on a prescribed relative motion with harmonics 0 ..= `harmonics`,
-/// and their real Jacobian over the pairs (Re, Im), column-major of order 2(H + 1). `samples` = 0
-/// locates events exactly. The imaginary part of the mean has no effect and no force.
+/// A law in the caller's units at packed motions.
+fn evaluate(contact: &Contact, set: &HarmonicSet, samples: usize, omega: f64, packed: &[f64]) -> Result<Evaluation> {
+    let law = contact.law(1.0)?;
+    let mut evaluation = Evaluation::new(set, contact.directions())?;
+    let mut evaluator = Evaluator::new(set, samples, core::iter::once(&*law))?;
+    evaluator.prepare(set, &packed[..set.packed_len()]);
+    evaluator.evaluate(&*law, set, packed, omega, &mut evaluation)?;
+    Ok(evaluation)
+}
+
+/// Force coefficients of one law on prescribed relative motions with harmonics 0 ..= `harmonics`, and
+/// their real Jacobian over the pairs (Re, Im), column-major of order 2(H + 1)·d; `motion` and `force`
+/// are d × (H + 1), direction after direction. `samples` = 0 locates events exactly where the law has
+/// them. `omega` matters to laws that know velocities. The imaginary part of the mean has no effect
+/// and no force.
 ///
 /// # Errors
-/// `Argument`, `Dimension` or `NotFinite`, naming the argument.
+/// `Argument`, `Dimension` or `NotFinite`, naming the argument; those of callbacks.
 pub fn contact_evaluate(
     contact: &Contact,
     harmonics: usize,
     samples: usize,
+    omega: f64,
     motion: &[Complex64],
     force: &mut [Complex64],
     jacobian: Option<&mut [f64]>,
@@ -246,35 +312,41 @@ pub fn contact_evaluate(
         ..SolverOptions::default()
     }
     .check()?;
+    if !omega.is_finite() || omega < 0.0 {
+        return fail!(Argument, "omega = {omega}, needs a finite angular frequency >= 0");
+    }
     let count = harmonics + 1;
-    check_len("motion", motion.len(), count)?;
-    check_len("force", force.len(), count)?;
+    let directions = contact.directions();
+    let size = count.saturating_mul(directions);
+    check_len("motion", motion.len(), size)?;
+    check_len("force", force.len(), size)?;
     if let Some(j) = &jacobian {
-        check_len("jac", j.len(), (2 * count).saturating_mul(2 * count))?;
+        check_len("jac", j.len(), (2 * size).saturating_mul(2 * size))?;
     }
     if let Some(i) = motion.iter().position(|z| !z.is_finite()) {
         return fail!(NotFinite, "motion[{i}] is not finite");
     }
     let set = HarmonicSet::all(harmonics)?;
     let m = set.packed_len();
-    let mut packed = try_vec(m, 0.0, "a contact motion")?;
-    for (i, &z) in motion.iter().enumerate() {
-        set.set(&mut packed, i, z);
+    let mut packed = try_vec(m * directions, 0.0, "a contact motion")?;
+    for (packed, motion) in packed.chunks_exact_mut(m).zip(motion.chunks_exact(count)) {
+        for (i, &z) in motion.iter().enumerate() {
+            set.set(packed, i, z);
+        }
     }
-    let mut evaluation = Evaluation::new(&set)?;
-    let mut evaluator = Evaluator::new(&set, samples)?;
-    evaluator.prepare(&set, &packed);
-    evaluator.evaluate(&Law::new(contact, 1.0), &set, &packed, &mut evaluation);
-    for (i, f) in force.iter_mut().enumerate() {
-        *f = set.get(&evaluation.force, i);
+    let evaluation = evaluate(contact, &set, samples, omega, &packed)?;
+    for (force, packed) in force.chunks_exact_mut(count).zip(evaluation.force.chunks_exact(m)) {
+        for (i, f) in force.iter_mut().enumerate() {
+            *f = set.get(packed, i);
+        }
     }
     if let Some(jacobian) = jacobian {
         jacobian.fill(0.0);
         // Packed position p of (harmonic, part) is pair position p + 1, but 0 for the mean.
-        let pair = |p: usize| if p == 0 { 0 } else { p + 1 };
-        for column in 0..m {
-            for row in 0..m {
-                jacobian[pair(column) * 2 * count + pair(row)] = evaluation.jacobian[column * m + row];
+        let pair = |p: usize| 2 * count * (p / m) + if p.is_multiple_of(m) { 0 } else { p % m + 1 };
+        for (column, j) in evaluation.jacobian.chunks_exact(m * directions).enumerate() {
+            for (row, j) in j.iter().enumerate() {
+                jacobian[pair(column) * 2 * size + pair(row)] = *j;
             }
         }
     }

@@ -101,10 +101,7 @@ impl<'a> ModePoints<'a> {
         for (r, x) in self.response.iter_mut().zip(x.chunks_exact(dofs)) {
             *r = a * x[dof];
         }
-        let m = self.condensed.set().packed_len();
-        for (c, f) in self.forces.chunks_exact_mut(m).enumerate() {
-            f.copy_from_slice(self.problem.forces().force(c));
-        }
+        self.forces.copy_from_slice(self.problem.forces().forces());
         let unit = a * self.condensed.length();
         let balance: Balance = energy::balance(self.condensed, omega, x, &self.forces, &u[..n - 2]);
         let i = self.condensed.set().fundamental();

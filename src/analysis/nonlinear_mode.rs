@@ -120,7 +120,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     let response = solver.response_dof.unwrap_or(gauge.reference_dof);
     let mut branch = Branch::new(
         Arc::clone(&condensed),
-        condensed.reduction(model, solver),
+        condensed.reduction(model, solver)?,
         solver.samples,
         solver.harmonics,
         response,
@@ -156,7 +156,7 @@ fn gauge(model: &Model, range: &ModeOptions<'_>, linear: &mut LinearMode) -> Res
         Amplitude::Contact(id) => {
             let contact = &model.contacts()[id];
             let phase = model.structure().phase(1, contact.sector_offset);
-            let row = relative_row(contact.dof_a, contact.dof_b, phase);
+            let row = relative_row(&contact.direction(0), phase);
             let motion = along(&row, shape).norm();
             if motion <= NODE * largest {
                 return fail!(

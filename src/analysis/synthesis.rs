@@ -134,7 +134,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     let fundamental = branch.condensed().set().fundamental();
     let mut x = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
     for point in 0..branch.points() {
-        recovery.go_to(point);
+        recovery.go_to(point)?;
         recovery.harmonic(fundamental, &mut x)?;
         let Some(numbers) = data.point(point) else {
             return fail!(Internal, "point {point} of the mode has no numbers");

@@ -53,7 +53,7 @@ impl Branch {
         let carried = self.carried().len();
         let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, WHAT)?;
         let mut recovery = Recovery::new(self)?;
-        recovery.go_to(point);
+        recovery.go_to(point)?;
         for (i, x) in x.chunks_exact_mut(n).enumerate() {
             recovery.harmonic(i, x)?;
             // In the solver's units: a scale that is a power of two costs no digit.

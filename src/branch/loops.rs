@@ -1,9 +1,9 @@
 //! Motion against time at a stored point, and what happens inside its contacts.
 
 use super::{Branch, Recovery};
+use crate::contact::Contact;
 use crate::contact::cubic::Cubic;
 use crate::contact::state::State;
-use crate::contact::{Contact, Law};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::jet;
 use crate::harmonics::HarmonicSet;
@@ -151,11 +151,11 @@ impl Branch {
         let roster = condensed.roster();
         if let Some(at) = roster.linear(contact) {
             let (set, packed) = self.recover(point, |i, x| along(&condensed.blocks()[i].linear_rows[at], x))?;
-            let law = Law::Cubic(Cubic {
+            let law = Cubic {
                 linear: roster.contacts()[contact].stiffness_as_spring(),
                 cubic: 0.0,
-            });
-            return use_it(&Orbit::new(&set, &packed, law)?, 1.0);
+            };
+            return use_it(&Orbit::new(&set, &packed, &law)?, 1.0);
         }
         let laws = condensed.laws();
         let Ok(k) = laws.binary_search_by_key(&contact, |placed| placed.contact) else {
@@ -163,8 +163,8 @@ impl Branch {
         };
         let set = condensed.set();
         let m = set.packed_len();
-        let begin = (point * condensed.coordinates() + laws[k].coordinate) * m;
-        let orbit = Orbit::new(set, &self.motion[begin..begin + m], laws[k].law)?;
+        let begin = (point * condensed.coordinates() + laws[k].coordinates[0]) * m;
+        let orbit = Orbit::new(set, &self.motion[begin..begin + m], &*laws[k].law)?;
         use_it(&orbit, condensed.length())
     }
 
@@ -177,7 +177,7 @@ impl Branch {
         let mut packed = try_vec(set.packed_len(), 0.0, WHAT)?;
         let mut x = try_vec(self.ndof(), Complex64::ZERO, WHAT)?;
         let mut recovery = Recovery::new(self)?;
-        recovery.go_to(point);
+        recovery.go_to(point)?;
         for (i, &h) in self.carried().iter().enumerate() {
             recovery.harmonic(i, &mut x)?;
             set.set(&mut packed, h, of(i, &x));

@@ -5,6 +5,7 @@ use super::handles::write;
 use super::sized::{Described, init, load};
 use super::types::{hbvib_contact, hbvib_contact_kind, hbvib_model, hbvib_special_dof, hbvib_status};
 use crate::analysis;
+use crate::contact::sides::Frame;
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
@@ -31,6 +32,8 @@ unsafe impl Described for hbvib_contact {
             preload: 0.0,
             gap: 0.0,
             cubic: 0.0,
+            normal: [0.0; 3],
+            tangent: [0.0; 3],
         }
     }
 }
@@ -50,8 +53,9 @@ fn law(c: &hbvib_contact) -> Result<Contact> {
     };
     Ok(Contact {
         kind,
-        dof_a: None,
-        dof_b: None,
+        dof_a: [None; 3],
+        dof_b: [None; 3],
+        frame: frame(c)?,
         sector_offset: c.sector_offset,
         kt: c.kt,
         kn: c.kn,
@@ -59,30 +63,41 @@ fn law(c: &hbvib_contact) -> Result<Contact> {
         preload: c.preload,
         gap: c.gap,
         cubic: c.cubic,
+        velocity: 0.0,
+        dofs: Vec::new(),
     })
 }
 
-/// One side of a contact that acts in one direction: the first place, t1, or for a unilateral spring
-/// the third, n.
-fn side(dofs: [i64; 3], kind: ContactKind, ndof: usize, name: &str) -> Result<Option<usize>> {
-    let place = if kind == ContactKind::Unilateral { 2 } else { 0 };
-    for (i, &other) in dofs.iter().enumerate() {
-        if i != place && other != GROUND {
-            return fail!(
-                Argument,
-                "hbvib_contact: {name}[{i}] = {other}, needs HBVIB_GROUND = -1; this kind acts in {name}[{place}] alone"
-            );
-        }
+/// The directions of a description; none where normal and tangent are zero.
+fn frame(c: &hbvib_contact) -> Result<Option<Frame>> {
+    let zero = |v: [f64; 3]| v.iter().all(|&x| x == 0.0);
+    if zero(c.normal) && zero(c.tangent) {
+        return Ok(None);
     }
-    match dofs[place] {
-        GROUND => Ok(None),
-        dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
-        dof => fail!(
-            Index,
-            "hbvib_contact: {name}[{place}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
-            ndof - 1
-        ),
+    let tangent = if zero(c.tangent) { None } else { Some(c.tangent) };
+    match Frame::new(c.normal, tangent) {
+        Ok(frame) => Ok(Some(frame)),
+        Err(e) => Err(e.at(format_args!("hbvib_contact"))),
     }
+}
+
+/// The degrees of freedom of one side.
+fn side(dofs: [i64; 3], ndof: usize, name: &str) -> Result<[Option<usize>; 3]> {
+    let mut side = [None; 3];
+    for (i, (place, &dof)) in side.iter_mut().zip(&dofs).enumerate() {
+        *place = match dof {
+            GROUND => None,
+            dof if (0..ndof as i64).contains(&dof) => Some(dof as usize),
+            dof => {
+                return fail!(
+                    Index,
+                    "hbvib_contact: {name}[{i}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
+                    ndof - 1
+                );
+            }
+        };
+    }
+    Ok(side)
 }
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
@@ -120,8 +135,8 @@ pub unsafe extern "C" fn hbvib_model_add_contact(
         }
         let law = law(&c).blame(2)?;
         let contact = Contact {
-            dof_a: side(c.dof_a, law.kind, model.ndof(), "dof_a").blame(2)?,
-            dof_b: side(c.dof_b, law.kind, model.ndof(), "dof_b").blame(2)?,
+            dof_a: side(c.dof_a, model.ndof(), "dof_a").blame(2)?,
+            dof_b: side(c.dof_b, model.ndof(), "dof_b").blame(2)?,
             ..law
         };
         let number = model.add_contact(&contact).blame(2)?;
@@ -148,22 +163,25 @@ pub unsafe extern "C" fn hbvib_model_set_preload(model: *mut hbvib_model, id: i6
     })
 }
 
-/// Force of one contact law on a prescribed relative motion y(t) = Re sum Y_h exp(i h omega t),
-/// once it has become periodic, and its Jacobian. Degrees of freedom in the description are not
-/// looked at.
+/// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
+/// it has become periodic, and its Jacobian. Degrees of freedom in the description are not looked
+/// at. d is the number of motions of the law, in the order t1, t2, n: 1 for HBVIB_JENKINS,
+/// HBVIB_UNILATERAL and HBVIB_CUBIC.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
-/// samples     0: events are located exactly; else samples per period, at least 2H + 1. A law
-///             without events (HBVIB_CUBIC) is exact either way.
-/// motion      H + 1 complex numbers Y_0 .. Y_H; the imaginary part of Y_0 has no effect.
-/// motion_len  complex numbers in it, H + 1.
-/// force       receives H + 1 complex numbers F_0 .. F_H.
-/// force_len   complex numbers in it, H + 1.
-/// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 (H + 1);
+/// samples     0: events are located exactly where the law has them; else samples per period, at
+///             least 2H + 1. A law without events (HBVIB_CUBIC) is exact either way.
+/// omega       angular frequency, >= 0; matters to laws that know velocities.
+/// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
+///             part of Y_0 has no effect.
+/// motion_len  complex numbers in it, d (H + 1).
+/// force       receives d (H + 1) complex numbers, F_0 .. F_H of one direction after the other.
+/// force_len   complex numbers in it, d (H + 1).
+/// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
 ///             or NULL.
-/// jac_len     doubles in it, (2 (H + 1))^2; 0 with NULL.
-/// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, overlapping arrays),
+/// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
+/// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.
 #[unsafe(no_mangle)]
@@ -172,6 +190,7 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
     c: *const hbvib_contact,
     harmonics: i64,
     samples: i64,
+    omega: f64,
     motion: *const f64,
     motion_len: i64,
     force: *mut f64,
@@ -183,35 +202,38 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
         let contact = law(&unsafe { load(c, 1) }?).blame(1)?;
         contact.check_constants().blame(1)?;
         let (harmonics, samples) = super::solve::harmonics_and_samples(harmonics, samples, (2, 3))?;
-        let needed = harmonics + 1;
-        let motion_len = exact_len(motion_len, needed, 5, "motion_len = harmonics + 1")?;
-        let force_len = exact_len(force_len, needed, 7, "force_len = harmonics + 1")?;
+        if !omega.is_finite() || omega < 0.0 {
+            return fail!(Argument, "omega = {omega}, needs a finite angular frequency >= 0").blame(4);
+        }
+        let needed = (harmonics + 1) * contact.directions();
+        let motion_len = exact_len(motion_len, needed, 6, "motion_len = d (harmonics + 1)")?;
+        let force_len = exact_len(force_len, needed, 8, "force_len = d (harmonics + 1)")?;
         let jac_len = if jac.is_null() && jac_len == 0 {
             0
         } else {
             exact_len(
                 jac_len,
                 (2 * needed).saturating_mul(2 * needed),
-                9,
-                "jac_len = (2 (harmonics + 1))^2",
+                10,
+                "jac_len = (2 d (harmonics + 1))^2",
             )?
         };
-        check_pointer(motion, 4, "motion")?;
-        check_pointer(force, 6, "force")?;
+        check_pointer(motion, 5, "motion")?;
+        check_pointer(force, 7, "force")?;
         disjoint(
-            &[Range::new(motion, 2 * motion_len, 4, "motion")?],
+            &[Range::new(motion, 2 * motion_len, 5, "motion")?],
             &[
-                Range::new(force, 2 * force_len, 6, "force")?,
-                Range::new(jac, jac_len, 8, "jac")?,
+                Range::new(force, 2 * force_len, 7, "force")?,
+                Range::new(jac, jac_len, 9, "jac")?,
             ],
         )?;
-        let motion = unsafe { input(motion.cast(), motion_len, 4, "motion") }?;
-        let force = unsafe { output(force.cast(), force_len, 6, "force") }?;
+        let motion = unsafe { input(motion.cast(), motion_len, 5, "motion") }?;
+        let force = unsafe { output(force.cast(), force_len, 7, "force") }?;
         let jac = match jac_len {
             0 => None,
-            len => Some(unsafe { output(jac, len, 8, "jac") }?),
+            len => Some(unsafe { output(jac, len, 9, "jac") }?),
         };
-        analysis::contact_evaluate(&contact, harmonics, samples, motion, force, jac).blame(4)?;
+        analysis::contact_evaluate(&contact, harmonics, samples, omega, motion, force, jac).blame(5)?;
         Ok(Status::Ok)
     })
 }

@@ -43,6 +43,8 @@ pub struct hbvib_reduction {
     pub mean_carried: i32,
     /// 1 if even harmonics were left out because law and forcing are odd, else 0.
     pub even_removed: i32,
+    /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
+    pub held_by_contacts: i64,
 }
 
 unsafe impl Described for hbvib_view {
@@ -82,6 +84,7 @@ unsafe impl Described for hbvib_reduction {
             response_dof: 0,
             mean_carried: 0,
             even_removed: 0,
+            held_by_contacts: 0,
         }
     }
 }
@@ -302,6 +305,7 @@ pub unsafe extern "C" fn hbvib_branch_reduction(
             response_dof: kept.branch.response_dof() as i64,
             mean_carried: i32::from(r.mean_carried),
             even_removed: i32::from(r.even_removed),
+            held_by_contacts: r.held_by_contacts as i64,
             ..hbvib_reduction::filled()
         };
         unsafe { fill_out(out, value) };

@@ -100,7 +100,7 @@ pub unsafe extern "C" fn hbvib_model_add_jenkins(
         let mut contacts = Vec::new();
         for i in 0..n {
             let mut contact = Contact::jenkins(0, None, kt[i], mu[i], preload[i]);
-            (contact.dof_a, contact.dof_b, contact.sector_offset) = sides.entry(i)?;
+            (contact.dof_a[0], contact.dof_b[0], contact.sector_offset) = sides.entry(i)?;
             try_push(&mut contacts, contact, "the contacts")?;
         }
         let first = model.add_contacts(&contacts).map_err(|e| {
@@ -196,8 +196,8 @@ pub unsafe extern "C" fn hbvib_model_add_iwan(
             dof => fail!(Index, "{name} = {dof}, needs 0 .. {} or HBVIB_GROUND = -1", ndof - 1).blame(argument),
         };
         let between = Contact {
-            dof_a: side(dof_a, 2, "dof_a")?,
-            dof_b: side(dof_b, 3, "dof_b")?,
+            dof_a: [side(dof_a, 2, "dof_a")?, None, None],
+            dof_b: [side(dof_b, 3, "dof_b")?, None, None],
             sector_offset,
             ..Contact::jenkins(0, None, 0.0, 0.0, 0.0)
         };

@@ -252,6 +252,11 @@ pub struct hbvib_contact {
     pub gap: f64,
     /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
     pub cubic: f64,
+    /// Direction n in the axes of the three degrees of freedom of each side, of any length. Zero, with
+    /// `tangent`: the degrees of freedom lie along t1, t2 and n themselves.
+    pub normal: [f64; 3],
+    /// Direction t1, orthogonal to `normal`; zero: any in the plane. t2 is n x t1.
+    pub tangent: [f64; 3],
 }
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.

@@ -56,25 +56,25 @@ impl HarmonicBlock {
 }
 
 /// The block of harmonic `number`, with contacts that never slip as springs, one row for each of the
-/// contacts that stand for the coordinates, and their reference stiffness. No force and no
+/// (contact, direction) pairs that stand for the coordinates, and their reference stiffness. No force and no
 /// artificial damping yet.
 pub(super) fn harmonic_block(
     model: &Model,
     number: usize,
     roster: &Roster,
-    representatives: &[usize],
+    representatives: &[(usize, usize)],
     kappa: impl Fn(usize) -> Complex64,
 ) -> Result<HarmonicBlock> {
     let structure = model.structure();
     let n = model.ndof();
     let stuck = roster.never_slipping.iter().map(|&i| &model.contacts()[i]);
     let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
-    let rows_of = |contacts: &[usize]| -> Result<Vec<Row>> {
-        let mut rows = try_vec(contacts.len(), [None; 2], "the contacts")?;
-        for (r, &i) in rows.iter_mut().zip(contacts) {
+    let rows_of = |contacts: &[(usize, usize)]| -> Result<Vec<Row>> {
+        let mut rows = try_vec(contacts.len(), [None; 6], "the contacts")?;
+        for (r, &(i, k)) in rows.iter_mut().zip(contacts) {
             let contact = &model.contacts()[i];
             let phase = structure.phase(number, contact.sector_offset);
-            *r = relative_row(contact.dof_a, contact.dof_b, phase);
+            *r = relative_row(&contact.direction(k), phase);
         }
         Ok(rows)
     };

@@ -1,6 +1,5 @@
 //! The relative coordinates: contacts between the same two places share one.
 
-use crate::contact::ContactKind;
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::model::Model;
@@ -8,31 +7,54 @@ use crate::model::spring::{Wave, along, relative_row};
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
-/// Gathers active contacts on unique relative coordinates: per active contact its coordinate, and
-/// per coordinate one contact that stands for it.
-pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<usize>, Vec<usize>)> {
+/// A direction of an active contact, and its relative coordinate.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Placed {
+    pub contact: usize,
+    pub direction: usize,
+    pub coordinate: usize,
+}
+
+/// A contact and one of its directions.
+pub(super) type Pick = (usize, usize);
+
+/// Gathers the directions of active contacts on unique relative coordinates. They are returned contact
+/// after contact, then per coordinate the (contact, direction) that stands for it.
+pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<Placed>, Vec<Pick>)> {
+    const WHAT: &str = "the contacts";
     let sectors = model.structure().sectors() as i128;
-    let key = |position: usize| {
-        let c = &model.contacts()[active[position]];
-        (c.dof_a, c.dof_b, i128::from(c.sector_offset).rem_euclid(sectors))
+    let mut placed = Vec::new();
+    for &contact in active {
+        for direction in 0..model.contacts()[contact].directions() {
+            let new = Placed {
+                contact,
+                direction,
+                coordinate: 0,
+            };
+            try_push(&mut placed, new, WHAT)?;
+        }
+    }
+    let key = |p: Placed| {
+        let c = &model.contacts()[p.contact];
+        let sector = i128::from(c.sector_offset).rem_euclid(sectors);
+        (c.direction(p.direction).key(), sector)
     };
-    let mut order = try_vec(active.len(), 0, "the contacts")?;
+    let mut order = try_vec(placed.len(), 0, WHAT)?;
     for (i, o) in order.iter_mut().enumerate() {
         *o = i;
     }
-    order.sort_by_key(|&i| key(i));
-    let mut coordinate_of = try_vec(active.len(), 0, "the contacts")?;
+    order.sort_by_key(|&i| key(placed[i]));
     let mut representatives = Vec::new();
     for (k, &i) in order.iter().enumerate() {
-        if k == 0 || key(i) != key(order[k - 1]) {
-            try_push(&mut representatives, active[i], "the contacts")?;
+        if k == 0 || key(placed[i]) != key(placed[order[k - 1]]) {
+            try_push(&mut representatives, (placed[i].contact, placed[i].direction), WHAT)?;
         }
-        coordinate_of[i] = representatives.len() - 1;
+        placed[i].coordinate = representatives.len() - 1;
     }
-    Ok((coordinate_of, representatives))
+    Ok((placed, representatives))
 }
 
-/// Raises the stiffness of coordinates with cubic springs, whose kt may be zero, to that of the
+/// Raises the stiffness of coordinates with springs whose stiffness grows and may be zero at rest, to that of the
 /// structure where they act, so that κ moves the poles whatever kt is. For a structure without
 /// stiffness of its own the inertia at `omega` tells the size.
 pub(super) fn raise_for_springs(
@@ -40,22 +62,22 @@ pub(super) fn raise_for_springs(
     omega: f64,
     set: &HarmonicSet,
     never_slipping: &[usize],
-    (active, coordinate_of): (&[usize], &[usize]),
+    placed: &[Placed],
     stiffness: &mut [f64],
 ) -> Result<()> {
-    let is_cubic = |i: usize| model.contacts()[i].kind == ContactKind::Cubic;
-    if !active.iter().any(|&i| is_cubic(i)) {
+    let is_spring = |p: &&Placed| model.contacts()[p.contact].is_spring();
+    if !placed.iter().any(|p| is_spring(&p)) {
         return Ok(());
     }
     let lowest = set.numbers().first().copied().unwrap_or(0);
     let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
     let k = model.sprung_stiffness(Wave::Harmonic(lowest), stuck)?;
     let m = model.structure().wave_matrix(MatrixKind::Mass, lowest)?;
-    for (&i, &coordinate) in active.iter().zip(coordinate_of).filter(|&(&i, _)| is_cubic(i)) {
-        let contact = &model.contacts()[i];
-        for p in [contact.dof_a, contact.dof_b].into_iter().flatten() {
+    for at in placed.iter().filter(is_spring) {
+        let direction = model.contacts()[at.contact].direction(at.direction);
+        for &(p, _) in direction.a.iter().chain(&direction.b).flatten() {
             let size = k.get(p, p).norm().max(omega * omega * m.get(p, p).norm());
-            stiffness[coordinate] = stiffness[coordinate].max(size);
+            stiffness[at.coordinate] = stiffness[at.coordinate].max(size);
         }
     }
     Ok(())
@@ -67,10 +89,10 @@ pub(super) fn raise_for_springs(
 /// structure with κ would still resonate in the mode. With κ reduced to this share, about the
 /// dynamic stiffness of what hangs on the contact, the relative motion is no longer small and the
 /// resonance is damped.
-pub(super) fn give(model: &Model, contact: usize, shape: &[Complex64]) -> f64 {
+pub(super) fn give(model: &Model, (contact, direction): Pick, shape: &[Complex64]) -> f64 {
     let contact = &model.contacts()[contact];
     let phase = model.structure().phase(1, contact.sector_offset);
-    let row = relative_row(contact.dof_a, contact.dof_b, phase);
+    let row = relative_row(&contact.direction(direction), phase);
     let sides: f64 = row.iter().flatten().map(|&(p, a)| (a * shape[p]).norm()).sum();
     let relative = along(&row, shape).norm();
     if relative > 1e-9 * sides { relative / sides } else { 1.0 }

@@ -6,8 +6,9 @@
 
 use super::Condensed;
 use super::dynamic::{By, DynamicStiffness, add_slope_product, product};
+use crate::contact::sides::Direction;
 use crate::error::{Result, try_vec};
-use crate::model::spring::{Row, along};
+use crate::model::spring::{along, relative_row};
 use num_complex::Complex64;
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
@@ -137,7 +138,7 @@ impl Workspace {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
-        let response: Row = [self.response.map(|dof| (dof, Complex64::ONE)), None];
+        let response = relative_row(&Direction::between(self.response, None), Complex64::ONE);
         let rows = block.rows.iter().chain(core::iter::once(&response));
         for (column, table) in self
             .columns

@@ -19,7 +19,7 @@ pub mod poles;
 pub mod roster;
 pub mod tables;
 
-use crate::contact::{Contact, ContactKind, Law};
+use crate::contact::{Contact, Law};
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::power_of_two;
@@ -29,10 +29,11 @@ use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, SolverOptions};
 use block::harmonic_block;
 pub use block::{Artificial, HarmonicBlock};
-use coordinates::{gather, give, raise_for_springs};
+use coordinates::{Placed, gather, give, raise_for_springs};
 use flexibility::Workspace;
 use num_complex::Complex64;
 use roster::Roster;
+use std::sync::Arc;
 
 /// Unknowns above which it pays to look at the contacts from the stuck structure.
 const STUCK_ABOVE: usize = 64;
@@ -57,15 +58,15 @@ impl Reference {
     }
 }
 
-/// A law on one relative coordinate.
-#[derive(Clone, Copy, Debug)]
+/// A law on its relative coordinates.
+#[derive(Clone, Debug)]
 pub struct PlacedLaw {
-    /// The relative coordinate.
-    pub coordinate: usize,
+    /// The relative coordinates, one per direction of the law.
+    pub coordinates: Vec<usize>,
     /// Number of the contact in the model.
     pub contact: usize,
     /// The law in the solver's units.
-    pub law: Law,
+    pub law: Arc<dyn Law>,
 }
 
 /// A model made ready for solving: harmonics chosen, contacts gathered on relative coordinates,
@@ -116,6 +117,8 @@ pub struct Reduction {
     pub even_removed: bool,
     /// Real unknowns of the nonlinear problem.
     pub unknowns: usize,
+    /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
+    pub held_by_contacts: usize,
 }
 
 impl Condensed {
@@ -140,7 +143,7 @@ impl Condensed {
             // Without forces nothing moves; the fundamental carries the zero solution.
             forced.push(usize::from(options.harmonics > 0));
         }
-        let (mut condensed, contacts) = Self::unscaled(model, options, &forced, omega, None)?;
+        let (mut condensed, placed) = Self::unscaled(model, options, &forced, omega, None)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
         // underflows whatever the units.
         let largest = model
@@ -164,7 +167,7 @@ impl Condensed {
                 *f /= scale;
             }
         }
-        condensed.set_length(model, unit * scale, &contacts)?;
+        condensed.set_length(model, unit * scale, &placed)?;
         Ok(condensed)
     }
 
@@ -181,26 +184,29 @@ impl Condensed {
         shape: &[Complex64],
     ) -> Result<(Self, f64)> {
         // A mode has a linear frequency, so the structure holds its springs by stiffness.
-        let (mut condensed, contacts) = Self::unscaled(model, options, &[1], 0.0, Some((form, shape)))?;
+        let (mut condensed, placed) = Self::unscaled(model, options, &[1], 0.0, Some((form, shape)))?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
         let motion = rows.iter().fold(0.0_f64, |m, row| m.max(along(row, shape).norm()));
-        condensed.set_length(model, power_of_two(motion), &contacts)?;
+        condensed.set_length(model, power_of_two(motion), &placed)?;
         Ok((condensed, motion))
     }
 
-    /// All but the scale of lengths: no forces and no laws yet; `omega` tells the size of inertia. Returns the coordinate of each
-    /// active contact as well.
+    /// All but the scale of lengths: no forces and no laws yet; `omega` tells the size of inertia. Returns the
+    /// coordinates of the active contacts as well.
     fn unscaled(
         model: &Model,
         options: &SolverOptions,
         forced: &[usize],
         omega: f64,
         mode: Option<(DampingForm, &[Complex64])>,
-    ) -> Result<(Self, Vec<(usize, usize)>)> {
+    ) -> Result<(Self, Vec<Placed>)> {
         let roster = Roster::new(model)?;
         let active = &roster.active;
-        let odd = active.iter().all(|&i| Law::new(&model.contacts()[i], 1.0).is_odd());
+        let mut odd = true;
+        for &i in active {
+            odd &= model.contacts()[i].law(1.0)?.is_odd();
+        }
         let set = HarmonicSet::excited(
             forced,
             options.harmonics,
@@ -208,21 +214,15 @@ impl Condensed {
             odd,
             options.keep_even_harmonics,
         )?;
-        let (coordinate_of, representatives) = gather(model, active)?;
+        let (placed, representatives) = gather(model, active)?;
         let mut drops = try_vec(representatives.len(), true, "the contacts")?;
         let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
-        for (&coordinate, &contact) in coordinate_of.iter().zip(active) {
-            stiffness[coordinate] += model.contacts()[contact].stiffness();
-            drops[coordinate] &= model.contacts()[contact].kind == ContactKind::Jenkins;
+        for at in &placed {
+            let contact = &model.contacts()[at.contact];
+            stiffness[at.coordinate] += contact.stiffness(at.direction);
+            drops[at.coordinate] &= contact.may_stick(at.direction);
         }
-        raise_for_springs(
-            model,
-            omega,
-            &set,
-            &roster.never_slipping,
-            (active, &coordinate_of),
-            &mut stiffness,
-        )?;
+        raise_for_springs(model, omega, &set, &roster.never_slipping, &placed, &mut stiffness)?;
         let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
@@ -250,10 +250,6 @@ impl Condensed {
             };
             try_push(&mut blocks, block, "the matrices per harmonic")?;
         }
-        let mut contacts = Vec::new();
-        for pair in active.iter().copied().zip(coordinate_of) {
-            try_push(&mut contacts, pair, "the contacts")?;
-        }
         let condensed = Self {
             set,
             ndof: model.ndof(),
@@ -269,23 +265,26 @@ impl Condensed {
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
         };
-        Ok((condensed, contacts))
+        Ok((condensed, placed))
     }
 
-    /// Sets the unit of lengths, and the laws in it for the (contact, coordinate) pairs.
-    fn set_length(&mut self, model: &Model, length: f64, contacts: &[(usize, usize)]) -> Result<()> {
+    /// Sets the unit of lengths, and the laws in it.
+    fn set_length(&mut self, model: &Model, length: f64, placed: &[Placed]) -> Result<()> {
+        const WHAT: &str = "the contacts";
         self.length = length;
-        for &(contact, coordinate) in contacts {
-            let law = Law::new(&model.contacts()[contact], length);
-            try_push(
-                &mut self.laws,
-                PlacedLaw {
-                    coordinate,
-                    contact,
-                    law,
-                },
-                "the contacts",
-            )?;
+        for one in placed.chunk_by(|a, b| a.contact == b.contact) {
+            let mut coordinates = Vec::new();
+            for at in one {
+                try_push(&mut coordinates, at.coordinate, WHAT)?;
+            }
+            let contact = one[0].contact;
+            let law = model.contacts()[contact].law(length)?;
+            let placed = PlacedLaw {
+                coordinates,
+                contact,
+                law,
+            };
+            try_push(&mut self.laws, placed, WHAT)?;
         }
         Ok(())
     }
@@ -384,9 +383,16 @@ impl Condensed {
     }
 
     /// What was removed.
-    #[must_use]
-    pub fn reduction(&self, model: &Model, options: &SolverOptions) -> Reduction {
-        Reduction {
+    ///
+    /// # Errors
+    /// Those of [`Model::rigid_modes`].
+    pub fn reduction(&self, model: &Model, options: &SolverOptions) -> Result<Reduction> {
+        let held_by_contacts = if self.set.has_mean() && self.coordinates() > 0 {
+            model.rigid_modes(0)?
+        } else {
+            0
+        };
+        Ok(Reduction {
             sectors: model.structure().sectors(),
             degrees_of_freedom: self.ndof,
             coordinates: self.coordinates(),
@@ -398,6 +404,7 @@ impl Condensed {
             mean_carried: self.set.has_mean(),
             even_removed: self.set.is_odd(),
             unknowns: self.coordinates() * self.set.packed_len(),
-        }
+            held_by_contacts,
+        })
     }
 }

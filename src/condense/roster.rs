@@ -10,7 +10,8 @@ pub struct Roster {
     all: Vec<Contact>,
     pub(super) active: Vec<usize>,
     pub(super) never_slipping: Vec<usize>,
-    pub(super) linear: Vec<usize>,
+    /// The linear ones, with the one direction that is shown of them.
+    pub(super) linear: Vec<(usize, usize)>,
 }
 
 impl Roster {
@@ -23,9 +24,9 @@ impl Roster {
                 Role::Active => try_push(&mut roster.active, i, WHAT)?,
                 Role::Spring => {
                     try_push(&mut roster.never_slipping, i, WHAT)?;
-                    try_push(&mut roster.linear, i, WHAT)?;
+                    try_push(&mut roster.linear, (i, 0), WHAT)?;
                 }
-                Role::Inert => try_push(&mut roster.linear, i, WHAT)?,
+                Role::Inert => try_push(&mut roster.linear, (i, 0), WHAT)?,
             }
         }
         Ok(roster)
@@ -46,6 +47,6 @@ impl Roster {
     /// Position of a linear contact in [`super::HarmonicBlock::linear_rows`].
     #[must_use]
     pub fn linear(&self, contact: usize) -> Option<usize> {
-        self.linear.binary_search(&contact).ok()
+        self.linear.binary_search(&(contact, 0)).ok()
     }
 }

@@ -8,13 +8,9 @@
 //! k + ¾·c·A². An oscillator on such a spring is Duffing's; see Krack & Gross, Harmonic Balance
 //! for Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6.
 
+use super::law::{Form, Law, Range, SMALL, Spectral};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
-
-/// Share of the reference stiffness below which the cubic term counts as small. From here the
-/// homotopy may have to pass the resonance, at an amplitude Q times that of the linear structure,
-/// where the term is Q² times larger; it must not be felt there, up to Q of a million.
-const SMALL: f64 = 1e-12;
 
 /// Constants of a cubic spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,16 +21,24 @@ pub struct Cubic {
     pub cubic: f64,
 }
 
-impl Cubic {
-    /// The factor of [`super::Law::eased`] at which the cubic term is small against `reference` at
-    /// motions up to `largest`.
-    pub(super) fn sticking_factor(&self, largest: f64, reference: f64) -> f64 {
-        largest * (self.cubic.abs() / (SMALL * reference)).sqrt()
+impl Law for Cubic {
+    fn is_odd(&self) -> bool {
+        true
     }
 
-    /// Sₙ of the cubic term for all n ≥ 0; see [`super::Law::nonlinear_spectrum`]. A product of two
-    /// carried harmonics p ≥ q contributes to p + q and to p − q.
-    pub(super) fn spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]) {
+    fn form(&self) -> Form<'_> {
+        Form::Spectral(self)
+    }
+
+    /// From here on the cubic term is small against `reference`.
+    fn sticking_factor(&self, ranges: &[Range], reference: f64) -> f64 {
+        ranges[0].size() * (self.cubic.abs() / (SMALL * reference)).sqrt()
+    }
+}
+
+impl Spectral for Cubic {
+    /// A product of two carried harmonics p ≥ q contributes to p + q and to p − q.
+    fn spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]) {
         spectrum.fill(Complex64::ZERO);
         let (mean, rest) = motion.split_at(usize::from(set.has_mean()));
         let mean = mean.first().copied().unwrap_or(0.0);
@@ -54,5 +58,17 @@ impl Cubic {
         for s in spectrum {
             *s *= 3.0 * self.cubic;
         }
+    }
+
+    fn linear(&self) -> f64 {
+        self.linear
+    }
+
+    fn degree(&self) -> f64 {
+        3.0
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        x * (self.linear + self.cubic * x * x)
     }
 }

@@ -109,6 +109,7 @@ impl Iwan {
             let contact = Contact {
                 dof_a: between.dof_a,
                 dof_b: between.dof_b,
+                frame: between.frame,
                 sector_offset: between.sector_offset,
                 ..Contact::jenkins(0, None, kt, 1.0, slip)
             };

@@ -7,7 +7,8 @@
 //! exact multi-harmonic friction element of Petrov & Ewins, J. Turbomach. 125 (2003) 364–371,
 //! doi:10.1115/1.1539868.
 
-use super::Piece;
+use super::law::{Form, Law, Piece, Pieces, Range};
+use super::state::State;
 use crate::fourier::{Extremum, crossing};
 use crate::harmonics::HarmonicSet;
 use std::f64::consts::{PI, TAU};
@@ -53,8 +54,35 @@ impl Jenkins {
         });
     }
 
-    /// Exact pieces; see [`super::Law::pieces`].
-    pub(super) fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>) {
+    fn push_stick(&self, stick: &Stick, end: f64, pieces: &mut Vec<Piece>) {
+        if end > stick.start {
+            pieces.push(Piece {
+                start: stick.start,
+                end,
+                slope: self.stiffness,
+                anchor: Some(stick.start),
+                offset: stick.sign * self.limit,
+            });
+        }
+    }
+}
+
+impl Law for Jenkins {
+    fn is_odd(&self) -> bool {
+        true
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::Pieces(self)
+    }
+
+    fn sticking_factor(&self, ranges: &[Range], _reference: f64) -> f64 {
+        self.stiffness * ranges[0].half / self.limit
+    }
+}
+
+impl Pieces for Jenkins {
+    fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>) {
         if self.is_inert() {
             return;
         }
@@ -126,21 +154,8 @@ impl Jenkins {
         }
     }
 
-    fn push_stick(&self, stick: &Stick, end: f64, pieces: &mut Vec<Piece>) {
-        if end > stick.start {
-            pieces.push(Piece {
-                start: stick.start,
-                end,
-                slope: self.stiffness,
-                anchor: Some(stick.start),
-                offset: stick.sign * self.limit,
-            });
-        }
-    }
-
-    /// Pieces over samples; see [`super::Law::sampled_pieces`]. The slider is marched from the
-    /// highest sample, which it reaches slipping, once around.
-    pub(super) fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
+    /// The slider is marched from the highest sample, which it reaches slipping, once around.
+    fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
         if self.is_inert() {
             return;
         }
@@ -190,6 +205,14 @@ impl Jenkins {
             piece.end = (j + 1) as f64;
         }
         pieces.push(piece);
+    }
+
+    fn state(&self, piece: &Piece) -> State {
+        if piece.slope == 0.0 { State::Slip } else { State::Stick }
+    }
+
+    fn at(&self, _x: f64) -> Option<(f64, State)> {
+        None
     }
 }
 

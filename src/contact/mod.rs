@@ -1,25 +1,44 @@
-//! Contact laws: what a host says of a contact, and the vocabulary that every law speaks.
+//! Contact laws: what a host says of a contact.
 //!
-//! A law turns a periodic motion into [`Piece`]s, intervals on which its force is affine in the
-//! motion; a [`Smooth`] law has none and gives the spectrum of its stiffness. Everything after that
-//! (Fourier coefficients, Jacobian) is the same for all laws and lives in [`crate::aft`].
+//! A [`Contact`] names the degrees of freedom of its sides and the constants of its law in the host's
+//! units; [`Contact::law`] makes of it what a solver evaluates, a [`Law`] in the solver's units. One
+//! file each: the laws, the [`sides`], and the [`law`] vocabulary that they share.
 
 pub mod cubic;
+pub mod friction;
+pub mod friction_plane;
+mod friction_step;
 pub mod iwan;
 pub mod jenkins;
+pub mod law;
+pub mod marched;
+pub mod patch;
+pub mod pointwise;
+pub mod polynomial;
+pub mod regularised;
+pub mod sides;
+mod slider;
 pub mod state;
+pub mod table;
 pub mod unilateral;
+pub mod user;
 
 use crate::error::{Result, fail};
-use crate::fourier::Extremum;
-use crate::harmonics::HarmonicSet;
 use cubic::Cubic;
+use friction::Friction;
+use friction_plane::FrictionPlane;
 use jenkins::Jenkins;
-use num_complex::Complex64;
+pub use law::{Form, Law, Piece};
+use polynomial::Polynomial;
+use regularised::TanhFriction;
+use sides::{Direction, Frame};
+use std::sync::Arc;
+use table::Table;
 use unilateral::Unilateral;
+use user::User;
 
 /// Which law a contact obeys.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug)]
 pub enum ContactKind {
     /// Elastic Coulomb friction with constant normal load in one direction.
     Jenkins,
@@ -27,6 +46,21 @@ pub enum ContactKind {
     Cubic,
     /// Spring that is pressed once a gap has closed, and open otherwise.
     Unilateral,
+    /// Elastic Coulomb friction in one tangential direction, t1, under a normal load along n that varies
+    /// and may vanish.
+    Friction,
+    /// Elastic Coulomb friction in the plane of t1 and t2, whose force turns with the slip, under a
+    /// normal load along n that varies and may vanish; without a degree of freedom along n the load is
+    /// constant.
+    FrictionPlane,
+    /// Friction with Coulomb's jump smoothed: f = μN₀·tanh(v/velocity).
+    Regularised,
+    /// Spring whose force is straight between the points of a table.
+    Table(Table),
+    /// Springs and dampers of polynomial form over one or several motions.
+    Polynomial(Polynomial),
+    /// A law of the host.
+    User(User),
 }
 
 /// What a contact is for a solver.
@@ -40,15 +74,19 @@ pub enum Role {
     Active,
 }
 
-/// A contact between two degrees of freedom, or between one and the ground.
-#[derive(Clone, Copy, Debug)]
+/// A contact between two sides, one of which may be the ground.
+#[derive(Clone, Debug)]
 pub struct Contact {
     /// The law.
     pub kind: ContactKind,
-    /// Degree of freedom on side a; `None` is the ground.
-    pub dof_a: Option<usize>,
-    /// Degree of freedom on side b; `None` is the ground.
-    pub dof_b: Option<usize>,
+    /// Degrees of freedom of side a along t1, t2 and n; `None` is the ground. A unilateral spring acts
+    /// along n, laws of one direction along t1; places that are not used are `None`.
+    pub dof_a: [Option<usize>; 3],
+    /// Degrees of freedom of side b, likewise.
+    pub dof_b: [Option<usize>; 3],
+    /// Directions t1, t2 and n in the axes of the three degrees of freedom of each side, all of which
+    /// may then be used; `None`: the degrees of freedom lie along t1, t2 and n themselves.
+    pub frame: Option<Frame>,
     /// Side b lies in sector s + offset (cyclic models).
     pub sector_offset: i64,
     /// Stiffness at small motion, force per length, at least 0; 0 for a unilateral spring.
@@ -66,6 +104,12 @@ pub struct Contact {
     pub gap: f64,
     /// Force per length cubed of a cubic spring, of any sign; 0 for the others.
     pub cubic: f64,
+    /// Velocity at which regularised friction reaches 76 % (tanh 1) of its limit, above 0; 0 for the
+    /// others.
+    pub velocity: f64,
+    /// Degrees of freedom whose motions over the ground a law of the host or a polynomial knows, in its
+    /// order. Empty: the law knows one motion, that between `dof_a` and `dof_b` along t1.
+    pub dofs: Vec<usize>,
 }
 
 impl Contact {
@@ -74,8 +118,9 @@ impl Contact {
     pub fn jenkins(a: usize, b: Option<usize>, kt: f64, mu: f64, preload: f64) -> Self {
         Self {
             kind: ContactKind::Jenkins,
-            dof_a: Some(a),
-            dof_b: b,
+            dof_a: [Some(a), None, None],
+            dof_b: [b, None, None],
+            frame: None,
             sector_offset: 0,
             kt,
             kn: 0.0,
@@ -83,6 +128,71 @@ impl Contact {
             preload,
             gap: 0.0,
             cubic: 0.0,
+            velocity: 0.0,
+            dofs: Vec::new(),
+        }
+    }
+
+    /// A law without constants of its own between degree of freedom `a` and `b` (or the ground): a
+    /// table, or a polynomial or law of the host over one motion.
+    #[must_use]
+    pub fn between(a: usize, b: Option<usize>, kind: ContactKind) -> Self {
+        Self {
+            kind,
+            ..Self::jenkins(a, b, 0.0, 0.0, 0.0)
+        }
+    }
+
+    /// A polynomial or law of the host over the motions of degrees of freedom.
+    #[must_use]
+    pub fn over(dofs: Vec<usize>, kind: ContactKind) -> Self {
+        Self {
+            kind,
+            dof_a: [None; 3],
+            dofs,
+            ..Self::jenkins(0, None, 0.0, 0.0, 0.0)
+        }
+    }
+
+    /// Friction of stiffness `kt` along a direction under a normal load of stiffness `kn`, between the
+    /// degrees of freedom (tangential, normal) of side `a` and side `b`; `None` is the ground.
+    #[must_use]
+    pub fn friction(a: [Option<usize>; 2], b: [Option<usize>; 2], (kt, kn): (f64, f64), mu: f64, preload: f64) -> Self {
+        Self {
+            kind: ContactKind::Friction,
+            dof_a: [a[0], None, a[1]],
+            dof_b: [b[0], None, b[1]],
+            kn,
+            ..Self::jenkins(0, None, kt, mu, preload)
+        }
+    }
+
+    /// The same in the plane of two tangential directions, between the degrees of freedom along t1, t2
+    /// and n.
+    #[must_use]
+    pub fn friction_plane(
+        a: [Option<usize>; 3],
+        b: [Option<usize>; 3],
+        (kt, kn): (f64, f64),
+        mu: f64,
+        preload: f64,
+    ) -> Self {
+        Self {
+            kind: ContactKind::FrictionPlane,
+            dof_a: a,
+            dof_b: b,
+            kn,
+            ..Self::jenkins(0, None, kt, mu, preload)
+        }
+    }
+
+    /// Regularised friction of limit μN₀ between degree of freedom `a` and `b` (or the ground).
+    #[must_use]
+    pub fn regularised(a: usize, b: Option<usize>, mu: f64, preload: f64, velocity: f64) -> Self {
+        Self {
+            kind: ContactKind::Regularised,
+            velocity,
+            ..Self::jenkins(a, b, 0.0, mu, preload)
         }
     }
 
@@ -103,10 +213,11 @@ impl Contact {
     pub fn unilateral(a: Option<usize>, b: Option<usize>, kn: f64, gap: f64) -> Self {
         Self {
             kind: ContactKind::Unilateral,
-            dof_a: a,
+            dof_a: [None, None, a],
+            dof_b: [None, None, b],
             kn,
             gap,
-            ..Self::jenkins(0, b, 0.0, 0.0, 0.0)
+            ..Self::jenkins(0, None, 0.0, 0.0, 0.0)
         }
     }
 
@@ -121,27 +232,160 @@ impl Contact {
         }
     }
 
+    /// Whether a side can move along n.
+    fn has_normal(&self) -> bool {
+        let place = |dofs: [Option<usize>; 3]| match &self.frame {
+            None => dofs[2].is_some(),
+            Some(frame) => frame.side(dofs, 2).iter().any(Option::is_some),
+        };
+        place(self.dof_a) || place(self.dof_b)
+    }
+
+    /// n₀ of a load N = max(n₀ − kn·y, 0) that varies; negative where a gap is open at rest.
+    #[must_use]
+    pub fn load(&self) -> f64 {
+        self.preload - self.kn * self.gap
+    }
+
     /// Whether the contact presses at rest: then it loads the structure without vibration.
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
-        self.kind == ContactKind::Unilateral && self.role() == Role::Active && self.clearance() <= 0.0
-    }
-
-    /// Stiffness of the relative motion at small motion.
-    #[must_use]
-    pub fn stiffness_at_rest(&self) -> f64 {
-        match self.kind {
-            ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
-            ContactKind::Jenkins | ContactKind::Cubic => self.kt,
-            ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
-            ContactKind::Unilateral => 0.0,
+        match &self.kind {
+            ContactKind::Unilateral | ContactKind::Friction | ContactKind::FrictionPlane => {
+                self.role() == Role::Active && self.kn > 0.0 && self.load() >= 0.0
+            }
+            ContactKind::Table(table) => table.force(0.0) != 0.0,
+            _ => false,
         }
     }
 
-    /// Largest stiffness that the relative motion can meet, but for cubic terms.
+    /// The places (t1, t2, n as 0, 1, 2) in which the law acts, in the order of its motions.
     #[must_use]
-    pub fn stiffness(&self) -> f64 {
-        self.kt.max(self.kn)
+    pub fn places(&self) -> &'static [usize] {
+        match self.kind {
+            ContactKind::Unilateral => &[2],
+            ContactKind::Friction => &[0, 2],
+            ContactKind::FrictionPlane if self.has_normal() => &[0, 1, 2],
+            ContactKind::FrictionPlane => &[0, 1],
+            _ if self.dofs.is_empty() => &[0],
+            _ => &[],
+        }
+    }
+
+    /// Number of relative motions that the law knows.
+    #[must_use]
+    pub fn directions(&self) -> usize {
+        self.places().len().max(self.dofs.len())
+    }
+
+    /// The k-th of them.
+    #[must_use]
+    pub fn direction(&self, k: usize) -> Direction {
+        if let Some(&dof) = self.dofs.get(k) {
+            return Direction::between(Some(dof), None);
+        }
+        let place = self.places()[k];
+        match &self.frame {
+            None => Direction::between(self.dof_a[place], self.dof_b[place]),
+            Some(frame) => Direction {
+                a: frame.side(self.dof_a, place),
+                b: frame.side(self.dof_b, place),
+            },
+        }
+    }
+
+    /// The law, with lengths in units of `length` and forces in units of `length` times the caller's
+    /// stiffness.
+    ///
+    /// # Errors
+    /// Those of [`Self::check_constants`].
+    pub fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(match &self.kind {
+            ContactKind::Jenkins => Arc::new(Jenkins {
+                stiffness: self.kt,
+                limit: self.slip_limit() / length,
+            }),
+            ContactKind::Cubic => Arc::new(Cubic {
+                linear: self.kt,
+                cubic: self.cubic * length * length,
+            }),
+            ContactKind::Unilateral => Arc::new(Unilateral {
+                stiffness: self.kn,
+                gap: self.clearance() / length,
+            }),
+            ContactKind::Friction => Arc::new(Friction {
+                kt: self.kt,
+                kn: self.kn,
+                mu: self.mu,
+                load: self.load() / length,
+            }),
+            ContactKind::FrictionPlane => Arc::new(FrictionPlane {
+                kt: self.kt,
+                kn: self.kn,
+                mu: self.mu,
+                load: self.load() / length,
+                has_normal: self.has_normal(),
+            }),
+            ContactKind::Regularised => {
+                let law = TanhFriction::new(self.slip_limit(), self.velocity)?;
+                Arc::new(law.in_units(length))
+            }
+            ContactKind::Table(table) => Arc::new(table.in_units(length)),
+            ContactKind::Polynomial(polynomial) => Arc::new(polynomial.in_units(length)),
+            ContactKind::User(user) => Arc::new(user.in_units(length)),
+        })
+    }
+
+    /// Stiffness of the force in the k-th direction by the l-th motion at small motion. A law of the
+    /// host is not asked, and counts as 0.
+    #[must_use]
+    pub fn stiffness_at_rest(&self, k: usize, l: usize) -> f64 {
+        match &self.kind {
+            ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
+            ContactKind::Jenkins | ContactKind::Cubic => self.kt,
+            ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
+            ContactKind::Friction | ContactKind::FrictionPlane if k == l && self.load() > 0.0 => self.stiffness(k),
+            ContactKind::Friction | ContactKind::FrictionPlane => 0.0,
+            ContactKind::Table(table) => table.stiffness_at_rest(),
+            ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
+            ContactKind::Unilateral | ContactKind::Regularised | ContactKind::User(_) => 0.0,
+        }
+    }
+
+    /// Largest stiffness that the k-th motion can meet, but for terms that grow with the motion.
+    #[must_use]
+    pub fn stiffness(&self, k: usize) -> f64 {
+        match &self.kind {
+            ContactKind::Table(table) => table.largest_stiffness(),
+            _ if self.places().get(k) == Some(&2) => self.kn,
+            _ => self.kt,
+        }
+    }
+
+    /// Whether the law needs the direction t1, not just the plane of it.
+    #[must_use]
+    pub fn needs_tangent(&self) -> bool {
+        self.places().contains(&0) && !self.places().contains(&1)
+    }
+
+    /// Whether the k-th motion, while the contact sticks, meets exactly [`Self::stiffness`], as friction
+    /// does.
+    #[must_use]
+    pub fn may_stick(&self, k: usize) -> bool {
+        match self.kind {
+            ContactKind::Jenkins | ContactKind::Friction => k == 0,
+            ContactKind::FrictionPlane => k < 2,
+            _ => false,
+        }
+    }
+
+    /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
+    #[must_use]
+    pub fn is_spring(&self) -> bool {
+        !matches!(
+            self.kind,
+            ContactKind::Jenkins | ContactKind::Unilateral | ContactKind::Friction | ContactKind::FrictionPlane
+        )
     }
 
     /// What the constants of the law make of the contact.
@@ -152,8 +396,22 @@ impl Contact {
             ContactKind::Jenkins if self.slip_limit().is_infinite() => Role::Spring,
             ContactKind::Cubic if self.cubic == 0.0 && self.kt == 0.0 => Role::Inert,
             ContactKind::Cubic if self.cubic == 0.0 => Role::Spring,
-            ContactKind::Unilateral if self.kn == 0.0 => Role::Inert,
-            ContactKind::Jenkins | ContactKind::Cubic | ContactKind::Unilateral => Role::Active,
+            ContactKind::Unilateral | ContactKind::Friction if self.kn == 0.0 => Role::Inert,
+            ContactKind::FrictionPlane if self.kn == 0.0 && (self.kt == 0.0 || self.slip_limit() == 0.0) => Role::Inert,
+            ContactKind::Regularised if self.slip_limit() == 0.0 => Role::Inert,
+            _ => Role::Active,
+        }
+    }
+
+    /// What the contact is called if it has no normal load.
+    #[must_use]
+    pub fn without_load(&self) -> Option<&'static str> {
+        match self.kind {
+            ContactKind::Cubic => Some("cubic spring"),
+            ContactKind::Table(_) => Some("table"),
+            ContactKind::Polynomial(_) => Some("polynomial"),
+            ContactKind::User(_) => Some("law of the host"),
+            _ => None,
         }
     }
 
@@ -172,7 +430,8 @@ impl Contact {
             ("kt", self.kt, false),
             ("kn", self.kn, false),
             ("mu", self.mu, false),
-            ("preload", self.preload, self.kind != ContactKind::Unilateral),
+            ("preload", self.preload, matches!(self.kind, ContactKind::Jenkins)),
+            ("velocity", self.velocity, false),
         ] {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number >= 0");
@@ -188,157 +447,78 @@ impl Contact {
         }
         let (kt, kn, mu) = (("kt", self.kt), ("kn", self.kn), ("mu", self.mu));
         let (preload, gap, cubic) = (("preload", self.preload), ("gap", self.gap), ("cubic", self.cubic));
-        let (unused, kind): (&[(&str, f64)], _) = match self.kind {
-            ContactKind::Jenkins => (&[kn, gap, cubic], "Jenkins contact"),
-            ContactKind::Cubic => (&[kn, mu, preload, gap], "cubic spring"),
-            ContactKind::Unilateral => (&[kt, mu, cubic], "unilateral spring"),
+        let velocity = ("velocity", self.velocity);
+        let (unused, kind): (&[(&str, f64)], _) = match &self.kind {
+            ContactKind::Jenkins => (&[kn, gap, cubic, velocity], "Jenkins contact"),
+            ContactKind::Cubic => (&[kn, mu, preload, gap, velocity], "cubic spring"),
+            ContactKind::Unilateral => (&[kt, mu, cubic, velocity], "unilateral spring"),
+            ContactKind::Friction | ContactKind::FrictionPlane => (&[cubic, velocity], "friction contact"),
+            ContactKind::Regularised => (&[kt, kn, gap, cubic], "regularised friction"),
+            ContactKind::Table(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "table"),
+            ContactKind::Polynomial(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "polynomial"),
+            ContactKind::User(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "law of the host"),
         };
         for &(name, value) in unused {
             if value != 0.0 {
                 return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
             }
         }
+        self.check_normal()?;
+        if let ContactKind::Regularised = self.kind {
+            TanhFriction::new(self.slip_limit(), self.velocity)?;
+        }
+        let wanted = match &self.kind {
+            ContactKind::Polynomial(law) => law.directions(),
+            ContactKind::User(law) => law.directions(),
+            _ => self.places().len(),
+        };
+        if self.directions() != wanted {
+            return fail!(
+                Dimension,
+                "contact: {} degrees of freedom for a {kind} of {wanted} motions",
+                self.directions()
+            );
+        }
+        self.check_places(kind)
+    }
+
+    /// The normal direction of friction: with a stiffness, or none at all.
+    fn check_normal(&self) -> Result<()> {
+        let plane = matches!(self.kind, ContactKind::FrictionPlane);
+        let needs_stiffness = matches!(self.kind, ContactKind::Friction) || (plane && self.has_normal());
+        if needs_stiffness && self.kn == 0.0 {
+            return fail!(
+                Argument,
+                "contact: kn = 0, needs a number > 0 for friction under a load that varies"
+            );
+        }
+        if plane && !self.has_normal() && (self.kn != 0.0 || self.gap != 0.0) {
+            return fail!(
+                Argument,
+                "contact: kn = {}, gap = {}, need 0 for friction without a degree of freedom along n",
+                self.kn,
+                self.gap
+            );
+        }
         Ok(())
     }
-}
 
-/// An interval on which the force is f(τ) = slope·(x(τ) − x(anchor)) + offset.
-///
-/// With exact events `start`, `end` and `anchor` are times in τ; with sampling they are sample
-/// numbers, and the piece holds the samples start ≤ j < end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
-    /// Begin of the interval.
-    pub start: f64,
-    /// End of the interval.
-    pub end: f64,
-    /// Tangent stiffness.
-    pub slope: f64,
-    /// Where the motion is measured from; `None`: from zero.
-    pub anchor: Option<f64>,
-    /// Force at the anchor.
-    pub offset: f64,
-}
-
-/// A law whose force is linear·x plus a term that is homogeneous in x: f(s·x) = s^degree·f(x).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Smooth {
-    /// Stiffness of the linear term.
-    pub linear: f64,
-    /// Degree of the other term.
-    pub degree: f64,
-}
-
-/// Law of one scalar relative motion. All quantities are in the solver's units.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Law {
-    /// Elastic Coulomb friction.
-    Jenkins(Jenkins),
-    /// Linear and cubic spring.
-    Cubic(Cubic),
-    /// Spring that opens.
-    Unilateral(Unilateral),
-}
-
-impl Law {
-    /// The law of a contact, with lengths in units of `length` and forces in units of
-    /// `length` times the caller's stiffness.
-    #[must_use]
-    pub fn new(contact: &Contact, length: f64) -> Self {
-        match contact.kind {
-            ContactKind::Jenkins => Self::Jenkins(Jenkins {
-                stiffness: contact.kt,
-                limit: contact.slip_limit() / length,
-            }),
-            ContactKind::Cubic => Self::Cubic(Cubic {
-                linear: contact.kt,
-                cubic: contact.cubic * length * length,
-            }),
-            ContactKind::Unilateral => Self::Unilateral(Unilateral {
-                stiffness: contact.kn,
-                gap: contact.clearance() / length,
-            }),
+    /// Degrees of freedom along directions in which the law does not act are a mistake.
+    fn check_places(&self, kind: &str) -> Result<()> {
+        if self.frame.is_some() {
+            return Ok(());
         }
-    }
-
-    /// Whether f(−x) = −f(x).
-    #[must_use]
-    pub fn is_odd(&self) -> bool {
-        match self {
-            Self::Jenkins(_) | Self::Cubic(_) => true,
-            Self::Unilateral(_) => false,
-        }
-    }
-
-    /// The law as seen at a motion `factor` times smaller: eased(s)(x) = s·law(x/s). A large factor
-    /// gives the law at rest, a linear spring; 1 gives the law itself; between them runs the homotopy
-    /// that finds a first point. From the identity follows, for any law with force F and Jacobian J,
-    /// dF/d(ln s) = F − J X.
-    #[must_use]
-    pub fn eased(&self, factor: f64) -> Self {
-        match *self {
-            Self::Jenkins(law) => Self::Jenkins(Jenkins {
-                limit: law.limit * factor,
-                ..law
-            }),
-            Self::Cubic(law) => Self::Cubic(Cubic {
-                cubic: law.cubic / (factor * factor),
-                ..law
-            }),
-            Self::Unilateral(law) => Self::Unilateral(Unilateral {
-                gap: law.gap * factor,
-                ..law
-            }),
-        }
-    }
-
-    /// The factor of [`Self::eased`] at which the law just is a linear spring for a motion of the given
-    /// half range (max − min)/2 and mean: friction sticks, a cubic term is small against the
-    /// stiffness `reference`.
-    #[must_use]
-    pub fn sticking_factor(&self, half_range: f64, mean: f64, reference: f64) -> f64 {
-        match self {
-            Self::Jenkins(law) => law.stiffness * half_range / law.limit,
-            Self::Cubic(law) => law.sticking_factor(half_range + mean.abs(), reference),
-            Self::Unilateral(law) => (half_range - mean).max(0.0) / law.gap,
-        }
-    }
-
-    /// For a law without events: fills the spectrum Sₙ = (1/2π)∫ s(x(τ)) e^{−inτ} dτ, n ≥ 0, of the
-    /// tangent stiffness s of its homogeneous term. `None`, and nothing is written: the law has
-    /// events and speaks in pieces.
-    pub fn nonlinear_spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]) -> Option<Smooth> {
-        match self {
-            Self::Jenkins(_) | Self::Unilateral(_) => None,
-            Self::Cubic(law) => {
-                law.spectrum(set, motion, spectrum);
-                Some(Smooth {
-                    linear: law.linear,
-                    degree: 3.0,
-                })
+        for (name, dofs) in [("dof_a", self.dof_a), ("dof_b", self.dof_b)] {
+            for (i, dof) in dofs.iter().enumerate() {
+                if let Some(dof) = dof.filter(|_| !self.places().contains(&i)) {
+                    return fail!(
+                        Argument,
+                        "contact: {name}[{i}] = {dof}, needs to be empty; a {kind} does not act along {}",
+                        ["t1", "t2", "n"][i]
+                    );
+                }
             }
         }
-    }
-
-    /// Exact pieces over one turn (half a turn for sets of odd harmonics) from the reversals of
-    /// the motion; none for a smooth law.
-    pub fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>) {
-        pieces.clear();
-        match self {
-            Self::Jenkins(law) => law.pieces(set, motion, reversals, pieces),
-            Self::Unilateral(law) => law.pieces(set, motion, reversals, pieces),
-            Self::Cubic(_) => {}
-        }
-    }
-
-    /// Pieces in sample numbers over one turn from equidistant samples of the motion; none for a
-    /// smooth law.
-    pub fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
-        pieces.clear();
-        match self {
-            Self::Jenkins(law) => law.sampled_pieces(samples, pieces),
-            Self::Unilateral(law) => law.sampled_pieces(samples, pieces),
-            Self::Cubic(_) => {}
-        }
+        Ok(())
     }
 }

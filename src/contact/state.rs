@@ -1,7 +1,7 @@
 //! What a contact does at one time of a motion: whether it sticks, slips or is open, the force of laws
 //! without memory, and the normal load.
 
-use super::{Contact, ContactKind, Law, Piece, Role};
+use super::{Contact, ContactKind, Role};
 
 /// What a contact does at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,34 +15,6 @@ pub enum State {
     Open,
 }
 
-impl Law {
-    /// Force and state at the motion x of a law without memory; `None` for one that remembers, whose
-    /// force follows from its pieces.
-    #[must_use]
-    pub fn at(&self, x: f64) -> Option<(f64, State)> {
-        match self {
-            Self::Jenkins(_) => None,
-            Self::Cubic(law) => Some((x * (law.linear + law.cubic * x * x), State::Stick)),
-            Self::Unilateral(law) => Some(if x < -law.gap {
-                (law.stiffness * (x + law.gap), State::Stick)
-            } else {
-                (0.0, State::Open)
-            }),
-        }
-    }
-
-    /// The state on a piece of the law.
-    #[must_use]
-    pub fn state(&self, piece: &Piece) -> State {
-        match self {
-            _ if piece.slope != 0.0 => State::Stick,
-            Self::Jenkins(_) => State::Slip,
-            Self::Unilateral(_) => State::Open,
-            Self::Cubic(_) => State::Stick,
-        }
-    }
-}
-
 impl Contact {
     /// Stiffness of a contact that is linear at any motion; 0 without force.
     #[must_use]
@@ -54,10 +26,10 @@ impl Contact {
     /// load does not change, 0 for one that has none.
     #[must_use]
     pub fn normal_load(&self, y: f64) -> f64 {
-        match self.kind {
-            ContactKind::Jenkins => self.preload,
+        match &self.kind {
+            ContactKind::Jenkins | ContactKind::Regularised => self.preload,
             ContactKind::Unilateral if self.role() == Role::Active => (self.kn * (-y - self.clearance())).max(0.0),
-            ContactKind::Unilateral | ContactKind::Cubic => 0.0,
+            _ => 0.0,
         }
     }
 }

@@ -6,7 +6,8 @@
 //! stiffness spectrum, F = k·T(S)·X + k·g·ĝ (Petrov & Ewins 2004, doi:10.1115/1.1644557, treat it
 //! as the normal part of a friction contact).
 
-use super::Piece;
+use super::law::{Form, Law, Piece, Pieces, Range};
+use super::state::State;
 use crate::fourier::{Extremum, crossing};
 use crate::harmonics::HarmonicSet;
 use std::f64::consts::TAU;
@@ -21,8 +22,41 @@ pub struct Unilateral {
 }
 
 impl Unilateral {
-    /// Exact pieces over one turn; see [`super::Law::pieces`].
-    pub(super) fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>) {
+    fn push(&self, start: f64, end: f64, closed: bool, pieces: &mut Vec<Piece>) {
+        if end <= start {
+            return;
+        }
+        let (slope, offset) = if closed {
+            (self.stiffness, self.stiffness * self.gap)
+        } else {
+            (0.0, 0.0)
+        };
+        pieces.push(Piece {
+            start,
+            end,
+            slope,
+            anchor: None,
+            offset,
+        });
+    }
+}
+
+impl Law for Unilateral {
+    fn is_odd(&self) -> bool {
+        false
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::Pieces(self)
+    }
+
+    fn sticking_factor(&self, ranges: &[Range], _reference: f64) -> f64 {
+        (ranges[0].half - ranges[0].mean).max(0.0) / self.gap
+    }
+}
+
+impl Pieces for Unilateral {
+    fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>) {
         let level = -self.gap;
         let Some(first) = reversals.first() else {
             let rest = if set.has_mean() { motion[0] } else { 0.0 };
@@ -47,26 +81,7 @@ impl Unilateral {
         self.push(start, first.tau + TAU, closed, pieces);
     }
 
-    fn push(&self, start: f64, end: f64, closed: bool, pieces: &mut Vec<Piece>) {
-        if end <= start {
-            return;
-        }
-        let (slope, offset) = if closed {
-            (self.stiffness, self.stiffness * self.gap)
-        } else {
-            (0.0, 0.0)
-        };
-        pieces.push(Piece {
-            start,
-            end,
-            slope,
-            anchor: None,
-            offset,
-        });
-    }
-
-    /// Pieces over samples; see [`super::Law::sampled_pieces`].
-    pub(super) fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
+    fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
         let closed = |x: f64| x < -self.gap;
         let mut start = 0;
         for j in 1..=samples.len() {
@@ -75,5 +90,17 @@ impl Unilateral {
                 start = j;
             }
         }
+    }
+
+    fn state(&self, piece: &Piece) -> State {
+        if piece.slope == 0.0 { State::Open } else { State::Stick }
+    }
+
+    fn at(&self, x: f64) -> Option<(f64, State)> {
+        Some(if x < -self.gap {
+            (self.stiffness * (x + self.gap), State::Stick)
+        } else {
+            (0.0, State::Open)
+        })
     }
 }

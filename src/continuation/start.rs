@@ -92,7 +92,7 @@ fn homotopy(
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Option<First>> {
     let n = u.len();
-    let Some((begin, end)) = problem.begin_homotopy(settings.start, u) else {
+    let Some((begin, end)) = problem.begin_homotopy(settings.start, u)? else {
         return Ok(None);
     };
     let eased = Settings {

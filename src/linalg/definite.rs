@@ -1,5 +1,5 @@
-//! Whether a large sparse matrix is positive semidefinite. Lanczos iteration would not tell: it
-//! meets a negative direction by chance only.
+//! Whether a large sparse matrix is positive definite. Lanczos iteration would not tell: it meets a
+//! negative direction by chance only.
 
 use super::sparse::{Csc, Form};
 use crate::error::{Error, Result, fail, try_push, try_vec};
@@ -13,13 +13,14 @@ use num_complex::Complex64;
 /// What is added to the diagonal, relative to it: rounding must not make a singular matrix fail.
 const MARGIN: f64 = 1e-10;
 
+const WHAT: &str = "a Cholesky factorisation";
+
 /// Refuses a Hermitian mass matrix that is negative in some direction, by a Cholesky
 /// factorisation of M + 1e-10 diag(M).
 ///
 /// # Errors
 /// `NotPositiveDefinite` with a sentence about the mass matrix, `OutOfMemory`.
 pub fn check_mass(m: &Csc) -> Result<()> {
-    const WHAT: &str = "a Cholesky factorisation";
     let n = m.rows;
     let mut margin = Vec::new();
     for j in 0..n {
@@ -32,10 +33,29 @@ pub fn check_mass(m: &Csc) -> Result<()> {
         let added = if alone { 1.0 } else { MARGIN * diagonal };
         try_push(&mut margin, (j, j, added.into()), WHAT)?;
     }
+    first_bad_pivot(m, margin)?.map_or(Ok(()), negative)
+}
+
+/// Whether a Hermitian stiffness matrix resists every motion, by a Cholesky factorisation of
+/// K − 1e-10 diag(K).
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn resists_all_motion(k: &Csc) -> Result<bool> {
+    let mut margin = Vec::new();
+    for j in 0..k.rows {
+        try_push(&mut margin, (j, j, (-MARGIN * k.get(j, j).re).into()), WHAT)?;
+    }
+    Ok(first_bad_pivot(k, margin)?.is_none())
+}
+
+/// The pivot at which a Cholesky factorisation of a + margin breaks down; `None`: it does not.
+fn first_bad_pivot(a: &Csc, margin: Vec<(usize, usize, Complex64)>) -> Result<Option<usize>> {
+    let n = a.rows;
     let margin = Csc::from_triplets(n, n, margin)?;
     let a = Csc::sum(
         n,
-        &[(Complex64::ONE, m, Form::Plain), (Complex64::ONE, &margin, Form::Plain)],
+        &[(Complex64::ONE, a, Form::Plain), (Complex64::ONE, &margin, Form::Plain)],
     )?;
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &a.row_idx);
     let no_memory = || Error::out_of_memory(WHAT);
@@ -59,8 +79,8 @@ pub fn check_mass(m: &Csc) -> Result<()> {
         faer::Spec::default(),
     );
     match factored {
-        Ok(_) => Ok(()),
-        Err(LltError::NonPositivePivot { index }) => negative(index),
+        Ok(_) => Ok(None),
+        Err(LltError::NonPositivePivot { index }) => Ok(Some(index)),
     }
 }
 

@@ -5,6 +5,7 @@ use super::spring::Wave;
 use super::structure::MatrixKind;
 use crate::contact::Role;
 use crate::error::{Result, check_memory, fail};
+use crate::linalg::definite::resists_all_motion;
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
 use crate::linalg::quadratic::quadratic;
@@ -33,6 +34,12 @@ pub struct LinearModes {
 /// Degrees of freedom up to which all modes are found by dense algebra, whose rounding is relative
 /// to the highest frequency: on finer meshes too coarse for the lowest ones.
 const DENSE_UP_TO: usize = 100;
+
+/// Rigid-body modes of a body in space.
+const RIGID_MODES: usize = 6;
+
+/// Largest ω² of a rigid motion, over that of the stiffest degree of freedom alone.
+const RIGID: f64 = 1e-10;
 
 /// Most square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
@@ -66,6 +73,29 @@ impl Model {
     /// [`eigen::generalised`].
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
         self.pencil(Wave::Diameter(diameter), contacts)?.all()
+    }
+
+    /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency
+    /// without contacts is zero, up to rounding. At most six are counted for a large structure. 0 for a
+    /// structure whose stiffness is not Hermitian, where it is not known.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, and those of the eigensolvers.
+    pub fn rigid_modes(&self, diameter: usize) -> Result<usize> {
+        let Ok(pencil) = self.pencil(Wave::Diameter(diameter), ContactState::Free) else {
+            return Ok(0);
+        };
+        if resists_all_motion(&pencil.stiffness)? {
+            return Ok(0);
+        }
+        // The stiffest degree of freedom by itself tells what is small.
+        let (k, m) = (&pencil.stiffness, &pencil.mass);
+        let own = |j| (k.get(j, j).re, m.get(j, j).re);
+        let heavy = (0..k.rows).map(own).filter(|&(_, mass)| mass > 0.0);
+        let stiffest = heavy.fold(0.0_f64, |most, (stiffness, mass)| most.max(stiffness / mass));
+        let modes = pencil.lowest(RIGID_MODES)?;
+        let small = |omega: &&f64| **omega * **omega <= RIGID * stiffest;
+        Ok(modes.omega.iter().take_while(small).count())
     }
 
     /// K of a wave with the springs, and with the contacts removed or stuck.

@@ -10,8 +10,9 @@ pub mod start_mode;
 pub mod structure;
 pub mod wheel;
 
+use crate::contact::Contact;
 use crate::contact::iwan::Iwan;
-use crate::contact::{Contact, ContactKind};
+use crate::contact::sides::Direction;
 use crate::error::{Result, fail, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use excitation::Excitation;
@@ -127,7 +128,7 @@ impl Model {
     /// freedom with itself, and those of [`Contact::check_constants`].
     pub fn add_contact(&mut self, contact: &Contact) -> Result<usize> {
         self.check_contact(contact)?;
-        try_push(&mut self.contacts, *contact, "the contacts")?;
+        try_push(&mut self.contacts, contact.clone(), "the contacts")?;
         Ok(self.contacts.len() - 1)
     }
 
@@ -151,13 +152,17 @@ impl Model {
     /// # Errors
     /// Those of [`Iwan::elements`] and [`Self::add_contact`].
     pub fn add_iwan(&mut self, between: &Contact, joint: &Iwan, elements: usize) -> Result<usize> {
-        self.check_sides("Iwan joint", between.dof_a, between.dof_b, between.sector_offset)?;
+        let sides = Direction::between(between.dof_a[0], between.dof_b[0]);
+        self.check_sides("Iwan joint", &sides, between.sector_offset)?;
         self.add_contacts(&joint.elements(between, elements)?)
     }
 
     fn check_contact(&self, contact: &Contact) -> Result<()> {
         contact.check_constants()?;
-        self.check_sides("contact", contact.dof_a, contact.dof_b, contact.sector_offset)
+        for k in 0..contact.directions() {
+            self.check_sides("contact", &contact.direction(k), contact.sector_offset)?;
+        }
+        Ok(())
     }
 
     /// Adds a linear spring between two degrees of freedom, or one and the ground.
@@ -187,23 +192,25 @@ impl Model {
                 spring.stiffness
             );
         }
-        self.check_sides("spring", spring.dof_a, spring.dof_b, spring.sector_offset)
+        let sides = Direction::between(spring.dof_a, spring.dof_b);
+        self.check_sides("spring", &sides, spring.sector_offset)
     }
 
     /// Both sides of a contact or spring must exist and differ.
-    fn check_sides(&self, what: &str, a: Option<usize>, b: Option<usize>, sector_offset: i64) -> Result<()> {
+    fn check_sides(&self, what: &str, sides: &Direction, sector_offset: i64) -> Result<()> {
         let n = self.ndof();
-        for (name, dof) in [("dof_a", a), ("dof_b", b)] {
-            if let Some(dof) = dof.filter(|&d| d >= n) {
+        for (name, side) in [("dof_a", sides.a), ("dof_b", sides.b)] {
+            if let Some((dof, _)) = side.into_iter().flatten().find(|&(d, _)| d >= n) {
                 return fail!(Index, "{what}: {name} = {dof}, needs 0 .. {}", n - 1);
             }
         }
         let same_sector = self.structure.same_sector(sector_offset);
-        if a == b && (same_sector || a.is_none()) {
+        let grounded = sides.a.iter().all(Option::is_none);
+        if sides.a == sides.b && (same_sector || grounded) {
             return fail!(
                 Argument,
                 "{what}: dof_a and dof_b are both {}; it needs two different sides",
-                if a.is_none() {
+                if grounded {
                     "the ground"
                 } else {
                     "the same degree of freedom"
@@ -229,13 +236,16 @@ impl Model {
         let Some(contact) = self.contacts.get_mut(id) else {
             return fail!(Index, "contact id = {id}, but the model has {count} contacts");
         };
-        if contact.kind == ContactKind::Cubic {
+        if let Some(kind) = contact.without_load() {
             return fail!(
                 Argument,
-                "preload of contact id = {id}, but that is a cubic spring, which has none"
+                "preload of contact id = {id}, but that is a {kind}, which has none"
             );
         }
-        let changed = Contact { preload, ..*contact };
+        let changed = Contact {
+            preload,
+            ..contact.clone()
+        };
         changed.check_constants()?;
         *contact = changed;
         Ok(())

@@ -3,6 +3,7 @@
 
 use super::Model;
 use super::structure::MatrixKind;
+use crate::contact::sides::Direction;
 use crate::error::{Result, try_push};
 use crate::linalg::sparse::{Csc, Form};
 use num_complex::Complex64;
@@ -20,13 +21,22 @@ pub struct Spring {
     pub stiffness: f64,
 }
 
-/// Row of a relative motion, at most two entries as (degree of freedom, coefficient).
-pub type Row = [Option<(usize, Complex64)>; 2];
+/// Row of a relative motion, at most three entries a side as (degree of freedom, coefficient).
+pub type Row = [Option<(usize, Complex64)>; 6];
 
-/// Row r of the relative motion y = r·x between two sides: side a minus side b, where `phase` is the motion of b's sector over a's.
+/// Row r of the relative motion y = r·x in a direction: side a minus side b, where `phase` is the
+/// motion of b's sector over a's.
 #[must_use]
-pub fn relative_row(a: Option<usize>, b: Option<usize>, phase: Complex64) -> Row {
-    [a.map(|dof| (dof, Complex64::ONE)), b.map(|dof| (dof, -phase))]
+pub fn relative_row(direction: &Direction, phase: Complex64) -> Row {
+    let mut row = [None; 6];
+    let (a, b) = row.split_at_mut(3);
+    for (entry, term) in a.iter_mut().zip(direction.a) {
+        *entry = term.map(|(dof, c)| (dof, c.into()));
+    }
+    for (entry, term) in b.iter_mut().zip(direction.b) {
+        *entry = term.map(|(dof, c)| (dof, -phase * c));
+    }
+    row
 }
 
 /// r·x, the relative motion of a row.
@@ -65,20 +75,28 @@ impl Model {
             Wave::Diameter(d) => structure.wave_phase(d, offset),
         };
         let mut entries = Vec::new();
-        let mut add = |a, b, offset, stiffness: f64| -> Result<()> {
-            let row = relative_row(a, b, phase(offset));
-            for (p, x) in row.into_iter().flatten() {
-                for (q, y) in row.into_iter().flatten() {
-                    try_push(&mut entries, (p, q, x.conj() * y * stiffness), "the springs")?;
+        let mut add = |force: &Row, motion: &Row, stiffness: f64| -> Result<()> {
+            if stiffness == 0.0 {
+                return Ok(());
+            }
+            for (p, x) in force.iter().flatten() {
+                for (q, y) in motion.iter().flatten() {
+                    try_push(&mut entries, (*p, *q, x.conj() * y * stiffness), "the springs")?;
                 }
             }
             Ok(())
         };
         for s in self.springs() {
-            add(s.dof_a, s.dof_b, s.sector_offset, s.stiffness)?;
+            let row = relative_row(&Direction::between(s.dof_a, s.dof_b), phase(s.sector_offset));
+            add(&row, &row, s.stiffness)?;
         }
         for c in stuck {
-            add(c.dof_a, c.dof_b, c.sector_offset, c.stiffness_at_rest())?;
+            let row = |k| relative_row(&c.direction(k), phase(c.sector_offset));
+            for k in 0..c.directions() {
+                for l in 0..c.directions() {
+                    add(&row(k), &row(l), c.stiffness_at_rest(k, l))?;
+                }
+            }
         }
         if entries.is_empty() {
             return Ok(own);

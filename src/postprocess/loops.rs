@@ -6,8 +6,8 @@
 //! every stick between slips, so that its work per cycle is what the slips take: Σ f·Δx, a sum
 //! of positive terms. By Parseval it equals π Σ h Im(Fₕ conj Xₕ) over the harmonics of the motion.
 
+use crate::contact::law::{Form, Law, Piece};
 use crate::contact::state::State;
-use crate::contact::{Law, Piece};
 use crate::error::{Error, Result, try_push};
 use crate::fourier::{Extremum, Reversals, jet};
 use crate::harmonics::HarmonicSet;
@@ -19,7 +19,7 @@ const WHAT: &str = "the loop of a contact";
 pub struct Orbit<'a> {
     set: &'a HarmonicSet,
     motion: &'a [f64],
-    law: Law,
+    law: &'a dyn Law,
     extrema: Vec<Extremum>,
     pieces: Vec<Piece>,
     /// x at the anchor of each piece, 0 without one.
@@ -42,7 +42,7 @@ impl<'a> Orbit<'a> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &'a HarmonicSet, motion: &'a [f64], law: Law) -> Result<Self> {
+    pub fn new(set: &'a HarmonicSet, motion: &'a [f64], law: &'a dyn Law) -> Result<Self> {
         let highest = set.highest_reduced();
         let (mut extrema, mut pieces, mut anchors) = (Vec::new(), Vec::new(), Vec::new());
         // x' has at most 2·highest roots per turn, each the end of at most two pieces.
@@ -51,7 +51,9 @@ impl<'a> Orbit<'a> {
             .and_then(|()| pieces.try_reserve(4 * highest + 8))
             .map_err(|_| Error::out_of_memory(WHAT))?;
         Reversals::new(set)?.find(set, motion, &mut extrema);
-        law.pieces(set, motion, &extrema, &mut pieces);
+        if let Form::Pieces(law) = law.form() {
+            law.pieces(set, motion, &extrema, &mut pieces);
+        }
         for piece in &pieces {
             let x = piece.anchor.map_or(0.0, |tau| jet(set, motion, tau).x);
             try_push(&mut anchors, x, WHAT)?;
@@ -74,7 +76,12 @@ impl<'a> Orbit<'a> {
         let repeated = (self.set.base() as u128 * j as u128 % n.max(1) as u128) as f64;
         let tau = TAU * repeated / n.max(1) as f64;
         let motion = jet(self.set, self.motion, tau).x;
-        let (force, state) = self.law.at(motion).unwrap_or_else(|| self.remembered(tau, motion));
+        let known = match self.law.form() {
+            Form::Pieces(law) => law.at(motion),
+            Form::Spectral(law) => Some((law.at(motion), State::Stick)),
+            Form::Pointwise(_) | Form::Coupled(_) | Form::Marched(_) => None,
+        };
+        let (force, state) = known.unwrap_or_else(|| self.remembered(tau, motion));
         Instant { motion, force, state }
     }
 
@@ -92,7 +99,14 @@ impl<'a> Orbit<'a> {
         let at = self.pieces.partition_point(|p| p.start <= within).saturating_sub(1);
         let (piece, anchor) = (&self.pieces[at], self.anchors[at]);
         let force = piece.slope * (motion - sign * anchor) + sign * piece.offset;
-        (force, self.law.state(piece))
+        (force, self.state(piece))
+    }
+
+    fn state(&self, piece: &Piece) -> State {
+        match self.law.form() {
+            Form::Pieces(law) => law.state(piece),
+            Form::Spectral(_) | Form::Pointwise(_) | Form::Coupled(_) | Form::Marched(_) => State::Stick,
+        }
     }
 
     /// Length of what the pieces cover.
@@ -105,7 +119,7 @@ impl<'a> Orbit<'a> {
     #[must_use]
     pub fn work(&self) -> f64 {
         let x = |tau| jet(self.set, self.motion, tau).x;
-        let slips = self.pieces.iter().filter(|p| self.law.state(p) == State::Slip);
+        let slips = self.pieces.iter().filter(|p| self.state(p) == State::Slip);
         let work = slips
             .map(|p| p.offset * (x(p.end) - x(p.start)))
             .fold(0.0, |a, b| a + b);
@@ -116,7 +130,7 @@ impl<'a> Orbit<'a> {
     /// Share of the period in a state, as far as the law has states.
     #[must_use]
     pub fn share(&self, state: State) -> f64 {
-        let inside = self.pieces.iter().filter(|p| self.law.state(p) == state);
+        let inside = self.pieces.iter().filter(|p| self.state(p) == state);
         inside.map(|p| p.end - p.start).fold(0.0, |a, b| a + b) / self.turn()
     }
 

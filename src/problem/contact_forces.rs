@@ -1,9 +1,10 @@
 //! The contact forces of all relative coordinates at one packed motion, with their Jacobians: what
 //! every problem with contacts needs of the laws.
 
+use super::blocks::Blocks;
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
-use crate::contact::Law;
+use crate::contact::law::Range;
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
@@ -17,82 +18,133 @@ const MEAN_FLOOR: f64 = 1e-8;
 pub struct ContactForces<'a> {
     condensed: &'a Condensed,
     evaluator: Evaluator,
+    /// s, where every law is seen as s·f(y/s).
     factor: f64,
-    laws: Vec<Law>,
-    law: Evaluation,
-    /// Per coordinate: sums over its laws, and whether all of them stick.
-    sums: Vec<Evaluation>,
+    /// y/s of all coordinates, and of those of one law.
+    scaled: Vec<f64>,
+    gathered: Vec<f64>,
+    /// Memory for laws of 1, 2, … directions, where there are such.
+    found: Vec<Option<Evaluation>>,
+    /// Packed sums per coordinate.
+    force: Vec<f64>,
+    offset: Vec<f64>,
+    by_omega: Vec<f64>,
+    jacobians: Blocks,
+    /// Per coordinate whether all its laws stick.
     stuck: Vec<bool>,
     slip_fractions: Vec<f64>,
 }
 
 impl<'a> ContactForces<'a> {
-    /// The laws of a condensed model; `samples` = 0 locates events exactly.
+    /// The laws of a condensed model; `samples` = 0 locates events exactly where the law has them.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(condensed: &'a Condensed, samples: usize) -> Result<Self> {
-        let set = condensed.set();
-        let coordinates = condensed.coordinates();
-        let mut sums = Vec::new();
-        for _ in 0..coordinates {
-            try_push(&mut sums, Evaluation::new(set)?, "the contact forces")?;
-        }
-        let mut laws = Vec::new();
-        for placed in condensed.laws() {
-            try_push(&mut laws, placed.law, "the contacts")?;
-        }
+        const WHAT: &str = "the contact forces";
         // A linear problem has no contact to evaluate, and its harmonics need not be a comb.
-        let linear = coordinates == 0;
-        let comb = if linear { &HarmonicSet::all(0)? } else { set };
+        let linear = condensed.coordinates() == 0;
+        let set = if linear { &HarmonicSet::all(0)? } else { condensed.set() };
+        let m = set.packed_len();
+        let size = condensed.coordinates().saturating_mul(m);
+        let laws = || condensed.laws().iter().map(|placed| &*placed.law);
+        let most = laws().map(crate::contact::Law::directions).max().unwrap_or(0);
+        let mut found = Vec::new();
+        for d in 1..=most {
+            let used = laws().any(|law| law.directions() == d);
+            let memory = if used { Some(Evaluation::new(set, d)?) } else { None };
+            try_push(&mut found, memory, WHAT)?;
+        }
         Ok(Self {
             condensed,
-            evaluator: Evaluator::new(comb, if linear { 0 } else { samples })?,
+            evaluator: Evaluator::new(set, if linear { 0 } else { samples }, laws())?,
             factor: 1.0,
-            slip_fractions: try_vec(laws.len(), 0.0, "the contacts")?,
-            laws,
-            law: Evaluation::new(comb)?,
-            sums,
-            stuck: try_vec(coordinates, false, "the contacts")?,
+            scaled: try_vec(size, 0.0, WHAT)?,
+            gathered: try_vec(most.saturating_mul(m), 0.0, WHAT)?,
+            found,
+            force: try_vec(size, 0.0, WHAT)?,
+            offset: try_vec(size, 0.0, WHAT)?,
+            by_omega: try_vec(size, 0.0, WHAT)?,
+            jacobians: Blocks::new(condensed, m)?,
+            stuck: try_vec(condensed.coordinates(), false, WHAT)?,
+            slip_fractions: try_vec(condensed.laws().len(), 0.0, WHAT)?,
         })
     }
 
-    /// Sees every law at an amplitude `factor` times smaller; see [`Law::eased`].
+    /// Sees every law f at a motion `factor` times smaller, as s·f(y/s). A large factor gives the laws
+    /// at rest, linear springs (infinite: exactly those); 1 gives the laws themselves; between them
+    /// runs the homotopy that finds a first point.
     pub fn ease(&mut self, factor: f64) {
-        if self.factor.to_bits() == factor.to_bits() {
-            return;
-        }
         self.factor = factor;
-        for (law, placed) in self.laws.iter_mut().zip(self.condensed.laws()) {
-            *law = placed.law.eased(factor);
-        }
     }
 
-    /// Evaluates all laws at packed motions, coordinate after coordinate.
-    pub fn evaluate(&mut self, motion: &[f64]) {
+    /// Evaluates all laws at packed motions, coordinate after coordinate, and an angular frequency.
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn evaluate(&mut self, motion: &[f64], omega: f64) -> Result<()> {
         let set = self.condensed.set();
         let m = set.packed_len();
-        for sum in &mut self.sums {
-            sum.force.fill(0.0);
-            sum.jacobian.fill(0.0);
-            sum.offset.fill(0.0);
+        for sum in [&mut self.force, &mut self.offset, &mut self.by_omega] {
+            sum.fill(0.0);
         }
+        self.jacobians.clear();
         self.stuck.fill(true);
+        let s = self.factor;
+        // What scales with the motion; at rest it follows from the Jacobians.
+        let unit = if s.is_infinite() { 0.0 } else { s };
+        for (scaled, y) in self.scaled.iter_mut().zip(motion) {
+            *scaled = y / s;
+        }
+        let mut blocks = 0;
         let mut prepared = usize::MAX;
         for (k, placed) in self.condensed.laws().iter().enumerate() {
-            let c = placed.coordinate;
-            let packed = &motion[c * m..(c + 1) * m];
-            if prepared != c {
-                self.evaluator.prepare(set, packed);
-                prepared = c;
+            let at = &placed.coordinates;
+            let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
+                continue;
+            };
+            let y = if let [c] = at[..] {
+                let y = &self.scaled[c * m..(c + 1) * m];
+                if prepared != c {
+                    self.evaluator.prepare(set, y);
+                    prepared = c;
+                }
+                y
+            } else {
+                for (y, &c) in self.gathered.chunks_exact_mut(m).zip(at) {
+                    y.copy_from_slice(&self.scaled[c * m..(c + 1) * m]);
+                }
+                &self.gathered[..at.len() * m]
+            };
+            self.evaluator.evaluate(&*placed.law, set, y, omega, found)?;
+            self.slip_fractions[k] = found.slip_fraction;
+            blocks = self.jacobians.add(blocks, at.len(), &found.jacobian);
+            for (i, &c) in at.iter().enumerate() {
+                self.stuck[c] &= found.stuck;
+                let (here, law) = (c * m..(c + 1) * m, i * m..(i + 1) * m);
+                add(&mut self.force[here.clone()], &found.force[law.clone()], unit);
+                add(&mut self.offset[here.clone()], &found.offset[law.clone()], unit);
+                add(&mut self.by_omega[here], &found.by_omega[law], unit);
             }
-            self.evaluator.evaluate(&self.laws[k], set, packed, &mut self.law);
-            self.slip_fractions[k] = self.law.slip_fraction;
-            self.stuck[c] &= self.law.stuck;
-            let sum = &mut self.sums[c];
-            add(&mut sum.force, &self.law.force);
-            add(&mut sum.jacobian, &self.law.jacobian);
-            add(&mut sum.offset, &self.law.offset);
+        }
+        if s.is_infinite() {
+            self.linearise(motion);
+        }
+        Ok(())
+    }
+
+    /// The forces of the laws at rest, linear in the motion.
+    fn linearise(&mut self, motion: &[f64]) {
+        let m = self.condensed.set().packed_len();
+        self.offset.fill(0.0);
+        self.by_omega.fill(0.0);
+        for (c, force) in self.force.chunks_exact_mut(m).enumerate() {
+            force.fill(0.0);
+            for (by, block) in self.jacobians.of_force(c) {
+                for (column, y) in block.chunks_exact(m).zip(&motion[by * m..]) {
+                    add(force, column, *y);
+                }
+            }
         }
     }
 
@@ -115,26 +167,49 @@ impl<'a> ContactForces<'a> {
         self.stuck[coordinate] && self.condensed.may_drop_out(coordinate)
     }
 
+    /// Tells per unknown motion whether some force that does not drop out depends on it.
+    pub fn mark_active(&self, active: &mut [bool]) {
+        let m = self.condensed.set().packed_len();
+        active.fill(false);
+        for c in (0..self.condensed.coordinates()).filter(|&c| !self.drops_out(c)) {
+            for (by, _) in self.jacobians.of_force(c) {
+                active[by * m..(by + 1) * m].fill(true);
+            }
+        }
+    }
+
     /// w = f − κ y of a coordinate in the i-th carried harmonic.
     #[must_use]
     pub fn minus_reference(&self, motion: &[f64], coordinate: usize, i: usize) -> Complex64 {
         let set = self.condensed.set();
         let m = set.packed_len();
         let y = set.get(&motion[coordinate * m..(coordinate + 1) * m], i);
-        set.get(&self.sums[coordinate].force, i) - self.condensed.kappa(coordinate, i) * y
+        self.part(&self.force, coordinate, i) - self.condensed.kappa(coordinate, i) * y
     }
 
-    /// Packed force of a coordinate.
+    /// Packed forces, coordinate after coordinate.
     #[must_use]
-    pub fn force(&self, coordinate: usize) -> &[f64] {
-        &self.sums[coordinate].force
+    pub fn forces(&self) -> &[f64] {
+        &self.force
     }
 
     /// ∂f/∂ln s of a coordinate in the i-th carried harmonic, where s is the factor of
-    /// [`Self::ease`].
+    /// [`Self::ease`]: for any law with force F and Jacobian J it is s·(F − J Y) at Y = y/s.
     #[must_use]
     pub fn by_ease(&self, coordinate: usize, i: usize) -> Complex64 {
-        self.condensed.set().get(&self.sums[coordinate].offset, i)
+        self.part(&self.offset, coordinate, i)
+    }
+
+    /// ∂f/∂ω of a coordinate in the i-th carried harmonic.
+    #[must_use]
+    pub fn by_omega(&self, coordinate: usize, i: usize) -> Complex64 {
+        self.part(&self.by_omega, coordinate, i)
+    }
+
+    fn part(&self, packed: &[f64], coordinate: usize, i: usize) -> Complex64 {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        set.get(&packed[coordinate * m..(coordinate + 1) * m], i)
     }
 
     /// Change of w in the i-th carried harmonic along a change of the motion.
@@ -144,40 +219,38 @@ impl<'a> ContactForces<'a> {
         let m = set.packed_len();
         let du = &direction[coordinate * m..(coordinate + 1) * m];
         let mut dw = -self.condensed.kappa(coordinate, i) * set.get(du, i);
-        for (column, d) in self.sums[coordinate].jacobian.chunks_exact(m).zip(du) {
-            dw += self.entry(column, i) * d;
+        for (by, block) in self.jacobians.of_force(coordinate) {
+            for (column, d) in block.chunks_exact(m).zip(&direction[by * m..]) {
+                dw += set.get(column, i) * d;
+            }
         }
         dw
     }
 
-    /// The i-th carried harmonic of a packed column of a Jacobian.
-    fn entry(&self, column: &[f64], i: usize) -> Complex64 {
-        self.condensed.set().get(column, i)
-    }
-
-    /// Adds g·(∂f/∂y − κ) of harmonic i to the rows of coordinate `row` and the columns of
-    /// coordinate `column` of a Jacobian with `n` rows.
-    pub fn couple(&self, i: usize, (row, column): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
+    /// Adds g·(∂f/∂y − κ) of the force of coordinate `force` in harmonic i to the rows of coordinate
+    /// `row` of a Jacobian with `n` rows.
+    pub fn couple(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
         let set = self.condensed.set();
         let m = set.packed_len();
         let at = set.offset(i);
         let mean = set.numbers()[i] == 0;
         let r = row * m + at;
-        let gk = g * self.condensed.kappa(column, i);
-        for q in 0..m {
-            let j = &self.sums[column].jacobian[q * m..(q + 1) * m];
-            let target = &mut jacobian[(column * m + q) * n..];
-            if mean {
-                target[r] += g.re * j[at];
-            } else {
-                let dz = g * Complex64::new(j[at], j[at + 1]);
-                target[r] += dz.re;
-                target[r + 1] += dz.im;
+        for (by, block) in self.jacobians.of_force(force) {
+            for (q, j) in block.chunks_exact(m).enumerate() {
+                let target = &mut jacobian[(by * m + q) * n..];
+                if mean {
+                    target[r] += g.re * j[at];
+                } else {
+                    let dz = g * Complex64::new(j[at], j[at + 1]);
+                    target[r] += dz.re;
+                    target[r + 1] += dz.im;
+                }
             }
         }
-        let diagonal = (column * m + at) * n + r;
+        let gk = g * self.condensed.kappa(force, i);
+        let diagonal = (force * m + at) * n + r;
         jacobian[diagonal] -= gk.re;
-        if mean && row == column {
+        if mean && row == force {
             jacobian[diagonal] += MEAN_FLOOR;
         }
         if !mean {
@@ -187,43 +260,59 @@ impl<'a> ContactForces<'a> {
         }
     }
 
-    /// Adds Re(g·∂w/∂y) of harmonic i and coordinate `column` to one row of a Jacobian with `n`
-    /// rows.
-    pub fn couple_scalar(&self, i: usize, (row, column): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
+    /// Adds Re(g·∂w/∂y) of the force of coordinate `force` in harmonic i to one row of a Jacobian with
+    /// `n` rows.
+    pub fn couple_scalar(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
         let set = self.condensed.set();
         let m = set.packed_len();
-        for q in 0..m {
-            let j = &self.sums[column].jacobian[q * m..(q + 1) * m];
-            jacobian[(column * m + q) * n + row] += (g * self.entry(j, i)).re;
+        for (by, block) in self.jacobians.of_force(force) {
+            for (q, column) in block.chunks_exact(m).enumerate() {
+                jacobian[(by * m + q) * n + row] += (g * set.get(column, i)).re;
+            }
         }
-        let gk = g * self.condensed.kappa(column, i);
-        let at = column * m + set.offset(i);
+        let gk = g * self.condensed.kappa(force, i);
+        let at = force * m + set.offset(i);
         jacobian[at * n + row] -= gk.re;
         if set.numbers()[i] != 0 {
             jacobian[(at + 1) * n + row] += gk.im;
         }
     }
 
-    /// The factor of [`Self::ease`] from which on the given motion is (nearly) that of linear
-    /// springs.
-    pub fn sticking_factor(&mut self, motion: &[f64]) -> f64 {
+    /// The factor of [`Self::ease`] from which on the forces of the given motion are (nearly) linear.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn sticking_factor(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
         let set = self.condensed.set();
         let m = set.packed_len();
+        let mut ranges = Vec::new();
+        for y in motion.chunks_exact(m.max(1)) {
+            self.evaluator.prepare(set, y);
+            let range = Range {
+                half: self.evaluator.half_range(set),
+                mean: if set.has_mean() { y[0] } else { 0.0 },
+                speed: set.speed(y, omega),
+            };
+            try_push(&mut ranges, range, "the contacts")?;
+        }
+        let mut own = Vec::new();
         let mut largest = 0.0_f64;
         for placed in self.condensed.laws() {
-            let c = placed.coordinate;
-            let motion = &motion[c * m..(c + 1) * m];
-            self.evaluator.prepare(set, motion);
-            let mean = if set.has_mean() { motion[0] } else { 0.0 };
-            let (range, reference) = (self.evaluator.half_range(set), self.condensed.stiffness(c));
-            largest = largest.max(placed.law.sticking_factor(range, mean, reference));
+            own.clear();
+            let mut reference = f64::INFINITY;
+            for &c in &placed.coordinates {
+                try_push(&mut own, ranges[c], "the contacts")?;
+                reference = reference.min(self.condensed.stiffness(c));
+            }
+            largest = largest.max(placed.law.sticking_factor(&own, reference));
         }
-        largest
+        Ok(largest)
     }
 }
 
-fn add(sum: &mut [f64], term: &[f64]) {
+/// sum += factor·term
+fn add(sum: &mut [f64], term: &[f64], factor: f64) {
     for (s, t) in sum.iter_mut().zip(term) {
-        *s += t;
+        *s += factor * t;
     }
 }

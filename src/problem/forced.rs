@@ -112,7 +112,7 @@ impl Problem for Forced<'_> {
             }
         };
         self.tables.tabulate(self.condensed, omega)?;
-        self.forces.evaluate(u);
+        self.forces.evaluate(u, omega)?;
         let set = self.condensed.set();
         let (m, n) = (set.packed_len(), u.len());
         let coordinates = self.condensed.coordinates();
@@ -149,14 +149,15 @@ impl Problem for Forced<'_> {
                     continue;
                 }
                 let w = self.forces.minus_reference(u, column, i);
-                let eased = self.forces.by_ease(column, i);
+                let (eased, by_omega) = (self.forces.by_ease(column, i), self.forces.by_omega(column, i));
                 for row in 0..coordinates {
                     let r = row * m + at;
                     let g = table.value[column * outputs + row];
                     put(&mut out.residual, r, mean, g * w);
                     match self.parameter {
                         Parameter::Omega => {
-                            put(&mut out.d_parameter, r, mean, table.slope[column * outputs + row] * w);
+                            let slope = table.slope[column * outputs + row] * w + g * by_omega;
+                            put(&mut out.d_parameter, r, mean, slope);
                         }
                         Parameter::Ease { .. } => put(&mut out.d_parameter, r, mean, g * eased),
                         Parameter::Load { .. } => {}
@@ -165,9 +166,7 @@ impl Problem for Forced<'_> {
                 }
             }
         }
-        for column in 0..coordinates {
-            out.active[column * m..(column + 1) * m].fill(!self.forces.drops_out(column));
-        }
+        self.forces.mark_active(&mut out.active);
         out.scale = norm(u) + linear.sqrt();
         Ok(())
     }
@@ -189,9 +188,11 @@ impl Problem for Forced<'_> {
             let w = self.forces.minus_reference(u, c, i);
             let g = table.value[c * outputs + coordinates];
             let mut dw = self.forces.along(direction, c, i);
-            if matches!(self.parameter, Parameter::Ease { .. }) {
-                dw += self.forces.by_ease(c, i) * along_p;
-            }
+            dw += match self.parameter {
+                Parameter::Omega => self.forces.by_omega(c, i) * along_p,
+                Parameter::Ease { .. } => self.forces.by_ease(c, i) * along_p,
+                Parameter::Load { .. } => Complex64::ZERO,
+            };
             z -= g * w;
             dz -= g * dw + rate(table.slope[c * outputs + coordinates]) * w;
         }
@@ -242,17 +243,17 @@ impl Problem for Forced<'_> {
         }
     }
 
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<(f64, f64)> {
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
         if self.condensed.is_preloaded() {
             self.parameter = Parameter::Load { omega: p };
-            return Some((0.0, 1.0));
+            return Ok(Some((0.0, 1.0)));
         }
-        let start = (1.01 * self.forces.sticking_factor(u)).ln();
+        let start = (1.01 * self.forces.sticking_factor(u, p)?).ln();
         if !(start > 0.0 && start.is_finite()) {
-            return None;
+            return Ok(None);
         }
         self.parameter = Parameter::Ease { omega: p };
-        Some((start, 0.0))
+        Ok(Some((start, 0.0)))
     }
 
     fn end_homotopy(&mut self) {

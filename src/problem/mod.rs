@@ -1,6 +1,7 @@
 //! The vocabulary between a mechanical problem and the continuation: R(u, p) = 0 with one
 //! parameter p. The continuation sees this trait and nothing else of mechanics.
 
+mod blocks;
 pub mod contact_forces;
 pub mod forced;
 pub mod mode;
@@ -76,7 +77,10 @@ pub trait Problem {
     /// values: at the first the problem is easy to solve from `u`, the stuck start or rest where
     /// there is none, at the second it is the given one. `None`: there is nothing to ease.
     /// [`Self::end_homotopy`] turns it back.
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<(f64, f64)>;
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>>;
 
     /// Ends the homotopy.
     fn end_homotopy(&mut self);

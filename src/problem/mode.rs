@@ -147,9 +147,9 @@ impl<'a> Mode<'a> {
         let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
         self.linear_start(&mut u);
         let motion = &u[..u.len() - 2];
-        let nearly = -self.forces.sticking_factor(motion).log10();
+        let nearly = -self.forces.sticking_factor(motion, self.linear.omega)?.log10();
         self.forces.ease(10f64.powf(ONSET_ROUNDING - nearly));
-        self.forces.evaluate(motion);
+        self.forces.evaluate(motion, self.linear.omega)?;
         let exactly = if self.forces.all_stuck() {
             nearly
         } else {
@@ -197,14 +197,15 @@ impl<'a> Mode<'a> {
             for (row, g) in [(amplitude, size), (phase, turn)] {
                 self.forces.couple_scalar(i, (row, c), g, &mut out.jacobian, n);
                 out.d_parameter[row] += (g * eased).re;
+                out.jacobian[(n - 2) * n + row] += rates.0 * (g * self.forces.by_omega(c, i)).re;
             }
         }
         for (column, rate, dx) in [
             (n - 2, rates.0, self.modal.by_omega()),
             (n - 1, rates.1, self.modal.by_damping()),
         ] {
-            out.jacobian[column * n + amplitude] = 2.0 * rate * inner(&self.weighted, dx).re;
-            out.jacobian[column * n + phase] = rate * scale * dx[dof].im;
+            out.jacobian[column * n + amplitude] += 2.0 * rate * inner(&self.weighted, dx).re;
+            out.jacobian[column * n + phase] += rate * scale * dx[dof].im;
         }
     }
 }
@@ -233,7 +234,7 @@ impl Problem for Mode<'_> {
             return fail!(Singular, "the angular frequency became {omega}: no vibration is left");
         }
         let rates = (OMEGA_UNIT * omega, DAMPING_UNIT);
-        self.forces.evaluate(motion);
+        self.forces.evaluate(motion, omega)?;
         let set = self.condensed.set();
         let m = set.packed_len();
         let coordinates = self.condensed.coordinates();
@@ -269,6 +270,8 @@ impl Problem for Mode<'_> {
                     self.forces.couple(i, (r, c), g, &mut out.jacobian, n);
                     let eased = self.forces.by_ease(c, i) * by_parameter;
                     put(&mut out.d_parameter, position, mean, g * eased);
+                    let column = &mut out.jacobian[(n - 2) * n..];
+                    put(column, position, mean, rates.0 * g * self.forces.by_omega(c, i));
                 }
             }
             if block.number == 1 {
@@ -294,14 +297,14 @@ impl Problem for Mode<'_> {
         Ok(true)
     }
 
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Option<(f64, f64)> {
-        let factor = self.forces.sticking_factor(&u[..u.len() - 2]) * 10f64.powf(p);
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
+        let factor = self.forces.sticking_factor(&u[..u.len() - 2], self.linear.omega)? * 10f64.powf(p);
         let start = (1.01 * factor).ln();
         if !(start > 0.0 && start.is_finite()) {
-            return None;
+            return Ok(None);
         }
         self.eased_at = Some(p);
-        Some((start, 0.0))
+        Ok(Some((start, 0.0)))
     }
 
     fn end_homotopy(&mut self) {

@@ -37,9 +37,11 @@ static void solver(void)
     BAD("59", samples, 1, HBVIB_E_ARGUMENT, "samples = 1");
     BAD("59", samples, -1, HBVIB_E_ARGUMENT, "samples = -1");
     BAD("59", samples, INT64_C(1) << 40, HBVIB_E_ARGUMENT, "samples = 1099511627776");
-    REFUSED("56", hbvib_contact_evaluate(&c, -1, 0, y, 0, f, 0, NULL, 0), HBVIB_E_ARGUMENT, 2, "harmonics = -1");
-    REFUSED("57", hbvib_contact_evaluate(&c, 1, 2, y, 2, f, 2, NULL, 0), HBVIB_E_ARGUMENT, 3, "= 3");
-    REFUSED("59", hbvib_contact_evaluate(&c, 1, -8, y, 2, f, 2, NULL, 0), HBVIB_E_ARGUMENT, 3, "samples = -8");
+    REFUSED("56", hbvib_contact_evaluate(&c, -1, 0, 1, y, 0, f, 0, NULL, 0), HBVIB_E_ARGUMENT, 2, "harmonics = -1");
+    REFUSED("57", hbvib_contact_evaluate(&c, 1, 2, 1, y, 2, f, 2, NULL, 0), HBVIB_E_ARGUMENT, 3, "= 3");
+    REFUSED("75", hbvib_contact_evaluate(&c, 1, 0, -1, y, 2, f, 2, NULL, 0), HBVIB_E_ARGUMENT, 4, "omega = -1");
+    REFUSED("75", hbvib_contact_evaluate(&c, 1, 0, NAN, y, 2, f, 2, NULL, 0), HBVIB_E_ARGUMENT, 4, "omega = NaN");
+    REFUSED("59", hbvib_contact_evaluate(&c, 1, -8, 1, y, 2, f, 2, NULL, 0), HBVIB_E_ARGUMENT, 3, "samples = -8");
     BAD("69", tolerance, -1, HBVIB_E_ARGUMENT, "tolerance = -1");
     BAD("69", tolerance, NAN, HBVIB_E_ARGUMENT, "tolerance = NaN");
     BAD("69", tolerance, INFINITY, HBVIB_E_ARGUMENT, "tolerance = inf");
@@ -115,11 +117,11 @@ static void struct_sizes(void)
         EXPECT("66", s.struct_size == bad[i] && s.harmonics == 9);
     }
     REFUSED("66", hbvib_matrix_init((hbvib_matrix *)&larger, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
-    REFUSED("66", hbvib_contact_init((hbvib_contact *)&larger, 96), HBVIB_E_STRUCT_SIZE, 2, "needs 112");
+    REFUSED("66", hbvib_contact_init((hbvib_contact *)&larger, 96), HBVIB_E_STRUCT_SIZE, 2, "needs 160");
     REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 56");
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 40");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
-    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
+    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 104");
     REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_point_init(&point, 80), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
@@ -153,7 +155,7 @@ static void struct_sizes(void)
     WORKS("67", hbvib_reduction_init(&reduction, sizeof reduction));
     WORKS("67", hbvib_branch_reduction(branch, &reduction));
     EXPECT("67", reduction.sectors == 24 && reduction.degrees_of_freedom == 4 && reduction.coordinates == 1 &&
-                     reduction.harmonics_carried == 5 && reduction.unknowns == 10 && reduction.even_removed == 1 &&
+                     reduction.harmonics_carried == 5 && reduction.unknowns == 10 && reduction.even_removed == 1 && reduction.held_by_contacts == 0 &&
                      reduction.struct_size == sizeof reduction && reduction.response_dof == 0);
     WORKS("67", hbvib_branch_free(branch));
 

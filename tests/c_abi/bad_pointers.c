@@ -110,11 +110,11 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch, hbvib_branch
             "jac");
     REFUSED("1", hbvib_forced_residual(model, NULL, 1, numbers, 40, numbers, 40, NULL, 0, NULL, 40), HBVIB_E_NULL, 10,
             "d_omega");
-    REFUSED("1", hbvib_contact_evaluate(NULL, 1, 0, numbers, 2, numbers + 8, 2, NULL, 0), HBVIB_E_NULL, 1,
+    REFUSED("1", hbvib_contact_evaluate(NULL, 1, 0, 1, numbers, 2, numbers + 8, 2, NULL, 0), HBVIB_E_NULL, 1,
             "hbvib_contact");
-    REFUSED("1", hbvib_contact_evaluate(&c, 1, 0, NULL, 2, numbers + 8, 2, NULL, 0), HBVIB_E_NULL, 4, "motion");
-    REFUSED("1", hbvib_contact_evaluate(&c, 1, 0, numbers, 2, NULL, 2, NULL, 0), HBVIB_E_NULL, 6, "force");
-    REFUSED("1", hbvib_contact_evaluate(&c, 1, 0, numbers, 2, numbers + 8, 2, NULL, 16), HBVIB_E_NULL, 8, "jac");
+    REFUSED("1", hbvib_contact_evaluate(&c, 1, 0, 1, NULL, 2, numbers + 8, 2, NULL, 0), HBVIB_E_NULL, 5, "motion");
+    REFUSED("1", hbvib_contact_evaluate(&c, 1, 0, 1, numbers, 2, NULL, 2, NULL, 0), HBVIB_E_NULL, 7, "force");
+    REFUSED("1", hbvib_contact_evaluate(&c, 1, 0, 1, numbers, 2, numbers + 8, 2, NULL, 16), HBVIB_E_NULL, 9, "jac");
 
     /* Pointers inside structs. */
     a.values = NULL;
@@ -304,9 +304,9 @@ static void buffers(hbvib_model *model, hbvib_branch *branch, hbvib_branch *back
         REFUSED("12", hbvib_forced_residual(model, NULL, 1, x, 40, r, 40, NULL, 0, r, wrong[i]), HBVIB_E_DIMENSION, 11, "= 40");
         REFUSED("12", hbvib_branch_harmonics(branch, 0, 0, NDOF, r, wrong[i]), HBVIB_E_DIMENSION, 6, "= 40");
         REFUSED("12", hbvib_branch_slip_fraction(branch, 0, &shares, wrong[i]), HBVIB_E_DIMENSION, 4, "= 1");
-        REFUSED("12", hbvib_contact_evaluate(&c, 1, 0, x, wrong[i], r, 2, NULL, 0), HBVIB_E_DIMENSION, 5, "= 2");
-        REFUSED("12", hbvib_contact_evaluate(&c, 1, 0, x, 2, r, wrong[i], NULL, 0), HBVIB_E_DIMENSION, 7, "= 2");
-        REFUSED("12", hbvib_contact_evaluate(&c, 1, 0, x, 2, r, 2, jac, wrong[i]), HBVIB_E_DIMENSION, 9, "= 16");
+        REFUSED("12", hbvib_contact_evaluate(&c, 1, 0, 1, x, wrong[i], r, 2, NULL, 0), HBVIB_E_DIMENSION, 6, "= 2");
+        REFUSED("12", hbvib_contact_evaluate(&c, 1, 0, 1, x, 2, r, wrong[i], NULL, 0), HBVIB_E_DIMENSION, 8, "= 2");
+        REFUSED("12", hbvib_contact_evaluate(&c, 1, 0, 1, x, 2, r, 2, jac, wrong[i]), HBVIB_E_DIMENSION, 10, "= 16");
     }
     EXPECT("12", shares < 0);
     for (i = 0; i < 3; i++) {
@@ -335,7 +335,7 @@ static void buffers(hbvib_model *model, hbvib_branch *branch, hbvib_branch *back
     REFUSED("15", hbvib_forced_residual(model, NULL, 1, x, 40, x, 40, NULL, 0, NULL, 0), HBVIB_E_ARGUMENT, 6, "overlap");
     REFUSED("16", hbvib_forced_residual(model, NULL, 1, x, 40, x + 78, 40, NULL, 0, NULL, 0), HBVIB_E_ARGUMENT, 6, "overlap");
     REFUSED("16", hbvib_forced_residual(model, NULL, 1, x, 40, r, 40, NULL, 0, r + 79, 40), HBVIB_E_ARGUMENT, 10, "overlap");
-    REFUSED("16", hbvib_contact_evaluate(&c, 1, 0, x, 2, x + 3, 2, NULL, 0), HBVIB_E_ARGUMENT, 6, "overlap");
+    REFUSED("16", hbvib_contact_evaluate(&c, 1, 0, 1, x, 2, x + 3, 2, NULL, 0), HBVIB_E_ARGUMENT, 7, "overlap");
     WORKS("16", hbvib_forced_residual(model, NULL, 1, x, 40, x + 80, 40, NULL, 0, NULL, 0));
 
     /* Row 19: the message buffer. */

@@ -35,7 +35,7 @@ static void matrices(hbvib_model *model)
         REFUSED("24", hbvib_forced_response(model, NULL, &o, NULL, &branch), HBVIB_E_NOT_FINITE, 3, "guess[39]");
         r[0] = -7;
         REFUSED("24", hbvib_forced_residual(model, NULL, 1, guess, 40, r, 40, NULL, 0, NULL, 0), HBVIB_E_NOT_FINITE, 4, "x[39]");
-        REFUSED("24", hbvib_contact_evaluate(&c, 1, 0, motion, 2, r, 2, NULL, 0), HBVIB_E_NOT_FINITE, 4, "motion[1]");
+        REFUSED("24", hbvib_contact_evaluate(&c, 1, 0, 1, motion, 2, r, 2, NULL, 0), HBVIB_E_NOT_FINITE, 5, "motion[1]");
         EXPECT("24", r[0] == -7 && branch == NULL);
     }
 
@@ -199,7 +199,7 @@ static void contacts(hbvib_model *model)
         stop.kn = 3;
         stop.gap = 0.5;
         stop.dof_b[2] = 1;
-        WORKS("54", hbvib_contact_evaluate(&stop, 1, 0, y, 2, f, 2, NULL, 0));
+        WORKS("54", hbvib_contact_evaluate(&stop, 1, 0, 1, y, 2, f, 2, NULL, 0));
         EXPECT("54", fabs(f[0] + 3 / PI) < 1e-15 && fabs(f[2] - 1.5) < 1e-15 && fabs(f[3]) < 1e-15);
         stop.dof_b[0] = 1;
         REFUSED("54", hbvib_model_add_contact(model, &stop, &id), HBVIB_E_ARGUMENT, 2, "dof_b[0] = 1");
@@ -227,7 +227,7 @@ static void contacts(hbvib_model *model)
     c.struct_size = 104; /* compiled before the field was there: not read */
     {
         double y[4] = {0, 0, 1e-4, 0}, f[4];
-        WORKS("54", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, NULL, 0));
+        WORKS("54", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, NULL, 0));
     }
     c = cubic_contact();
     c.kn = 1;
@@ -266,28 +266,28 @@ static void contacts(hbvib_model *model)
         double y[4] = {0, 0, 1e-4, 0}, f[4], jac[16];
         c = ring_contact();
         c.kt = 0;
-        WORKS("43", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, jac, 16));
+        WORKS("43", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, jac, 16));
         EXPECT("43", f[2] == 0 && f[3] == 0);
         c = ring_contact();
         c.preload = 0;
-        WORKS("44", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, NULL, 0));
+        WORKS("44", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, NULL, 0));
         EXPECT("44", f[2] == 0 && f[3] == 0);
         c.mu = 0;
         c.preload = INFINITY;
-        WORKS("44", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, NULL, 0));
+        WORKS("44", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, NULL, 0));
         EXPECT("44", f[2] == 0 && f[3] == 0);
         c.mu = 0.3;
-        WORKS("45", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, NULL, 0));
+        WORKS("45", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, NULL, 0));
         EXPECT("45", f[2] == 5e3 && f[3] == 0);
         c.preload = 1e300;
-        WORKS("45", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, NULL, 0));
+        WORKS("45", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, NULL, 0));
         EXPECT("45", f[2] == 5e3 && f[3] == 0);
     }
     { /* the describing function of a cubic spring, and no preload on it */
         double y[4] = {0, 0, 0, 2}, f[4], jac[16];
         hbvib_model *copy = NULL;
         c = cubic_contact();
-        WORKS("43", hbvib_contact_evaluate(&c, 1, 0, y, 2, f, 2, jac, 16));
+        WORKS("43", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, jac, 16));
         EXPECT("43", f[2] == 0 && f[3] == (5 - 0.75 * 2 * 4) * 2);
         WORKS("43", hbvib_model_clone(model, &copy));
         WORKS("43", hbvib_model_add_contact(copy, &c, NULL));

@@ -236,10 +236,10 @@ impl Wheel {
             let other = (s as i64 + contact.sector_offset).rem_euclid(self.sectors as i64) as usize;
             self.model
                 .add_contact(&Contact {
-                    dof_a: contact.dof_a.map(|d| s * self.n + d),
-                    dof_b: contact.dof_b.map(|d| other * self.n + d),
+                    dof_a: contact.dof_a.map(|a| a.map(|d| s * self.n + d)),
+                    dof_b: contact.dof_b.map(|b| b.map(|d| other * self.n + d)),
                     sector_offset: 0,
-                    ..*contact
+                    ..contact.clone()
                 })
                 .unwrap();
         }

@@ -199,10 +199,10 @@ impl Skewed {
     pub fn row(&self, contact: usize) -> DVector<Complex64> {
         let contact = &self.contacts[contact];
         let mut w = DVector::zeros(N);
-        if let Some(a) = contact.dof_a {
+        if let Some(a) = contact.dof_a[0] {
             w[a] += Complex64::ONE;
         }
-        if let Some(b) = contact.dof_b {
+        if let Some(b) = contact.dof_b[0] {
             let lag = phase(1, self.engine_order * contact.sector_offset, 1, self.sectors);
             w[b] -= lag.conj();
         }

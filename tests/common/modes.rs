@@ -25,7 +25,7 @@ pub fn skewed(engine_order: i64) -> Model {
     let mut model = sector(engine_order);
     model
         .add_contact(&Contact {
-            dof_a: Some(B1),
+            dof_a: [Some(B1), None, None],
             sector_offset: 1,
             ..Contact::jenkins(D, Some(B1), 3e6, 0.3, 10.0)
         })

@@ -9,29 +9,24 @@
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
 use super::{Assembly, Evaluation};
-use crate::contact::Law;
+use crate::contact::law::Spectral;
 use crate::harmonics::HarmonicSet;
 
 impl Assembly {
-    /// Evaluates `law` if it is smooth; `false`, and nothing is written, if it has events.
-    pub(super) fn smooth(&mut self, law: &Law, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) -> bool {
-        let Some(smooth) = law.nonlinear_spectrum(set, motion, &mut self.spectrum) else {
-            return false;
-        };
-        out.jacobian.fill(0.0);
-        out.offset.fill(0.0);
-        out.slip_fraction = 0.0;
-        // Even an eased law that is linear by now: its stiffness need not be the reference's.
-        out.stuck = false;
+    /// Evaluates a law without events.
+    pub(super) fn spectral(&mut self, law: &dyn Spectral, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        law.spectrum(set, motion, &mut self.spectrum);
+        // Never stuck, even at rest: its stiffness need not be the reference's.
+        out.clear();
         self.finish(set, motion, out);
         // The force now holds T(S)·X.
+        let (linear, degree) = (law.linear(), law.degree());
         let m = motion.len();
         for (i, x) in motion.iter().enumerate() {
-            let nonlinear = out.force[i] / smooth.degree;
-            out.force[i] = smooth.linear * x + nonlinear;
-            out.offset[i] = (1.0 - smooth.degree) * nonlinear;
-            out.jacobian[i * m + i] += smooth.linear;
+            let nonlinear = out.force[i] / degree;
+            out.force[i] = linear * x + nonlinear;
+            out.offset[i] = (1.0 - degree) * nonlinear;
+            out.jacobian[i * m + i] += linear;
         }
-        true
     }
 }

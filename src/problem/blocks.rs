@@ -1,0 +1,101 @@
+//! The Jacobians ∂f/∂y of the contact forces as blocks between relative coordinates: one for each
+//! coordinate by itself, and one for each pair that some law couples.
+
+use crate::condense::Condensed;
+use crate::error::{Result, try_push, try_vec};
+
+/// Blocks of order m, column-major, sorted by the coordinate of the force.
+pub struct Blocks {
+    order: usize,
+    /// Per force coordinate the first of its blocks; one more at the end.
+    first: Vec<usize>,
+    /// Motion coordinate of each block.
+    motion: Vec<usize>,
+    values: Vec<f64>,
+    /// Position of the blocks of each law: force direction after force direction.
+    of_laws: Vec<usize>,
+}
+
+impl Blocks {
+    /// Zero blocks of order `m` for the laws of a condensed model.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, m: usize) -> Result<Self> {
+        const WHAT: &str = "the contact Jacobians";
+        let coordinates = condensed.coordinates();
+        let mut pairs = Vec::new();
+        for c in 0..coordinates {
+            try_push(&mut pairs, (c, c), WHAT)?;
+        }
+        let of_law = |at: &[usize], pairs: &mut Vec<(usize, usize)>| -> Result<()> {
+            for &force in at {
+                for &motion in at {
+                    try_push(pairs, (force, motion), WHAT)?;
+                }
+            }
+            Ok(())
+        };
+        for placed in condensed.laws() {
+            of_law(&placed.coordinates, &mut pairs)?;
+        }
+        pairs.sort_unstable();
+        pairs.dedup();
+        let mut first = try_vec(coordinates + 1, 0, WHAT)?;
+        let mut motion = try_vec(pairs.len(), 0, WHAT)?;
+        for (m, &(force, by)) in motion.iter_mut().zip(&pairs) {
+            first[force + 1] += 1;
+            *m = by;
+        }
+        for c in 0..coordinates {
+            first[c + 1] += first[c];
+        }
+        let mut of_laws = Vec::new();
+        let mut wanted = Vec::new();
+        for placed in condensed.laws() {
+            wanted.clear();
+            of_law(&placed.coordinates, &mut wanted)?;
+            for pair in &wanted {
+                try_push(&mut of_laws, pairs.partition_point(|p| p < pair), WHAT)?;
+            }
+        }
+        let size = m.saturating_mul(m).saturating_mul(pairs.len());
+        Ok(Self {
+            order: m,
+            first,
+            motion,
+            values: try_vec(size, 0.0, WHAT)?,
+            of_laws,
+        })
+    }
+
+    /// Sets all blocks to zero.
+    pub fn clear(&mut self) {
+        self.values.fill(0.0);
+    }
+
+    /// Adds the Jacobian of a law of `d` directions whose blocks begin at `from` in the list of all
+    /// laws' blocks; returns where those of the next law begin.
+    pub fn add(&mut self, from: usize, d: usize, jacobian: &[f64]) -> usize {
+        let m = self.order;
+        for force in 0..d {
+            for motion in 0..d {
+                let at = self.of_laws[from + force * d + motion] * m * m;
+                for (k, column) in self.values[at..at + m * m].chunks_exact_mut(m).enumerate() {
+                    let begin = (motion * m + k) * d * m + force * m;
+                    for (sum, j) in column.iter_mut().zip(&jacobian[begin..begin + m]) {
+                        *sum += j;
+                    }
+                }
+            }
+        }
+        from + d * d
+    }
+
+    /// The blocks of one force coordinate, as (motion coordinate, block).
+    pub fn of_force(&self, coordinate: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let size = self.order * self.order;
+        let range = self.first[coordinate]..self.first[coordinate + 1];
+        range.map(move |b| (self.motion[b], &self.values[b * size..(b + 1) * size]))
+    }
+}

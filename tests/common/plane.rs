@@ -1,0 +1,70 @@
+//! Friction in a plane, for its tests: random motions, one law, and what compares numbers.
+
+#![allow(dead_code)]
+
+use hbvib::aft::Evaluation;
+use hbvib::aft::marched::MarchedWay;
+use hbvib::contact::friction_plane::FrictionPlane;
+use hbvib::contact::law::Law;
+use hbvib::harmonics::HarmonicSet;
+
+pub const OMEGA: f64 = 1.7;
+
+/// A plain generator of numbers in (−1, 1).
+pub struct Random(pub u64);
+
+impl Random {
+    pub fn next(&mut self) -> f64 {
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+
+    pub fn motion(&mut self, set: &HarmonicSet, directions: usize, size: f64) -> Vec<f64> {
+        let mut motion = Vec::new();
+        for direction in 0..directions {
+            // The normal motion is the smaller one, so that not all contacts are open most of the time.
+            let size = if direction == 2 { size.min(3.0) / 3.0 } else { size };
+            for h in set.numbers() {
+                let scale = size / (1.0 + (*h as f64).powi(2));
+                motion.push(scale * self.next());
+                if *h > 0 {
+                    motion.push(scale * self.next());
+                }
+            }
+        }
+        motion
+    }
+}
+
+pub fn law(load: f64, has_normal: bool) -> FrictionPlane {
+    FrictionPlane {
+        kt: 1.3,
+        kn: if has_normal { 0.9 } else { 0.0 },
+        mu: 0.4,
+        load,
+        has_normal,
+    }
+}
+
+pub fn evaluate(law: &FrictionPlane, set: &HarmonicSet, samples: usize, motion: &[f64]) -> (Evaluation, MarchedWay) {
+    let mut out = Evaluation::new(set, law.directions()).unwrap();
+    let mut way = MarchedWay::new(set, law, samples).unwrap();
+    way.evaluate(law, OMEGA, motion, &mut out).unwrap();
+    (out, way)
+}
+
+pub fn largest(x: &[f64]) -> f64 {
+    x.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+pub fn short(x: &[f64]) -> String {
+    let words: Vec<String> = x.iter().map(|x| format!("{x:.1e}")).collect();
+    words.join(" ")
+}
+
+pub fn gap(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
+}
