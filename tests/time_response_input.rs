@@ -132,6 +132,20 @@ fn motions_without_mass_and_complex_matrices_are_refused() {
     );
 }
 
+#[test]
+fn laws_that_are_not_integrated_yet_are_refused() {
+    let mut model = two_masses(&[1.0, 0.0, 0.0, 1.0]);
+    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
+    model
+        .add_contact(&Contact::regularised(0, Some(1), 0.3, 1.0, 0.1))
+        .unwrap();
+    refused(
+        time_response(&model, &options(), &mut Hooks::default()),
+        Status::Unsupported,
+        &["contact 1", "Jenkins"],
+    );
+}
+
 /// An undamped oscillator at its resonance, held by friction up to a force of 4 μN₀/π alone.
 fn at_resonance(force: f64) -> Model {
     let mut model = Model::new(1).unwrap();

@@ -11,8 +11,9 @@
 //!
 //! Smooth laws have one piece without end and are evaluated pointwise.
 
+use crate::contact::sides::Direction;
 use crate::contact::{Contact, ContactKind, Role};
-use crate::error::{Result, try_push};
+use crate::error::{Result, fail, try_push};
 
 /// Law of one relative motion, its constants in the caller's units.
 #[derive(Clone, Copy, Debug)]
@@ -43,8 +44,7 @@ pub(super) enum Mode {
 /// One contact of one sector.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Element {
-    /// Relative motion: at most two entries (degree of freedom, coefficient).
-    pub row: [Option<(usize, f64)>; 2],
+    pub row: Row,
     law: Law,
     /// Contacts of equal family are one contact in all sectors.
     pub family: usize,
@@ -65,17 +65,29 @@ pub(super) struct Piece {
 
 /// A linear spring between two degrees of freedom.
 pub(super) struct Tie {
-    pub row: [Option<(usize, f64)>; 2],
+    pub row: Row,
     pub stiffness: f64,
 }
 
-/// Row of a relative motion between degrees of freedom of an unrolled structure.
-pub(super) fn row(a: Option<usize>, b: Option<usize>) -> [Option<(usize, f64)>; 2] {
-    [a.map(|dof| (dof, 1.0)), b.map(|dof| (dof, -1.0))]
+/// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
+pub(super) type Row = [Option<(usize, f64)>; 6];
+
+/// Row of a direction whose sides lie in two sectors, side a minus side b; `place` tells the number of a
+/// degree of freedom in a sector.
+pub(super) fn row(direction: &Direction, sectors: (usize, usize), place: impl Fn(usize, usize) -> usize) -> Row {
+    let mut row = [None; 6];
+    let (a, b) = row.split_at_mut(3);
+    for (entry, side) in a.iter_mut().zip(&direction.a) {
+        *entry = side.map(|(dof, c)| (place(dof, sectors.0), c));
+    }
+    for (entry, side) in b.iter_mut().zip(&direction.b) {
+        *entry = side.map(|(dof, c)| (place(dof, sectors.1), -c));
+    }
+    row
 }
 
 /// r·x
-pub(super) fn along(row: &[Option<(usize, f64)>; 2], x: &[f64]) -> f64 {
+pub(super) fn along(row: &Row, x: &[f64]) -> f64 {
     row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
 }
 
@@ -85,19 +97,19 @@ pub(super) fn along(row: &[Option<(usize, f64)>; 2], x: &[f64]) -> f64 {
 pub(super) fn unroll(
     contacts: &[Contact],
     sectors: usize,
-    place: impl Fn(usize, i64) -> usize,
+    place: impl Fn(usize, usize) -> usize,
     ties: &mut Vec<Tie>,
     elements: &mut Vec<Element>,
 ) -> Result<()> {
     const WHAT: &str = "the contacts";
     for (family, c) in contacts.iter().enumerate() {
-        for s in 0..sectors as i64 {
-            let row = row(
-                c.dof_a.map(|dof| place(dof, s)),
-                c.dof_b
-                    .map(|dof| place(dof, (s + c.sector_offset).rem_euclid(sectors as i64))),
-            );
-            let (law, linear) = match (c.role(), c.kind) {
+        for s in 0..sectors {
+            if c.role() == Role::Inert {
+                break;
+            }
+            let other = (s as i64 + c.sector_offset).rem_euclid(sectors as i64) as usize;
+            let row = row(&c.direction(0), (s, other), &place);
+            let (law, linear) = match (c.role(), &c.kind) {
                 (Role::Inert, _) => (None, 0.0),
                 (Role::Spring, _) => (None, c.kt),
                 (Role::Active, ContactKind::Jenkins) => (
@@ -115,6 +127,12 @@ pub(super) fn unroll(
                     0.0,
                 ),
                 (Role::Active, ContactKind::Cubic) => (Some(Law::Cubic { cubic: c.cubic }), c.kt),
+                (Role::Active, _) => {
+                    return fail!(
+                        Unsupported,
+                        "contact {family}: only Jenkins contacts, unilateral and cubic springs are integrated in time"
+                    );
+                }
             };
             if linear != 0.0 {
                 let stiffness = linear;

@@ -1,7 +1,7 @@
 //! A step of the integration as a polynomial of every displacement, and the first fall of a margin
 //! through zero within it.
 
-use super::contacts::along;
+use super::contacts::{Row, along};
 use crate::error::{Result, try_vec};
 
 /// Highest degree of a step's polynomials.
@@ -53,7 +53,7 @@ impl Segment {
     }
 
     /// Fills `y` with the coefficients of a relative motion.
-    pub fn relative(&self, row: &[Option<(usize, f64)>; 2], y: &mut [f64; DEGREE + 1]) {
+    pub fn relative(&self, row: &Row, y: &mut [f64; DEGREE + 1]) {
         y.fill(0.0);
         for (k, y) in y.iter_mut().enumerate().take(self.degree + 1) {
             *y = along(row, self.term(k));
@@ -61,7 +61,7 @@ impl Segment {
     }
 
     /// y(θ) − y(0) of a relative motion, without cancellation.
-    pub fn growth(&self, row: &[Option<(usize, f64)>; 2], theta: f64) -> f64 {
+    pub fn growth(&self, row: &Row, theta: f64) -> f64 {
         let sum = |sum: f64, k: usize| sum * theta + along(row, self.term(k));
         theta * (1..=self.degree).rev().fold(0.0, sum)
     }

@@ -2,6 +2,7 @@
 //! loads, springs and contacts.
 
 use super::contacts::{Element, Mode, Tie, along, row, unroll};
+use crate::contact::sides::Direction;
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::Csc;
@@ -100,13 +101,14 @@ impl System {
     pub fn new(model: &Model, omega: f64) -> Result<Self> {
         let structure = model.structure();
         let (ndof, sectors) = (model.ndof(), structure.repeating_sectors());
-        let place = |dof: usize, s: i64| s as usize * ndof + dof;
+        let place = |dof: usize, s: usize| s * ndof + dof;
         let (mut ties, mut elements) = (Vec::new(), Vec::new());
         for spring in model.springs() {
-            for s in 0..sectors as i64 {
-                let other = (s + spring.sector_offset).rem_euclid(sectors as i64);
+            let between = Direction::between(spring.dof_a, spring.dof_b);
+            for s in 0..sectors {
+                let other = (s as i64 + spring.sector_offset).rem_euclid(sectors as i64) as usize;
                 let tie = Tie {
-                    row: row(spring.dof_a.map(|d| place(d, s)), spring.dof_b.map(|d| place(d, other))),
+                    row: row(&between, (s, other), place),
                     stiffness: spring.stiffness,
                 };
                 try_push(&mut ties, tie, WHAT)?;
