@@ -122,8 +122,10 @@ impl Keeper for Points<'_> {
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.stalled |= point.stalled;
         self.problem.response(point.unknowns(), &mut self.response);
+        let sampling_error = self.problem.sampling_error(point.unknowns(), point.parameter())?;
+        let slips = self.problem.slip_fractions();
         self.branch
-            .push_curve(&record(point, &self.response, self.problem.slip_fractions()))
+            .push_curve(&record(point, &self.response, slips, sampling_error))
     }
 
     /// The point is solved once more at its frequency with the flexibility factorised there: along
@@ -157,6 +159,7 @@ impl Keeper for Points<'_> {
         self.problem.response(point.unknowns(), &mut self.response);
         let kept = Kept {
             kind,
+            sampling_error: self.problem.sampling_error(point.unknowns(), point.parameter())?,
             response: try_copy(&self.response, "the special points")?,
             slip_fractions: try_copy(self.problem.slip_fractions(), "the special points")?,
             point,
@@ -169,7 +172,7 @@ impl Points<'_> {
     /// Numbers the special points after the curve.
     fn finish(mut self, status: Status) -> Result<Branch> {
         for kept in &self.specials {
-            let record = record(&kept.point, &kept.response, &kept.slip_fractions);
+            let record = record(&kept.point, &kept.response, &kept.slip_fractions, kept.sampling_error);
             self.branch.push_special(kept.kind, &record)?;
         }
         let stalled = status == Status::Ok && self.stalled;
@@ -185,9 +188,15 @@ struct Kept {
     point: Point,
     response: Vec<Complex64>,
     slip_fractions: Vec<f64>,
+    sampling_error: f64,
 }
 
-fn record<'a>(point: &'a Point, response: &'a [Complex64], slip_fractions: &'a [f64]) -> Record<'a> {
+fn record<'a>(
+    point: &'a Point,
+    response: &'a [Complex64],
+    slip_fractions: &'a [f64],
+    sampling_error: f64,
+) -> Record<'a> {
     Record {
         omega: point.parameter(),
         motion: point.unknowns(),
@@ -196,6 +205,7 @@ fn record<'a>(point: &'a Point, response: &'a [Complex64], slip_fractions: &'a [
         residual: point.residual,
         iterations: point.iterations,
         slip_fractions,
+        sampling_error,
     }
 }
 
