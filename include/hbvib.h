@@ -554,8 +554,8 @@ typedef struct {
   /// 0.
   int32_t reserved;
   /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for
-  /// friction that does not slip and for springs. The sum over all contacts is the friction_loss of
-  /// hbvib_energy, up to the error of sampling where the branch was solved with samples.
+  /// friction that does not slip and for springs of one motion. The sum over all contacts is the
+  /// friction_loss of hbvib_energy, up to the error of sampling where the branch was solved with samples.
   double work;
   /// Share of the period that it slips, 0 to 1; time that it is open does not count.
   double slip_share;
