@@ -32,7 +32,9 @@ fn plain_steps(l: &ContactLoop, kt: f64, mu: f64, loads: &[f64], tangents: usize
         }
         let (size, limit) = (force.iter().map(|f| f * f).sum::<f64>().sqrt(), mu * loads[now]);
         if size > limit {
-            force.iter_mut().for_each(|f| *f *= limit / size);
+            for f in &mut force {
+                *f *= limit / size;
+            }
         }
         if j >= 3 * n {
             for (k, f) in force.iter().enumerate() {
