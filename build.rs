@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 15] = [
+const SOURCES: [&str; 16] = [
     "types",
     "boundary",
     "matrix",
@@ -21,6 +21,7 @@ const SOURCES: [&str; 15] = [
     "mode_results",
     "synthesis",
     "residual",
+    "time",
 ];
 
 fn main() {

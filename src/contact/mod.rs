@@ -345,10 +345,10 @@ impl Contact {
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
             ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
             ContactKind::Friction | ContactKind::FrictionPlane if k == l && self.load() > 0.0 => self.stiffness(k),
-            ContactKind::Friction | ContactKind::FrictionPlane => 0.0,
             ContactKind::Table(table) => table.stiffness_at_rest(),
             ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
-            ContactKind::Unilateral | ContactKind::Regularised | ContactKind::User(_) => 0.0,
+            // Open at rest, or not known.
+            _ => 0.0,
         }
     }
 
@@ -430,7 +430,7 @@ impl Contact {
             ("kt", self.kt, false),
             ("kn", self.kn, false),
             ("mu", self.mu, false),
-            ("preload", self.preload, matches!(self.kind, ContactKind::Jenkins)),
+            ("preload", self.preload, self.may_stick_for_ever()),
             ("velocity", self.velocity, false),
         ] {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
@@ -480,6 +480,11 @@ impl Contact {
             );
         }
         self.check_places(kind)
+    }
+
+    /// Whether an infinite load makes sense, or no load at all.
+    fn may_stick_for_ever(&self) -> bool {
+        matches!(self.kind, ContactKind::Jenkins) || self.without_load().is_some()
     }
 
     /// The normal direction of friction: with a stiffness, or none at all.
