@@ -584,9 +584,9 @@ typedef struct {
   /// Number of directions of the contact, in the order t1, t2, n of those in which it acts.
   int64_t directions;
   /// Smallest relative motions, direction by direction, of up to three; 0 beyond `directions`.
-  double all_min[SUMMARISED];
+  double all_min[3];
   /// Largest relative motions likewise.
-  double all_max[SUMMARISED];
+  double all_max[3];
 } hbvib_contact_summary;
 
 /// Numbers of one point of a nonlinear mode, in the caller's units; energies are of one sector. Fill

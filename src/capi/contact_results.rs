@@ -5,7 +5,7 @@ use super::handles::{KeptBranch, read};
 use super::sized::{Described, check_out, fill_out, init};
 use super::special::optional;
 use super::types::{hbvib_branch, hbvib_status};
-use crate::branch::{MOST_TIMES, SUMMARISED};
+use crate::branch::MOST_TIMES;
 use crate::contact::state::State;
 use crate::error::{Result, Status, fail};
 
@@ -55,9 +55,9 @@ pub struct hbvib_contact_summary {
     /// Number of directions of the contact, in the order t1, t2, n of those in which it acts.
     pub directions: i64,
     /// Smallest relative motions, direction by direction, of up to three; 0 beyond `directions`.
-    pub all_min: [f64; SUMMARISED],
+    pub all_min: [f64; 3],
     /// Largest relative motions likewise.
-    pub all_max: [f64; SUMMARISED],
+    pub all_max: [f64; 3],
 }
 
 unsafe impl Described for hbvib_contact_summary {
@@ -77,8 +77,8 @@ unsafe impl Described for hbvib_contact_summary {
             load_min: 0.0,
             load_max: 0.0,
             directions: 0,
-            all_min: [0.0; SUMMARISED],
-            all_max: [0.0; SUMMARISED],
+            all_min: [0.0; 3],
+            all_max: [0.0; 3],
         }
     }
 }
