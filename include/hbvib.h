@@ -164,8 +164,8 @@ typedef enum {
 
 /// What a contact does at one time.
 typedef enum {
-  /// It sticks, or presses. Cubic springs, contacts that never slip and those without force are
-  /// always here.
+  /// It sticks, or presses. Contacts that never slip, those without force and laws without states
+  /// (springs but HBVIB_UNILATERAL) are always here.
   HBVIB_STATE_STICK = 0,
   /// It slips: the force is at the slip limit.
   HBVIB_STATE_SLIP = 1,
@@ -192,7 +192,8 @@ typedef enum {
   HBVIB_NEWTON_ITERATIONS = 6,
   /// Highest harmonic number carried.
   HBVIB_HARMONICS_USED = 8,
-  /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
+  /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
+  /// slip, so that springs have 0, HBVIB_UNILATERAL among them.
   HBVIB_SLIP_FRACTION = 9,
   /// Nonlinear modes only: log10 of the amplitude, the parameter.
   HBVIB_LOG10_AMPLITUDE = 10,
@@ -557,31 +558,39 @@ typedef struct {
   double friction_loss;
 } hbvib_energy;
 
-/// Numbers of one contact over one period, in the caller's units, exact for the motion of the point.
-/// Fill it by hbvib_contact_summary_init.
+/// Numbers of one contact over one period, in the caller's units. Ranges are exact for the motion of the
+/// point, and so is all of HBVIB_JENKINS, HBVIB_CUBIC and HBVIB_UNILATERAL; shares and work of laws
+/// that are sampled are as good as the samples of the branch. Fill it by hbvib_contact_summary_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
   /// 0.
   int32_t reserved;
-  /// Work per cycle that the contact takes from the motion; exactly 0 unless it slips. The sum
-  /// over all contacts is the friction_loss of hbvib_energy, up to the error of sampling where the
-  /// branch was solved with samples.
+  /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for
+  /// friction that does not slip and for springs of one motion. The sum over all contacts is the
+  /// friction_loss of hbvib_energy, up to the error of sampling where the branch was solved with samples.
   double work;
-  /// Share of the period that it slips, 0 to 1.
+  /// Share of the period that it slips, 0 to 1; time that it is open does not count.
   double slip_share;
   /// Share of the period that it is open, 0 to 1.
   double open_share;
-  /// Half the range of the relative motion, (max - min) / 2.
+  /// Half the range of the relative motion in the first direction, (max - min) / 2.
   double half_range;
-  /// Smallest relative motion, side a minus side b.
+  /// Smallest relative motion in the first direction, side a minus side b.
   double motion_min;
-  /// Largest relative motion.
+  /// Largest relative motion in the first direction.
   double motion_max;
-  /// Smallest normal load. HBVIB_JENKINS has the preload, infinite included; HBVIB_CUBIC has none: 0.
+  /// Smallest normal load. Under a constant load that load: HBVIB_JENKINS has the preload, infinite
+  /// included. Springs that cannot open have none: 0.
   double load_min;
   /// Largest normal load.
   double load_max;
+  /// Number of directions of the contact, in the order t1, t2, n of those in which it acts.
+  int64_t directions;
+  /// Smallest relative motions, direction by direction, of up to three; 0 beyond `directions`.
+  double all_min[3];
+  /// Largest relative motions likewise.
+  double all_max[3];
 } hbvib_contact_summary;
 
 /// Numbers of one point of a nonlinear mode, in the caller's units; energies are of one sector. Fill
@@ -1240,25 +1249,32 @@ hbvib_status hbvib_branch_time_history(const hbvib_branch *branch,
                                        int64_t n,
                                        double *x);
 
-/// Hysteresis loop of a contact over one period of the fundamental at a stored point: entry j at
-/// omega t = 2 pi j / n. The force is that of this contact alone and not cut off at harmonic H: the
-/// law at the motion of the point, its events located exactly (with samples, too). A cyclic model
-/// tells of sector 0. A contact that is linear at any motion has its linear force and sticks; the
-/// motion of the whole structure is recovered for it.
+/// Hysteresis loop of a contact in one of its directions over one period of the fundamental at a stored
+/// point: entry j at omega t = 2 pi j / n. The force is that of this contact alone and not cut off at
+/// harmonic H: the law at the motion of the point. Laws with events (HBVIB_JENKINS, HBVIB_UNILATERAL)
+/// have them located exactly, where the branch was solved with samples, too; friction in a plane is
+/// marched over a multiple of n samples, and a law of the host is called with the n times. A
+/// cyclic model tells of sector 0. A contact that is linear at any motion has its linear force and
+/// sticks; the motion of the whole structure is recovered for it.
 ///
-/// point    number of a point of the curve, or of a peak, fold or solution wanted.
-/// contact  number from hbvib_model_add_contact.
-/// n        number of times, 1 .. 2^24.
-/// motion   receives n relative motions, side a minus side b, or NULL.
-/// force    receives n forces f, which stand in the row of side a as + f and in that of side b as
-///          - f, or NULL.
-/// state    receives n states, HBVIB_STATE_STICK and so on, or NULL. Not all three may be NULL.
-/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact), HBVIB_E_DIMENSION (n),
-/// HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY.
+/// point      number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact    number from hbvib_model_add_contact.
+/// direction  one of the directions of the contact from 0, in the order t1, t2, n of those in which it
+///            acts: 0 for laws of one direction. hbvib_contact_summary tells their number.
+/// n          number of times, 1 .. 2^24.
+/// motion     receives n relative motions, side a minus side b, or NULL.
+/// force      receives n forces f, which stand in the row of side a as + f and in that of side b as
+///            - f, or NULL. Along the normal f is minus the normal load.
+/// state      receives n states of the contact, HBVIB_STATE_STICK and so on, the same for all its
+///            directions, or NULL. Not all three may be NULL.
+/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact, direction), HBVIB_E_DIMENSION
+/// (n), HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY,
+/// HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE.
 /// Threads: any number on one branch.
 hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
                                        int64_t point,
                                        int64_t contact,
+                                       int64_t direction,
                                        int64_t n,
                                        double *motion,
                                        double *force,

@@ -12,7 +12,7 @@ pub mod mode;
 mod recovery;
 
 pub use energy::Energy;
-pub use loops::{ContactLoop, ContactSummary, MOST_TIMES};
+pub use loops::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};
 pub(crate) use recovery::Recovery;
 
 /// A solution beside the curve: a peak, a fold, or one at a parameter value asked for.
@@ -248,7 +248,8 @@ impl Branch {
     }
 
     /// Share of the period that each contact slips: points × contacts, a point after the other.
-    /// 0 is a contact that sticks throughout. Contacts without force or limit report 0.
+    /// Time that it is open is not slip: 0 is a contact that sticks or opens, and what springs,
+    /// unilateral ones among them, laws without states and contacts without force report.
     #[must_use]
     pub fn slip_fraction(&self) -> &[f64] {
         &self.slip_fraction[..self.curve * self.condensed.contacts()]

@@ -158,7 +158,8 @@ pub enum hbvib_field {
     HBVIB_NEWTON_ITERATIONS = 6,
     /// Highest harmonic number carried.
     HBVIB_HARMONICS_USED = 8,
-    /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
+    /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
+    /// slip, so that springs have 0, HBVIB_UNILATERAL among them.
     HBVIB_SLIP_FRACTION = 9,
     /// Nonlinear modes only: log10 of the amplitude, the parameter.
     HBVIB_LOG10_AMPLITUDE = 10,
