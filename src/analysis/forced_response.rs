@@ -8,7 +8,7 @@ use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Metric, Point, Settings};
-use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
+use crate::error::{Error, Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::model::Model;
@@ -70,7 +70,9 @@ pub fn forced_response(
         solver.harmonics,
         response,
     );
-    let first = match start::solve(&mut problem, &settings, hooks.cancelled)? {
+    let held = reduction.held_by_contacts;
+    let start = start::solve(&mut problem, &settings, hooks.cancelled);
+    let first = match start.map_err(|e| tell_of_load(e, &condensed, held))? {
         First::Found(point) => Some(point),
         First::Cancelled => None,
     };
@@ -97,6 +99,20 @@ pub fn forced_response(
         None => Status::StoppedByCaller,
     };
     points.finish(status)
+}
+
+/// Where contacts press at rest the first point comes from the static solution; says so where it fails.
+fn tell_of_load(e: Error, condensed: &Condensed, held: usize) -> Error {
+    if e.status != Status::NoConvergence || !condensed.is_preloaded() {
+        return e;
+    }
+    Error::new(
+        Status::NoConvergence,
+        format_args!(
+            "contacts press at rest, and the static solution under constant loads, or the growth of the \
+             vibrating ones from it, was not found; {held} rigid-body modes are held by contacts alone"
+        ),
+    )
 }
 
 /// Collects the points of one run.
