@@ -60,6 +60,8 @@ typedef enum {
   HBVIB_STOPPED_STALLED = 5,
   /// The branch turned back and left the range where it began.
   HBVIB_STOPPED_LEFT_RANGE = 6,
+  /// A force callback failed; hbvib_last_error has the code that it returned.
+  HBVIB_STOPPED_CALLBACK = 7,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.

@@ -73,6 +73,8 @@ pub struct March {
     pub slip: Vec<f64>,
     /// Share of the step before each sample that is spent open.
     pub open: Vec<f64>,
+    /// Memory for the law's own use, 2·d per sample.
+    pub scratch: Vec<f64>,
 }
 
 impl March {
@@ -99,6 +101,7 @@ impl March {
             df_dv: memory(d.saturating_mul(d))?,
             slip: memory(1)?,
             open: memory(1)?,
+            scratch: memory(d.saturating_mul(2))?,
         })
     }
 

@@ -116,7 +116,9 @@ impl<'a> ContactForces<'a> {
                 }
                 &self.gathered[..at.len() * m]
             };
-            self.evaluator.evaluate(&*placed.law, set, y, omega, found)?;
+            self.evaluator
+                .evaluate(&*placed.law, set, y, omega, found)
+                .map_err(|e| e.at(format_args!("contact {}", placed.contact)))?;
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &found.jacobian);
             for (i, &c) in at.iter().enumerate() {
