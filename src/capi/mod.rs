@@ -27,3 +27,4 @@ pub mod special;
 pub mod synthesis;
 pub mod tables;
 pub mod types;
+pub mod user_force;

@@ -72,12 +72,7 @@ impl Marched for User {
         ] {
             check_block(name, values, size)?;
         }
-        for by_motion in [
-            states.dz_du_before,
-            states.dz_du,
-            states.dz_dv_before,
-            states.dz_dv,
-        ] {
+        for by_motion in [states.dz_du_before, states.dz_du, states.dz_dv_before, states.dz_dv] {
             for entry in by_motion {
                 *entry *= self.length;
             }
