@@ -406,10 +406,10 @@ typedef struct {
 } hbvib_force_call;
 
 /// A force of the caller. Returns 0 when done. A number above 0 says that it cannot at this motion: the
-/// solver tries a shorter step, and gives up at its smallest. One below 0 ends the solve at once, as
-/// a third failure does nowhere else: the points so far are kept (HBVIB_STOPPED_CALLBACK), without any
-/// the status is HBVIB_E_CALLBACK; hbvib_last_error has the number. NaN and infinity in what was
-/// written count as a number above 0.
+/// solver tries shorter steps, and stops where the smallest does not help. One below 0 stops it at
+/// once. Where a branch stops so, its points are kept (HBVIB_STOPPED_CALLBACK); without any the status
+/// is HBVIB_E_CALLBACK; hbvib_last_error has the number. NaN and infinity in what was written count as
+/// a number above 0. The motions themselves are always finite.
 ///
 /// The same motion must always give the same force. It may be called by every thread that uses the
 /// model, or a branch of it. It may call the library, but not change or free a handle in use

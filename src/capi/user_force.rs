@@ -73,10 +73,10 @@ pub struct hbvib_force_call {
 }
 
 /// A force of the caller. Returns 0 when done. A number above 0 says that it cannot at this motion: the
-/// solver tries a shorter step, and gives up at its smallest. One below 0 ends the solve at once, as
-/// a third failure does nowhere else: the points so far are kept (HBVIB_STOPPED_CALLBACK), without any
-/// the status is HBVIB_E_CALLBACK; hbvib_last_error has the number. NaN and infinity in what was
-/// written count as a number above 0.
+/// solver tries shorter steps, and stops where the smallest does not help. One below 0 stops it at
+/// once. Where a branch stops so, its points are kept (HBVIB_STOPPED_CALLBACK); without any the status
+/// is HBVIB_E_CALLBACK; hbvib_last_error has the number. NaN and infinity in what was written count as
+/// a number above 0. The motions themselves are always finite.
 ///
 /// The same motion must always give the same force. It may be called by every thread that uses the
 /// model, or a branch of it. It may call the library, but not change or free a handle in use
@@ -378,6 +378,9 @@ pub unsafe extern "C" fn hbvib_check_jacobian(
     call(|| {
         let model = read::<Model>(model, 1)?;
         let contact = index(contact, model.contacts().len(), 2, "contact")?;
+        if !matches!(model.contacts()[contact].kind, ContactKind::User(_)) {
+            return fail!(Argument, "contact {contact} is not a force of the caller's").blame(2);
+        }
         let len = count(amplitude_len, 5, "amplitude_len")?;
         let amplitudes = unsafe { input(amplitude, len, 4, "amplitude") }?;
         unsafe { check_out(out, 6) }?;
