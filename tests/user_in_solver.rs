@@ -75,23 +75,25 @@ fn over(law: User) -> Contact {
     Contact::over(vec![1], ContactKind::User(law))
 }
 
-/// f = at_rest + u + 0.8 u³ + 0.1 u² v, with tangents times a factor.
+/// f = at_rest + u + 0.8 u³ + 0.1 u² v with lengths and forces in a unit, and tangents times a factor.
 struct Curved {
     at_rest: f64,
     tangents: f64,
+    unit: f64,
 }
 
 const RIGHT: Curved = Curved {
     at_rest: 0.0,
     tangents: 1.0,
+    unit: 1.0,
 };
 
 impl UserForce for Curved {
     fn evaluate(&self, call: &mut Call<'_>) -> i32 {
         for j in 0..call.samples {
-            let (u, v) = (call.u[j], call.v[j]);
+            let (u, v) = (call.u[j] / self.unit, call.v[j] / self.unit);
             assert!(u.is_finite() && v.is_finite());
-            call.f[j] = self.at_rest + u + 0.8 * u * u * u + 0.1 * u * u * v;
+            call.f[j] = self.at_rest + self.unit * (u + 0.8 * u * u * u + 0.1 * u * u * v);
             call.df_du[j] = self.tangents * (1.0 + 2.4 * u * u + 0.2 * u * v);
             call.df_dv[j] = self.tangents * 0.1 * u * u;
         }
@@ -139,6 +141,39 @@ fn a_callback_that_is_a_polynomial_has_its_branch_and_its_mode() {
         let (p, q) = (a.at(i)[0], b.at(i)[0]);
         println!("mode: frequencies {} and {}", p.omega, q.omega);
         assert!((p.omega / q.omega - 1.0).abs() < 1e-9);
+    }
+}
+
+#[test]
+fn a_mode_does_not_depend_on_the_unit_of_its_amplitude() {
+    let solver = SolverOptions {
+        harmonics: 5,
+        ..SolverOptions::default()
+    };
+    let frequencies = |log10: f64| {
+        let force = Curved {
+            unit: 10f64.powf(log10),
+            ..RIGHT
+        };
+        let at = [-1.0 + log10, 0.0 + log10];
+        let range = ModeOptions {
+            log10_start: -2.0 + log10,
+            log10_stop: 0.3 + log10,
+            at: &at,
+            ..ModeOptions::default()
+        };
+        let model = model(&over(curved(force, true)), 0.0);
+        let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
+        assert_eq!(branch.status(), Status::Ok);
+        [0, 1].map(|i| branch.at(i)[0].omega)
+    };
+    let expected = frequencies(0.0);
+    for log10 in [-12.0, -9.0, -6.0, 4.0, 9.0] {
+        let found = frequencies(log10);
+        println!("unit 1e{log10}: {found:?}, {expected:?}");
+        for (a, b) in found.iter().zip(&expected) {
+            assert!((a / b - 1.0).abs() < 1e-8);
+        }
     }
 }
 

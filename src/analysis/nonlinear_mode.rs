@@ -111,7 +111,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         );
     }
     let mut problem = Mode::new(&condensed, &gauge, &linear, solver.samples)?;
-    let (linear_up_to, nearly) = problem.linear_up_to()?;
+    let (linear_up_to, nearly) = problem.linear_up_to(range.log10_start)?;
     let info = ModeInfo {
         index: chosen.index,
         omega: chosen.omega,

@@ -232,6 +232,10 @@ impl Law for User {
     fn sticking_factor(&self, _ranges: &[Range], _reference: f64) -> f64 {
         FAR
     }
+
+    fn knows_its_linear_range(&self) -> bool {
+        false
+    }
 }
 
 impl Pointwise for User {

@@ -280,6 +280,13 @@ impl<'a> ContactForces<'a> {
         }
     }
 
+    /// Whether all laws know from which motion on they are (nearly) linear.
+    #[must_use]
+    pub fn know_their_linear_range(&self) -> bool {
+        let mut laws = self.condensed.laws().iter();
+        laws.all(|placed| placed.law.knows_its_linear_range())
+    }
+
     /// The factor of [`Self::ease`] from which on the forces of the given motion are (nearly) linear.
     ///
     /// # Errors
