@@ -60,6 +60,8 @@ typedef enum {
   HBVIB_STOPPED_STALLED = 5,
   /// The branch turned back and left the range where it began.
   HBVIB_STOPPED_LEFT_RANGE = 6,
+  /// A force callback failed; hbvib_last_error has the code that it returned.
+  HBVIB_STOPPED_CALLBACK = 7,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.
@@ -172,6 +174,28 @@ typedef enum {
   /// It is open, without force.
   HBVIB_STATE_OPEN = 2,
 } hbvib_state;
+
+/// Derivatives that a force callback writes.
+typedef enum {
+  /// df_du
+  HBVIB_DF_DU = 0,
+  /// df_dv
+  HBVIB_DF_DV = 1,
+  /// df_dz
+  HBVIB_DF_DZ = 2,
+  /// dz_dz
+  HBVIB_DZ_DZ = 3,
+  /// dz_du_before
+  HBVIB_DZ_DU_BEFORE = 4,
+  /// dz_du
+  HBVIB_DZ_DU = 5,
+  /// dz_dv_before
+  HBVIB_DZ_DV_BEFORE = 6,
+  /// dz_dv
+  HBVIB_DZ_DV = 7,
+  /// dz_domega
+  HBVIB_DZ_DOMEGA = 8,
+} hbvib_tangent;
 
 /// Results that a branch holds for each point of the curve. Energies are of one sector.
 typedef enum {
@@ -339,6 +363,120 @@ typedef struct {
   /// Direction t1, orthogonal to `normal`; zero: any in the plane. t2 is n x t1.
   double tangent[3];
 } hbvib_contact;
+
+/// One period that a force callback is asked about. All arrays are row-major, a sample after the
+/// other: the entry of sample j, row i and column k of N x n x n numbers is [(j * n + i) * n + k].
+///
+/// Sample j lies at the time j * 2 pi / (omega * samples). f, and z where there are states, must be
+/// written whole: they are NaN before the call. The derivatives are 0 before the call; write those that
+/// are not. They must be exact for what f and z hold.
+///
+/// With states, z_j = Z(z_(j-1), motion at j - 1 and at j). Before sample 0 lies z0, with the motion
+/// of the last sample, because the motion is periodic; the library finds the z0 that returns. At first
+/// z0 is 0, the state of a structure at rest, and samples is 2: a load from rest to where the period
+/// begins. States should be of similar size, for they count as returned together.
+typedef struct {
+  /// Bytes of this struct as the library knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Angular frequency of the period. States may need it as their time step 2 pi / (omega *
+  /// samples); the force must not depend on it in any other way.
+  double omega;
+  /// Samples N over the period.
+  int64_t samples;
+  /// Degrees of freedom n of the force.
+  int64_t n;
+  /// Internal states s.
+  int64_t states;
+  /// In: their motions, N x n.
+  const double *u;
+  /// In: their velocities du/dt, N x n; NULL unless uses_velocity.
+  const double *v;
+  /// In: states before sample 0, s numbers; NULL without states, like all that follows with a z.
+  const double *z0;
+  /// Out: forces f of M x'' + C x' + K x + f = f_ex, N x n.
+  double *f;
+  /// Out: d f / d u at the same time, at given z: N x n x n.
+  double *df_du;
+  /// Out: d f / d v, likewise: N x n x n; NULL unless uses_velocity.
+  double *df_dv;
+  /// Out: states, N x s.
+  double *z;
+  /// Out: d z_j / d z_(j-1), N x s x s.
+  double *dz_dz;
+  /// Out: d z_j / d u_(j-1), N x s x n.
+  double *dz_du_before;
+  /// Out: d z_j / d u_j, N x s x n.
+  double *dz_du;
+  /// Out: d z_j / d v_(j-1), N x s x n; NULL unless uses_velocity.
+  double *dz_dv_before;
+  /// Out: d z_j / d v_j, N x s x n; NULL unless uses_velocity.
+  double *dz_dv;
+  /// Out: d z_j / d omega, where the time step enters: N x s.
+  double *dz_domega;
+  /// Out: d f_j / d z_j, N x n x s.
+  double *df_dz;
+} hbvib_force_call;
+
+/// A force of the caller. Returns 0 when done. A number above 0 says that it cannot at this motion: the
+/// solver tries shorter steps, and stops where the smallest does not help. One below 0 stops it at
+/// once. Where a branch stops so, its points are kept (HBVIB_STOPPED_CALLBACK); without any the status
+/// is HBVIB_E_CALLBACK; hbvib_last_error has the number. NaN and infinity in what was written count as
+/// a number above 0. The motions themselves are always finite.
+///
+/// The same motion must always give the same force. It may be called by every thread that uses the
+/// model, or a branch of it. It may call the library, but not change or free a handle in use
+/// (HBVIB_E_BUSY), and must not throw or longjmp. The cancel flag is looked at between calls.
+typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
+
+/// A force of the caller on some degrees of freedom. Fill it by hbvib_user_force_init, then set dofs, n
+/// and force at least.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1: the force depends on velocities; 0 (default): it does not.
+  int32_t uses_velocity;
+  /// 1: f(-u, -v) = -f(u, v), states turning with them: even harmonics may then be left out;
+  /// 0 (default): they are carried.
+  int32_t is_odd;
+  /// Must be 0.
+  int32_t reserved;
+  /// Degrees of freedom on which it acts, each against the ground.
+  const int64_t *dofs;
+  /// Their number, at least 1.
+  int64_t n;
+  /// Internal states; 0 (default): the force at a time follows from the motion at that time alone.
+  int64_t states;
+  /// Samples per period, more than twice the highest harmonic; 0 (default): those of the solver
+  /// options, or automatic: at least 64, with states 256.
+  int64_t samples;
+  /// The callback.
+  hbvib_force_fn force;
+  /// Passed to the callback.
+  void *user;
+} hbvib_user_force;
+
+/// The derivative that lies farthest from its difference quotient. Fill it by hbvib_jacobian_gap_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_DF_DU and so on (enum hbvib_tangent).
+  int32_t tangent;
+  /// |given - difference| times the size of what was moved, relative to the size of what it moves:
+  /// below 1e-6 for right derivatives of a smooth force, 2 for a wrong sign.
+  double gap;
+  /// Sample of the test motion.
+  int64_t sample;
+  /// Row of the entry.
+  int64_t row;
+  /// Its column; for HBVIB_DF_DZ the state that was moved before the step.
+  int64_t column;
+  /// What the callback wrote; for HBVIB_DF_DZ the change of force that follows.
+  double given;
+  /// What differences of the callback's own f and z give.
+  double difference;
+} hbvib_jacobian_gap;
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
 typedef struct {
@@ -1007,6 +1145,59 @@ hbvib_status hbvib_model_add_iwan(hbvib_model *model,
                                   double beta,
                                   int64_t elements,
                                   int64_t *first_id);
+
+/// Fills the description of a force with zeros: dofs, n and force must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_user_force_init(hbvib_user_force *o, size_t size_of_o);
+
+/// Adds a force of the caller, which counts as a contact. It is not called here, but by every solve and
+/// every result of a branch that needs the force (hbvib_branch_harmonics, loops, energies): callback
+/// and `user` must outlive the model, its copies, and all branches solved from them.
+///
+/// Put what the force has of linear stiffness and damping into K and C, where it can be separated: a
+/// nonlinear mode starts from the structure without the force. A force that is not 0 at rest is a
+/// constant load: a forced response starts from its static solution, a nonlinear mode refuses it
+/// (HBVIB_E_UNSUPPORTED).
+///
+/// o   the description.
+/// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n, states, samples), HBVIB_E_ARGUMENT (flags, a
+/// degree of freedom twice), HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL (force, dofs), HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_user_force(hbvib_model *model,
+                                        const hbvib_user_force *o,
+                                        int64_t *id);
+
+/// Fills a gap with zeros.
+///
+/// gap          the struct; untouched on error.
+/// size_of_gap  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_jacobian_gap_init(hbvib_jacobian_gap *gap, size_t size_of_gap);
+
+/// Compares every derivative that a force of the caller writes with central differences of its own f and
+/// z, on a built-in motion with a mean and the harmonics 1 and 3. The status is HBVIB_OK whatever the
+/// gap: look at it. A solve with wrong derivatives ends in HBVIB_E_NO_CONVERGENCE or needs many
+/// iterations.
+///
+/// contact        number from hbvib_model_add_user_force.
+/// omega          angular frequency, > 0.
+/// amplitude      about the largest motion of each degree of freedom of the force, > 0: the motion
+///                should reach all that the force can do.
+/// amplitude_len  their number, that of the degrees of freedom.
+/// out            receives the worst entry; untouched on error.
+/// Errors: HBVIB_E_INDEX (contact), HBVIB_E_ARGUMENT (not a force of the caller, omega, amplitude),
+/// HBVIB_E_DIMENSION (amplitude_len), HBVIB_E_CALLBACK, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+hbvib_status hbvib_check_jacobian(const hbvib_model *model,
+                                  int64_t contact,
+                                  double omega,
+                                  const double *amplitude,
+                                  int64_t amplitude_len,
+                                  hbvib_jacobian_gap *out);
 
 /// Fills solver options with their defaults: harmonics = 9, exact events, automatic steps.
 ///

@@ -38,6 +38,7 @@ pub struct Branch {
     harmonics: usize,
     response_dof: usize,
     status: Status,
+    reason: Option<Error>,
     curve: usize,
     omega: Vec<f64>,
     amplitude: Vec<f64>,
@@ -92,6 +93,7 @@ impl Branch {
             harmonics,
             response_dof,
             status: Status::Ok,
+            reason: None,
             curve: 0,
             omega: Vec::new(),
             amplitude: Vec::new(),
@@ -181,14 +183,23 @@ impl Branch {
         try_push(list, special, "the special points")
     }
 
-    pub(crate) fn set_status(&mut self, status: Status) {
-        self.status = status;
+    /// `stalled` says whether round-off stopped some point above the tolerance.
+    pub(crate) fn set_ending(&mut self, status: Status, reason: Option<Error>, stalled: bool) {
+        let all = status == Status::Ok && stalled;
+        self.status = if all { Status::StoppedStalled } else { status };
+        self.reason = reason;
     }
 
     /// [`Status::Ok`] when the whole range was covered, else why the branch ends early.
     #[must_use]
     pub fn status(&self) -> Status {
         self.status
+    }
+
+    /// The failure that ended the branch early, where it was that of a callback.
+    #[must_use]
+    pub fn reason(&self) -> Option<&Error> {
+        self.reason.as_ref()
     }
 
     /// Number of points on the curve.

@@ -15,7 +15,7 @@ use super::Evaluation;
 use super::periodic::{ReturnMap, largest};
 use super::sensitivity::{Sensitivity, Signals};
 use crate::contact::marched::{March, Marched};
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::harmonics::HarmonicSet;
 
 /// Marches that may end in a step of Newton's method.
@@ -201,10 +201,13 @@ impl MarchedWay {
             defect = self.search(law, omega, NEWTON_MARCHES)?;
         }
         if defect > 0.0 {
-            return fail!(
-                NoConvergence,
-                "the states of a contact did not return after {MARCHES} periods (difference {defect:.1e}); raise samples"
-            );
+            return Err(Error::new(
+                Status::NoConvergence,
+                format_args!(
+                    "the states did not return after {MARCHES} periods (difference {defect:.1e}); raise samples"
+                ),
+            )
+            .recoverable());
         }
         Ok(virgin && self.marches == 1)
     }
@@ -223,7 +226,8 @@ impl MarchedWay {
             }
             let defect = largest(&self.step);
             if !defect.is_finite() {
-                return fail!(NotFinite, "the states of a contact are not finite after a period");
+                let message = format_args!("the states are not finite after a period");
+                return Err(Error::new(Status::NotFinite, message).recoverable());
             }
             self.marches = k + 1;
             if defect <= tolerance * largest(&self.march.z[..n * s]) {

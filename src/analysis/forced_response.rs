@@ -1,6 +1,6 @@
 //! Forced response over a range of frequency.
 
-use super::follow::{Keeper, Task};
+use super::follow::{Ending, Keeper, Task};
 use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
@@ -26,7 +26,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Bad options and models (see [`SolverOptions::check`], [`ForcedOptions::check`],
-/// [`Condensed::new`]), `NoConvergence` when no first point was found.
+/// [`Condensed::new`]), `NoConvergence` when no first point was found, `Callback` when that is a callback's
+/// doing.
 pub fn forced_response(
     model: &Model,
     solver: &SolverOptions,
@@ -91,14 +92,15 @@ pub fn forced_response(
         at: range.at,
         max_points: solver.max_points,
     };
-    let status = match first {
+    let outcome = match first {
         Some(first) => {
             hooks.log(LogLevel::Info, "first point solved");
-            task.run(&mut points, first, hooks)?
+            task.run(&mut points, first, hooks)
         }
-        None => Status::StoppedByCaller,
+        None => Ok(Status::StoppedByCaller),
     };
-    points.finish(status)
+    let ending = Ending::of(outcome, &points.branch)?;
+    points.finish(ending)
 }
 
 /// Where contacts press at rest the first point comes from the static solution; says so where it fails.
@@ -186,14 +188,12 @@ impl Keeper for Points<'_> {
 
 impl Points<'_> {
     /// Numbers the special points after the curve.
-    fn finish(mut self, status: Status) -> Result<Branch> {
+    fn finish(mut self, ending: Ending) -> Result<Branch> {
         for kept in &self.specials {
             let record = record(&kept.point, &kept.response, &kept.slip_fractions, kept.sampling_error);
             self.branch.push_special(kept.kind, &record)?;
         }
-        let stalled = status == Status::Ok && self.stalled;
-        self.branch
-            .set_status(if stalled { Status::StoppedStalled } else { status });
+        self.branch.set_ending(ending.status, ending.reason, self.stalled);
         Ok(self.branch)
     }
 }

@@ -1,11 +1,11 @@
 //! The points of a nonlinear mode: what is measured and stored of each.
 
-use super::follow::Keeper;
+use super::follow::{Ending, Keeper};
 use crate::branch::mode::ModePoint;
 use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::continuation::Point;
-use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::{inner, norm};
 use crate::postprocess::energy::{self, Balance};
 use crate::problem::mode::{LinearMode, Mode};
@@ -129,7 +129,7 @@ impl<'a> ModePoints<'a> {
     }
 
     /// Numbers the special points after the curve.
-    pub fn finish(mut self, status: Status) -> Result<Branch> {
+    pub fn finish(mut self, ending: Ending) -> Result<Branch> {
         let fundamental = self.condensed.set().fundamental();
         for kept in &self.specials {
             let record = record(
@@ -145,9 +145,7 @@ impl<'a> ModePoints<'a> {
                 data.push(kept.mode)?;
             }
         }
-        let stalled = status == Status::Ok && self.stalled;
-        self.branch
-            .set_status(if stalled { Status::StoppedStalled } else { status });
+        self.branch.set_ending(ending.status, ending.reason, self.stalled);
         Ok(self.branch)
     }
 }

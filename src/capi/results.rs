@@ -1,6 +1,6 @@
 //! What a branch tells.
 
-use super::boundary::{Blame, call, call_count, check_pointer, index};
+use super::boundary::{Blame, Told, call, call_count, check_pointer, index};
 use super::contact::exact_len;
 use super::handles::{KeptBranch, free, read};
 use super::sized::{Described, check_out, fill_out, init};
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn hbvib_branch_points(branch: *const hbvib_branch) -> i64
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbvib_status {
-    call(|| Ok(read::<KeptBranch>(branch, 1)?.branch.status()))
+    call(|| Ok(Told::from(&read::<KeptBranch>(branch, 1)?.branch)))
 }
 
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.

@@ -29,6 +29,8 @@ pub enum hbvib_status_code {
     HBVIB_STOPPED_STALLED = 5,
     /// The branch turned back and left the range where it began.
     HBVIB_STOPPED_LEFT_RANGE = 6,
+    /// A force callback failed; hbvib_last_error has the code that it returned.
+    HBVIB_STOPPED_CALLBACK = 7,
     /// A required pointer is NULL.
     HBVIB_E_NULL = -1,
     /// A value lies outside its range.
@@ -403,6 +405,7 @@ same!(
     HBVIB_STOPPED_MAX_HARMONICS = StoppedMaxHarmonics,
     HBVIB_STOPPED_STALLED = StoppedStalled,
     HBVIB_STOPPED_LEFT_RANGE = StoppedLeftRange,
+    HBVIB_STOPPED_CALLBACK = StoppedCallback,
     HBVIB_E_NULL = Null,
     HBVIB_E_ARGUMENT = Argument,
     HBVIB_E_DIMENSION = Dimension,

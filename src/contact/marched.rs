@@ -76,6 +76,8 @@ pub struct March {
     pub open: Vec<f64>,
     /// What the contact does at each sample; a law without states in this sense always sticks.
     pub state: Vec<State>,
+    /// Memory for the law's own use, 2·d per sample.
+    pub scratch: Vec<f64>,
 }
 
 impl March {
@@ -103,6 +105,7 @@ impl March {
             slip: memory(1)?,
             open: memory(1)?,
             state: try_vec(samples, State::Stick, "a march over samples")?,
+            scratch: memory(d.saturating_mul(2))?,
         })
     }
 

@@ -121,7 +121,9 @@ impl<'a> ContactForces<'a> {
                 self.evaluator.prepare(set, y);
                 prepared = at[0];
             }
-            self.evaluator.evaluate(&*placed.law, set, y, omega, found)?;
+            self.evaluator
+                .evaluate(&*placed.law, set, y, omega, found)
+                .map_err(|e| e.at(format_args!("contact {}", placed.contact)))?;
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &found.jacobian);
             for (i, &c) in at.iter().enumerate() {
@@ -317,6 +319,13 @@ impl<'a> ContactForces<'a> {
         if set.numbers()[i] != 0 {
             jacobian[(at + 1) * n + row] += gk.im;
         }
+    }
+
+    /// Whether all laws know from which motion on they are (nearly) linear.
+    #[must_use]
+    pub fn know_their_linear_range(&self) -> bool {
+        let mut laws = self.condensed.laws().iter();
+        laws.all(|placed| placed.law.knows_its_linear_range())
     }
 
     /// The factor of [`Self::ease`] from which on the forces of the given motion are (nearly) linear.
