@@ -170,6 +170,10 @@ pub enum hbvib_field {
     /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
     /// of the point before; 1 for the first.
     HBVIB_MODAL_ASSURANCE = 13,
+    /// Aliasing check of laws that are sampled: relative change of their force harmonics with half the
+    /// samples (twice as many where half are too few). 0 where all laws are exact. It tells the size
+    /// of the error by sampling and is no bound of it.
+    HBVIB_SAMPLING_ERROR = 14,
 }
 
 /// Weights of log lines.

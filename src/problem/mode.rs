@@ -115,6 +115,14 @@ impl<'a> Mode<'a> {
         &self.x
     }
 
+    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        self.forces.sampling_error(motion, omega)
+    }
+
     /// The contact forces at the point last evaluated.
     #[must_use]
     pub fn forces(&self) -> &ContactForces<'a> {
