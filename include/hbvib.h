@@ -1477,7 +1477,7 @@ hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
 /// contact  number from hbvib_model_add_contact.
 /// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
-/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+/// HBVIB_E_OUT_OF_MEMORY, HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE. Threads: any number on one branch.
 hbvib_status hbvib_branch_contact_summary(const hbvib_branch *branch,
                                           int64_t point,
                                           int64_t contact,

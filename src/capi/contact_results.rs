@@ -203,7 +203,7 @@ pub unsafe extern "C" fn hbvib_branch_contact_loop(
 /// contact  number from hbvib_model_add_contact.
 /// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
-/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+/// HBVIB_E_OUT_OF_MEMORY, HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_branch_contact_summary(
     branch: *const hbvib_branch,

@@ -42,6 +42,12 @@ pub fn shaken() -> Forces {
         .to_vec()
 }
 
+/// The same under constant forces, along the surface and off it.
+pub fn pulled() -> Forces {
+    let constant = [(0, 0, 0.8.into()), (2, 0, 0.3.into())];
+    shaken().into_iter().chain(constant).collect()
+}
+
 /// The same in other harmonics.
 pub fn shaken_in(harmonics: &[usize]) -> Forces {
     let times = |h: usize| shaken().into_iter().map(move |(dof, _, f)| (dof, h, f));
@@ -125,6 +131,15 @@ pub fn cases() -> Vec<Case> {
         case("unilateral", Contact::unilateral(None, Some(2), 3.0, 0.1)),
         case("friction, separating", pair(0.5)),
         case("friction, pressed", pair(1.5)),
+        with(
+            shaken_in(&[3]),
+            Case {
+                omega: 0.6,
+                ..case("friction, in thirds", pair(0.5))
+            },
+        ),
+        with(pulled(), case("friction, pulled and separating", pair(0.5))),
+        fine(4096, with(pulled(), case("plane, pulled", plane(all, 0.5)))),
         case("friction, stuck", Contact { mu: 40.0, ..pair(1.5) }),
         case("friction, a gap at rest", Contact { gap: 0.1, ..pair(0.0) }),
         fine(4096, case("plane, separating", plane(all, 0.5))),
