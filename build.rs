@@ -5,13 +5,15 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 15] = [
+const SOURCES: [&str; 17] = [
     "types",
     "boundary",
     "matrix",
     "model",
     "contact",
     "tables",
+    "elements",
+    "patch",
     "solve",
     "mode",
     "results",
