@@ -50,7 +50,7 @@ impl Patch<'_> {
             }
         }
         self.check_law().map_err(|e| e.at(format_args!("patch, law")))?;
-        if self.tangent.is_none() && self.law.needs_tangent() {
+        if n > 0 && self.tangent.is_none() && self.law.needs_tangent() {
             return fail!(
                 Argument,
                 "patch: tangent is missing; the law acts in one tangential direction, which must be given"
