@@ -345,10 +345,13 @@ impl Contact {
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
             ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
             ContactKind::Friction | ContactKind::FrictionPlane if k == l && self.load() > 0.0 => self.stiffness(k),
-            ContactKind::Friction | ContactKind::FrictionPlane => 0.0,
             ContactKind::Table(table) => table.stiffness_at_rest(),
             ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
-            ContactKind::Unilateral | ContactKind::Regularised | ContactKind::User(_) => 0.0,
+            ContactKind::Unilateral
+            | ContactKind::Friction
+            | ContactKind::FrictionPlane
+            | ContactKind::Regularised
+            | ContactKind::User(_) => 0.0,
         }
     }
 
@@ -426,11 +429,13 @@ impl Contact {
     /// # Errors
     /// `NotFinite` or `Argument`, naming the constant, its value and its range.
     pub fn check_constants(&self) -> Result<()> {
+        // Where there is no load at all the sentence below says so.
+        let infinite_load = matches!(self.kind, ContactKind::Jenkins) || self.without_load().is_some();
         for (name, value, may_be_infinite) in [
             ("kt", self.kt, false),
             ("kn", self.kn, false),
             ("mu", self.mu, false),
-            ("preload", self.preload, matches!(self.kind, ContactKind::Jenkins)),
+            ("preload", self.preload, infinite_load),
             ("velocity", self.velocity, false),
         ] {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
