@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 17] = [
+const SOURCES: [&str; 18] = [
     "types",
     "boundary",
     "matrix",
@@ -23,6 +23,7 @@ const SOURCES: [&str; 17] = [
     "mode_results",
     "synthesis",
     "residual",
+    "time",
 ];
 
 fn main() {

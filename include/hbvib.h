@@ -263,6 +263,15 @@ typedef enum {
   HBVIB_LOG_DEBUG = 3,
 } hbvib_log_level;
 
+/// Ways of finding a steady state in time.
+typedef enum {
+  /// Newton's method on the map over a period, with marching where it fails. Where several solutions
+  /// coexist it may find an unstable one.
+  HBVIB_SHOOTING = 0,
+  /// Period after period until nothing changes any more.
+  HBVIB_MARCHING = 1,
+} hbvib_steady_method;
+
 /// A branch of solutions, created by hbvib_forced_response or hbvib_nonlinear_mode.
 typedef struct hbvib_branch hbvib_branch;
 
@@ -656,6 +665,48 @@ typedef struct {
   /// Damping ratio that is added to the mode's, between -1 and 1.
   double damping_ratio;
 } hbvib_synthesis_options;
+
+/// Options of hbvib_time_response. Fill it by hbvib_time_options_init, then set omega.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_SHOOTING or HBVIB_MARCHING.
+  int32_t method;
+  /// Angular frequency of harmonic 1, > 0, rad per time unit.
+  double omega;
+  /// Highest harmonic that is given out; it does not touch the accuracy of the others.
+  int64_t harmonics;
+  /// Equidistant times per period at which the motion is given out; 0: none.
+  int64_t samples;
+  /// Largest change over a period, relative to the largest displacement and velocity, of a steady
+  /// state; also the local error of a step where a law is smooth (HBVIB_CUBIC).
+  double tolerance;
+  /// Cap on the periods that are integrated.
+  int64_t max_periods;
+  /// Motion to start from, complex (H + 1) x ndof of any H, harmonic after harmonic, such as a point
+  /// of a branch; or NULL: rest.
+  const double *start;
+  /// Complex numbers in start.
+  int64_t start_len;
+} hbvib_time_options;
+
+/// What is known of a periodic response in time. Fill it by hbvib_time_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// 2 pi / omega.
+  double period;
+  /// Largest change over a period, relative to the largest displacement and velocity; infinite where
+  /// the caller stopped before the first was over.
+  double residual;
+  /// Periods that were integrated.
+  int64_t periods;
+  /// Changes between stick, slip, open and closed in one period, all contacts of the (sector's)
+  /// model together.
+  int64_t events;
+} hbvib_time_info;
 
 #ifdef __cplusplus
 extern "C" {
@@ -1504,6 +1555,51 @@ hbvib_status hbvib_forced_residual(const hbvib_model *model,
                                    int64_t jac_len,
                                    double *d_omega,
                                    int64_t d_omega_len);
+
+/// Fills the options of a response in time with their defaults: shooting from rest, harmonics = 9,
+/// tolerance = 1e-11; omega must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_time_options_init(hbvib_time_options *o, size_t size_of_o);
+
+/// Fills what is known of a response in time with zeros.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_time_info_init(hbvib_time_info *i, size_t size_of_i);
+
+/// Finds the periodic response of a model to its forces at one angular frequency by integration in
+/// time from event to event: exact to rounding where contacts are linear between events, by adaptive
+/// implicit steps where a law is smooth. Nothing is truncated, so that this is what harmonic balance
+/// tends to as its harmonics grow: a check of any of its points. A cyclic model moves in the wave of
+/// its engine order. The progress hook is called after each period integrated (in a wave after each
+/// part of it), with the largest displacement as amplitude.
+///
+/// options        set omega; give a point of a branch as start to check that very solution.
+/// hooks          progress, log and cancellation; NULL: none.
+/// harmonics      receives (harmonics + 1) x ndof complex numbers, harmonic after harmonic; or NULL.
+/// harmonics_len  complex numbers in it; 0 with NULL.
+/// samples        receives samples x ndof displacements, time after time from t = 0; or NULL.
+/// samples_len    doubles in it; 0 with NULL.
+/// info           receives what is known of the response; fill it by hbvib_time_info_init before; or
+///                NULL.
+/// HBVIB_STOPPED_BY_CALLER: the results are those of the last period, which is not steady.
+/// Errors: HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (options, overlapping arrays), HBVIB_E_DIMENSION (a
+/// length, with the one needed), HBVIB_E_UNSUPPORTED (a degree of freedom without mass, complex
+/// matrices), HBVIB_E_NO_CONVERGENCE (no steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion
+/// grows without end), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+hbvib_status hbvib_time_response(const hbvib_model *model,
+                                 const hbvib_time_options *options,
+                                 const hbvib_hooks *hooks,
+                                 double *harmonics,
+                                 int64_t harmonics_len,
+                                 double *samples,
+                                 int64_t samples_len,
+                                 hbvib_time_info *info);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -154,6 +154,16 @@ fn responses_are_synthesised_from_modes() {
 }
 
 #[test]
+fn responses_in_time_are_the_truth_of_the_reference() {
+    let td = &data("point_F5_208p85.json")["td"];
+    let tip = &td["X"]["1"][0];
+    let numbers = [&td["f_Hz"], &tip[0], &tip[1]];
+    silent("time", |_| {
+        numbers.iter().map(|v| number(v).to_string().into()).collect()
+    });
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
 }

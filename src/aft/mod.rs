@@ -133,10 +133,9 @@ impl Evaluator {
         let mut marched: Vec<MarchedWay> = Vec::new();
         for law in laws {
             match law.form() {
-                Form::Spectral(_) => {}
                 Form::Pieces(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
                 Form::Coupled(_) if coupled.is_none() => coupled = Some(Box::new(Coupled::new(set)?)),
-                Form::Coupled(_) => {}
+                Form::Coupled(_) | Form::Spectral(_) => {}
                 Form::Marched(law) => {
                     let wanted = law.samples(highest, samples);
                     if !marched.iter().any(|way| way.suits(law, wanted)) {

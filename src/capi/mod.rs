@@ -28,4 +28,5 @@ pub mod solve;
 pub mod special;
 pub mod synthesis;
 pub mod tables;
+pub mod time;
 pub mod types;

@@ -347,11 +347,8 @@ impl Contact {
             ContactKind::Friction | ContactKind::FrictionPlane if k == l && self.load() > 0.0 => self.stiffness(k),
             ContactKind::Table(table) => table.stiffness_at_rest(),
             ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
-            ContactKind::Unilateral
-            | ContactKind::Friction
-            | ContactKind::FrictionPlane
-            | ContactKind::Regularised
-            | ContactKind::User(_) => 0.0,
+            // Open at rest, or not known.
+            _ => 0.0,
         }
     }
 
@@ -429,13 +426,11 @@ impl Contact {
     /// # Errors
     /// `NotFinite` or `Argument`, naming the constant, its value and its range.
     pub fn check_constants(&self) -> Result<()> {
-        // Where there is no load at all the sentence below says so.
-        let infinite_load = matches!(self.kind, ContactKind::Jenkins) || self.without_load().is_some();
         for (name, value, may_be_infinite) in [
             ("kt", self.kt, false),
             ("kn", self.kn, false),
             ("mu", self.mu, false),
-            ("preload", self.preload, infinite_load),
+            ("preload", self.preload, self.may_stick_for_ever()),
             ("velocity", self.velocity, false),
         ] {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
@@ -485,6 +480,11 @@ impl Contact {
             );
         }
         self.check_places(kind)
+    }
+
+    /// Whether an infinite load makes sense, or no load at all.
+    fn may_stick_for_ever(&self) -> bool {
+        matches!(self.kind, ContactKind::Jenkins) || self.without_load().is_some()
     }
 
     /// The normal direction of friction: with a stiffness, or none at all. Without any force, such as

@@ -9,6 +9,7 @@ pub mod repeated;
 pub mod spring;
 pub mod start_mode;
 pub mod structure;
+pub mod wheel;
 
 use crate::contact::Contact;
 use crate::contact::iwan::Iwan;
