@@ -209,121 +209,76 @@ fn pairs_without_area_have_no_force_whatever_presses_on_them() {
     }
 }
 
+/// A patch is refused, and neither it nor a part of it is added.
+fn rejects(case: &Patch<'_>, status: Status, words: &[&str]) {
+    let mut model = nodes(&STRAIGHT);
+    refused(model.add_patch(case), status, words);
+    assert!(model.contacts().is_empty());
+}
+
 #[test]
-fn bad_patches_are_refused_by_array_and_entry_and_add_nothing() {
+fn arrays_of_another_length_are_refused_by_name() {
     let law = law(ContactKind::Friction);
     let good = patch(&law, &NORMALS, Some(&TANGENTS));
-    let one = [[Some(0), Some(1), Some(2)]];
-    let far = [NODES[0], [Some(3), Some(4), Some(6)]];
-    let twice = [NODES[0], [Some(3), Some(3), Some(5)]];
-    let polynomial = Contact::between(
-        0,
-        None,
-        ContactKind::Polynomial(Polynomial::scalar(&[1.0], &[]).unwrap()),
+    let (dof_b, normal) = (Some(&NODES[..1]), &NORMALS[..1]);
+    let (tangent, area) = (Some(&TANGENTS[..0]), &[1.0; 3]);
+    let (pressure, gap) = (Some(&PRESSURES[..1]), Some(&GAPS[..0]));
+    let length = Status::Dimension;
+    rejects(&Patch { dof_b, ..good }, length, &["dof_b has 1 entries, needs 2"]);
+    rejects(&Patch { normal, ..good }, length, &["normal has 1"]);
+    rejects(&Patch { tangent, ..good }, length, &["tangent has 0"]);
+    rejects(&Patch { area, ..good }, length, &["area has 3"]);
+    rejects(&Patch { pressure, ..good }, length, &["pressure has 1"]);
+    rejects(&Patch { gap, ..good }, length, &["gap has 0"]);
+    let tangent = None;
+    rejects(&Patch { tangent, ..good }, Status::Argument, &["tangent is missing"]);
+}
+
+#[test]
+fn bad_entries_are_refused_by_number_and_the_law_by_itself() {
+    let law = law(ContactKind::Friction);
+    let good = patch(&law, &NORMALS, Some(&TANGENTS));
+    let dof_a = &[NODES[0], [Some(3), Some(4), Some(6)]];
+    rejects(
+        &Patch { dof_a, ..good },
+        Status::Index,
+        &["entry 1", "dof_a[2] = 6", "0 .. 5"],
     );
-    let cubic = Contact::cubic(0, None, 1.0, 2.0);
+    let dof_a = &[NODES[0], [Some(3), Some(3), Some(5)]];
+    let words: &[&str] = &["entry 1", "dof_a[0] and dof_a[1] are both 3"];
+    rejects(&Patch { dof_a, ..good }, Status::Argument, words);
+    let dof_b = Some(&NODES[..]);
+    let words = &["entry 0", "same degree of freedom"];
+    rejects(&Patch { dof_b, ..good }, Status::Argument, words);
+    let area = &[1.0, -1.0];
+    rejects(&Patch { area, ..good }, Status::Argument, &["entry 1", "area = -1"]);
+
+    let polynomial = ContactKind::Polynomial(Polynomial::scalar(&[1.0], &[]).unwrap());
+    let no_area = Contact::between(0, None, polynomial);
+    let words = &["law", "per unit of area"];
+    rejects(&Patch { law: &no_area, ..good }, Status::Unsupported, words);
+    let soft = Contact {
+        kt: -1.0,
+        ..law.clone()
+    };
+    rejects(
+        &Patch { law: &soft, ..good },
+        Status::Argument,
+        &["patch, law", "kt = -1"],
+    );
+    // Right by itself, but not with the second area, and not with a pressure.
     let stiff = Contact {
         kt: 1e308,
         ..law.clone()
     };
-    let cases: [(Patch<'_>, Status, &[&str]); 14] = [
-        (
-            Patch {
-                dof_b: Some(&one),
-                ..good
-            },
-            Status::Dimension,
-            &["dof_b has 1 entries, needs 2"],
-        ),
-        (
-            Patch {
-                normal: &NORMALS[..1],
-                ..good
-            },
-            Status::Dimension,
-            &["normal has 1"],
-        ),
-        (
-            Patch {
-                tangent: Some(&[]),
-                ..good
-            },
-            Status::Dimension,
-            &["tangent has 0"],
-        ),
-        (
-            Patch {
-                area: &[1.0; 3],
-                ..good
-            },
-            Status::Dimension,
-            &["area has 3"],
-        ),
-        (
-            Patch {
-                pressure: Some(&[1.0]),
-                ..good
-            },
-            Status::Dimension,
-            &["pressure has 1"],
-        ),
-        (Patch { gap: Some(&[]), ..good }, Status::Dimension, &["gap has 0"]),
-        (
-            Patch { tangent: None, ..good },
-            Status::Argument,
-            &["tangent is missing"],
-        ),
-        (
-            Patch { dof_a: &far, ..good },
-            Status::Index,
-            &["entry 1", "dof_a[2] = 6", "0 .. 5"],
-        ),
-        (
-            Patch { dof_a: &twice, ..good },
-            Status::Argument,
-            &["entry 1", "dof_a[0] and dof_a[1] are both 3"],
-        ),
-        (
-            Patch {
-                dof_b: Some(&NODES),
-                ..good
-            },
-            Status::Argument,
-            &["entry 0", "same degree of freedom"],
-        ),
-        (
-            Patch {
-                law: &polynomial,
-                ..good
-            },
-            Status::Unsupported,
-            &["law", "per unit of area"],
-        ),
-        (
-            Patch { law: &stiff, ..good },
-            Status::NotFinite,
-            &["entry 1", "kt = inf"],
-        ),
-        (
-            Patch { law: &cubic, ..good },
-            Status::Argument,
-            &["entry 0", "preload = 0.6, needs 0"],
-        ),
-        (
-            Patch {
-                area: &[1.0, -1.0],
-                ..good
-            },
-            Status::Argument,
-            &["entry 1", "area = -1"],
-        ),
-    ];
-    let mut model = nodes(&STRAIGHT);
-    for (case, status, words) in cases {
-        refused(model.add_patch(&case), status, words);
-        assert!(model.contacts().is_empty());
-    }
-    assert_eq!(model.add_patch(&good).unwrap(), 0);
+    rejects(
+        &Patch { law: &stiff, ..good },
+        Status::NotFinite,
+        &["entry 1", "kt = inf"],
+    );
+    let cubic = Contact::cubic(0, None, 1.0, 2.0);
+    let words = &["entry 0", "preload = 0.6, needs 0"];
+    rejects(&Patch { law: &cubic, ..good }, Status::Argument, words);
 }
 
 #[test]

@@ -347,6 +347,28 @@ static void directions(void)
     WORKS("directions", hbvib_model_free(other));
 }
 
+/* Elements whose coefficients are all zero change nothing. */
+static void without_force(void)
+{
+    const double one = 1, zeros[8] = {0}, points[2] = {-1, 1};
+    const int64_t dofs[2] = {0, 2}, direction = 1;
+    const int32_t powers[2] = {2, 1};
+    double x[36], again[36];
+    hbvib_model *model = bodies(1, &one, 0.4, 0.2);
+    hbvib_contact c = contact(HBVIB_FRICTION_3D);
+    response(model, 1.3, 0, x);
+    WORKS("zero", hbvib_model_add_table(model, 0, HBVIB_GROUND, 0, 2, points, zeros, NULL));
+    WORKS("zero", hbvib_model_add_spring_damper(model, 0, 1, 0, 2, zeros, 3, zeros, NULL));
+    WORKS("zero", hbvib_model_add_polynomial(model, dofs, 2, 1, &direction, zeros, powers, NULL, NULL));
+    WORKS("zero", hbvib_model_add_stiffness_tensors(model, dofs, 2, zeros, NULL, NULL));
+    c.dof_a[0] = 0;
+    c.dof_a[1] = 1;
+    WORKS("zero", hbvib_model_add_contact(model, &c, NULL));
+    response(model, 1.3, 0, again);
+    EXPECT("zero", gap_of(x, again, 36) < 1e-13);
+    WORKS("zero", hbvib_model_free(model));
+}
+
 int main(void)
 {
     friction_in_one_direction();
@@ -356,5 +378,6 @@ int main(void)
     patches(HBVIB_FRICTION_2D);
     patches(HBVIB_FRICTION_3D);
     directions();
+    without_force();
     return verdict(150);
 }
