@@ -13,6 +13,8 @@ const SOURCES: &[&str] = &[
     "contact",
     "tables",
     "user_force",
+    "elements",
+    "patch",
     "solve",
     "mode",
     "results",

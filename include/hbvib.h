@@ -143,11 +143,21 @@ typedef enum {
   /// Elastic Coulomb friction with constant normal load in one direction: a spring kt in series
   /// with a slider of limit mu * preload.
   HBVIB_JENKINS = 1,
+  /// Elastic Coulomb friction in one tangential direction, t1, under the normal load
+  /// N = max(preload + kn * (closing - gap), 0), closing = x_b - x_a along n: a spring kt in series
+  /// with a slider of limit mu * N. N pushes the sides apart; where it is 0 the contact is open.
+  HBVIB_FRICTION_2D = 2,
+  /// The same in the plane of t1 and t2, where slip goes along the force. Without a degree of freedom
+  /// along n the load is the preload.
+  HBVIB_FRICTION_3D = 3,
   /// Spring along the normal that opens: it pushes the sides apart with
   /// N = max(preload + kn * (closing - gap), 0), where closing = x_b - x_a along n.
   HBVIB_UNILATERAL = 4,
   /// Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
   HBVIB_CUBIC = 5,
+  /// Friction with Coulomb's jump smoothed, in one direction:
+  /// f = mu * preload * tanh(y' / velocity).
+  HBVIB_REGULARISED = 6,
 } hbvib_contact_kind;
 
 /// Special degrees of freedom.
@@ -160,7 +170,8 @@ typedef enum {
 typedef enum {
   /// Without force.
   HBVIB_CONTACTS_FREE = 0,
-  /// Linear springs, as at small motion: kt, or kn where HBVIB_UNILATERAL presses at rest.
+  /// Linear springs, as at small motion: kt of contacts that stick and kn of those that press at
+  /// rest, the slopes of tables and polynomials; HBVIB_REGULARISED has none.
   HBVIB_CONTACTS_STUCK = 1,
 } hbvib_contact_state;
 
@@ -334,33 +345,41 @@ typedef struct {
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// HBVIB_JENKINS, HBVIB_UNILATERAL or HBVIB_CUBIC.
+  /// HBVIB_JENKINS .. HBVIB_REGULARISED.
   int32_t kind;
   /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND.
-  /// HBVIB_UNILATERAL acts along n, the others along t1; the places not used must be HBVIB_GROUND.
+  /// HBVIB_FRICTION_2D acts along t1 and n, HBVIB_FRICTION_3D along all three, HBVIB_UNILATERAL along
+  /// n, the others along t1; places not used must be HBVIB_GROUND. With `normal` all may be used.
   int64_t dof_a[3];
   /// Side b, likewise.
   int64_t dof_b[3];
   /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
   int64_t sector_offset;
-  /// Stiffness (tangential, at small motion), force per length, >= 0; 0 for HBVIB_UNILATERAL.
+  /// Tangential stiffness of HBVIB_JENKINS, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D, stiffness of
+  /// HBVIB_CUBIC at small motion, force per length, >= 0; 0 for HBVIB_UNILATERAL and
+  /// HBVIB_REGULARISED.
   double kt;
-  /// Normal stiffness of HBVIB_UNILATERAL, >= 0; 0 for others.
+  /// Normal stiffness, force per length, >= 0, of HBVIB_UNILATERAL; > 0 of HBVIB_FRICTION_2D and
+  /// HBVIB_FRICTION_3D, but 0 under a constant load; 0 for others.
   double kn;
-  /// Friction coefficient of HBVIB_JENKINS, >= 0; 0 for others.
+  /// Friction coefficient, >= 0; 0 for HBVIB_UNILATERAL and HBVIB_CUBIC.
   double mu;
-  /// Normal load at rest, force, >= 0; of HBVIB_JENKINS, where infinite sticks for ever, and of
-  /// HBVIB_UNILATERAL; 0 for others.
+  /// Normal load at rest where `gap` is 0, force, >= 0, finite but for HBVIB_JENKINS, where infinite
+  /// sticks for ever; 0 for HBVIB_CUBIC.
   double preload;
-  /// Closing at which HBVIB_UNILATERAL without preload begins to press, any sign: a negative one
-  /// presses at rest. 0 for others.
+  /// Closing at which HBVIB_UNILATERAL, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D of a load that
+  /// varies begin to press if they have no preload, any sign: a negative one presses at rest. 0 for
+  /// others.
   double gap;
   /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
   double cubic;
+  /// Velocity at which HBVIB_REGULARISED has 76 % (tanh 1) of its slip limit, > 0; 0 for others.
+  double velocity;
   /// Direction n in the axes of the three degrees of freedom of each side, of any length. Zero, with
   /// `tangent`: the degrees of freedom lie along t1, t2 and n themselves.
   double normal[3];
-  /// Direction t1, orthogonal to `normal`; zero: any in the plane. t2 is n x t1.
+  /// Direction t1, orthogonal to `normal`, of any length; t2 is n x t1. Zero: any in the plane, for
+  /// HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
   double tangent[3];
 } hbvib_contact;
 
@@ -490,8 +509,9 @@ typedef struct {
   int64_t harmonics;
   /// Cap on H where the tolerance decides.
   int64_t max_harmonics;
-  /// 0: stick-slip events are located exactly; else samples per period, at least 2H + 1. Laws
-  /// without events (HBVIB_CUBIC) are exact either way.
+  /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
+  /// HBVIB_CUBIC and polynomials are exact either way; HBVIB_FRICTION_3D and HBVIB_REGULARISED
+  /// have samples always, 0: a number by H.
   int64_t samples;
   /// First arc-length step in scaled unknowns; 0 = automatic.
   double step;
@@ -1022,9 +1042,15 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
                                 double *shapes);
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
-/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of
-/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, kn, gap or preload, and the third places of dof_a and
-/// dof_b.
+/// Then set kind, the degrees of freedom and the constants of the kind:
+/// HBVIB_JENKINS      first places of dof_a and dof_b; kt, mu, preload;
+/// HBVIB_FRICTION_2D  first and third places; kt, kn, mu, preload or gap;
+/// HBVIB_FRICTION_3D  all places; kt, kn, mu, preload or gap; under a constant load the first and
+///                    second places; kt, mu, preload;
+/// HBVIB_UNILATERAL   third places; kn, gap or preload;
+/// HBVIB_CUBIC        first places; kt, cubic;
+/// HBVIB_REGULARISED  first places; mu, preload, velocity.
+/// With normal (and tangent), whatever the kind, all places of a node that moves in three directions.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
@@ -1036,29 +1062,35 @@ hbvib_status hbvib_contact_init(hbvib_contact *c,
 ///
 /// c   the description.
 /// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.
-/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (kind, constants out of range, both
-/// sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (kind, constants out of range, normal and
+/// tangent that are no directions at a right angle, both sides the same, a degree of freedom twice on
+/// one side, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
-hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c, int64_t *id);
+hbvib_status hbvib_model_add_contact(hbvib_model *model,
+                                     const hbvib_contact *c,
+                                     int64_t *id);
 
-/// Changes the normal load of a contact. An HBVIB_CUBIC has none, which is HBVIB_E_ARGUMENT.
+/// Changes the normal load of a contact. HBVIB_CUBIC, tables and polynomials have none, which is
+/// HBVIB_E_ARGUMENT.
 ///
-/// id       number from hbvib_model_add_contact.
-/// preload  force, >= 0; infinite sticks for ever.
+/// id       number from hbvib_model_add_contact, or of another function that adds contacts.
+/// preload  force, >= 0; infinite, of HBVIB_JENKINS alone, sticks for ever.
 /// Errors: HBVIB_E_INDEX (id), HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: one at a time per model.
 hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double preload);
 
 /// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
-/// it has become periodic, and its Jacobian. Degrees of freedom in the description are not looked
-/// at. d is the number of motions of the law, in the order t1, t2, n: 1 for HBVIB_JENKINS,
-/// HBVIB_UNILATERAL and HBVIB_CUBIC.
+/// it has become periodic, and its Jacobian. Degrees of freedom and directions in the description are
+/// not looked at. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D, d = 2;
+/// t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load, which kn = 0
+/// states, d = 2; n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. A law without events (HBVIB_CUBIC) is exact either way.
+///             least 2H + 1. HBVIB_CUBIC is exact either way; HBVIB_FRICTION_3D and
+///             HBVIB_REGULARISED have samples always, 0: a number by H.
 /// omega       angular frequency, >= 0; matters to laws that know velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.
@@ -1198,6 +1230,135 @@ hbvib_status hbvib_check_jacobian(const hbvib_model *model,
                                   const double *amplitude,
                                   int64_t amplitude_len,
                                   hbvib_jacobian_gap *out);
+
+/// Adds a spring whose force is given by a table, f = f(y), y = x_a - x_b: straight between the points
+/// and beyond them along the first and the last of these lines. Its Fourier integrals are exact.
+///
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
+/// sector_offset  sector of side b counted from that of side a; 0 in plain models.
+/// n              number of points, >= 2.
+/// displacement   y of the points, ascending, no two of them equal; n numbers.
+/// force          f of the points; n numbers. A table whose force at y = 0 is not 0 loads the
+///                structure at rest.
+/// id             receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (points that are not
+/// sorted, both sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE,
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_table(hbvib_model *model,
+                                   int64_t dof_a,
+                                   int64_t dof_b,
+                                   int64_t sector_offset,
+                                   int64_t n,
+                                   const double *displacement,
+                                   const double *force,
+                                   int64_t *id);
+
+/// Adds a spring and a damper of polynomial form between two degrees of freedom:
+/// f = sum spring[k] y^(k+1) + sum damper[k] v^(k+1), k = 0, 1, ..., with y = x_a - x_b and v = y'.
+/// Harmonic balance of it is exact.
+///
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
+/// sector_offset  sector of side b counted from that of side a; 0 in plain models.
+/// n_spring       number of stiffness coefficients, 0 .. 15.
+/// spring         coefficients of y, y^2, ..., of any sign; NULL if there are none.
+/// n_damper       number of damping coefficients, 0 .. 15; not 0 if n_spring is.
+/// damper         coefficients of v, v^2, ..., of any sign; NULL if there are none.
+/// id             receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n_spring, n_damper), HBVIB_E_ARGUMENT
+/// (both sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_spring_damper(hbvib_model *model,
+                                           int64_t dof_a,
+                                           int64_t dof_b,
+                                           int64_t sector_offset,
+                                           int64_t n_spring,
+                                           const double *spring,
+                                           int64_t n_damper,
+                                           const double *damper,
+                                           int64_t *id);
+
+/// Adds springs and dampers of polynomial form over the motions x_j of several degrees of freedom over
+/// the ground and their velocities v_j: term t adds
+/// coefficient[t] * product of x_j^x_powers[t][j] * product of v_j^v_powers[t][j]
+/// to the force on degree of freedom dofs[direction[t]]. Harmonic balance of it is exact.
+///
+/// dofs         degrees of freedom from 0, each once; n_dofs numbers.
+/// n_dofs       their number, >= 1.
+/// n_terms      number of terms, >= 1.
+/// direction    place in dofs of the force that a term adds to, from 0; n_terms numbers.
+/// coefficient  of any sign; n_terms numbers.
+/// x_powers     exponents of the motions, 0 .. 15, n_terms x n_dofs, term after term; NULL: all 0.
+/// v_powers     exponents of the velocities, likewise; NULL: all 0. No term may have exponents 0 alone.
+/// id           receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dofs, direction), HBVIB_E_DIMENSION (n_dofs, n_terms), HBVIB_E_ARGUMENT
+/// (exponents, a degree of freedom twice), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_polynomial(hbvib_model *model,
+                                        const int64_t *dofs,
+                                        int64_t n_dofs,
+                                        int64_t n_terms,
+                                        const int64_t *direction,
+                                        const double *coefficient,
+                                        const int32_t *x_powers,
+                                        const int32_t *v_powers,
+                                        int64_t *id);
+
+/// Adds the quadratic and cubic stiffness of a reduced structure, over the motions of degrees of
+/// freedom over the ground: f_i = sum quadratic[i][j][k] x_j x_k + sum cubic[i][j][k][l] x_j x_k x_l
+/// on degree of freedom dofs[i]. The linear stiffness is that of the model. Nothing is taken for
+/// symmetric. Harmonic balance of it is exact.
+///
+/// dofs       degrees of freedom from 0, each once; n numbers.
+/// n          their number, >= 1.
+/// quadratic  n^3 numbers, the last index running fastest, or NULL.
+/// cubic      n^4 numbers, likewise, or NULL. Not both may be NULL.
+/// id         receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (a degree of freedom twice),
+/// HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_stiffness_tensors(hbvib_model *model,
+                                               const int64_t *dofs,
+                                               int64_t n,
+                                               const double *quadratic,
+                                               const double *cubic,
+                                               int64_t *id);
+
+/// Adds a contact patch: n node pairs of two surfaces, each with the share of area that it stands for,
+/// as n contacts. All of them are checked before any is added.
+///
+/// law       the law per unit of area: kt and kn are force per length and area, cubic is force per
+///           length^3 and area, preload is a pressure. Its sector_offset is that of all pairs; its
+///           degrees of freedom, normal and tangent are not looked at. Fill it by hbvib_contact_init.
+/// n         number of pairs, >= 0.
+/// dof_a     degrees of freedom of the nodes on side a along three orthogonal axes, 3 n numbers, node
+///           after node; HBVIB_GROUND does not move.
+/// dof_b     the same on side b; NULL: the ground.
+/// normal    directions n in these axes, of any length, 3 n numbers. Closing is x_b - x_a along n, so
+///           that n points from side b to side a.
+/// tangent   directions t1, orthogonal to n, of any length, 3 n numbers; NULL: any in the plane, for
+///           HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
+/// area      >= 0; n numbers.
+/// pressure  pressure at rest, >= 0, n numbers; NULL: preload of the law.
+/// gap       closing at which a pair without pressure begins to press, any sign, n numbers; NULL: gap
+///           of the law.
+/// first_id  receives the number of the first contact, the others follow; may be NULL; untouched on
+///           error.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (law, directions,
+/// area, pressure, both sides the same, a degree of freedom twice on one side), HBVIB_E_NOT_FINITE,
+/// naming the entry; HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_patch(hbvib_model *model,
+                                   const hbvib_contact *law,
+                                   int64_t n,
+                                   const int64_t *dof_a,
+                                   const int64_t *dof_b,
+                                   const double *normal,
+                                   const double *tangent,
+                                   const double *area,
+                                   const double *pressure,
+                                   const double *gap,
+                                   int64_t *first_id);
 
 /// Fills solver options with their defaults: harmonics = 9, exact events, automatic steps.
 ///

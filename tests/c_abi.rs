@@ -169,6 +169,16 @@ fn many_contacts_and_springs_are_added_at_once() {
 }
 
 #[test]
+fn laws_elements_and_patches_are_those_of_closed_forms() {
+    silent("laws", |_| vec![]);
+}
+
+#[test]
+fn bad_laws_elements_and_patches_are_refused() {
+    silent("bad_laws", |_| vec![]);
+}
+
+#[test]
 fn handles_cannot_be_mistaken() {
     silent("handles", |_| vec![]);
 }

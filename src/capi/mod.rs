@@ -13,12 +13,14 @@
 pub mod boundary;
 pub mod contact;
 pub mod contact_results;
+pub mod elements;
 pub mod energy;
 mod handles;
 pub mod matrix;
 pub mod mode;
 pub mod mode_results;
 pub mod model;
+pub mod patch;
 pub mod residual;
 pub mod results;
 mod sized;

@@ -488,11 +488,12 @@ impl Contact {
         matches!(self.kind, ContactKind::Jenkins) || self.without_load().is_some()
     }
 
-    /// The normal direction of friction: with a stiffness, or none at all.
+    /// The normal direction of friction: with a stiffness, or none at all. Without any force, such as
+    /// that of no area, it needs none.
     fn check_normal(&self) -> Result<()> {
         let plane = matches!(self.kind, ContactKind::FrictionPlane);
         let needs_stiffness = matches!(self.kind, ContactKind::Friction) || (plane && self.has_normal());
-        if needs_stiffness && self.kn == 0.0 {
+        if needs_stiffness && self.kn == 0.0 && (self.kt != 0.0 || self.preload != 0.0) {
             return fail!(
                 Argument,
                 "contact: kn = 0, needs a number > 0 for friction under a load that varies"
