@@ -5,13 +5,14 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 18] = [
+const SOURCES: &[&str] = &[
     "types",
     "boundary",
     "matrix",
     "model",
     "contact",
     "tables",
+    "user_force",
     "elements",
     "patch",
     "solve",

@@ -60,6 +60,8 @@ typedef enum {
   HBVIB_STOPPED_STALLED = 5,
   /// The branch turned back and left the range where it began.
   HBVIB_STOPPED_LEFT_RANGE = 6,
+  /// A force callback failed; hbvib_last_error has the code that it returned.
+  HBVIB_STOPPED_CALLBACK = 7,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.
@@ -175,14 +177,36 @@ typedef enum {
 
 /// What a contact does at one time.
 typedef enum {
-  /// It sticks, or presses. Cubic springs, contacts that never slip and those without force are
-  /// always here.
+  /// It sticks, or presses. Contacts that never slip, those without force and laws without states
+  /// (springs but HBVIB_UNILATERAL) are always here.
   HBVIB_STATE_STICK = 0,
   /// It slips: the force is at the slip limit.
   HBVIB_STATE_SLIP = 1,
   /// It is open, without force.
   HBVIB_STATE_OPEN = 2,
 } hbvib_state;
+
+/// Derivatives that a force callback writes.
+typedef enum {
+  /// df_du
+  HBVIB_DF_DU = 0,
+  /// df_dv
+  HBVIB_DF_DV = 1,
+  /// df_dz
+  HBVIB_DF_DZ = 2,
+  /// dz_dz
+  HBVIB_DZ_DZ = 3,
+  /// dz_du_before
+  HBVIB_DZ_DU_BEFORE = 4,
+  /// dz_du
+  HBVIB_DZ_DU = 5,
+  /// dz_dv_before
+  HBVIB_DZ_DV_BEFORE = 6,
+  /// dz_dv
+  HBVIB_DZ_DV = 7,
+  /// dz_domega
+  HBVIB_DZ_DOMEGA = 8,
+} hbvib_tangent;
 
 /// Results that a branch holds for each point of the curve. Energies are of one sector.
 typedef enum {
@@ -203,7 +227,8 @@ typedef enum {
   HBVIB_NEWTON_ITERATIONS = 6,
   /// Highest harmonic number carried.
   HBVIB_HARMONICS_USED = 8,
-  /// Share of the period that each contact slips (0 for springs): points x contacts.
+  /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
+  /// slip, so that springs have 0, HBVIB_UNILATERAL among them.
   HBVIB_SLIP_FRACTION = 9,
   /// Nonlinear modes only: log10 of the amplitude, the parameter.
   HBVIB_LOG10_AMPLITUDE = 10,
@@ -214,6 +239,10 @@ typedef enum {
   /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
   /// of the point before; 1 for the first.
   HBVIB_MODAL_ASSURANCE = 13,
+  /// Aliasing check of laws that are sampled: relative change of their force harmonics with half the
+  /// samples (twice as many where half are too few). 0 where all laws are exact. It tells the size
+  /// of the error by sampling and is no bound of it.
+  HBVIB_SAMPLING_ERROR = 14,
 } hbvib_field;
 
 /// Artificial damping that makes the motion of a damped structure periodic, D its damping ratio.
@@ -353,6 +382,120 @@ typedef struct {
   /// HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
   double tangent[3];
 } hbvib_contact;
+
+/// One period that a force callback is asked about. All arrays are row-major, a sample after the
+/// other: the entry of sample j, row i and column k of N x n x n numbers is [(j * n + i) * n + k].
+///
+/// Sample j lies at the time j * 2 pi / (omega * samples). f, and z where there are states, must be
+/// written whole: they are NaN before the call. The derivatives are 0 before the call; write those that
+/// are not. They must be exact for what f and z hold.
+///
+/// With states, z_j = Z(z_(j-1), motion at j - 1 and at j). Before sample 0 lies z0, with the motion
+/// of the last sample, because the motion is periodic; the library finds the z0 that returns. At first
+/// z0 is 0, the state of a structure at rest, and samples is 2: a load from rest to where the period
+/// begins. States should be of similar size, for they count as returned together.
+typedef struct {
+  /// Bytes of this struct as the library knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// Angular frequency of the period. States may need it as their time step 2 pi / (omega *
+  /// samples); the force must not depend on it in any other way.
+  double omega;
+  /// Samples N over the period.
+  int64_t samples;
+  /// Degrees of freedom n of the force.
+  int64_t n;
+  /// Internal states s.
+  int64_t states;
+  /// In: their motions, N x n.
+  const double *u;
+  /// In: their velocities du/dt, N x n; NULL unless uses_velocity.
+  const double *v;
+  /// In: states before sample 0, s numbers; NULL without states, like all that follows with a z.
+  const double *z0;
+  /// Out: forces f of M x'' + C x' + K x + f = f_ex, N x n.
+  double *f;
+  /// Out: d f / d u at the same time, at given z: N x n x n.
+  double *df_du;
+  /// Out: d f / d v, likewise: N x n x n; NULL unless uses_velocity.
+  double *df_dv;
+  /// Out: states, N x s.
+  double *z;
+  /// Out: d z_j / d z_(j-1), N x s x s.
+  double *dz_dz;
+  /// Out: d z_j / d u_(j-1), N x s x n.
+  double *dz_du_before;
+  /// Out: d z_j / d u_j, N x s x n.
+  double *dz_du;
+  /// Out: d z_j / d v_(j-1), N x s x n; NULL unless uses_velocity.
+  double *dz_dv_before;
+  /// Out: d z_j / d v_j, N x s x n; NULL unless uses_velocity.
+  double *dz_dv;
+  /// Out: d z_j / d omega, where the time step enters: N x s.
+  double *dz_domega;
+  /// Out: d f_j / d z_j, N x n x s.
+  double *df_dz;
+} hbvib_force_call;
+
+/// A force of the caller. Returns 0 when done. A number above 0 says that it cannot at this motion: the
+/// solver tries shorter steps, and stops where the smallest does not help. One below 0 stops it at
+/// once. Where a branch stops so, its points are kept (HBVIB_STOPPED_CALLBACK); without any the status
+/// is HBVIB_E_CALLBACK; hbvib_last_error has the number. NaN and infinity in what was written count as
+/// a number above 0. The motions themselves are always finite.
+///
+/// The same motion must always give the same force. It may be called by every thread that uses the
+/// model, or a branch of it. It may call the library, but not change or free a handle in use
+/// (HBVIB_E_BUSY), and must not throw or longjmp. The cancel flag is looked at between calls.
+typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
+
+/// A force of the caller on some degrees of freedom. Fill it by hbvib_user_force_init, then set dofs, n
+/// and force at least.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1: the force depends on velocities; 0 (default): it does not.
+  int32_t uses_velocity;
+  /// 1: f(-u, -v) = -f(u, v), states turning with them: even harmonics may then be left out;
+  /// 0 (default): they are carried.
+  int32_t is_odd;
+  /// Must be 0.
+  int32_t reserved;
+  /// Degrees of freedom on which it acts, each against the ground.
+  const int64_t *dofs;
+  /// Their number, at least 1.
+  int64_t n;
+  /// Internal states; 0 (default): the force at a time follows from the motion at that time alone.
+  int64_t states;
+  /// Samples per period, more than twice the highest harmonic; 0 (default): those of the solver
+  /// options, or automatic: at least 64, with states 256.
+  int64_t samples;
+  /// The callback.
+  hbvib_force_fn force;
+  /// Passed to the callback.
+  void *user;
+} hbvib_user_force;
+
+/// The derivative that lies farthest from its difference quotient. Fill it by hbvib_jacobian_gap_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_DF_DU and so on (enum hbvib_tangent).
+  int32_t tangent;
+  /// |given - difference| times the size of what was moved, relative to the size of what it moves:
+  /// below 1e-6 for right derivatives of a smooth force, 2 for a wrong sign.
+  double gap;
+  /// Sample of the test motion.
+  int64_t sample;
+  /// Row of the entry.
+  int64_t row;
+  /// Its column; for HBVIB_DF_DZ the state that was moved before the step.
+  int64_t column;
+  /// What the callback wrote; for HBVIB_DF_DZ the change of force that follows.
+  double given;
+  /// What differences of the callback's own f and z give.
+  double difference;
+} hbvib_jacobian_gap;
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
 typedef struct {
@@ -573,31 +716,39 @@ typedef struct {
   double friction_loss;
 } hbvib_energy;
 
-/// Numbers of one contact over one period, in the caller's units, exact for the motion of the point.
-/// Fill it by hbvib_contact_summary_init.
+/// Numbers of one contact over one period, in the caller's units. Ranges are exact for the motion of the
+/// point, and so is all of HBVIB_JENKINS, HBVIB_CUBIC and HBVIB_UNILATERAL; shares and work of laws
+/// that are sampled are as good as the samples of the branch. Fill it by hbvib_contact_summary_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
   /// 0.
   int32_t reserved;
-  /// Work per cycle that the contact takes from the motion; exactly 0 unless it slips. The sum
-  /// over all contacts is the friction_loss of hbvib_energy, up to the error of sampling where the
-  /// branch was solved with samples.
+  /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for
+  /// friction that does not slip and for springs of one motion. The sum over all contacts is the
+  /// friction_loss of hbvib_energy, up to the error of sampling where the branch was solved with samples.
   double work;
-  /// Share of the period that it slips, 0 to 1.
+  /// Share of the period that it slips, 0 to 1; time that it is open does not count.
   double slip_share;
   /// Share of the period that it is open, 0 to 1.
   double open_share;
-  /// Half the range of the relative motion, (max - min) / 2.
+  /// Half the range of the relative motion in the first direction, (max - min) / 2.
   double half_range;
-  /// Smallest relative motion, side a minus side b.
+  /// Smallest relative motion in the first direction, side a minus side b.
   double motion_min;
-  /// Largest relative motion.
+  /// Largest relative motion in the first direction.
   double motion_max;
-  /// Smallest normal load. HBVIB_JENKINS has the preload, infinite included; HBVIB_CUBIC has none: 0.
+  /// Smallest normal load. Under a constant load that load: HBVIB_JENKINS has the preload, infinite
+  /// included. Springs that cannot open have none: 0.
   double load_min;
   /// Largest normal load.
   double load_max;
+  /// Number of directions of the contact, in the order t1, t2, n of those in which it acts.
+  int64_t directions;
+  /// Smallest relative motions, direction by direction, of up to three; 0 beyond `directions`.
+  double all_min[3];
+  /// Largest relative motions likewise.
+  double all_max[3];
 } hbvib_contact_summary;
 
 /// Numbers of one point of a nonlinear mode, in the caller's units; energies are of one sector. Fill
@@ -1027,6 +1178,59 @@ hbvib_status hbvib_model_add_iwan(hbvib_model *model,
                                   int64_t elements,
                                   int64_t *first_id);
 
+/// Fills the description of a force with zeros: dofs, n and force must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_user_force_init(hbvib_user_force *o, size_t size_of_o);
+
+/// Adds a force of the caller, which counts as a contact. It is not called here, but by every solve and
+/// every result of a branch that needs the force (hbvib_branch_harmonics, loops, energies): callback
+/// and `user` must outlive the model, its copies, and all branches solved from them.
+///
+/// Put what the force has of linear stiffness and damping into K and C, where it can be separated: a
+/// nonlinear mode starts from the structure without the force. A force that is not 0 at rest is a
+/// constant load: a forced response starts from its static solution, a nonlinear mode refuses it
+/// (HBVIB_E_UNSUPPORTED).
+///
+/// o   the description.
+/// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n, states, samples), HBVIB_E_ARGUMENT (flags, a
+/// degree of freedom twice), HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL (force, dofs), HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_user_force(hbvib_model *model,
+                                        const hbvib_user_force *o,
+                                        int64_t *id);
+
+/// Fills a gap with zeros.
+///
+/// gap          the struct; untouched on error.
+/// size_of_gap  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_jacobian_gap_init(hbvib_jacobian_gap *gap, size_t size_of_gap);
+
+/// Compares every derivative that a force of the caller writes with central differences of its own f and
+/// z, on a built-in motion with a mean and the harmonics 1 and 3. The status is HBVIB_OK whatever the
+/// gap: look at it. A solve with wrong derivatives ends in HBVIB_E_NO_CONVERGENCE or needs many
+/// iterations.
+///
+/// contact        number from hbvib_model_add_user_force.
+/// omega          angular frequency, > 0.
+/// amplitude      about the largest motion of each degree of freedom of the force, > 0: the motion
+///                should reach all that the force can do.
+/// amplitude_len  their number, that of the degrees of freedom.
+/// out            receives the worst entry; untouched on error.
+/// Errors: HBVIB_E_INDEX (contact), HBVIB_E_ARGUMENT (not a force of the caller, omega, amplitude),
+/// HBVIB_E_DIMENSION (amplitude_len), HBVIB_E_CALLBACK, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+hbvib_status hbvib_check_jacobian(const hbvib_model *model,
+                                  int64_t contact,
+                                  double omega,
+                                  const double *amplitude,
+                                  int64_t amplitude_len,
+                                  hbvib_jacobian_gap *out);
+
 /// Adds a spring whose force is given by a table, f = f(y), y = x_a - x_b: straight between the points
 /// and beyond them along the first and the last of these lines. Its Fourier integrals are exact.
 ///
@@ -1397,25 +1601,32 @@ hbvib_status hbvib_branch_time_history(const hbvib_branch *branch,
                                        int64_t n,
                                        double *x);
 
-/// Hysteresis loop of a contact over one period of the fundamental at a stored point: entry j at
-/// omega t = 2 pi j / n. The force is that of this contact alone and not cut off at harmonic H: the
-/// law at the motion of the point, its events located exactly (with samples, too). A cyclic model
-/// tells of sector 0. A contact that is linear at any motion has its linear force and sticks; the
-/// motion of the whole structure is recovered for it.
+/// Hysteresis loop of a contact in one of its directions over one period of the fundamental at a stored
+/// point: entry j at omega t = 2 pi j / n. The force is that of this contact alone and not cut off at
+/// harmonic H: the law at the motion of the point. Laws with events (HBVIB_JENKINS, HBVIB_UNILATERAL)
+/// have them located exactly, where the branch was solved with samples, too; friction in a plane is
+/// marched over a multiple of n samples, and a law of the host is called with the n times. A
+/// cyclic model tells of sector 0. A contact that is linear at any motion has its linear force and
+/// sticks; the motion of the whole structure is recovered for it.
 ///
-/// point    number of a point of the curve, or of a peak, fold or solution wanted.
-/// contact  number from hbvib_model_add_contact.
-/// n        number of times, 1 .. 2^24.
-/// motion   receives n relative motions, side a minus side b, or NULL.
-/// force    receives n forces f, which stand in the row of side a as + f and in that of side b as
-///          - f, or NULL.
-/// state    receives n states, HBVIB_STATE_STICK and so on, or NULL. Not all three may be NULL.
-/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact), HBVIB_E_DIMENSION (n),
-/// HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY.
+/// point      number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact    number from hbvib_model_add_contact.
+/// direction  one of the directions of the contact from 0, in the order t1, t2, n of those in which it
+///            acts: 0 for laws of one direction. hbvib_contact_summary tells their number.
+/// n          number of times, 1 .. 2^24.
+/// motion     receives n relative motions, side a minus side b, or NULL.
+/// force      receives n forces f, which stand in the row of side a as + f and in that of side b as
+///            - f, or NULL. Along the normal f is minus the normal load.
+/// state      receives n states of the contact, HBVIB_STATE_STICK and so on, the same for all its
+///            directions, or NULL. Not all three may be NULL.
+/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact, direction), HBVIB_E_DIMENSION
+/// (n), HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY,
+/// HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE.
 /// Threads: any number on one branch.
 hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
                                        int64_t point,
                                        int64_t contact,
+                                       int64_t direction,
                                        int64_t n,
                                        double *motion,
                                        double *force,
@@ -1427,7 +1638,7 @@ hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
 /// contact  number from hbvib_model_add_contact.
 /// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
-/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+/// HBVIB_E_OUT_OF_MEMORY, HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE. Threads: any number on one branch.
 hbvib_status hbvib_branch_contact_summary(const hbvib_branch *branch,
                                           int64_t point,
                                           int64_t contact,

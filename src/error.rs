@@ -24,6 +24,8 @@ pub enum Status {
     StoppedStalled = 5,
     /// The branch turned back and left the range where it began; all points are kept.
     StoppedLeftRange = 6,
+    /// A callback of the host failed; the points found so far are kept.
+    StoppedCallback = 7,
     /// A required pointer is NULL.
     Null = -1,
     /// An argument has a value outside its range.
@@ -72,6 +74,7 @@ impl Status {
             Self::StoppedMaxHarmonics => c"HBVIB_STOPPED_MAX_HARMONICS",
             Self::StoppedStalled => c"HBVIB_STOPPED_STALLED",
             Self::StoppedLeftRange => c"HBVIB_STOPPED_LEFT_RANGE",
+            Self::StoppedCallback => c"HBVIB_STOPPED_CALLBACK",
             Self::Null => c"HBVIB_E_NULL",
             Self::Argument => c"HBVIB_E_ARGUMENT",
             Self::Dimension => c"HBVIB_E_DIMENSION",
@@ -113,12 +116,13 @@ impl Status {
             Self::StoppedLeftRange => {
                 "the branch turned back and left the range where it began; all points are kept; start elsewhere or from the other end"
             }
+            Self::StoppedCallback => "a callback of the host failed; the points found so far are kept",
             _ => "",
         }
     }
 
     /// All values, for tables and for turning an integer back into a status.
-    pub const ALL: [Self; 24] = [
+    pub const ALL: [Self; 25] = [
         Self::Ok,
         Self::StoppedByCaller,
         Self::StoppedStepTooSmall,
@@ -126,6 +130,7 @@ impl Status {
         Self::StoppedMaxHarmonics,
         Self::StoppedStalled,
         Self::StoppedLeftRange,
+        Self::StoppedCallback,
         Self::Null,
         Self::Argument,
         Self::Dimension,

@@ -189,6 +189,11 @@ fn hooks_cancel_and_threads_share_a_model() {
 }
 
 #[test]
+fn forces_of_the_host_may_fail_and_call_the_library() {
+    silent("user_force", |_| vec![]);
+}
+
+#[test]
 fn the_library_is_a_guest_in_its_process() {
     silent("process", |folder| {
         let copy = folder.join("copy.so");
@@ -262,6 +267,39 @@ fn the_c_example_finds_the_peak_that_rust_finds() {
         "{frequency} Hz, Rust: {peak:?}"
     );
     assert!(near(amplitude, peak.amplitude), "{amplitude} m, Rust: {peak:?}");
+}
+
+/// The words after a label in what a program printed, as numbers.
+fn numbers_after(text: &str, label: &str) -> Vec<Vec<f64>> {
+    let lines = text.lines().filter_map(|line| line.strip_prefix(label));
+    lines
+        .map(|line| line.split([' ', ',']).filter_map(|word| word.parse().ok()).collect())
+        .collect()
+}
+
+#[test]
+fn the_c_example_of_a_force_of_its_own_balances_its_work() {
+    let folder = workshop("user_force_example");
+    let program = compile("examples/c/user_force.c", &folder, &["-std=c99"]);
+    let output = run(&mut Command::new(program));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let response = numbers_after(&text, "response:");
+    let peak = &numbers_after(&text, "peak:")[0];
+    let largest = response.iter().fold(0.0_f64, |m, row| m.max(row[1]));
+    assert!(
+        response.len() > 20 && peak[1] >= largest && peak[1] < 1.05 * largest,
+        "{text}"
+    );
+    assert!(peak[0] > 1.0 && peak[0] < 1.6_f64.sqrt(), "{text}");
+    let work = &numbers_after(&text, "work:")[0];
+    let (given, taken) = (work[0], work[1] + work[2]);
+    assert!(work[2] > work[1] && (given / taken - 1.0).abs() < 1e-3, "{text}");
+    // The force of a Bouc-Wen element is bounded by k/(beta + gamma).
+    let forces = numbers_after(&text, "loop:");
+    assert!(
+        forces.len() == 32 && forces.iter().all(|row| row[1].abs() < 0.6 / 6.0),
+        "{text}"
+    );
 }
 
 #[test]

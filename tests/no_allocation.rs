@@ -167,7 +167,7 @@ fn an_evaluation_of_a_mode_allocates_nothing() {
             let mut u = vec![0.0; n];
             let mut at = Linearisation::new(n).unwrap();
             assert!(problem.start(Start::Stuck, 0.0, &mut u).unwrap());
-            let (onset, _) = problem.linear_up_to().unwrap();
+            let (onset, _) = problem.linear_up_to(0.0).unwrap();
             // The first evaluation may lay out memory.
             problem.evaluate(&u, onset + 1.0, &mut at).unwrap();
             let (count, ()) = allocations(|| {

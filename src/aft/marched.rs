@@ -15,7 +15,7 @@ use super::Evaluation;
 use super::periodic::{ReturnMap, largest};
 use super::sensitivity::{Sensitivity, Signals};
 use crate::contact::marched::{March, Marched};
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::harmonics::HarmonicSet;
 
 /// Marches that may end in a step of Newton's method.
@@ -110,10 +110,8 @@ impl MarchedWay {
     /// Those of the law; `NoConvergence` when its states do not become periodic, `NotFinite` when they
     /// do not stay finite.
     pub fn evaluate(&mut self, law: &dyn Marched, omega: f64, motion: &[f64], out: &mut Evaluation) -> Result<()> {
-        // The law sees the period 2π/(gω) of the set.
+        let virgin = self.settle(law, omega, motion)?;
         let omega = self.base * omega;
-        self.signals.fill(omega, motion);
-        let virgin = self.find_period(law, omega)?;
         self.differentiate_start(law, omega)?;
         for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
             sums.fill(0.0);
@@ -126,6 +124,18 @@ impl MarchedWay {
         out.open_fraction = self.march.open.iter().sum::<f64>() / n;
         out.stuck = law.sticks() && virgin && out.slip_fraction == 0.0 && out.open_fraction == 0.0;
         Ok(())
+    }
+
+    /// Finds the periodic states alone, as [`Self::evaluate`] does first; [`Self::march`] then has the forces
+    /// and states. Whether the law is as it was loaded from rest.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn settle(&mut self, law: &dyn Marched, omega: f64, motion: &[f64]) -> Result<bool> {
+        // The law sees the period 2π/(gω) of the set.
+        let omega = self.base * omega;
+        self.signals.fill(omega, motion);
+        self.find_period(law, omega)
     }
 
     /// Weights the Fourier sums and forms the offset.
@@ -191,10 +201,13 @@ impl MarchedWay {
             defect = self.search(law, omega, NEWTON_MARCHES)?;
         }
         if defect > 0.0 {
-            return fail!(
-                NoConvergence,
-                "the states of a contact did not return after {MARCHES} periods (difference {defect:.1e}); raise samples"
-            );
+            return Err(Error::new(
+                Status::NoConvergence,
+                format_args!(
+                    "the states did not return after {MARCHES} periods (difference {defect:.1e}); raise samples"
+                ),
+            )
+            .recoverable());
         }
         Ok(virgin && self.marches == 1)
     }
@@ -213,7 +226,8 @@ impl MarchedWay {
             }
             let defect = largest(&self.step);
             if !defect.is_finite() {
-                return fail!(NotFinite, "the states of a contact are not finite after a period");
+                let message = format_args!("the states are not finite after a period");
+                return Err(Error::new(Status::NotFinite, message).recoverable());
             }
             self.marches = k + 1;
             if defect <= tolerance * largest(&self.march.z[..n * s]) {

@@ -125,7 +125,9 @@ impl PointwiseEvaluator {
             df_dv: &mut self.df_dv,
             scratch: &mut self.scratch,
         };
-        law.evaluate(omega, self.transform.held(), &self.u, &self.v, samples)?;
+        // The samples cover the period 2π/(gω) of the set.
+        let own = set.base() as f64 * omega;
+        law.evaluate(own, self.transform.held(), &self.u, &self.v, samples)?;
         out.clear();
         self.forces(set, out);
         self.tangents(set, omega, out);

@@ -4,7 +4,7 @@
 use crate::branch::{Branch, SpecialKind};
 use crate::continuation::events::{Event, Locator};
 use crate::continuation::{Advance, Continuation, Point, Settings};
-use crate::error::{Result, Status};
+use crate::error::{Error, Result, Status};
 use crate::hooks::{Hooks, Progress};
 use crate::problem::Problem;
 
@@ -22,6 +22,28 @@ pub(super) trait Keeper {
 
     /// What was stored so far.
     fn branch(&self) -> &Branch;
+}
+
+/// How a run ended.
+pub(super) struct Ending {
+    pub status: Status,
+    /// The failure of a callback that ended it.
+    pub reason: Option<Error>,
+}
+
+impl Ending {
+    /// The end of a run that has kept `branch` so far: a callback that failed stops it and keeps the
+    /// points.
+    pub fn of(outcome: Result<Status>, branch: &Branch) -> Result<Self> {
+        match outcome {
+            Ok(status) => Ok(Self { status, reason: None }),
+            Err(e) if e.status == Status::Callback && branch.points() > 0 => Ok(Self {
+                status: Status::StoppedCallback,
+                reason: Some(e),
+            }),
+            Err(e) => Err(e),
+        }
+    }
 }
 
 /// How far to follow, and what to look for.
@@ -69,7 +91,9 @@ impl Task<'_> {
             };
             match keeper.keep(&point) {
                 // Newton's last correction, which is not evaluated, led to where there is no solution.
-                Err(e) if e.status == Status::Singular => return Ok(Status::StoppedStepTooSmall),
+                Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => {
+                    return Ok(Status::StoppedStepTooSmall);
+                }
                 kept => kept?,
             }
             let stop = self.report(keeper, hooks, &point);

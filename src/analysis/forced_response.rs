@@ -1,6 +1,6 @@
 //! Forced response over a range of frequency.
 
-use super::follow::{Keeper, Task};
+use super::follow::{Ending, Keeper, Task};
 use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
@@ -8,7 +8,7 @@ use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Metric, Point, Settings};
-use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
+use crate::error::{Error, Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::model::Model;
@@ -26,7 +26,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Bad options and models (see [`SolverOptions::check`], [`ForcedOptions::check`],
-/// [`Condensed::new`]), `NoConvergence` when no first point was found.
+/// [`Condensed::new`]), `NoConvergence` when no first point was found, `Callback` when that is a callback's
+/// doing.
 pub fn forced_response(
     model: &Model,
     solver: &SolverOptions,
@@ -70,7 +71,9 @@ pub fn forced_response(
         solver.harmonics,
         response,
     );
-    let first = match start::solve(&mut problem, &settings, hooks.cancelled)? {
+    let held = reduction.held_by_contacts;
+    let start = start::solve(&mut problem, &settings, hooks.cancelled);
+    let first = match start.map_err(|e| tell_of_load(e, &condensed, held))? {
         First::Found(point) => Some(point),
         First::Cancelled => None,
     };
@@ -89,14 +92,29 @@ pub fn forced_response(
         at: range.at,
         max_points: solver.max_points,
     };
-    let status = match first {
+    let outcome = match first {
         Some(first) => {
             hooks.log(LogLevel::Info, "first point solved");
-            task.run(&mut points, first, hooks)?
+            task.run(&mut points, first, hooks)
         }
-        None => Status::StoppedByCaller,
+        None => Ok(Status::StoppedByCaller),
     };
-    points.finish(status)
+    let ending = Ending::of(outcome, &points.branch)?;
+    points.finish(ending)
+}
+
+/// Where contacts press at rest the first point comes from the static solution; says so where it fails.
+fn tell_of_load(e: Error, condensed: &Condensed, held: usize) -> Error {
+    if e.status != Status::NoConvergence || !condensed.is_preloaded() {
+        return e;
+    }
+    Error::new(
+        Status::NoConvergence,
+        format_args!(
+            "contacts press at rest, and the static solution under constant loads, or the growth of the \
+             vibrating ones from it, was not found; {held} rigid-body modes are held by contacts alone"
+        ),
+    )
 }
 
 /// Collects the points of one run.
@@ -122,8 +140,10 @@ impl Keeper for Points<'_> {
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.stalled |= point.stalled;
         self.problem.response(point.unknowns(), &mut self.response);
+        let sampling_error = self.problem.sampling_error(point.unknowns(), point.parameter())?;
+        let slips = self.problem.slip_fractions();
         self.branch
-            .push_curve(&record(point, &self.response, self.problem.slip_fractions()))
+            .push_curve(&record(point, &self.response, slips, sampling_error))
     }
 
     /// The point is solved once more at its frequency with the flexibility factorised there: along
@@ -157,6 +177,7 @@ impl Keeper for Points<'_> {
         self.problem.response(point.unknowns(), &mut self.response);
         let kept = Kept {
             kind,
+            sampling_error: self.problem.sampling_error(point.unknowns(), point.parameter())?,
             response: try_copy(&self.response, "the special points")?,
             slip_fractions: try_copy(self.problem.slip_fractions(), "the special points")?,
             point,
@@ -167,14 +188,12 @@ impl Keeper for Points<'_> {
 
 impl Points<'_> {
     /// Numbers the special points after the curve.
-    fn finish(mut self, status: Status) -> Result<Branch> {
+    fn finish(mut self, ending: Ending) -> Result<Branch> {
         for kept in &self.specials {
-            let record = record(&kept.point, &kept.response, &kept.slip_fractions);
+            let record = record(&kept.point, &kept.response, &kept.slip_fractions, kept.sampling_error);
             self.branch.push_special(kept.kind, &record)?;
         }
-        let stalled = status == Status::Ok && self.stalled;
-        self.branch
-            .set_status(if stalled { Status::StoppedStalled } else { status });
+        self.branch.set_ending(ending.status, ending.reason, self.stalled);
         Ok(self.branch)
     }
 }
@@ -185,9 +204,15 @@ struct Kept {
     point: Point,
     response: Vec<Complex64>,
     slip_fractions: Vec<f64>,
+    sampling_error: f64,
 }
 
-fn record<'a>(point: &'a Point, response: &'a [Complex64], slip_fractions: &'a [f64]) -> Record<'a> {
+fn record<'a>(
+    point: &'a Point,
+    response: &'a [Complex64],
+    slip_fractions: &'a [f64],
+    sampling_error: f64,
+) -> Record<'a> {
     Record {
         omega: point.parameter(),
         motion: point.unknowns(),
@@ -196,6 +221,7 @@ fn record<'a>(point: &'a Point, response: &'a [Complex64], slip_fractions: &'a [
         residual: point.residual,
         iterations: point.iterations,
         slip_fractions,
+        sampling_error,
     }
 }
 

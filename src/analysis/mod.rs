@@ -1,5 +1,6 @@
 //! The crate's public face: each analysis puts the layers together.
 
+pub mod check_jacobian;
 mod follow;
 pub mod forced_response;
 pub mod harmonic_residual;
@@ -8,6 +9,7 @@ pub mod nonlinear_mode;
 pub mod synthesis;
 pub mod time_response;
 
+pub use check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use forced_response::forced_response;
 pub use harmonic_residual::{contact_evaluate, forced_residual};
 pub use nonlinear_mode::nonlinear_mode;

@@ -1,7 +1,7 @@
 //! A nonlinear mode over a range of amplitude: its frequency and damping from contacts that stick to
 //! contacts that slide.
 
-use super::follow::{Keeper, Task};
+use super::follow::{Ending, Keeper, Task};
 use super::mode_points::ModePoints;
 use crate::branch::mode::{ModeData, ModeInfo};
 use crate::branch::{Branch, SpecialKind};
@@ -16,6 +16,7 @@ use crate::model::Model;
 use crate::model::spring::{along, relative_row};
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::Problem;
+use crate::problem::at_rest::force_at_rest;
 use crate::problem::mode::{Gauge, LinearMode, Mode};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -103,8 +104,14 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
             chosen.omega
         );
     }
+    if let Some(id) = force_at_rest(&condensed, linear.omega, solver.samples)? {
+        return fail!(
+            Unsupported,
+            "contact {id} has a force at rest; nonlinear modes under constant forces are not provided yet"
+        );
+    }
     let mut problem = Mode::new(&condensed, &gauge, &linear, solver.samples)?;
-    let (linear_up_to, nearly) = problem.linear_up_to()?;
+    let (linear_up_to, nearly) = problem.linear_up_to(range.log10_start)?;
     let info = ModeInfo {
         index: chosen.index,
         omega: chosen.omega,
@@ -128,8 +135,9 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     let ends = (range.log10_start, range.log10_stop);
     branch.set_mode(ModeData::new(info, linear.clone(), gauge.clone(), ends, problem.size()));
     let mut points = ModePoints::new(&condensed, &linear, problem, branch)?;
-    let status = run(&mut points, solver, range, (linear_up_to, nearly), hooks)?;
-    points.finish(status)
+    let outcome = run(&mut points, solver, range, (linear_up_to, nearly), hooks);
+    let ending = Ending::of(outcome, points.branch())?;
+    points.finish(ending)
 }
 
 /// Chooses the phase's degree of freedom and gives the linear mode amplitude 1.

@@ -1,6 +1,7 @@
 //! The border to C: panics become a status, errors the thread's last error, raw pointers slices.
 
 use super::types::hbvib_status;
+use crate::branch::Branch;
 use crate::error::{Error, Result, Status, TEXT_CAPACITY, Text};
 use core::cell::{Cell, RefCell};
 use core::ffi::{CStr, c_char};
@@ -24,12 +25,35 @@ thread_local! {
     static INSIDE: Cell<bool> = const { Cell::new(false) };
 }
 
+/// What a call that wrote its result tells: a status, and why the result is a part only, where the
+/// status alone does not say it.
+pub(super) struct Told {
+    pub status: Status,
+    pub reason: Option<Error>,
+}
+
+impl From<Status> for Told {
+    fn from(status: Status) -> Self {
+        Self { status, reason: None }
+    }
+}
+
+impl From<&Branch> for Told {
+    fn from(branch: &Branch) -> Self {
+        Self {
+            status: branch.status(),
+            reason: branch.reason().copied(),
+        }
+    }
+}
+
 /// Runs the body of an exported function and turns its outcome into a status. Success empties the
 /// last error; anything else fills it.
-pub(super) fn call(body: impl FnOnce() -> Result<Status>) -> hbvib_status {
+pub(super) fn call<T: Into<Told>>(body: impl FnOnce() -> Result<T>) -> hbvib_status {
     match guarded(body) {
-        Ok(status) => {
-            remember(status.sentence(), 0);
+        Ok(told) => {
+            let Told { status, reason } = told.into();
+            remember(reason.as_ref().map_or(status.sentence(), Error::message), 0);
             status as hbvib_status
         }
         Err(error) => {

@@ -30,3 +30,4 @@ pub mod synthesis;
 pub mod tables;
 pub mod time;
 pub mod types;
+pub mod user_force;

@@ -1,6 +1,6 @@
 //! What a branch tells.
 
-use super::boundary::{Blame, call, call_count, check_pointer, index};
+use super::boundary::{Blame, Told, call, call_count, check_pointer, index};
 use super::contact::exact_len;
 use super::handles::{KeptBranch, free, read};
 use super::sized::{Described, check_out, fill_out, init};
@@ -132,7 +132,7 @@ pub unsafe extern "C" fn hbvib_branch_points(branch: *const hbvib_branch) -> i64
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbvib_status {
-    call(|| Ok(read::<KeptBranch>(branch, 1)?.branch.status()))
+    call(|| Ok(Told::from(&read::<KeptBranch>(branch, 1)?.branch)))
 }
 
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.
@@ -155,6 +155,7 @@ pub unsafe extern "C" fn hbvib_branch_field(
     const RESIDUAL: i32 = hbvib_field::HBVIB_RESIDUAL as i32;
     const NEWTON_ITERATIONS: i32 = hbvib_field::HBVIB_NEWTON_ITERATIONS as i32;
     const HARMONICS_USED: i32 = hbvib_field::HBVIB_HARMONICS_USED as i32;
+    const SAMPLING_ERROR: i32 = hbvib_field::HBVIB_SAMPLING_ERROR as i32;
     const SLIP_FRACTION: i32 = hbvib_field::HBVIB_SLIP_FRACTION as i32;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
@@ -168,6 +169,7 @@ pub unsafe extern "C" fn hbvib_branch_field(
             RESIDUAL => branch.residual(),
             NEWTON_ITERATIONS => branch.newton_iterations(),
             HARMONICS_USED => branch.harmonics_used(),
+            SAMPLING_ERROR => branch.sampling_error(),
             SLIP_FRACTION => branch.slip_fraction(),
             _ => match mode_field(field).map(|f| branch.mode_field(f)) {
                 Some(Some(data)) => data,

@@ -1,6 +1,6 @@
 //! Options and hooks in, a branch out.
 
-use super::boundary::{Blame, call, check_pointer, count, input, outside};
+use super::boundary::{Blame, Told, call, check_pointer, count, input, outside};
 use super::handles::{KeptBranch, insert, read};
 use super::sized::{Described, check_reserved, init, load};
 use super::types::{
@@ -9,7 +9,7 @@ use super::types::{
 };
 use crate::analysis;
 use crate::branch::Branch;
-use crate::error::{Result, Status, TEXT_CAPACITY, fail};
+use crate::error::{Result, TEXT_CAPACITY, fail};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
@@ -311,7 +311,7 @@ pub(super) unsafe fn follow(
     out: *mut *mut hbvib_branch,
     wanted: usize,
     analysis: impl FnOnce(&mut Hooks<'_>) -> Result<Branch>,
-) -> Result<Status> {
+) -> Result<Told> {
     let hooks = unsafe { load_hooks(hooks, 4) }?;
     check_pointer(out, 5, "out")?;
     let branch = unsafe {
@@ -323,7 +323,7 @@ pub(super) unsafe fn follow(
             analysis(hooks)
         })
     }?;
-    let status = branch.status();
+    let told = Told::from(&branch);
     unsafe { out.write(insert(KeptBranch { branch, wanted })?) };
-    Ok(status)
+    Ok(told)
 }

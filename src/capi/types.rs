@@ -29,6 +29,8 @@ pub enum hbvib_status_code {
     HBVIB_STOPPED_STALLED = 5,
     /// The branch turned back and left the range where it began.
     HBVIB_STOPPED_LEFT_RANGE = 6,
+    /// A force callback failed; hbvib_last_error has the code that it returned.
+    HBVIB_STOPPED_CALLBACK = 7,
     /// A required pointer is NULL.
     HBVIB_E_NULL = -1,
     /// A value lies outside its range.
@@ -169,7 +171,8 @@ pub enum hbvib_field {
     HBVIB_NEWTON_ITERATIONS = 6,
     /// Highest harmonic number carried.
     HBVIB_HARMONICS_USED = 8,
-    /// Share of the period that each contact slips (0 for springs): points x contacts.
+    /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
+    /// slip, so that springs have 0, HBVIB_UNILATERAL among them.
     HBVIB_SLIP_FRACTION = 9,
     /// Nonlinear modes only: log10 of the amplitude, the parameter.
     HBVIB_LOG10_AMPLITUDE = 10,
@@ -180,6 +183,10 @@ pub enum hbvib_field {
     /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
     /// of the point before; 1 for the first.
     HBVIB_MODAL_ASSURANCE = 13,
+    /// Aliasing check of laws that are sampled: relative change of their force harmonics with half the
+    /// samples (twice as many where half are too few). 0 where all laws are exact. It tells the size
+    /// of the error by sampling and is no bound of it.
+    HBVIB_SAMPLING_ERROR = 14,
 }
 
 /// Weights of log lines.
@@ -418,6 +425,7 @@ same!(
     HBVIB_STOPPED_MAX_HARMONICS = StoppedMaxHarmonics,
     HBVIB_STOPPED_STALLED = StoppedStalled,
     HBVIB_STOPPED_LEFT_RANGE = StoppedLeftRange,
+    HBVIB_STOPPED_CALLBACK = StoppedCallback,
     HBVIB_E_NULL = Null,
     HBVIB_E_ARGUMENT = Argument,
     HBVIB_E_DIMENSION = Dimension,

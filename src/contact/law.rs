@@ -30,6 +30,12 @@ pub trait Law: Debug + Send + Sync {
     /// The factor s from which on s·f(x/s) is (nearly) linear, for motions of the given ranges: friction
     /// sticks, a polynomial term is small against the stiffness `reference`.
     fn sticking_factor(&self, ranges: &[Range], reference: f64) -> f64;
+
+    /// Whether [`Self::sticking_factor`] is known for any motion; else it is a guess from the size of
+    /// the motions that matter.
+    fn knows_its_linear_range(&self) -> bool {
+        true
+    }
 }
 
 /// Range of a motion.

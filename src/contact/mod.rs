@@ -22,6 +22,7 @@ pub mod state;
 pub mod table;
 pub mod unilateral;
 pub mod user;
+mod user_marched;
 
 use crate::error::{Result, fail};
 use cubic::Cubic;

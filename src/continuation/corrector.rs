@@ -2,7 +2,7 @@
 //! continuation, and with damping the solver of the first point.
 
 use super::Metric;
-use crate::error::{Result, Status, try_copy, try_vec};
+use crate::error::{Error, Result, Status, try_copy, try_vec};
 use crate::linalg::bordered::Bordered;
 use crate::linalg::norm;
 use crate::problem::{Linearisation, Problem};
@@ -47,6 +47,7 @@ pub struct Corrector {
     next: Vec<f64>,
     tolerance: f64,
     max_iterations: usize,
+    failure: Option<Error>,
 }
 
 /// Relative size of a Newton step that is round-off: no further progress can be had.
@@ -69,7 +70,14 @@ impl Corrector {
             next: try_vec(n + 1, 0.0, "Newton's method")?,
             tolerance,
             max_iterations,
+            failure: None,
         })
+    }
+
+    /// Why the last correction failed, where a law could not tell its force at some motion.
+    #[must_use]
+    pub fn failure(&self) -> Option<Error> {
+        self.failure
     }
 
     /// Corrects `v` = (u, p) within the plane through it whose normal is `row` (in scaled
@@ -80,7 +88,8 @@ impl Corrector {
     /// has shrunk by 1 − λ/4.
     ///
     /// # Errors
-    /// What the problem reports, singular matrices excepted: they end as [`Outcome::Failed`].
+    /// What the problem reports, but for singular matrices and what another motion may not meet: those
+    /// end as [`Outcome::Failed`].
     pub fn correct(
         &mut self,
         problem: &mut dyn Problem,
@@ -90,8 +99,8 @@ impl Corrector {
         damped: bool,
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Outcome> {
-        let n = v.len() - 1;
-        if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? {
+        self.failure = None;
+        if !self.evaluates(problem, v)? {
             return Ok(Outcome::Failed);
         }
         let mut damping = 1.0;
@@ -123,7 +132,7 @@ impl Corrector {
                 }
             } else {
                 metric.add(v, 1.0, &self.step);
-                if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? {
+                if !self.evaluates(problem, v)? {
                     break;
                 }
             }
@@ -138,6 +147,14 @@ impl Corrector {
     pub fn evaluate(&mut self, problem: &mut dyn Problem, v: &[f64]) -> Result<()> {
         let n = v.len() - 1;
         problem.evaluate(&v[..n], v[n], &mut self.at)
+    }
+
+    /// Evaluates the problem at `v`; `false` where that failed and may succeed elsewhere.
+    fn evaluates(&mut self, problem: &mut dyn Problem, v: &[f64]) -> Result<bool> {
+        let n = v.len() - 1;
+        let outcome = problem.evaluate(&v[..n], v[n], &mut self.at);
+        self.failure = outcome.err().filter(|e| e.recoverable);
+        tolerate(outcome)
     }
 
     /// ‖R‖ over the problem's scale; 0 where both vanish.
@@ -188,7 +205,9 @@ impl Corrector {
         while damping >= SMALLEST_DAMPING {
             self.trial.copy_from_slice(v);
             metric.add(&mut self.trial, damping, &self.step);
-            if tolerate(problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at))? {
+            let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
+            self.failure = outcome.err().filter(|e| e.recoverable);
+            if tolerate(outcome)? {
                 for (s, r) in self.next.iter_mut().zip(&self.at.residual) {
                     *s = -r;
                 }
@@ -260,8 +279,7 @@ impl Corrector {
         metric: Metric,
         tangent: &mut [f64],
     ) -> Result<Option<bool>> {
-        let n = v.len() - 1;
-        if !tolerate(problem.evaluate(&v[..n], v[n], &mut self.at))? || !self.factor(metric, row)? {
+        if !self.evaluates(problem, v)? || !self.factor(metric, row)? {
             return Ok(None);
         }
         self.tangent(metric, tangent);
@@ -269,10 +287,14 @@ impl Corrector {
     }
 }
 
-/// A singular matrix is a failed attempt, anything else an error.
+/// A singular matrix, and what another motion may not meet, are a failed attempt; anything else is an
+/// error.
 fn tolerate(result: Result<()>) -> Result<bool> {
-    result.map(|()| true).or_else(|e| match e.status {
-        Status::Singular => Ok(false),
-        _ => Err(e),
+    result.map(|()| true).or_else(|e| {
+        if e.status == Status::Singular || e.recoverable {
+            Ok(false)
+        } else {
+            Err(e)
+        }
     })
 }

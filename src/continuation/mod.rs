@@ -14,7 +14,7 @@ pub mod predictor;
 pub mod start;
 pub mod step_control;
 
-use crate::error::{Result, Status, try_copy, try_vec};
+use crate::error::{Error, Result, Status, try_copy, try_vec};
 use crate::linalg::norm;
 use crate::problem::Problem;
 use corrector::{Corrector, Outcome};
@@ -130,7 +130,7 @@ impl Continuation {
     /// Finds the next point. After the end of the range was reported it must not be called again.
     ///
     /// # Errors
-    /// What the problem reports.
+    /// What the problem reports; `Callback` where a callback of the host kept failing at the smallest step.
     pub fn advance(&mut self, problem: &mut dyn Problem, cancelled: Option<&dyn Fn() -> bool>) -> Result<Advance> {
         let metric = self.metric();
         let n = self.row.len() - 1;
@@ -169,13 +169,15 @@ impl Continuation {
                     }
                 }
                 Attempt::Failed => {
+                    // What follows asks the corrector again.
+                    let failure = self.corrector.failure();
                     if length <= CORNER_STEP
                         && let Some(point) = self.turn_corner(problem, metric, length, cancelled)?
                     {
                         return self.accept(point, None);
                     }
                     if !self.steps.failed() {
-                        return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
+                        return too_small(failure);
                     }
                 }
             }
@@ -366,5 +368,13 @@ impl Continuation {
             point.amplitude.norm().max(FLOOR * self.largest.1),
         );
         motion.max(observed)
+    }
+}
+
+/// No step is small enough: a callback is to blame, or nobody knows.
+fn too_small(failure: Option<Error>) -> Result<Advance> {
+    match failure {
+        Some(e) if e.status == Status::Callback => Err(e),
+        _ => Ok(Advance::Stopped(Status::StoppedStepTooSmall)),
     }
 }

@@ -7,7 +7,7 @@
 use super::corrector::{Corrector, Outcome};
 use super::step_control::StepControl;
 use super::{Advance, Continuation, Metric, Point, Settings};
-use crate::error::{Result, fail, try_copy, try_push, try_vec};
+use crate::error::{Error, Result, fail, try_copy, try_push, try_vec};
 use crate::linalg::norm;
 use crate::problem::{Problem, Start};
 
@@ -28,15 +28,17 @@ const MAX_HOMOTOPY_POINTS: usize = 2_000;
 /// Solves for the first point at `settings.start`.
 ///
 /// # Errors
-/// `NoConvergence` when every way failed, `Singular` when the linear structure has no solution,
+/// `NoConvergence` when every way failed, or what kept a law from telling its force where that was the
+/// cause; `Singular` when the linear structure has no solution,
 /// and what the problem reports.
 pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&dyn Fn() -> bool>) -> Result<First> {
     let n = problem.size();
     let p = settings.start;
     let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations)?;
     let mut v = try_vec(n + 1, 0.0, WHAT)?;
+    let mut failure = None;
     for kind in [Start::Given, Start::Stuck, Start::Reference] {
-        let exists = problem.start(kind, p, &mut v[..n])?;
+        let exists = attempt(problem.start(kind, p, &mut v[..n]), false, &mut failure)?;
         let mut easy = None;
         if kind == Start::Stuck {
             if !exists {
@@ -52,20 +54,36 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
                     return Ok(First::Found(Point::new(v, corrected, 0.0)));
                 }
                 Outcome::Cancelled => return Ok(First::Cancelled),
-                Outcome::Failed => {}
+                Outcome::Failed => failure = corrector.failure().or(failure),
             }
         }
         // The homotopy is surer than a poorer start.
-        if let Some(u) = &easy
-            && let Some(first) = homotopy(problem, settings, u, &mut corrector, cancelled)?
-        {
-            return Ok(first);
+        if let Some(u) = &easy {
+            let reached = homotopy(problem, settings, u, &mut corrector, cancelled);
+            if let Some(first) = attempt(reached, None, &mut failure)? {
+                return Ok(first);
+            }
+            failure = corrector.failure().or(failure);
         }
+    }
+    if let Some(e) = failure {
+        return Err(e.at(format_args!("no solution was found at the start, parameter {p}")));
     }
     fail!(
         NoConvergence,
         "no solution was found at the start, parameter {p}: Newton's method and the homotopy from small motion failed; start elsewhere, or raise max_newton"
     )
+}
+
+/// The outcome of an attempt; `failed` where another motion may not meet its error, which is kept.
+fn attempt<T>(outcome: Result<T>, failed: T, failure: &mut Option<Error>) -> Result<T> {
+    match outcome {
+        Err(e) if e.recoverable => {
+            *failure = Some(e);
+            Ok(failed)
+        }
+        outcome => outcome,
+    }
 }
 
 /// Damped Newton at the fixed parameter in `v`.

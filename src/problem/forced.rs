@@ -5,6 +5,7 @@
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y), and in the
 //! homotopy ∂R/∂λ = G fc ∂f/∂fc.
 
+use super::at_rest::force_at_rest;
 use super::contact_forces::ContactForces;
 use super::{Linearisation, Problem, Start, put};
 use crate::condense::Condensed;
@@ -36,6 +37,8 @@ pub struct Forced<'a> {
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
+    /// Whether the static solution is not zero, because a contact presses or a law pushes at rest.
+    loaded_at_rest: bool,
 }
 
 impl<'a> Forced<'a> {
@@ -44,7 +47,7 @@ impl<'a> Forced<'a> {
     /// a packed start.
     ///
     /// # Errors
-    /// `OutOfMemory`.
+    /// `OutOfMemory`; those of callbacks, which are asked for their force at rest.
     pub fn new(
         condensed: &'a Condensed,
         response: usize,
@@ -53,6 +56,7 @@ impl<'a> Forced<'a> {
         given: Option<Vec<f64>>,
     ) -> Result<Self> {
         let set = condensed.set();
+        let loaded_at_rest = condensed.is_preloaded() || force_at_rest(condensed, range.0, samples)?.is_some();
         Ok(Self {
             condensed,
             forces: ContactForces::new(condensed, samples)?,
@@ -60,6 +64,7 @@ impl<'a> Forced<'a> {
             parameter: Parameter::Omega,
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
+            loaded_at_rest,
         })
     }
 
@@ -67,6 +72,14 @@ impl<'a> Forced<'a> {
     #[must_use]
     pub fn slip_fractions(&self) -> &[f64] {
         self.forces.slip_fractions()
+    }
+
+    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn sampling_error(&mut self, u: &[f64], omega: f64) -> Result<f64> {
+        self.forces.sampling_error(u, omega)
     }
 
     /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
@@ -207,7 +220,7 @@ impl Problem for Forced<'_> {
                 Ok(true)
             }
             // What presses at rest has no solution of the form that scales: the load must grow.
-            Start::Stuck if self.condensed.is_preloaded() => Ok(false),
+            Start::Stuck if self.loaded_at_rest => Ok(false),
             Start::Stuck => {
                 // With infinite slip limits the problem is linear: one Newton step from rest.
                 u.fill(0.0);
@@ -244,7 +257,7 @@ impl Problem for Forced<'_> {
     }
 
     fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
-        if self.condensed.is_preloaded() {
+        if self.loaded_at_rest {
             self.parameter = Parameter::Load { omega: p };
             return Ok(Some((0.0, 1.0)));
         }

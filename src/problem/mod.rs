@@ -1,6 +1,7 @@
 //! The vocabulary between a mechanical problem and the continuation: R(u, p) = 0 with one
 //! parameter p. The continuation sees this trait and nothing else of mechanics.
 
+pub mod at_rest;
 mod blocks;
 pub mod contact_forces;
 pub mod forced;

@@ -115,6 +115,14 @@ impl<'a> Mode<'a> {
         &self.x
     }
 
+    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        self.forces.sampling_error(motion, omega)
+    }
+
     /// The contact forces at the point last evaluated.
     #[must_use]
     pub fn forces(&self) -> &ContactForces<'a> {
@@ -137,15 +145,19 @@ impl<'a> Mode<'a> {
     }
 
     /// log₁₀ of the amplitudes up to which all laws are linear, −∞ where one of them never is, and up
-    /// to which they nearly are, so that the linear mode is a sure start.
+    /// to which they nearly are, so that the linear mode is a sure start. Where a law does not know, that
+    /// is judged from `first`, the log₁₀ of the first amplitude wanted.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn linear_up_to(&mut self) -> Result<(f64, f64)> {
+    pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
         let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
         self.linear_start(&mut u);
         let motion = &u[..u.len() - 2];
         let nearly = -self.forces.sticking_factor(motion, self.linear.omega)?.log10();
+        if !self.forces.know_their_linear_range() {
+            return Ok((f64::NEG_INFINITY, first.min(0.0) + nearly));
+        }
         self.forces.ease(10f64.powf(ONSET_ROUNDING - nearly));
         self.forces.evaluate(motion, self.linear.omega)?;
         let exactly = if self.forces.all_stuck() {
@@ -296,7 +308,10 @@ impl Problem for Mode<'_> {
     }
 
     fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
-        let factor = self.forces.sticking_factor(&u[..u.len() - 2], self.linear.omega)? * 10f64.powf(p);
+        let mut factor = self.forces.sticking_factor(&u[..u.len() - 2], self.linear.omega)?;
+        if self.forces.know_their_linear_range() {
+            factor *= 10f64.powf(p);
+        }
         let start = (1.01 * factor).ln();
         if !(start > 0.0 && start.is_finite()) {
             return Ok(None);

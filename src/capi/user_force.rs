@@ -1,0 +1,428 @@
+//! Forces of the host: a callback in, and the test of its tangents.
+
+#![allow(non_camel_case_types)]
+
+use super::boundary::{Blame, call, check_pointer, count, index, input, outside};
+use super::handles::{read, write};
+use super::sized::{Described, check_out, check_reserved, fill_out, init, load};
+use super::types::{hbvib_model, hbvib_status};
+use crate::analysis::{self, JacobianGap, Tangent};
+use crate::contact::user::{Call, User, UserForce};
+use crate::contact::{Contact, ContactKind};
+use crate::error::{Error, Result, Status, fail, try_push};
+use crate::model::Model;
+use core::ffi::c_void;
+use core::ptr;
+use std::sync::Arc;
+
+/// One period that a force callback is asked about. All arrays are row-major, a sample after the
+/// other: the entry of sample j, row i and column k of N x n x n numbers is [(j * n + i) * n + k].
+///
+/// Sample j lies at the time j * 2 pi / (omega * samples). f, and z where there are states, must be
+/// written whole: they are NaN before the call. The derivatives are 0 before the call; write those that
+/// are not. They must be exact for what f and z hold.
+///
+/// With states, z_j = Z(z_(j-1), motion at j - 1 and at j). Before sample 0 lies z0, with the motion
+/// of the last sample, because the motion is periodic; the library finds the z0 that returns. At first
+/// z0 is 0, the state of a structure at rest, and samples is 2: a load from rest to where the period
+/// begins. States should be of similar size, for they count as returned together.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_force_call {
+    /// Bytes of this struct as the library knows it.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: i32,
+    /// Angular frequency of the period. States may need it as their time step 2 pi / (omega *
+    /// samples); the force must not depend on it in any other way.
+    pub omega: f64,
+    /// Samples N over the period.
+    pub samples: i64,
+    /// Degrees of freedom n of the force.
+    pub n: i64,
+    /// Internal states s.
+    pub states: i64,
+    /// In: their motions, N x n.
+    pub u: *const f64,
+    /// In: their velocities du/dt, N x n; NULL unless uses_velocity.
+    pub v: *const f64,
+    /// In: states before sample 0, s numbers; NULL without states, like all that follows with a z.
+    pub z0: *const f64,
+    /// Out: forces f of M x'' + C x' + K x + f = f_ex, N x n.
+    pub f: *mut f64,
+    /// Out: d f / d u at the same time, at given z: N x n x n.
+    pub df_du: *mut f64,
+    /// Out: d f / d v, likewise: N x n x n; NULL unless uses_velocity.
+    pub df_dv: *mut f64,
+    /// Out: states, N x s.
+    pub z: *mut f64,
+    /// Out: d z_j / d z_(j-1), N x s x s.
+    pub dz_dz: *mut f64,
+    /// Out: d z_j / d u_(j-1), N x s x n.
+    pub dz_du_before: *mut f64,
+    /// Out: d z_j / d u_j, N x s x n.
+    pub dz_du: *mut f64,
+    /// Out: d z_j / d v_(j-1), N x s x n; NULL unless uses_velocity.
+    pub dz_dv_before: *mut f64,
+    /// Out: d z_j / d v_j, N x s x n; NULL unless uses_velocity.
+    pub dz_dv: *mut f64,
+    /// Out: d z_j / d omega, where the time step enters: N x s.
+    pub dz_domega: *mut f64,
+    /// Out: d f_j / d z_j, N x n x s.
+    pub df_dz: *mut f64,
+}
+
+/// A force of the caller. Returns 0 when done. A number above 0 says that it cannot at this motion: the
+/// solver tries shorter steps, and stops where the smallest does not help. One below 0 stops it at
+/// once. Where a branch stops so, its points are kept (HBVIB_STOPPED_CALLBACK); without any the status
+/// is HBVIB_E_CALLBACK; hbvib_last_error has the number. NaN and infinity in what was written count as
+/// a number above 0. The motions themselves are always finite.
+///
+/// The same motion must always give the same force. It may be called by every thread that uses the
+/// model, or a branch of it. It may call the library, but not change or free a handle in use
+/// (HBVIB_E_BUSY), and must not throw or longjmp. The cancel flag is looked at between calls.
+pub type hbvib_force_fn = Option<unsafe extern "C-unwind" fn(user: *mut c_void, call: *const hbvib_force_call) -> i32>;
+
+/// A force of the caller on some degrees of freedom. Fill it by hbvib_user_force_init, then set dofs, n
+/// and force at least.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_user_force {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// 1: the force depends on velocities; 0 (default): it does not.
+    pub uses_velocity: i32,
+    /// 1: f(-u, -v) = -f(u, v), states turning with them: even harmonics may then be left out;
+    /// 0 (default): they are carried.
+    pub is_odd: i32,
+    /// Must be 0.
+    pub reserved: i32,
+    /// Degrees of freedom on which it acts, each against the ground.
+    pub dofs: *const i64,
+    /// Their number, at least 1.
+    pub n: i64,
+    /// Internal states; 0 (default): the force at a time follows from the motion at that time alone.
+    pub states: i64,
+    /// Samples per period, more than twice the highest harmonic; 0 (default): those of the solver
+    /// options, or automatic: at least 64, with states 256.
+    pub samples: i64,
+    /// The callback.
+    pub force: hbvib_force_fn,
+    /// Passed to the callback.
+    pub user: *mut c_void,
+}
+
+/// Derivatives that a force callback writes.
+#[repr(C)]
+pub enum hbvib_tangent {
+    /// df_du
+    HBVIB_DF_DU = 0,
+    /// df_dv
+    HBVIB_DF_DV = 1,
+    /// df_dz
+    HBVIB_DF_DZ = 2,
+    /// dz_dz
+    HBVIB_DZ_DZ = 3,
+    /// dz_du_before
+    HBVIB_DZ_DU_BEFORE = 4,
+    /// dz_du
+    HBVIB_DZ_DU = 5,
+    /// dz_dv_before
+    HBVIB_DZ_DV_BEFORE = 6,
+    /// dz_dv
+    HBVIB_DZ_DV = 7,
+    /// dz_domega
+    HBVIB_DZ_DOMEGA = 8,
+}
+
+/// The derivative that lies farthest from its difference quotient. Fill it by hbvib_jacobian_gap_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_jacobian_gap {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// HBVIB_DF_DU and so on (enum hbvib_tangent).
+    pub tangent: i32,
+    /// |given - difference| times the size of what was moved, relative to the size of what it moves:
+    /// below 1e-6 for right derivatives of a smooth force, 2 for a wrong sign.
+    pub gap: f64,
+    /// Sample of the test motion.
+    pub sample: i64,
+    /// Row of the entry.
+    pub row: i64,
+    /// Its column; for HBVIB_DF_DZ the state that was moved before the step.
+    pub column: i64,
+    /// What the callback wrote; for HBVIB_DF_DZ the change of force that follows.
+    pub given: f64,
+    /// What differences of the callback's own f and z give.
+    pub difference: f64,
+}
+
+unsafe impl Described for hbvib_user_force {
+    const NAME: &'static str = "hbvib_user_force";
+    const FIRST: usize = 64;
+
+    fn filled() -> Self {
+        Self {
+            struct_size: 0,
+            uses_velocity: 0,
+            is_odd: 0,
+            reserved: 0,
+            dofs: ptr::null(),
+            n: 0,
+            states: 0,
+            samples: 0,
+            force: None,
+            user: ptr::null_mut(),
+        }
+    }
+}
+
+unsafe impl Described for hbvib_jacobian_gap {
+    const NAME: &'static str = "hbvib_jacobian_gap";
+    const FIRST: usize = 56;
+
+    fn filled() -> Self {
+        Self {
+            struct_size: 0,
+            tangent: 0,
+            gap: 0.0,
+            sample: 0,
+            row: 0,
+            column: 0,
+            given: 0.0,
+            difference: 0.0,
+        }
+    }
+}
+
+/// The callback with its pointer.
+struct Host {
+    force: unsafe extern "C-unwind" fn(*mut c_void, *const hbvib_force_call) -> i32,
+    user: *mut c_void,
+}
+
+// The caller was told that any thread which uses the model may call.
+unsafe impl Send for Host {}
+unsafe impl Sync for Host {}
+
+fn input_of(values: &[f64]) -> *const f64 {
+    if values.is_empty() {
+        ptr::null()
+    } else {
+        values.as_ptr()
+    }
+}
+
+fn output_of(values: &mut [f64]) -> *mut f64 {
+    if values.is_empty() {
+        ptr::null_mut()
+    } else {
+        values.as_mut_ptr()
+    }
+}
+
+impl UserForce for Host {
+    fn evaluate(&self, call: &mut Call<'_>) -> i32 {
+        let states = &mut call.states;
+        let handed = hbvib_force_call {
+            struct_size: size_of::<hbvib_force_call>() as u32,
+            reserved: 0,
+            omega: call.omega,
+            samples: call.samples as i64,
+            n: call.directions as i64,
+            states: states.count as i64,
+            u: input_of(call.u),
+            v: input_of(call.v),
+            z0: input_of(states.z0),
+            f: output_of(call.f),
+            df_du: output_of(call.df_du),
+            df_dv: output_of(call.df_dv),
+            z: output_of(states.z),
+            dz_dz: output_of(states.dz_dz),
+            dz_du_before: output_of(states.dz_du_before),
+            dz_du: output_of(states.dz_du),
+            dz_dv_before: output_of(states.dz_dv_before),
+            dz_dv: output_of(states.dz_dv),
+            dz_domega: output_of(states.dz_domega),
+            df_dz: output_of(states.df_dz),
+        };
+        outside(|| unsafe { (self.force)(self.user, &raw const handed) })
+    }
+}
+
+fn flag(value: i32, name: &str) -> Result<bool> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        other => fail!(Argument, "hbvib_user_force: {name} = {other}, needs 0 or 1"),
+    }
+}
+
+/// The description as a contact; its degrees of freedom are checked against a model of `ndof`.
+unsafe fn contact(o: &hbvib_user_force, ndof: usize) -> Result<Contact> {
+    check_reserved(o.reserved, 2, "hbvib_user_force")?;
+    let Some(force) = o.force else {
+        return fail!(Null, "hbvib_user_force: force is NULL");
+    };
+    let n = count(o.n, 2, "n")?;
+    if n == 0 || n > ndof {
+        return fail!(Dimension, "hbvib_user_force: n = {n}, needs 1 .. ndof = {ndof}");
+    }
+    let mut dofs = Vec::new();
+    for (k, &dof) in unsafe { input(o.dofs, n, 2, "dofs") }?.iter().enumerate() {
+        let dof = index(dof, ndof, 2, "dof").map_err(|e| e.at(format_args!("hbvib_user_force: dofs[{k}]")))?;
+        if dofs.contains(&dof) {
+            return fail!(Argument, "hbvib_user_force: dofs[{k}] = {dof} stands there twice");
+        }
+        try_push(&mut dofs, dof, "the degrees of freedom of a force")?;
+    }
+    let host = Host { force, user: o.user };
+    let states = count(o.states, 2, "states")?;
+    if states > MOST_STATES {
+        return fail!(
+            Dimension,
+            "hbvib_user_force: states = {states}, needs 0 .. {MOST_STATES}"
+        );
+    }
+    let law = User {
+        states,
+        velocity: flag(o.uses_velocity, "uses_velocity")?,
+        odd: flag(o.is_odd, "is_odd")?,
+        ..User::new(Arc::new(host), n, count(o.samples, 2, "samples")?)?
+    };
+    Ok(Contact::over(dofs, ContactKind::User(law)))
+}
+
+/// More states than any force has are garbage in a field.
+const MOST_STATES: usize = 1 << 16;
+
+/// Fills the description of a force with zeros: dofs, n and force must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_user_force_init(o: *mut hbvib_user_force, size_of_o: usize) -> hbvib_status {
+    call(|| unsafe { init(o, size_of_o) })
+}
+
+/// Adds a force of the caller, which counts as a contact. It is not called here, but by every solve and
+/// every result of a branch that needs the force (hbvib_branch_harmonics, loops, energies): callback
+/// and `user` must outlive the model, its copies, and all branches solved from them.
+///
+/// Put what the force has of linear stiffness and damping into K and C, where it can be separated: a
+/// nonlinear mode starts from the structure without the force. A force that is not 0 at rest is a
+/// constant load: a forced response starts from its static solution, a nonlinear mode refuses it
+/// (HBVIB_E_UNSUPPORTED).
+///
+/// o   the description.
+/// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n, states, samples), HBVIB_E_ARGUMENT (flags, a
+/// degree of freedom twice), HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL (force, dofs), HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_model_add_user_force(
+    model: *mut hbvib_model,
+    o: *const hbvib_user_force,
+    id: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let o = unsafe { load(o, 2) }?;
+        if !id.is_null() {
+            check_pointer(id, 3, "id")?;
+        }
+        let contact = unsafe { contact(&o, model.ndof()) }.blame(2)?;
+        let number = model.add_contact(&contact).blame(2)?;
+        if !id.is_null() {
+            unsafe { id.write(number as i64) };
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Fills a gap with zeros.
+///
+/// gap          the struct; untouched on error.
+/// size_of_gap  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_jacobian_gap_init(gap: *mut hbvib_jacobian_gap, size_of_gap: usize) -> hbvib_status {
+    call(|| unsafe { init(gap, size_of_gap) })
+}
+
+/// Compares every derivative that a force of the caller writes with central differences of its own f and
+/// z, on a built-in motion with a mean and the harmonics 1 and 3. The status is HBVIB_OK whatever the
+/// gap: look at it. A solve with wrong derivatives ends in HBVIB_E_NO_CONVERGENCE or needs many
+/// iterations.
+///
+/// contact        number from hbvib_model_add_user_force.
+/// omega          angular frequency, > 0.
+/// amplitude      about the largest motion of each degree of freedom of the force, > 0: the motion
+///                should reach all that the force can do.
+/// amplitude_len  their number, that of the degrees of freedom.
+/// out            receives the worst entry; untouched on error.
+/// Errors: HBVIB_E_INDEX (contact), HBVIB_E_ARGUMENT (not a force of the caller, omega, amplitude),
+/// HBVIB_E_DIMENSION (amplitude_len), HBVIB_E_CALLBACK, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_check_jacobian(
+    model: *const hbvib_model,
+    contact: i64,
+    omega: f64,
+    amplitude: *const f64,
+    amplitude_len: i64,
+    out: *mut hbvib_jacobian_gap,
+) -> hbvib_status {
+    call(|| {
+        let model = read::<Model>(model, 1)?;
+        let contact = index(contact, model.contacts().len(), 2, "contact")?;
+        if !matches!(model.contacts()[contact].kind, ContactKind::User(_)) {
+            return fail!(Argument, "contact {contact} is not a force of the caller's").blame(2);
+        }
+        let len = count(amplitude_len, 5, "amplitude_len")?;
+        let amplitudes = unsafe { input(amplitude, len, 4, "amplitude") }?;
+        unsafe { check_out(out, 6) }?;
+        let found = analysis::check_jacobian(&model, contact, omega, amplitudes);
+        let gap = found.map_err(|e| blamed(e, omega))?;
+        unsafe { fill_out(out, gap.into()) };
+        Ok(Status::Ok)
+    })
+}
+
+/// The argument to blame for what only the analysis checks.
+fn blamed(e: Error, omega: f64) -> Error {
+    match e.status {
+        Status::Dimension => e.in_argument(5),
+        Status::Argument if !(omega > 0.0 && omega.is_finite()) => e.in_argument(3),
+        Status::Argument => e.in_argument(4),
+        _ => e,
+    }
+}
+
+impl From<JacobianGap> for hbvib_jacobian_gap {
+    fn from(found: JacobianGap) -> Self {
+        let tangent = match found.tangent {
+            Tangent::ForceByMotion => hbvib_tangent::HBVIB_DF_DU,
+            Tangent::ForceByVelocity => hbvib_tangent::HBVIB_DF_DV,
+            Tangent::ForceByState => hbvib_tangent::HBVIB_DF_DZ,
+            Tangent::StateByState => hbvib_tangent::HBVIB_DZ_DZ,
+            Tangent::StateByMotionBefore => hbvib_tangent::HBVIB_DZ_DU_BEFORE,
+            Tangent::StateByMotion => hbvib_tangent::HBVIB_DZ_DU,
+            Tangent::StateByVelocityBefore => hbvib_tangent::HBVIB_DZ_DV_BEFORE,
+            Tangent::StateByVelocity => hbvib_tangent::HBVIB_DZ_DV,
+            Tangent::StateByFrequency => hbvib_tangent::HBVIB_DZ_DOMEGA,
+        };
+        Self {
+            struct_size: 0,
+            tangent: tangent as i32,
+            gap: found.gap,
+            sample: found.sample as i64,
+            row: found.row as i64,
+            column: found.column as i64,
+            given: found.given,
+            difference: found.difference,
+        }
+    }
+}
