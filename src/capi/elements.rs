@@ -121,7 +121,7 @@ pub unsafe extern "C" fn hbvib_model_add_table(
 }
 
 /// Adds a spring and a damper of polynomial form between two degrees of freedom:
-/// f = sum spring[k] y^(k+1) + sum damper[k] v^(k+1), k = 0, 1, ..., with y = x_a - x_b and v = y'.
+/// `f = sum spring[k] y^(k+1) + sum damper[k] v^(k+1)`, k = 0, 1, ..., with y = x_a - x_b and v = y'.
 /// Harmonic balance of it is exact.
 ///
 /// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
@@ -175,8 +175,8 @@ pub unsafe extern "C" fn hbvib_model_add_spring_damper(
 
 /// Adds springs and dampers of polynomial form over the motions x_j of several degrees of freedom over
 /// the ground and their velocities v_j: term t adds
-/// coefficient[t] * product of x_j^x_powers[t][j] * product of v_j^v_powers[t][j]
-/// to the force on degree of freedom dofs[direction[t]]. Harmonic balance of it is exact.
+/// `coefficient[t] * product of x_j^x_powers[t][j] * product of v_j^v_powers[t][j]`
+/// to the force on degree of freedom `dofs[direction[t]]`. Harmonic balance of it is exact.
 ///
 /// dofs         degrees of freedom from 0, each once; n_dofs numbers.
 /// n_dofs       their number, >= 1.
@@ -270,8 +270,9 @@ unsafe fn powers((p, argument): (*const i32, i32), (terms, d): (usize, usize), n
 }
 
 /// Adds the quadratic and cubic stiffness of a reduced structure, over the motions of degrees of
-/// freedom over the ground: f_i = sum quadratic[i][j][k] x_j x_k + sum cubic[i][j][k][l] x_j x_k x_l
-/// on degree of freedom dofs[i]. The linear stiffness is that of the model. Nothing is taken for
+/// freedom over the ground:
+/// `f_i = sum quadratic[i][j][k] x_j x_k + sum cubic[i][j][k][l] x_j x_k x_l`
+/// on degree of freedom `dofs[i]`. The linear stiffness is that of the model. Nothing is taken for
 /// symmetric. Harmonic balance of it is exact.
 ///
 /// dofs       degrees of freedom from 0, each once; n numbers.
