@@ -4,15 +4,13 @@
 //!
 //! M ẍ + (C − 2DωM) ẋ + K x + f(x) = 0, or −ζK ẋ with D = ζω/2. With x = a·x̂ unknown are the
 //! packed relative motions ŷ, the frequency ω and the damping ratio D; the parameter is log₁₀ a.
-//! A law sees the amplitude by scaling alone, f̂(ŷ) = f(a ŷ)/a, which is [`Law::eased`] by 1/a;
+//! A law sees the amplitude by scaling alone, f̂(ŷ) = f(a ŷ)/a, which is [`ContactForces::ease`] by 1/a;
 //! hence ∂f̂/∂log₁₀a = −ln 10·∂f̂/∂ln s.
 //!
 //! > R = ŷ_h − W x̂_h,  x̂_h = −Z_h(ω, D)⁻¹ Wᴴ (f̂_h − κ ŷ_h),
 //! > L²·x̂₁ᴴ B x̂₁ − 1,  Im x̂₁[reference]/scale
 //!
 //! with B = M, or rᴴr where a contact measures the amplitude.
-//!
-//! [`Law::eased`]: crate::contact::Law::eased
 
 use super::contact_forces::ContactForces;
 use super::{Linearisation, Problem, Start, put};
