@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 16] = [
+const SOURCES: [&str; 17] = [
     "types",
     "boundary",
     "matrix",
@@ -13,6 +13,7 @@ const SOURCES: [&str; 16] = [
     "contact",
     "tables",
     "user_force",
+    "jacobian",
     "solve",
     "mode",
     "results",
