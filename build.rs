@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The files with exported items, in the order of the header.
-const SOURCES: [&str; 17] = [
+const SOURCES: &[&str] = &[
     "types",
     "boundary",
     "matrix",
@@ -14,6 +14,8 @@ const SOURCES: [&str; 17] = [
     "tables",
     "user_force",
     "jacobian",
+    "elements",
+    "patch",
     "solve",
     "mode",
     "results",
@@ -23,6 +25,7 @@ const SOURCES: [&str; 17] = [
     "mode_results",
     "synthesis",
     "residual",
+    "time",
 ];
 
 fn main() {

@@ -143,11 +143,21 @@ typedef enum {
   /// Elastic Coulomb friction with constant normal load in one direction: a spring kt in series
   /// with a slider of limit mu * preload.
   HBVIB_JENKINS = 1,
+  /// Elastic Coulomb friction in one tangential direction, t1, under the normal load
+  /// N = max(preload + kn * (closing - gap), 0), closing = x_b - x_a along n: a spring kt in series
+  /// with a slider of limit mu * N. N pushes the sides apart; where it is 0 the contact is open.
+  HBVIB_FRICTION_2D = 2,
+  /// The same in the plane of t1 and t2, where slip goes along the force. Without a degree of freedom
+  /// along n the load is the preload.
+  HBVIB_FRICTION_3D = 3,
   /// Spring along the normal that opens: it pushes the sides apart with
   /// N = max(preload + kn * (closing - gap), 0), where closing = x_b - x_a along n.
   HBVIB_UNILATERAL = 4,
   /// Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
   HBVIB_CUBIC = 5,
+  /// Friction with Coulomb's jump smoothed, in one direction:
+  /// f = mu * preload * tanh(y' / velocity).
+  HBVIB_REGULARISED = 6,
 } hbvib_contact_kind;
 
 /// Special degrees of freedom.
@@ -160,14 +170,15 @@ typedef enum {
 typedef enum {
   /// Without force.
   HBVIB_CONTACTS_FREE = 0,
-  /// Linear springs, as at small motion: kt, or kn where HBVIB_UNILATERAL presses at rest.
+  /// Linear springs, as at small motion: kt of contacts that stick and kn of those that press at
+  /// rest, the slopes of tables and polynomials; HBVIB_REGULARISED has none.
   HBVIB_CONTACTS_STUCK = 1,
 } hbvib_contact_state;
 
 /// What a contact does at one time.
 typedef enum {
-  /// It sticks, or presses. Cubic springs, contacts that never slip and those without force are
-  /// always here.
+  /// It sticks, or presses. Contacts that never slip, those without force and laws without states
+  /// (springs but HBVIB_UNILATERAL) are always here.
   HBVIB_STATE_STICK = 0,
   /// It slips: the force is at the slip limit.
   HBVIB_STATE_SLIP = 1,
@@ -216,7 +227,8 @@ typedef enum {
   HBVIB_NEWTON_ITERATIONS = 6,
   /// Highest harmonic number carried.
   HBVIB_HARMONICS_USED = 8,
-  /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
+  /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
+  /// slip, so that springs have 0, HBVIB_UNILATERAL among them.
   HBVIB_SLIP_FRACTION = 9,
   /// Nonlinear modes only: log10 of the amplitude, the parameter.
   HBVIB_LOG10_AMPLITUDE = 10,
@@ -227,6 +239,10 @@ typedef enum {
   /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
   /// of the point before; 1 for the first.
   HBVIB_MODAL_ASSURANCE = 13,
+  /// Aliasing check of laws that are sampled: relative change of their force harmonics with half the
+  /// samples (twice as many where half are too few). 0 where all laws are exact. It tells the size
+  /// of the error by sampling and is no bound of it.
+  HBVIB_SAMPLING_ERROR = 14,
 } hbvib_field;
 
 /// Artificial damping that makes the motion of a damped structure periodic, D its damping ratio.
@@ -276,6 +292,15 @@ typedef enum {
   HBVIB_LOG_DEBUG = 3,
 } hbvib_log_level;
 
+/// Ways of finding a steady state in time.
+typedef enum {
+  /// Newton's method on the map over a period, with marching where it fails. Where several solutions
+  /// coexist it may find an unstable one.
+  HBVIB_SHOOTING = 0,
+  /// Period after period until nothing changes any more.
+  HBVIB_MARCHING = 1,
+} hbvib_steady_method;
+
 /// A branch of solutions, created by hbvib_forced_response or hbvib_nonlinear_mode.
 typedef struct hbvib_branch hbvib_branch;
 
@@ -320,33 +345,41 @@ typedef struct {
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// HBVIB_JENKINS, HBVIB_UNILATERAL or HBVIB_CUBIC.
+  /// HBVIB_JENKINS .. HBVIB_REGULARISED.
   int32_t kind;
   /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND.
-  /// HBVIB_UNILATERAL acts along n, the others along t1; the places not used must be HBVIB_GROUND.
+  /// HBVIB_FRICTION_2D acts along t1 and n, HBVIB_FRICTION_3D along all three, HBVIB_UNILATERAL along
+  /// n, the others along t1; places not used must be HBVIB_GROUND. With `normal` all may be used.
   int64_t dof_a[3];
   /// Side b, likewise.
   int64_t dof_b[3];
   /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
   int64_t sector_offset;
-  /// Stiffness (tangential, at small motion), force per length, >= 0; 0 for HBVIB_UNILATERAL.
+  /// Tangential stiffness of HBVIB_JENKINS, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D, stiffness of
+  /// HBVIB_CUBIC at small motion, force per length, >= 0; 0 for HBVIB_UNILATERAL and
+  /// HBVIB_REGULARISED.
   double kt;
-  /// Normal stiffness of HBVIB_UNILATERAL, >= 0; 0 for others.
+  /// Normal stiffness, force per length, >= 0, of HBVIB_UNILATERAL; > 0 of HBVIB_FRICTION_2D and
+  /// HBVIB_FRICTION_3D, but 0 under a constant load; 0 for others.
   double kn;
-  /// Friction coefficient of HBVIB_JENKINS, >= 0; 0 for others.
+  /// Friction coefficient, >= 0; 0 for HBVIB_UNILATERAL and HBVIB_CUBIC.
   double mu;
-  /// Normal load at rest, force, >= 0; of HBVIB_JENKINS, where infinite sticks for ever, and of
-  /// HBVIB_UNILATERAL; 0 for others.
+  /// Normal load at rest where `gap` is 0, force, >= 0, finite but for HBVIB_JENKINS, where infinite
+  /// sticks for ever; 0 for HBVIB_CUBIC.
   double preload;
-  /// Closing at which HBVIB_UNILATERAL without preload begins to press, any sign: a negative one
-  /// presses at rest. 0 for others.
+  /// Closing at which HBVIB_UNILATERAL, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D of a load that
+  /// varies begin to press if they have no preload, any sign: a negative one presses at rest. 0 for
+  /// others.
   double gap;
   /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
   double cubic;
+  /// Velocity at which HBVIB_REGULARISED has 76 % (tanh 1) of its slip limit, > 0; 0 for others.
+  double velocity;
   /// Direction n in the axes of the three degrees of freedom of each side, of any length. Zero, with
   /// `tangent`: the degrees of freedom lie along t1, t2 and n themselves.
   double normal[3];
-  /// Direction t1, orthogonal to `normal`; zero: any in the plane. t2 is n x t1.
+  /// Direction t1, orthogonal to `normal`, of any length; t2 is n x t1. Zero: any in the plane, for
+  /// HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
   double tangent[3];
 } hbvib_contact;
 
@@ -476,8 +509,9 @@ typedef struct {
   int64_t harmonics;
   /// Cap on H where the tolerance decides.
   int64_t max_harmonics;
-  /// 0: stick-slip events are located exactly; else samples per period, at least 2H + 1. Laws
-  /// without events (HBVIB_CUBIC) are exact either way.
+  /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
+  /// HBVIB_CUBIC and polynomials are exact either way; HBVIB_FRICTION_3D and HBVIB_REGULARISED
+  /// have samples always, 0: a number by H.
   int64_t samples;
   /// First arc-length step in scaled unknowns; 0 = automatic.
   double step;
@@ -682,31 +716,39 @@ typedef struct {
   double friction_loss;
 } hbvib_energy;
 
-/// Numbers of one contact over one period, in the caller's units, exact for the motion of the point.
-/// Fill it by hbvib_contact_summary_init.
+/// Numbers of one contact over one period, in the caller's units. Ranges are exact for the motion of the
+/// point, and so is all of HBVIB_JENKINS, HBVIB_CUBIC and HBVIB_UNILATERAL; shares and work of laws
+/// that are sampled are as good as the samples of the branch. Fill it by hbvib_contact_summary_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
   /// 0.
   int32_t reserved;
-  /// Work per cycle that the contact takes from the motion; exactly 0 unless it slips. The sum
-  /// over all contacts is the friction_loss of hbvib_energy, up to the error of sampling where the
-  /// branch was solved with samples.
+  /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for
+  /// friction that does not slip and for springs of one motion. The sum over all contacts is the
+  /// friction_loss of hbvib_energy, up to the error of sampling where the branch was solved with samples.
   double work;
-  /// Share of the period that it slips, 0 to 1.
+  /// Share of the period that it slips, 0 to 1; time that it is open does not count.
   double slip_share;
   /// Share of the period that it is open, 0 to 1.
   double open_share;
-  /// Half the range of the relative motion, (max - min) / 2.
+  /// Half the range of the relative motion in the first direction, (max - min) / 2.
   double half_range;
-  /// Smallest relative motion, side a minus side b.
+  /// Smallest relative motion in the first direction, side a minus side b.
   double motion_min;
-  /// Largest relative motion.
+  /// Largest relative motion in the first direction.
   double motion_max;
-  /// Smallest normal load. HBVIB_JENKINS has the preload, infinite included; HBVIB_CUBIC has none: 0.
+  /// Smallest normal load. Under a constant load that load: HBVIB_JENKINS has the preload, infinite
+  /// included. Springs that cannot open have none: 0.
   double load_min;
   /// Largest normal load.
   double load_max;
+  /// Number of directions of the contact, in the order t1, t2, n of those in which it acts.
+  int64_t directions;
+  /// Smallest relative motions, direction by direction, of up to three; 0 beyond `directions`.
+  double all_min[3];
+  /// Largest relative motions likewise.
+  double all_max[3];
 } hbvib_contact_summary;
 
 /// Numbers of one point of a nonlinear mode, in the caller's units; energies are of one sector. Fill
@@ -774,6 +816,48 @@ typedef struct {
   /// Damping ratio that is added to the mode's, between -1 and 1.
   double damping_ratio;
 } hbvib_synthesis_options;
+
+/// Options of hbvib_time_response. Fill it by hbvib_time_options_init, then set omega.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_SHOOTING or HBVIB_MARCHING.
+  int32_t method;
+  /// Angular frequency of harmonic 1, > 0, rad per time unit.
+  double omega;
+  /// Highest harmonic that is given out; it does not touch the accuracy of the others.
+  int64_t harmonics;
+  /// Equidistant times per period at which the motion is given out; 0: none.
+  int64_t samples;
+  /// Largest change over a period, relative to the largest displacement and velocity, of a steady
+  /// state; also the local error of a step where a law is smooth (HBVIB_CUBIC).
+  double tolerance;
+  /// Cap on the periods that are integrated.
+  int64_t max_periods;
+  /// Motion to start from, complex (H + 1) x ndof of any H, harmonic after harmonic, such as a point
+  /// of a branch; or NULL: rest.
+  const double *start;
+  /// Complex numbers in start.
+  int64_t start_len;
+} hbvib_time_options;
+
+/// What is known of a periodic response in time. Fill it by hbvib_time_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 0.
+  int32_t reserved;
+  /// 2 pi / omega.
+  double period;
+  /// Largest change over a period, relative to the largest displacement and velocity; infinite where
+  /// the caller stopped before the first was over.
+  double residual;
+  /// Periods that were integrated.
+  int64_t periods;
+  /// Changes between stick, slip, open and closed in one period, all contacts of the (sector's)
+  /// model together.
+  int64_t events;
+} hbvib_time_info;
 
 #ifdef __cplusplus
 extern "C" {
@@ -958,9 +1042,15 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
                                 double *shapes);
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
-/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of
-/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, kn, gap or preload, and the third places of dof_a and
-/// dof_b.
+/// Then set kind, the degrees of freedom and the constants of the kind:
+/// HBVIB_JENKINS      first places of dof_a and dof_b; kt, mu, preload;
+/// HBVIB_FRICTION_2D  first and third places; kt, kn, mu, preload or gap;
+/// HBVIB_FRICTION_3D  all places; kt, kn, mu, preload or gap; under a constant load the first and
+///                    second places; kt, mu, preload;
+/// HBVIB_UNILATERAL   third places; kn, gap or preload;
+/// HBVIB_CUBIC        first places; kt, cubic;
+/// HBVIB_REGULARISED  first places; mu, preload, velocity.
+/// With normal (and tangent), whatever the kind, all places of a node that moves in three directions.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
@@ -972,29 +1062,35 @@ hbvib_status hbvib_contact_init(hbvib_contact *c,
 ///
 /// c   the description.
 /// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.
-/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (kind, constants out of range, both
-/// sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (kind, constants out of range, normal and
+/// tangent that are no directions at a right angle, both sides the same, a degree of freedom twice on
+/// one side, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
-hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c, int64_t *id);
+hbvib_status hbvib_model_add_contact(hbvib_model *model,
+                                     const hbvib_contact *c,
+                                     int64_t *id);
 
-/// Changes the normal load of a contact. An HBVIB_CUBIC has none, which is HBVIB_E_ARGUMENT.
+/// Changes the normal load of a contact. HBVIB_CUBIC, tables and polynomials have none, which is
+/// HBVIB_E_ARGUMENT.
 ///
-/// id       number from hbvib_model_add_contact.
-/// preload  force, >= 0; infinite sticks for ever.
+/// id       number from hbvib_model_add_contact, or of another function that adds contacts.
+/// preload  force, >= 0; infinite, of HBVIB_JENKINS alone, sticks for ever.
 /// Errors: HBVIB_E_INDEX (id), HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: one at a time per model.
 hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double preload);
 
 /// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
-/// it has become periodic, and its Jacobian. Degrees of freedom in the description are not looked
-/// at. d is the number of motions of the law, in the order t1, t2, n: 1 for HBVIB_JENKINS,
-/// HBVIB_UNILATERAL and HBVIB_CUBIC.
+/// it has become periodic, and its Jacobian. Degrees of freedom and directions in the description are
+/// not looked at. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D, d = 2;
+/// t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load, which kn = 0
+/// states, d = 2; n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. A law without events (HBVIB_CUBIC) is exact either way.
+///             least 2H + 1. HBVIB_CUBIC is exact either way; HBVIB_FRICTION_3D and
+///             HBVIB_REGULARISED have samples always, 0: a number by H.
 /// omega       angular frequency, >= 0; matters to laws that know velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.
@@ -1134,6 +1230,136 @@ hbvib_status hbvib_check_jacobian(const hbvib_model *model,
                                   const double *amplitude,
                                   int64_t amplitude_len,
                                   hbvib_jacobian_gap *out);
+
+/// Adds a spring whose force is given by a table, f = f(y), y = x_a - x_b: straight between the points
+/// and beyond them along the first and the last of these lines. Its Fourier integrals are exact.
+///
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
+/// sector_offset  sector of side b counted from that of side a; 0 in plain models.
+/// n              number of points, >= 2.
+/// displacement   y of the points, ascending, no two of them equal; n numbers.
+/// force          f of the points; n numbers. A table whose force at y = 0 is not 0 loads the
+///                structure at rest.
+/// id             receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (points that are not
+/// sorted, both sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE,
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_table(hbvib_model *model,
+                                   int64_t dof_a,
+                                   int64_t dof_b,
+                                   int64_t sector_offset,
+                                   int64_t n,
+                                   const double *displacement,
+                                   const double *force,
+                                   int64_t *id);
+
+/// Adds a spring and a damper of polynomial form between two degrees of freedom:
+/// `f = sum spring[k] y^(k+1) + sum damper[k] v^(k+1)`, k = 0, 1, ..., with y = x_a - x_b and v = y'.
+/// Harmonic balance of it is exact.
+///
+/// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
+/// sector_offset  sector of side b counted from that of side a; 0 in plain models.
+/// n_spring       number of stiffness coefficients, 0 .. 15.
+/// spring         coefficients of y, y^2, ..., of any sign; NULL if there are none.
+/// n_damper       number of damping coefficients, 0 .. 15; not 0 if n_spring is.
+/// damper         coefficients of v, v^2, ..., of any sign; NULL if there are none.
+/// id             receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n_spring, n_damper), HBVIB_E_ARGUMENT
+/// (both sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_spring_damper(hbvib_model *model,
+                                           int64_t dof_a,
+                                           int64_t dof_b,
+                                           int64_t sector_offset,
+                                           int64_t n_spring,
+                                           const double *spring,
+                                           int64_t n_damper,
+                                           const double *damper,
+                                           int64_t *id);
+
+/// Adds springs and dampers of polynomial form over the motions x_j of several degrees of freedom over
+/// the ground and their velocities v_j: term t adds
+/// `coefficient[t] * product of x_j^x_powers[t][j] * product of v_j^v_powers[t][j]`
+/// to the force on degree of freedom `dofs[direction[t]]`. Harmonic balance of it is exact.
+///
+/// dofs         degrees of freedom from 0, each once; n_dofs numbers.
+/// n_dofs       their number, >= 1.
+/// n_terms      number of terms, >= 1.
+/// direction    place in dofs of the force that a term adds to, from 0; n_terms numbers.
+/// coefficient  of any sign; n_terms numbers.
+/// x_powers     exponents of the motions, 0 .. 15, n_terms x n_dofs, term after term; NULL: all 0.
+/// v_powers     exponents of the velocities, likewise; NULL: all 0. No term may have exponents 0 alone.
+/// id           receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dofs, direction), HBVIB_E_DIMENSION (n_dofs, n_terms), HBVIB_E_ARGUMENT
+/// (exponents, a degree of freedom twice), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_polynomial(hbvib_model *model,
+                                        const int64_t *dofs,
+                                        int64_t n_dofs,
+                                        int64_t n_terms,
+                                        const int64_t *direction,
+                                        const double *coefficient,
+                                        const int32_t *x_powers,
+                                        const int32_t *v_powers,
+                                        int64_t *id);
+
+/// Adds the quadratic and cubic stiffness of a reduced structure, over the motions of degrees of
+/// freedom over the ground:
+/// `f_i = sum quadratic[i][j][k] x_j x_k + sum cubic[i][j][k][l] x_j x_k x_l`
+/// on degree of freedom `dofs[i]`. The linear stiffness is that of the model. Nothing is taken for
+/// symmetric. Harmonic balance of it is exact.
+///
+/// dofs       degrees of freedom from 0, each once; n numbers.
+/// n          their number, >= 1.
+/// quadratic  n^3 numbers, the last index running fastest, or NULL.
+/// cubic      n^4 numbers, likewise, or NULL. Not both may be NULL.
+/// id         receives the number of the contact, from 0; may be NULL; untouched on error.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (a degree of freedom twice),
+/// HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_stiffness_tensors(hbvib_model *model,
+                                               const int64_t *dofs,
+                                               int64_t n,
+                                               const double *quadratic,
+                                               const double *cubic,
+                                               int64_t *id);
+
+/// Adds a contact patch: n node pairs of two surfaces, each with the share of area that it stands for,
+/// as n contacts. All of them are checked before any is added.
+///
+/// law       the law per unit of area: kt and kn are force per length and area, cubic is force per
+///           length^3 and area, preload is a pressure. Its sector_offset is that of all pairs; its
+///           degrees of freedom, normal and tangent are not looked at. Fill it by hbvib_contact_init.
+/// n         number of pairs, >= 0.
+/// dof_a     degrees of freedom of the nodes on side a along three orthogonal axes, 3 n numbers, node
+///           after node; HBVIB_GROUND does not move.
+/// dof_b     the same on side b; NULL: the ground.
+/// normal    directions n in these axes, of any length, 3 n numbers. Closing is x_b - x_a along n, so
+///           that n points from side b to side a.
+/// tangent   directions t1, orthogonal to n, of any length, 3 n numbers; NULL: any in the plane, for
+///           HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
+/// area      >= 0; n numbers.
+/// pressure  pressure at rest, >= 0, n numbers; NULL: preload of the law.
+/// gap       closing at which a pair without pressure begins to press, any sign, n numbers; NULL: gap
+///           of the law.
+/// first_id  receives the number of the first contact, the others follow; may be NULL; untouched on
+///           error.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (law, directions,
+/// area, pressure, both sides the same, a degree of freedom twice on one side), HBVIB_E_NOT_FINITE,
+/// naming the entry; HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+hbvib_status hbvib_model_add_patch(hbvib_model *model,
+                                   const hbvib_contact *law,
+                                   int64_t n,
+                                   const int64_t *dof_a,
+                                   const int64_t *dof_b,
+                                   const double *normal,
+                                   const double *tangent,
+                                   const double *area,
+                                   const double *pressure,
+                                   const double *gap,
+                                   int64_t *first_id);
 
 /// Fills solver options with their defaults: harmonics = 9, exact events, automatic steps.
 ///
@@ -1376,25 +1602,32 @@ hbvib_status hbvib_branch_time_history(const hbvib_branch *branch,
                                        int64_t n,
                                        double *x);
 
-/// Hysteresis loop of a contact over one period of the fundamental at a stored point: entry j at
-/// omega t = 2 pi j / n. The force is that of this contact alone and not cut off at harmonic H: the
-/// law at the motion of the point, its events located exactly (with samples, too). A cyclic model
-/// tells of sector 0. A contact that is linear at any motion has its linear force and sticks; the
-/// motion of the whole structure is recovered for it.
+/// Hysteresis loop of a contact in one of its directions over one period of the fundamental at a stored
+/// point: entry j at omega t = 2 pi j / n. The force is that of this contact alone and not cut off at
+/// harmonic H: the law at the motion of the point. Laws with events (HBVIB_JENKINS, HBVIB_UNILATERAL)
+/// have them located exactly, where the branch was solved with samples, too; friction in a plane is
+/// marched over a multiple of n samples, and a law of the host is called with the n times. A
+/// cyclic model tells of sector 0. A contact that is linear at any motion has its linear force and
+/// sticks; the motion of the whole structure is recovered for it.
 ///
-/// point    number of a point of the curve, or of a peak, fold or solution wanted.
-/// contact  number from hbvib_model_add_contact.
-/// n        number of times, 1 .. 2^24.
-/// motion   receives n relative motions, side a minus side b, or NULL.
-/// force    receives n forces f, which stand in the row of side a as + f and in that of side b as
-///          - f, or NULL.
-/// state    receives n states, HBVIB_STATE_STICK and so on, or NULL. Not all three may be NULL.
-/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact), HBVIB_E_DIMENSION (n),
-/// HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY.
+/// point      number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact    number from hbvib_model_add_contact.
+/// direction  one of the directions of the contact from 0, in the order t1, t2, n of those in which it
+///            acts: 0 for laws of one direction. hbvib_contact_summary tells their number.
+/// n          number of times, 1 .. 2^24.
+/// motion     receives n relative motions, side a minus side b, or NULL.
+/// force      receives n forces f, which stand in the row of side a as + f and in that of side b as
+///            - f, or NULL. Along the normal f is minus the normal load.
+/// state      receives n states of the contact, HBVIB_STATE_STICK and so on, the same for all its
+///            directions, or NULL. Not all three may be NULL.
+/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact, direction), HBVIB_E_DIMENSION
+/// (n), HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY,
+/// HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE.
 /// Threads: any number on one branch.
 hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
                                        int64_t point,
                                        int64_t contact,
+                                       int64_t direction,
                                        int64_t n,
                                        double *motion,
                                        double *force,
@@ -1406,7 +1639,7 @@ hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
 /// contact  number from hbvib_model_add_contact.
 /// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
-/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+/// HBVIB_E_OUT_OF_MEMORY, HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE. Threads: any number on one branch.
 hbvib_status hbvib_branch_contact_summary(const hbvib_branch *branch,
                                           int64_t point,
                                           int64_t contact,
@@ -1534,6 +1767,51 @@ hbvib_status hbvib_forced_residual(const hbvib_model *model,
                                    int64_t jac_len,
                                    double *d_omega,
                                    int64_t d_omega_len);
+
+/// Fills the options of a response in time with their defaults: shooting from rest, harmonics = 9,
+/// tolerance = 1e-11; omega must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_time_options_init(hbvib_time_options *o, size_t size_of_o);
+
+/// Fills what is known of a response in time with zeros.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_time_info_init(hbvib_time_info *i, size_t size_of_i);
+
+/// Finds the periodic response of a model to its forces at one angular frequency by integration in
+/// time from event to event: exact to rounding where contacts are linear between events, by adaptive
+/// implicit steps where a law is smooth. Nothing is truncated, so that this is what harmonic balance
+/// tends to as its harmonics grow: a check of any of its points. A cyclic model moves in the wave of
+/// its engine order. The progress hook is called after each period integrated (in a wave after each
+/// part of it), with the largest displacement as amplitude.
+///
+/// options        set omega; give a point of a branch as start to check that very solution.
+/// hooks          progress, log and cancellation; NULL: none.
+/// harmonics      receives (harmonics + 1) x ndof complex numbers, harmonic after harmonic; or NULL.
+/// harmonics_len  complex numbers in it; 0 with NULL.
+/// samples        receives samples x ndof displacements, time after time from t = 0; or NULL.
+/// samples_len    doubles in it; 0 with NULL.
+/// info           receives what is known of the response; fill it by hbvib_time_info_init before; or
+///                NULL.
+/// HBVIB_STOPPED_BY_CALLER: the results are those of the last period, which is not steady.
+/// Errors: HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (options, overlapping arrays), HBVIB_E_DIMENSION (a
+/// length, with the one needed), HBVIB_E_UNSUPPORTED (a degree of freedom without mass, complex
+/// matrices), HBVIB_E_NO_CONVERGENCE (no steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion
+/// grows without end), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+hbvib_status hbvib_time_response(const hbvib_model *model,
+                                 const hbvib_time_options *options,
+                                 const hbvib_hooks *hooks,
+                                 double *harmonics,
+                                 int64_t harmonics_len,
+                                 double *samples,
+                                 int64_t samples_len,
+                                 hbvib_time_info *info);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -12,7 +12,7 @@ pub mod mode;
 mod recovery;
 
 pub use energy::Energy;
-pub use loops::{ContactLoop, ContactSummary, MOST_TIMES};
+pub use loops::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};
 pub(crate) use recovery::Recovery;
 
 /// A solution beside the curve: a peak, a fold, or one at a parameter value asked for.
@@ -46,6 +46,7 @@ pub struct Branch {
     iterations: Vec<f64>,
     harmonics_used: Vec<f64>,
     slip_fraction: Vec<f64>,
+    sampling_error: Vec<f64>,
     motion: Vec<f64>,
     response: Vec<Complex64>,
     peaks: Vec<Special>,
@@ -71,6 +72,8 @@ pub struct Record<'a> {
     pub iterations: usize,
     /// Share of the period that each law slips.
     pub slip_fractions: &'a [f64],
+    /// How much sampling matters, 0 where all laws are exact.
+    pub sampling_error: f64,
 }
 
 impl Branch {
@@ -98,6 +101,7 @@ impl Branch {
             iterations: Vec::new(),
             harmonics_used: Vec::new(),
             slip_fraction: Vec::new(),
+            sampling_error: Vec::new(),
             motion: Vec::new(),
             response: Vec::new(),
             peaks: Vec::new(),
@@ -126,6 +130,7 @@ impl Branch {
             &mut self.residual,
             &mut self.iterations,
             &mut self.harmonics_used,
+            &mut self.sampling_error,
         ] {
             v.try_reserve(1).map_err(|_| Error::out_of_memory(WHAT))?;
         }
@@ -139,6 +144,7 @@ impl Branch {
         let length = self.condensed.length();
         self.response.extend(record.response.iter().map(|x| x * length));
         self.residual.push(record.residual);
+        self.sampling_error.push(record.sampling_error);
         self.iterations.push(record.iterations as f64);
         let highest = self.condensed.set().numbers().last().copied().unwrap_or(0);
         self.harmonics_used.push(highest as f64);
@@ -244,8 +250,17 @@ impl Branch {
         &self.harmonics_used[..self.curve]
     }
 
+    /// Aliasing check of laws that are sampled, at each point: the relative change of their forces with
+    /// half the samples (twice as many, where half are too few). 0 where all laws are exact. It
+    /// tells the size of the error by sampling and is no bound of it.
+    #[must_use]
+    pub fn sampling_error(&self) -> &[f64] {
+        &self.sampling_error[..self.curve]
+    }
+
     /// Share of the period that each contact slips: points × contacts, a point after the other.
-    /// 0 is a contact that sticks throughout. Contacts without force or limit report 0.
+    /// Time that it is open is not slip: 0 is a contact that sticks or opens, and what springs,
+    /// unilateral ones among them, laws without states and contacts without force report.
     #[must_use]
     pub fn slip_fraction(&self) -> &[f64] {
         &self.slip_fraction[..self.curve * self.condensed.contacts()]

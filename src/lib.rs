@@ -8,8 +8,8 @@
 //! [`model`] (structure, contacts, excitation) → [`condense`] (relative coordinates) → [`problem`]
 //! (residual and Jacobian, with [`aft`] evaluating the [`contact`] laws) → [`continuation`]
 //! (predict, correct, accept) → [`branch`] (points, peaks, folds; [`postprocess`] makes energies of
-//! a point). [`analysis`] puts them together
-//! and [`capi`] hands them to C.
+//! a point). [`time_response`] finds the same periodic motions without harmonics, in time. [`analysis`]
+//! puts them together and [`capi`] hands them to C.
 //!
 //! Units are the caller's, consistent; angular frequencies in rad per time unit; amplitudes are
 //! peak values.
@@ -32,3 +32,4 @@ pub mod model;
 pub mod options;
 pub mod postprocess;
 pub mod problem;
+pub mod time_response;

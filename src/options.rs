@@ -1,5 +1,9 @@
 //! Options of the analyses and the one home of their defaults.
 
+mod time;
+
+pub use time::{SteadyMethod, TimeOptions};
+
 use crate::error::{Result, fail};
 use num_complex::Complex64;
 

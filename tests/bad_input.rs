@@ -148,7 +148,7 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
                     ..contact.clone()
                 },
                 Status::Index,
-                "dof_a = 4",
+                "dof_a[0] = 4",
             ),
             (
                 Contact {
@@ -156,7 +156,7 @@ fn a_refused_contact_or_force_leaves_the_model_as_it_was() {
                     ..contact.clone()
                 },
                 Status::Index,
-                "dof_b = 9",
+                "dof_b[0] = 9",
             ),
             (
                 Contact {

@@ -154,8 +154,28 @@ fn responses_are_synthesised_from_modes() {
 }
 
 #[test]
+fn responses_in_time_are_the_truth_of_the_reference() {
+    let td = &data("point_F5_208p85.json")["td"];
+    let tip = &td["X"]["1"][0];
+    let numbers = [&td["f_Hz"], &tip[0], &tip[1]];
+    silent("time", |_| {
+        numbers.iter().map(|v| number(v).to_string().into()).collect()
+    });
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
+}
+
+#[test]
+fn laws_elements_and_patches_are_those_of_closed_forms() {
+    silent("laws", |_| vec![]);
+}
+
+#[test]
+fn bad_laws_elements_and_patches_are_refused() {
+    silent("bad_laws", |_| vec![]);
 }
 
 #[test]

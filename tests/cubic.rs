@@ -138,7 +138,9 @@ fn the_offset_is_the_slope_of_the_law_as_seen_at_a_smaller_motion() {
                 let smaller: Vec<f64> = x.iter().map(|x| x / s).collect();
                 let mut found = evaluate(&*law, &set, 0, &smaller);
                 for part in [&mut found.force, &mut found.offset] {
-                    part.iter_mut().for_each(|f| *f *= s);
+                    for f in part.iter_mut() {
+                        *f *= s;
+                    }
                 }
                 found
             };

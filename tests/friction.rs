@@ -154,7 +154,7 @@ fn the_normal_force_is_that_of_a_unilateral_spring() {
             let column = &out.jacobian[(m + j) * 2 * m + m..(m + j + 1) * 2 * m];
             assert!(distance(column, &reference.jacobian[j * m..]) < 1e-13);
         }
-        assert!((out.open_fraction - reference.slip_fraction).abs() < 1e-13);
+        assert!((out.open_fraction - reference.open_fraction).abs() < 1e-13);
     }
 }
 

@@ -80,9 +80,9 @@ fn below_the_stick_limit_a_sweep_is_linear_throughout() {
     }
 }
 
-fn with_contact(case: &Blisk, contact: Contact) -> Model {
+fn with_contact(case: &Blisk, contact: &Contact) -> Model {
     let mut model = case.sector_without_contact();
-    model.add_contact(&contact).unwrap();
+    model.add_contact(contact).unwrap();
     model
 }
 
@@ -134,7 +134,7 @@ fn limits_of_the_law_are_linear_systems() {
             contact.kt,
         ),
     ] {
-        let model = with_contact(&case, contact);
+        let model = with_contact(&case, &contact);
         let found = fundamental(&model, 5, omega);
         let gap = relative_gap(&found, &linear(&case, stiffness, omega));
         println!("{name}: {gap:.1e}");
@@ -155,7 +155,7 @@ fn nearly_infinite_and_nearly_zero_limits_approach_the_linear_systems() {
     let at = |preload: f64| {
         let model = with_contact(
             &case,
-            Contact {
+            &Contact {
                 preload,
                 ..contact.clone()
             },

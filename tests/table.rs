@@ -257,11 +257,11 @@ fn units_of_length_do_not_matter_and_those_of_an_eased_law_are_smaller() {
             assert!((offset - (a - b) / (2.0 * h)).abs() < 1e-6 * largest(&here.jacobian));
         }
     }
-    // No length at all leaves the line at zero.
-    let rest = evaluate(&play().in_units(0.0), &set, &x);
+    // A tiny length leaves the line at zero.
+    let rest = evaluate(&play().in_units(1e-9), &set, &x);
     assert!(largest(&rest.force) == 0.0);
     let hard = Table::new(&[-2.0, -1.0, 1.0, 2.0], &[-5.0, -2.0, 2.0, 5.0]).unwrap();
-    let rest = evaluate(&hard.in_units(0.0), &set, &x);
+    let rest = evaluate(&hard.in_units(1e-9), &set, &x);
     let expected: Vec<f64> = x.iter().map(|x| 2.0 * x).collect();
     assert!(gap(&rest.force, &expected) < 1e-15 && rest.stuck);
 }

@@ -110,10 +110,8 @@ impl MarchedWay {
     /// Those of the law; `NoConvergence` when its states do not become periodic, `NotFinite` when they
     /// do not stay finite.
     pub fn evaluate(&mut self, law: &dyn Marched, omega: f64, motion: &[f64], out: &mut Evaluation) -> Result<()> {
-        // The law sees the period 2π/(gω) of the set.
+        let virgin = self.settle(law, omega, motion)?;
         let omega = self.base * omega;
-        self.signals.fill(omega, motion);
-        let virgin = self.find_period(law, omega)?;
         self.differentiate_start(law, omega)?;
         for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
             sums.fill(0.0);
@@ -126,6 +124,18 @@ impl MarchedWay {
         out.open_fraction = self.march.open.iter().sum::<f64>() / n;
         out.stuck = law.sticks() && virgin && out.slip_fraction == 0.0 && out.open_fraction == 0.0;
         Ok(())
+    }
+
+    /// Finds the periodic states alone, as [`Self::evaluate`] does first; [`Self::march`] then has the forces
+    /// and states. Whether the law is as it was loaded from rest.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn settle(&mut self, law: &dyn Marched, omega: f64, motion: &[f64]) -> Result<bool> {
+        // The law sees the period 2π/(gω) of the set.
+        let omega = self.base * omega;
+        self.signals.fill(omega, motion);
+        self.find_period(law, omega)
     }
 
     /// Weights the Fourier sums and forms the offset.

@@ -45,8 +45,26 @@ pub struct Evaluator {
     marched: Vec<MarchedWay>,
     /// Laws without memory, by their directions and samples.
     pointwise: Vec<PointwiseEvaluator>,
-    /// Samples asked for.
-    samples: usize,
+    sampling: Sampling,
+}
+
+/// How many samples laws are given that have no exact events.
+#[derive(Clone, Copy)]
+struct Sampling {
+    /// Samples asked for; 0 for what suits the law.
+    asked: usize,
+    /// Whether to take half of them, or twice as many where half are too few.
+    other: bool,
+}
+
+impl Sampling {
+    fn of(self, samples: usize, highest: usize) -> usize {
+        match samples / 2 {
+            _ if !self.other => samples,
+            half if half > 2 * highest => half,
+            _ => samples.saturating_mul(2),
+        }
+    }
 }
 
 /// Way of evaluating laws on one relative motion.
@@ -126,6 +144,33 @@ impl Evaluator {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        Self::with(
+            set,
+            Sampling {
+                asked: samples,
+                other: false,
+            },
+            laws,
+        )
+    }
+
+    /// The same with half as many samples, or twice as many where half are too few: what the sampling
+    /// of [`Self::new`] is checked against.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn otherwise<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        Self::with(
+            set,
+            Sampling {
+                asked: samples,
+                other: true,
+            },
+            laws,
+        )
+    }
+
+    fn with<'l>(set: &HarmonicSet, sampling: Sampling, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
         let highest = set.highest_reduced();
         let mut pointwise: Vec<PointwiseEvaluator> = Vec::new();
         let mut most_pieces = 0;
@@ -133,19 +178,18 @@ impl Evaluator {
         let mut marched: Vec<MarchedWay> = Vec::new();
         for law in laws {
             match law.form() {
-                Form::Spectral(_) => {}
                 Form::Pieces(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
                 Form::Coupled(_) if coupled.is_none() => coupled = Some(Box::new(Coupled::new(set)?)),
-                Form::Coupled(_) => {}
+                Form::Coupled(_) | Form::Spectral(_) => {}
                 Form::Marched(law) => {
-                    let wanted = law.samples(highest, samples);
+                    let wanted = sampling.of(law.samples(highest, sampling.asked), highest);
                     if !marched.iter().any(|way| way.suits(law, wanted)) {
                         let way = MarchedWay::new(set, law, wanted)?;
                         try_push(&mut marched, way, "the contact laws")?;
                     }
                 }
                 Form::Pointwise(law) => {
-                    let wanted = law.samples(highest, samples);
+                    let wanted = sampling.of(law.samples(highest, sampling.asked), highest);
                     if !pointwise.iter().any(|way| way.suits(law, wanted)) {
                         let way = PointwiseEvaluator::new(set, law, wanted)?;
                         try_push(&mut pointwise, way, "the contact laws")?;
@@ -154,16 +198,17 @@ impl Evaluator {
             }
         }
         Ok(Self {
-            scalar: if samples == 0 {
+            scalar: if sampling.asked == 0 {
                 Scalar::Exact(Box::new(exact::Exact::new(set, most_pieces)?))
             } else {
+                let samples = sampling.of(sampling.asked, highest);
                 Scalar::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
             },
             smooth: Assembly::new(set)?,
             coupled,
             marched,
             pointwise,
-            samples,
+            sampling,
         })
     }
 
@@ -200,14 +245,16 @@ impl Evaluator {
                 way.evaluate(law, set, motion, out);
             }
             (Form::Marched(law), _) => {
-                let wanted = law.samples(set.highest_reduced(), self.samples);
+                let highest = set.highest_reduced();
+                let wanted = self.sampling.of(law.samples(highest, self.sampling.asked), highest);
                 let Some(way) = self.marched.iter_mut().find(|way| way.suits(law, wanted)) else {
                     return fail!(Internal, "no memory for the march of a contact law");
                 };
                 return way.evaluate(law, omega, motion, out);
             }
             (Form::Pointwise(law), _) => {
-                let wanted = law.samples(set.highest_reduced(), self.samples);
+                let highest = set.highest_reduced();
+                let wanted = self.sampling.of(law.samples(highest, self.sampling.asked), highest);
                 let Some(way) = self.pointwise.iter_mut().find(|way| way.suits(law, wanted)) else {
                     return fail!(Internal, "no memory for the samples of a contact law");
                 };
@@ -215,6 +262,17 @@ impl Evaluator {
             }
         }
         Ok(())
+    }
+
+    /// Whether the force of `law` is wrong by its sampling.
+    #[must_use]
+    pub fn samples(&self, law: &dyn Law) -> bool {
+        match law.form() {
+            Form::Pieces(_) => self.sampling.asked > 0,
+            Form::Spectral(_) | Form::Coupled(_) => false,
+            Form::Marched(_) => true,
+            Form::Pointwise(law) => !law.is_alias_free(),
+        }
     }
 
     /// Half the range (max − min)/2 of the motion that was prepared.

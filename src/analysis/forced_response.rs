@@ -8,7 +8,7 @@ use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Metric, Point, Settings};
-use crate::error::{Result, Status, fail, try_copy, try_push, try_vec};
+use crate::error::{Error, Result, Status, fail, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::model::Model;
@@ -71,7 +71,9 @@ pub fn forced_response(
         solver.harmonics,
         response,
     );
-    let first = match start::solve(&mut problem, &settings, hooks.cancelled)? {
+    let held = reduction.held_by_contacts;
+    let start = start::solve(&mut problem, &settings, hooks.cancelled);
+    let first = match start.map_err(|e| tell_of_load(e, &condensed, held))? {
         First::Found(point) => Some(point),
         First::Cancelled => None,
     };
@@ -101,6 +103,20 @@ pub fn forced_response(
     points.finish(&ending)
 }
 
+/// Where contacts press at rest the first point comes from the static solution; says so where it fails.
+fn tell_of_load(e: Error, condensed: &Condensed, held: usize) -> Error {
+    if e.status != Status::NoConvergence || !condensed.is_preloaded() {
+        return e;
+    }
+    Error::new(
+        Status::NoConvergence,
+        format_args!(
+            "contacts press at rest, and the static solution under constant loads, or the growth of the \
+             vibrating ones from it, was not found; {held} rigid-body modes are held by contacts alone"
+        ),
+    )
+}
+
 /// Collects the points of one run.
 struct Points<'a> {
     branch: Branch,
@@ -124,8 +140,10 @@ impl Keeper for Points<'_> {
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.stalled |= point.stalled;
         self.problem.response(point.unknowns(), &mut self.response);
+        let sampling_error = self.problem.sampling_error(point.unknowns(), point.parameter())?;
+        let slips = self.problem.slip_fractions();
         self.branch
-            .push_curve(&record(point, &self.response, self.problem.slip_fractions()))
+            .push_curve(&record(point, &self.response, slips, sampling_error))
     }
 
     /// The point is solved once more at its frequency with the flexibility factorised there: along
@@ -159,6 +177,7 @@ impl Keeper for Points<'_> {
         self.problem.response(point.unknowns(), &mut self.response);
         let kept = Kept {
             kind,
+            sampling_error: self.problem.sampling_error(point.unknowns(), point.parameter())?,
             response: try_copy(&self.response, "the special points")?,
             slip_fractions: try_copy(self.problem.slip_fractions(), "the special points")?,
             point,
@@ -171,7 +190,7 @@ impl Points<'_> {
     /// Numbers the special points after the curve.
     fn finish(mut self, ending: &Ending) -> Result<Branch> {
         for kept in &self.specials {
-            let record = record(&kept.point, &kept.response, &kept.slip_fractions);
+            let record = record(&kept.point, &kept.response, &kept.slip_fractions, kept.sampling_error);
             self.branch.push_special(kept.kind, &record)?;
         }
         self.branch.set_ending(ending.status, ending.reason, self.stalled);
@@ -185,9 +204,15 @@ struct Kept {
     point: Point,
     response: Vec<Complex64>,
     slip_fractions: Vec<f64>,
+    sampling_error: f64,
 }
 
-fn record<'a>(point: &'a Point, response: &'a [Complex64], slip_fractions: &'a [f64]) -> Record<'a> {
+fn record<'a>(
+    point: &'a Point,
+    response: &'a [Complex64],
+    slip_fractions: &'a [f64],
+    sampling_error: f64,
+) -> Record<'a> {
     Record {
         omega: point.parameter(),
         motion: point.unknowns(),
@@ -196,6 +221,7 @@ fn record<'a>(point: &'a Point, response: &'a [Complex64], slip_fractions: &'a [
         residual: point.residual,
         iterations: point.iterations,
         slip_fractions,
+        sampling_error,
     }
 }
 

@@ -7,9 +7,11 @@ pub mod harmonic_residual;
 mod mode_points;
 pub mod nonlinear_mode;
 pub mod synthesis;
+pub mod time_response;
 
 pub use check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use forced_response::forced_response;
 pub use harmonic_residual::{contact_evaluate, forced_residual};
 pub use nonlinear_mode::nonlinear_mode;
 pub use synthesis::synthesise;
+pub use time_response::time_response;

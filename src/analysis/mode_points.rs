@@ -38,6 +38,7 @@ struct Kept {
     motion: Vec<f64>,
     response: Vec<Complex64>,
     slip_fractions: Vec<f64>,
+    sampling_error: f64,
     mode: ModePoint,
 }
 
@@ -137,7 +138,7 @@ impl<'a> ModePoints<'a> {
                 &kept.motion,
                 &kept.response,
                 &kept.slip_fractions,
-                kept.response[fundamental],
+                (kept.response[fundamental], kept.sampling_error),
             );
             self.branch.push_special(kept.kind, &record)?;
             if let Some(data) = self.branch.mode_data_mut() {
@@ -165,10 +166,13 @@ impl Keeper for ModePoints<'_> {
             data.push_state(&point.v, &point.tangent)?;
             data.push(mode)?;
         }
+        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
+        let sampling_error = self.problem.sampling_error(&self.motion, omega)?;
         let slip = self.problem.forces().slip_fractions();
         let i = self.condensed.set().fundamental();
         let amplitude = self.response[i];
-        let record = record(self.linear, point, &self.motion, &self.response, slip, amplitude);
+        let numbers = (amplitude, sampling_error);
+        let record = record(self.linear, point, &self.motion, &self.response, slip, numbers);
         self.branch.push_curve(&record)?;
         let dofs = self.condensed.ndof();
         self.before = try_copy(&self.problem.shape()[i * dofs..(i + 1) * dofs], WHAT)?;
@@ -177,7 +181,9 @@ impl Keeper for ModePoints<'_> {
 
     fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<()> {
         let mode = self.measure(&point)?;
+        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
         let kept = Kept {
+            sampling_error: self.problem.sampling_error(&self.motion, omega)?,
             kind,
             motion: try_copy(&self.motion, "the special points")?,
             response: try_copy(&self.response, "the special points")?,
@@ -195,7 +201,7 @@ fn record<'a>(
     motion: &'a [f64],
     response: &'a [Complex64],
     slip_fractions: &'a [f64],
-    amplitude: Complex64,
+    (amplitude, sampling_error): (Complex64, f64),
 ) -> Record<'a> {
     Record {
         omega: Mode::frequency_and_damping(linear, point.unknowns()).0,
@@ -205,5 +211,6 @@ fn record<'a>(
         residual: point.residual,
         iterations: point.iterations,
         slip_fractions,
+        sampling_error,
     }
 }

@@ -2,9 +2,8 @@
 
 use super::{Branch, Recovery};
 use crate::contact::Contact;
-use crate::contact::cubic::Cubic;
 use crate::contact::state::State;
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, fail, try_extend, try_vec};
 use crate::fourier::jet;
 use crate::harmonics::HarmonicSet;
 use crate::model::spring::along;
@@ -18,31 +17,41 @@ pub const MOST_TIMES: usize = 1 << 24;
 /// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ContactLoop {
-    /// Relative motion of the sides, a minus b.
+    /// Relative motions d of the contact.
+    pub directions: usize,
+    /// Relative motions of the sides, a minus b, n × d, time after time.
     pub motion: Vec<f64>,
-    /// Force f, which stands in the row of side a as +f and in that of side b as −f. It is the whole
-    /// force of the law, not its carried harmonics.
+    /// Forces f, n × d, which stand in the rows of side a as +f and in those of side b as −f. They are
+    /// the whole forces of the law, not their carried harmonics; along a normal f = −N.
     pub force: Vec<f64>,
-    /// What the contact does. One that is linear at any motion or without force sticks.
+    /// What the contact does, n. One that is linear at any motion or without force sticks, and so do
+    /// laws without states.
     pub state: Vec<State>,
 }
+
+/// Directions of which a summary tells; laws of more have the others in [`ContactLoop`] alone.
+pub const SUMMARISED: usize = 3;
 
 /// Numbers of one contact over one period, in the caller's units.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactSummary {
-    /// Work per cycle that the contact takes from the motion; exactly 0 unless it slips.
+    /// Relative motions d of the contact.
+    pub directions: usize,
+    /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for friction
+    /// that does not slip and for laws of one motion that feel no velocity.
     pub work: f64,
-    /// Share of the period that it slips.
+    /// Share of the period that it slips; not that it is open.
     pub slip_share: f64,
     /// Share of the period that it is open.
     pub open_share: f64,
-    /// Half the range of the relative motion, (max − min)/2.
-    pub half_range: f64,
-    /// Smallest relative motion, side a minus side b.
-    pub motion_min: f64,
-    /// Largest relative motion.
-    pub motion_max: f64,
-    /// Smallest normal load. Friction has the one given, springs that cannot open have none: 0.
+    /// Half the range of each relative motion, (max − min)/2; 0 beyond d.
+    pub half_range: [f64; SUMMARISED],
+    /// Smallest relative motions, side a minus side b.
+    pub motion_min: [f64; SUMMARISED],
+    /// Largest relative motions.
+    pub motion_max: [f64; SUMMARISED],
+    /// Smallest normal load. Friction under a constant load has the one given; springs that cannot open,
+    /// and laws of the host, have none: 0.
     pub load_min: f64,
     /// Largest normal load.
     pub load_max: f64,
@@ -61,7 +70,7 @@ impl Branch {
             return fail!(Index, "dof = {dof}, needs 0 .. {}", self.ndof());
         }
         check_times(n)?;
-        let (set, packed) = self.recover(point, |_, x| x[dof])?;
+        let (set, packed) = self.recover(point, 1, |_, _, x| x[dof])?;
         let mut history = try_vec(n, 0.0, "a time history")?;
         for (j, x) in history.iter_mut().enumerate() {
             *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
@@ -69,56 +78,74 @@ impl Branch {
         Ok(history)
     }
 
-    /// Relative motion, force and state of a contact at a stored point, at ωt = 2πj/n for j = 0 .. n.
+    /// Relative motions, forces and state of a contact at a stored point, at ωt = 2πj/n for j = 0 .. n.
     ///
-    /// The force is that of this contact alone, at the motion found, with its events located exactly;
-    /// where the branch was computed by samples, too. Of a cyclic model it is the contact of sector 0.
-    /// Contacts that are linear at any motion have no coordinate of their own, and the whole structure
-    /// is recovered for them.
+    /// The force is that of this contact alone, at the motion found. Friction in one direction and
+    /// unilateral, tabulated and cubic springs are exact, where the branch was computed by samples, too.
+    /// A law of the host is called with the n times. Friction in a plane is marched over a multiple of
+    /// n samples, at least as many as it takes in the solution. Of a cyclic model it is the contact of
+    /// sector 0. Contacts that are linear at any motion have no coordinate of their own, and the
+    /// whole structure is recovered for them.
     ///
     /// # Errors
-    /// As [`Self::time_history`], with `Index` for an unknown contact.
+    /// As [`Self::time_history`], with `Index` for an unknown contact; `Callback` for a law of the host
+    /// that fails, `NoConvergence` where marched friction does not become periodic.
     pub fn contact_loop(&self, point: usize, contact: usize, n: usize) -> Result<ContactLoop> {
-        const WHAT: &str = "the loop of a contact";
         self.check_contact(point, contact)?;
         check_times(n)?;
         self.with_orbit(point, contact, |orbit, length| {
-            let mut found = ContactLoop::default();
-            for j in 0..n {
-                let now = orbit.at(j, n);
-                try_push(&mut found.motion, now.motion * length, WHAT)?;
-                try_push(&mut found.force, now.force * length, WHAT)?;
-                try_push(&mut found.state, now.state, WHAT)?;
+            let mut found = orbit.times(n)?;
+            for value in found.motion.iter_mut().chain(&mut found.force) {
+                *value *= length;
             }
-            Ok(found)
+            Ok(ContactLoop {
+                directions: orbit.directions(),
+                motion: found.motion,
+                force: found.force,
+                state: found.state,
+            })
         })
     }
 
-    /// Work, shares of the period and ranges of a contact at a stored point, all of them exact for the
-    /// motion found; see [`Self::contact_loop`]. The work of all contacts makes up
-    /// [`Energy::friction_loss`](super::Energy::friction_loss), up to the error of sampling where the
-    /// branch was computed by samples.
+    /// Work, shares of the period and ranges of a contact at a stored point; see [`Self::contact_loop`].
+    ///
+    /// Ranges are exact for the motion found, and so are work and shares of friction in one direction and
+    /// of springs. Those of friction in a plane, and the work of laws of velocities or of several motions,
+    /// are as good as the samples of the branch, like the branch itself. The work of all contacts makes
+    /// up [`Energy::friction_loss`](super::Energy::friction_loss), up to the error of sampling where laws
+    /// that are exact here were sampled there, or where a law of the host has a potential.
     ///
     /// # Errors
     /// As [`Self::contact_loop`].
     pub fn contact_summary(&self, point: usize, contact: usize) -> Result<ContactSummary> {
         let kept = self.check_contact(point, contact)?;
         self.with_orbit(point, contact, |orbit, length| {
-            let (low, high) = orbit.range();
-            let (low, high) = (low * length, high * length);
+            let account = orbit.account()?;
+            let ranges = orbit.ranges()?;
+            let mut summary = ContactSummary {
+                directions: orbit.directions(),
+                work: account.work * length * length,
+                slip_share: account.slip,
+                open_share: account.open,
+                ..ContactSummary::default()
+            };
+            for (k, (low, high)) in ranges.iter().take(SUMMARISED).enumerate() {
+                (summary.motion_min[k], summary.motion_max[k]) = (low * length, high * length);
+                summary.half_range[k] = 0.5 * (high - low) * length;
+            }
             // A contact that opens is pressed most where side a is lowest.
-            let loads = [kept.normal_load(high), kept.normal_load(low)];
-            Ok(ContactSummary {
-                work: orbit.work() * length * length,
-                slip_share: orbit.share(State::Slip),
-                open_share: orbit.share(State::Open),
-                half_range: 0.5 * (high - low),
-                motion_min: low,
-                motion_max: high,
-                load_min: loads[0],
-                load_max: loads[1],
-            })
+            let (low, high) = kept.normal_direction().map_or((0.0, 0.0), |k| ranges[k]);
+            summary.load_min = kept.normal_load(high * length);
+            summary.load_max = kept.normal_load(low * length);
+            Ok(summary)
         })
+    }
+
+    /// Number of relative motions of a contact, of which [`Self::contact_loop`] tells.
+    #[must_use]
+    pub fn contact_directions(&self, contact: usize) -> Option<usize> {
+        let kept = self.condensed.roster().contacts().get(contact)?;
+        Some(kept.directions())
     }
 
     fn check_point(&self, point: usize) -> Result<()> {
@@ -150,37 +177,50 @@ impl Branch {
         let condensed = &self.condensed;
         let roster = condensed.roster();
         if let Some(at) = roster.linear(contact) {
-            let (set, packed) = self.recover(point, |i, x| along(&condensed.blocks()[i].linear_rows[at], x))?;
-            let law = Cubic {
-                linear: roster.contacts()[contact].stiffness_as_spring(),
-                cubic: 0.0,
-            };
-            return use_it(&Orbit::new(&set, &packed, &law)?, 1.0);
+            let kept = &roster.contacts()[contact];
+            let row = |i: usize, k: usize| &condensed.blocks()[i].linear_rows[at + k];
+            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| along(row(i, k), x))?;
+            let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
+            return use_it(&orbit, 1.0);
         }
         let laws = condensed.laws();
-        let Ok(k) = laws.binary_search_by_key(&contact, |placed| placed.contact) else {
+        let Ok(found) = laws.binary_search_by_key(&contact, |placed| placed.contact) else {
             return fail!(Internal, "contact {contact} has no law");
         };
+        let placed = &laws[found];
         let set = condensed.set();
         let m = set.packed_len();
-        let begin = (point * condensed.coordinates() + laws[k].coordinates[0]) * m;
-        let orbit = Orbit::new(set, &self.motion[begin..begin + m], &*laws[k].law)?;
+        let mut motion = Vec::new();
+        for c in &placed.coordinates {
+            let begin = (point * condensed.coordinates() + c) * m;
+            try_extend(&mut motion, &self.motion[begin..begin + m], "the motion of a contact")?;
+        }
+        let orbit = Orbit::new(set, &motion, &*placed.law, self.omega[point], self.samples);
         use_it(&orbit, condensed.length())
     }
 
-    /// Packed harmonics of a signal, `of` the i-th carried harmonic of all degrees of freedom, in the
-    /// caller's unit. Carried harmonics of linear models have no common step: the set has all.
-    fn recover(&self, point: usize, of: impl Fn(usize, &[Complex64]) -> Complex64) -> Result<(HarmonicSet, Vec<f64>)> {
+    /// Packed harmonics of a number of signals, one after the other; `of` is the k-th of them in the i-th
+    /// carried harmonic of all degrees of freedom, in the caller's unit. Carried harmonics of linear models
+    /// have no common step: the set has all.
+    fn recover(
+        &self,
+        point: usize,
+        signals: usize,
+        of: impl Fn(usize, usize, &[Complex64]) -> Complex64,
+    ) -> Result<(HarmonicSet, Vec<f64>)> {
         const WHAT: &str = "the harmonics";
         let highest = self.carried().last().copied().unwrap_or(0);
         let set = HarmonicSet::all(highest)?;
-        let mut packed = try_vec(set.packed_len(), 0.0, WHAT)?;
+        let m = set.packed_len();
+        let mut packed = try_vec(signals.saturating_mul(m), 0.0, WHAT)?;
         let mut x = try_vec(self.ndof(), Complex64::ZERO, WHAT)?;
         let mut recovery = Recovery::new(self)?;
         recovery.go_to(point)?;
         for (i, &h) in self.carried().iter().enumerate() {
             recovery.harmonic(i, &mut x)?;
-            set.set(&mut packed, h, of(i, &x));
+            for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
+                set.set(signal, h, of(i, k, &x));
+            }
         }
         Ok((set, packed))
     }

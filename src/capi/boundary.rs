@@ -353,7 +353,7 @@ mod tests {
         std::panic::set_hook(Box::new(|_| {
             SEEN.fetch_add(1, Ordering::Relaxed);
         }));
-        let status = call(|| -> Result<Status> { panic!("out of {}", "order") });
+        let status = call::<Status>(|| panic!("out of {}", "order"));
         assert_eq!(status, Status::Internal as i32);
         let text = unsafe { CStr::from_ptr(hbvib_last_error()) }.to_str().unwrap();
         assert!(text.contains("boundary.rs") && text.ends_with("out of order"), "{text}");

@@ -11,9 +11,30 @@ use crate::error::{Result, Status, fail};
 use crate::model::Model;
 
 const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
-const JENKINS: i32 = hbvib_contact_kind::HBVIB_JENKINS as i32;
-const UNILATERAL: i32 = hbvib_contact_kind::HBVIB_UNILATERAL as i32;
-const CUBIC: i32 = hbvib_contact_kind::HBVIB_CUBIC as i32;
+/// The kinds of the header.
+fn kind(number: i32) -> Result<ContactKind> {
+    use hbvib_contact_kind as known;
+    const JENKINS: i32 = known::HBVIB_JENKINS as i32;
+    const FRICTION_2D: i32 = known::HBVIB_FRICTION_2D as i32;
+    const FRICTION_3D: i32 = known::HBVIB_FRICTION_3D as i32;
+    const UNILATERAL: i32 = known::HBVIB_UNILATERAL as i32;
+    const CUBIC: i32 = known::HBVIB_CUBIC as i32;
+    const REGULARISED: i32 = known::HBVIB_REGULARISED as i32;
+    Ok(match number {
+        JENKINS => ContactKind::Jenkins,
+        FRICTION_2D => ContactKind::Friction,
+        FRICTION_3D => ContactKind::FrictionPlane,
+        UNILATERAL => ContactKind::Unilateral,
+        CUBIC => ContactKind::Cubic,
+        REGULARISED => ContactKind::Regularised,
+        other => {
+            return fail!(
+                Argument,
+                "hbvib_contact: kind = {other}, needs {JENKINS} .. {REGULARISED} = HBVIB_JENKINS .. HBVIB_REGULARISED"
+            );
+        }
+    })
+}
 
 unsafe impl Described for hbvib_contact {
     const NAME: &'static str = "hbvib_contact";
@@ -32,30 +53,21 @@ unsafe impl Described for hbvib_contact {
             preload: 0.0,
             gap: 0.0,
             cubic: 0.0,
+            velocity: 0.0,
             normal: [0.0; 3],
             tangent: [0.0; 3],
         }
     }
 }
 
-/// A description without its degrees of freedom, which need a model to make sense.
-fn law(c: &hbvib_contact) -> Result<Contact> {
-    let kind = match c.kind {
-        JENKINS => ContactKind::Jenkins,
-        CUBIC => ContactKind::Cubic,
-        UNILATERAL => ContactKind::Unilateral,
-        other => {
-            return fail!(
-                Argument,
-                "hbvib_contact: kind = {other}, needs HBVIB_JENKINS = 1, HBVIB_UNILATERAL = 4 or HBVIB_CUBIC = 5"
-            );
-        }
-    };
+/// The law of a description: neither its degrees of freedom, which need a model to make sense, nor
+/// its directions.
+pub(super) fn law(c: &hbvib_contact) -> Result<Contact> {
     Ok(Contact {
-        kind,
+        kind: kind(c.kind)?,
         dof_a: [None; 3],
         dof_b: [None; 3],
-        frame: frame(c)?,
+        frame: None,
         sector_offset: c.sector_offset,
         kt: c.kt,
         kn: c.kn,
@@ -63,18 +75,25 @@ fn law(c: &hbvib_contact) -> Result<Contact> {
         preload: c.preload,
         gap: c.gap,
         cubic: c.cubic,
-        velocity: 0.0,
+        velocity: c.velocity,
         dofs: Vec::new(),
     })
 }
 
 /// The directions of a description; none where normal and tangent are zero.
-fn frame(c: &hbvib_contact) -> Result<Option<Frame>> {
+fn frame(c: &hbvib_contact, law: &Contact) -> Result<Option<Frame>> {
     let zero = |v: [f64; 3]| v.iter().all(|&x| x == 0.0);
     if zero(c.normal) && zero(c.tangent) {
         return Ok(None);
     }
     let tangent = if zero(c.tangent) { None } else { Some(c.tangent) };
+    if tangent.is_none() && law.needs_tangent() {
+        return fail!(
+            Argument,
+            "hbvib_contact: tangent is zero, needs a direction; kind = {} acts in one tangential direction",
+            c.kind
+        );
+    }
     match Frame::new(c.normal, tangent) {
         Ok(frame) => Ok(Some(frame)),
         Err(e) => Err(e.at(format_args!("hbvib_contact"))),
@@ -101,9 +120,15 @@ fn side(dofs: [i64; 3], ndof: usize, name: &str) -> Result<[Option<usize>; 3]> {
 }
 
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
-/// Set kind and dof_a at least, then kt, mu and preload of HBVIB_JENKINS, kt and cubic of
-/// HBVIB_CUBIC; for HBVIB_UNILATERAL set kind, kn, gap or preload, and the third places of dof_a and
-/// dof_b.
+/// Then set kind, the degrees of freedom and the constants of the kind:
+/// HBVIB_JENKINS      first places of dof_a and dof_b; kt, mu, preload;
+/// HBVIB_FRICTION_2D  first and third places; kt, kn, mu, preload or gap;
+/// HBVIB_FRICTION_3D  all places; kt, kn, mu, preload or gap; under a constant load the first and
+///                    second places; kt, mu, preload;
+/// HBVIB_UNILATERAL   third places; kn, gap or preload;
+/// HBVIB_CUBIC        first places; kt, cubic;
+/// HBVIB_REGULARISED  first places; mu, preload, velocity.
+/// With normal (and tangent), whatever the kind, all places of a node that moves in three directions.
 ///
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
@@ -117,8 +142,9 @@ pub unsafe extern "C" fn hbvib_contact_init(c: *mut hbvib_contact, size_of_c: us
 ///
 /// c   the description.
 /// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.
-/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (kind, constants out of range, both
-/// sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_ARGUMENT (kind, constants out of range, normal and
+/// tangent that are no directions at a right angle, both sides the same, a degree of freedom twice on
+/// one side, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
 #[unsafe(no_mangle)]
@@ -135,6 +161,7 @@ pub unsafe extern "C" fn hbvib_model_add_contact(
         }
         let law = law(&c).blame(2)?;
         let contact = Contact {
+            frame: frame(&c, &law).blame(2)?,
             dof_a: side(c.dof_a, model.ndof(), "dof_a").blame(2)?,
             dof_b: side(c.dof_b, model.ndof(), "dof_b").blame(2)?,
             ..law
@@ -147,10 +174,11 @@ pub unsafe extern "C" fn hbvib_model_add_contact(
     })
 }
 
-/// Changes the normal load of a contact. An HBVIB_CUBIC has none, which is HBVIB_E_ARGUMENT.
+/// Changes the normal load of a contact. HBVIB_CUBIC, tables and polynomials have none, which is
+/// HBVIB_E_ARGUMENT.
 ///
-/// id       number from hbvib_model_add_contact.
-/// preload  force, >= 0; infinite sticks for ever.
+/// id       number from hbvib_model_add_contact, or of another function that adds contacts.
+/// preload  force, >= 0; infinite, of HBVIB_JENKINS alone, sticks for ever.
 /// Errors: HBVIB_E_INDEX (id), HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: one at a time per model.
 #[unsafe(no_mangle)]
@@ -164,14 +192,16 @@ pub unsafe extern "C" fn hbvib_model_set_preload(model: *mut hbvib_model, id: i6
 }
 
 /// Force of one contact law on prescribed relative motions y(t) = Re sum Y_h exp(i h omega t), once
-/// it has become periodic, and its Jacobian. Degrees of freedom in the description are not looked
-/// at. d is the number of motions of the law, in the order t1, t2, n: 1 for HBVIB_JENKINS,
-/// HBVIB_UNILATERAL and HBVIB_CUBIC.
+/// it has become periodic, and its Jacobian. Degrees of freedom and directions in the description are
+/// not looked at. The law has d motions, side a minus side b: t1 and n of HBVIB_FRICTION_2D, d = 2;
+/// t1, t2 and n of HBVIB_FRICTION_3D, d = 3, but t1 and t2 under a constant load, which kn = 0
+/// states, d = 2; n of HBVIB_UNILATERAL and t1 of the others, d = 1. The force along n is -N.
 ///
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. A law without events (HBVIB_CUBIC) is exact either way.
+///             least 2H + 1. HBVIB_CUBIC is exact either way; HBVIB_FRICTION_3D and
+///             HBVIB_REGULARISED have samples always, 0: a number by H.
 /// omega       angular frequency, >= 0; matters to laws that know velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.
@@ -199,7 +229,11 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
     jac_len: i64,
 ) -> hbvib_status {
     call(|| {
-        let contact = law(&unsafe { load(c, 1) }?).blame(1)?;
+        let mut contact = law(&unsafe { load(c, 1) }?).blame(1)?;
+        if matches!(contact.kind, ContactKind::FrictionPlane) && contact.kn != 0.0 {
+            // A place along n says that the load varies.
+            contact.dof_a[2] = Some(0);
+        }
         contact.check_constants().blame(1)?;
         let (harmonics, samples) = super::solve::harmonics_and_samples(harmonics, samples, (2, 3))?;
         if !omega.is_finite() || omega < 0.0 {

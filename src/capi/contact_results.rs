@@ -13,8 +13,8 @@ use crate::error::{Result, Status, fail};
 #[repr(C)]
 #[allow(non_camel_case_types)]
 pub enum hbvib_state {
-    /// It sticks, or presses. Cubic springs, contacts that never slip and those without force are
-    /// always here.
+    /// It sticks, or presses. Contacts that never slip, those without force and laws without states
+    /// (springs but HBVIB_UNILATERAL) are always here.
     HBVIB_STATE_STICK = 0,
     /// It slips: the force is at the slip limit.
     HBVIB_STATE_SLIP = 1,
@@ -22,8 +22,9 @@ pub enum hbvib_state {
     HBVIB_STATE_OPEN = 2,
 }
 
-/// Numbers of one contact over one period, in the caller's units, exact for the motion of the point.
-/// Fill it by hbvib_contact_summary_init.
+/// Numbers of one contact over one period, in the caller's units. Ranges are exact for the motion of the
+/// point, and so is all of HBVIB_JENKINS, HBVIB_CUBIC and HBVIB_UNILATERAL; shares and work of laws
+/// that are sampled are as good as the samples of the branch. Fill it by hbvib_contact_summary_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 #[allow(non_camel_case_types)]
@@ -32,24 +33,31 @@ pub struct hbvib_contact_summary {
     pub struct_size: u32,
     /// 0.
     pub reserved: i32,
-    /// Work per cycle that the contact takes from the motion; exactly 0 unless it slips. The sum
-    /// over all contacts is the friction_loss of hbvib_energy, up to the error of sampling where the
-    /// branch was solved with samples.
+    /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for
+    /// friction that does not slip and for springs of one motion. The sum over all contacts is the
+    /// friction_loss of hbvib_energy, up to the error of sampling where the branch was solved with samples.
     pub work: f64,
-    /// Share of the period that it slips, 0 to 1.
+    /// Share of the period that it slips, 0 to 1; time that it is open does not count.
     pub slip_share: f64,
     /// Share of the period that it is open, 0 to 1.
     pub open_share: f64,
-    /// Half the range of the relative motion, (max - min) / 2.
+    /// Half the range of the relative motion in the first direction, (max - min) / 2.
     pub half_range: f64,
-    /// Smallest relative motion, side a minus side b.
+    /// Smallest relative motion in the first direction, side a minus side b.
     pub motion_min: f64,
-    /// Largest relative motion.
+    /// Largest relative motion in the first direction.
     pub motion_max: f64,
-    /// Smallest normal load. HBVIB_JENKINS has the preload, infinite included; HBVIB_CUBIC has none: 0.
+    /// Smallest normal load. Under a constant load that load: HBVIB_JENKINS has the preload, infinite
+    /// included. Springs that cannot open have none: 0.
     pub load_min: f64,
     /// Largest normal load.
     pub load_max: f64,
+    /// Number of directions of the contact, in the order t1, t2, n of those in which it acts.
+    pub directions: i64,
+    /// Smallest relative motions, direction by direction, of up to three; 0 beyond `directions`.
+    pub all_min: [f64; 3],
+    /// Largest relative motions likewise.
+    pub all_max: [f64; 3],
 }
 
 unsafe impl Described for hbvib_contact_summary {
@@ -68,6 +76,9 @@ unsafe impl Described for hbvib_contact_summary {
             motion_max: 0.0,
             load_min: 0.0,
             load_max: 0.0,
+            directions: 0,
+            all_min: [0.0; 3],
+            all_max: [0.0; 3],
         }
     }
 }
@@ -112,27 +123,35 @@ pub unsafe extern "C" fn hbvib_branch_time_history(
     })
 }
 
-/// Hysteresis loop of a contact over one period of the fundamental at a stored point: entry j at
-/// omega t = 2 pi j / n. The force is that of this contact alone and not cut off at harmonic H: the
-/// law at the motion of the point, its events located exactly (with samples, too). A cyclic model
-/// tells of sector 0. A contact that is linear at any motion has its linear force and sticks; the
-/// motion of the whole structure is recovered for it.
+/// Hysteresis loop of a contact in one of its directions over one period of the fundamental at a stored
+/// point: entry j at omega t = 2 pi j / n. The force is that of this contact alone and not cut off at
+/// harmonic H: the law at the motion of the point. Laws with events (HBVIB_JENKINS, HBVIB_UNILATERAL)
+/// have them located exactly, where the branch was solved with samples, too; friction in a plane is
+/// marched over a multiple of n samples, and a law of the host is called with the n times. A
+/// cyclic model tells of sector 0. A contact that is linear at any motion has its linear force and
+/// sticks; the motion of the whole structure is recovered for it.
 ///
-/// point    number of a point of the curve, or of a peak, fold or solution wanted.
-/// contact  number from hbvib_model_add_contact.
-/// n        number of times, 1 .. 2^24.
-/// motion   receives n relative motions, side a minus side b, or NULL.
-/// force    receives n forces f, which stand in the row of side a as + f and in that of side b as
-///          - f, or NULL.
-/// state    receives n states, HBVIB_STATE_STICK and so on, or NULL. Not all three may be NULL.
-/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact), HBVIB_E_DIMENSION (n),
-/// HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY.
+/// point      number of a point of the curve, or of a peak, fold or solution wanted.
+/// contact    number from hbvib_model_add_contact.
+/// direction  one of the directions of the contact from 0, in the order t1, t2, n of those in which it
+///            acts: 0 for laws of one direction. hbvib_contact_summary tells their number.
+/// n          number of times, 1 .. 2^24.
+/// motion     receives n relative motions, side a minus side b, or NULL.
+/// force      receives n forces f, which stand in the row of side a as + f and in that of side b as
+///            - f, or NULL. Along the normal f is minus the normal load.
+/// state      receives n states of the contact, HBVIB_STATE_STICK and so on, the same for all its
+///            directions, or NULL. Not all three may be NULL.
+/// Errors, with all arrays untouched: HBVIB_E_INDEX (point, contact, direction), HBVIB_E_DIMENSION
+/// (n), HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY,
+/// HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE.
 /// Threads: any number on one branch.
 #[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn hbvib_branch_contact_loop(
     branch: *const hbvib_branch,
     point: i64,
     contact: i64,
+    direction: i64,
     n: i64,
     motion: *mut f64,
     force: *mut f64,
@@ -143,33 +162,35 @@ pub unsafe extern "C" fn hbvib_branch_contact_loop(
         let branch = &kept.branch;
         let point = index(point, branch.stored(), 2, "point")?;
         let contact = index(contact, branch.contacts(), 3, "contact")?;
-        let n = times(n, 4)?;
+        let directions = branch.contact_directions(contact).unwrap_or(0);
+        let direction = index(direction, directions, 4, "direction")?;
+        let n = times(n, 5)?;
         if motion.is_null() && force.is_null() && state.is_null() {
-            return fail!(Null, "motion, force and state are NULL, needs one of them").blame(5);
+            return fail!(Null, "motion, force and state are NULL, needs one of them").blame(6);
         }
         disjoint(
             &[],
             &[
-                Range::new(motion, n, 5, "motion")?,
-                Range::new(force, n, 6, "force")?,
-                Range::new(state, n, 7, "state")?,
+                Range::new(motion, n, 6, "motion")?,
+                Range::new(force, n, 7, "force")?,
+                Range::new(state, n, 8, "state")?,
             ],
         )?;
-        let motion = optional((motion, 5), "motion")?;
-        let force = optional((force, 6), "force")?;
-        let state = optional((state, 7), "state")?;
+        let motion = optional((motion, 6), "motion")?;
+        let force = optional((force, 7), "force")?;
+        let state = optional((state, 8), "state")?;
         let found = branch.contact_loop(point, contact, n)?;
-        unsafe {
-            if let Some(p) = motion {
-                p.copy_from(found.motion.as_ptr(), n);
-            }
-            if let Some(p) = force {
-                p.copy_from(found.force.as_ptr(), n);
-            }
-            if let Some(p) = state {
-                for (j, &now) in found.state.iter().enumerate() {
-                    p.add(j).write(number(now));
+        // Times run slowest: one direction is every d-th number.
+        for (out, values) in [(motion, &found.motion), (force, &found.force)] {
+            if let Some(p) = out {
+                for (j, row) in values.chunks_exact(directions).enumerate() {
+                    unsafe { p.add(j).write(row[direction]) };
                 }
+            }
+        }
+        if let Some(p) = state {
+            for (j, &now) in found.state.iter().enumerate() {
+                unsafe { p.add(j).write(number(now)) };
             }
         }
         Ok(Status::Ok)
@@ -182,7 +203,7 @@ pub unsafe extern "C" fn hbvib_branch_contact_loop(
 /// contact  number from hbvib_model_add_contact.
 /// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
-/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+/// HBVIB_E_OUT_OF_MEMORY, HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_branch_contact_summary(
     branch: *const hbvib_branch,
@@ -201,11 +222,14 @@ pub unsafe extern "C" fn hbvib_branch_contact_summary(
             work: s.work,
             slip_share: s.slip_share,
             open_share: s.open_share,
-            half_range: s.half_range,
-            motion_min: s.motion_min,
-            motion_max: s.motion_max,
+            half_range: s.half_range[0],
+            motion_min: s.motion_min[0],
+            motion_max: s.motion_max[0],
             load_min: s.load_min,
             load_max: s.load_max,
+            directions: s.directions as i64,
+            all_min: s.motion_min,
+            all_max: s.motion_max,
             ..hbvib_contact_summary::filled()
         };
         unsafe { fill_out(out, value) };

@@ -156,6 +156,7 @@ pub unsafe extern "C" fn hbvib_branch_field(
     const RESIDUAL: i32 = hbvib_field::HBVIB_RESIDUAL as i32;
     const NEWTON_ITERATIONS: i32 = hbvib_field::HBVIB_NEWTON_ITERATIONS as i32;
     const HARMONICS_USED: i32 = hbvib_field::HBVIB_HARMONICS_USED as i32;
+    const SAMPLING_ERROR: i32 = hbvib_field::HBVIB_SAMPLING_ERROR as i32;
     const SLIP_FRACTION: i32 = hbvib_field::HBVIB_SLIP_FRACTION as i32;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
@@ -169,6 +170,7 @@ pub unsafe extern "C" fn hbvib_branch_field(
             RESIDUAL => branch.residual(),
             NEWTON_ITERATIONS => branch.newton_iterations(),
             HARMONICS_USED => branch.harmonics_used(),
+            SAMPLING_ERROR => branch.sampling_error(),
             SLIP_FRACTION => branch.slip_fraction(),
             _ => match mode_field(field).map(|f| branch.mode_field(f)) {
                 Some(Some(data)) => data,

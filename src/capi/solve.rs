@@ -109,7 +109,7 @@ pub unsafe extern "C" fn hbvib_hooks_init(h: *mut hbvib_hooks, size_of_h: usize)
 }
 
 /// A number of the caller that must not be negative, where a negative one is a bad value.
-fn number(value: i64, name: &str) -> Result<usize> {
+pub(super) fn number(value: i64, name: &str) -> Result<usize> {
     match usize::try_from(value) {
         Ok(v) => Ok(v),
         Err(_) => fail!(Argument, "{name} = {value}, needs a number >= 0"),
@@ -201,7 +201,7 @@ unsafe fn forced_options<'a>(o: &hbvib_forced_options, guess_len: usize) -> Resu
 }
 
 /// Hands the hooks of the caller, as the library knows them, to `then`.
-unsafe fn with_hooks<T>(h: &hbvib_hooks, then: impl FnOnce(&mut Hooks<'_>) -> T) -> T {
+pub(super) unsafe fn with_hooks<T>(h: &hbvib_hooks, then: impl FnOnce(&mut Hooks<'_>) -> T) -> T {
     let user = h.user;
     let mut progress = h.progress.map(|f| {
         move |p: &Progress| {
@@ -244,21 +244,22 @@ unsafe fn with_hooks<T>(h: &hbvib_hooks, then: impl FnOnce(&mut Hooks<'_>) -> T)
     then(&mut hooks)
 }
 
-unsafe fn load_hooks(p: *const hbvib_hooks) -> Result<hbvib_hooks> {
+/// The hooks given as the argument of this number; NULL is none.
+pub(super) unsafe fn load_hooks(p: *const hbvib_hooks, argument: i32) -> Result<hbvib_hooks> {
     if p.is_null() {
         return Ok(hbvib_hooks::filled());
     }
-    let hooks = unsafe { load(p, 4) }?;
+    let hooks = unsafe { load(p, argument) }?;
     if !(0..=3).contains(&hooks.log_level) {
         return fail!(
             Argument,
             "hbvib_hooks: log_level = {}, needs HBVIB_LOG_NONE = 0 .. HBVIB_LOG_DEBUG = 3",
             hooks.log_level
         )
-        .blame(4);
+        .blame(argument);
     }
     if !hooks.cancel.is_null() {
-        check_pointer::<hbvib_cancel_flag>(hooks.cancel, 4, "hbvib_hooks: cancel")?;
+        check_pointer::<hbvib_cancel_flag>(hooks.cancel, argument, "hbvib_hooks: cancel")?;
     }
     Ok(hooks)
 }
@@ -312,7 +313,7 @@ pub(super) unsafe fn follow(
     wanted: usize,
     analysis: impl FnOnce(&mut Hooks<'_>) -> Result<Branch>,
 ) -> Result<Told> {
-    let hooks = unsafe { load_hooks(hooks) }?;
+    let hooks = unsafe { load_hooks(hooks, 4) }?;
     check_pointer(out, 5, "out")?;
     let branch = unsafe {
         with_hooks(&hooks, |hooks| {

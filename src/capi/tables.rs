@@ -8,6 +8,7 @@ use crate::contact::iwan::Iwan;
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::model::spring::Spring;
+use core::fmt;
 
 const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
 
@@ -43,23 +44,23 @@ impl Sides<'_> {
 
     /// Side a, side b and sector offset of entry `i`.
     fn entry(&self, i: usize) -> Result<(Option<usize>, Option<usize>, i64)> {
-        let side = |dofs: &[i64], argument, name: &str| match dofs[i] {
-            GROUND => Ok(None),
-            dof if (0..self.ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
-            dof => fail!(
-                Index,
-                "{name}[{i}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
-                self.ndof - 1
-            )
-            .blame(argument),
-        };
+        let side = |dofs: &[i64], argument, name: &str| side(dofs[i], self.ndof, argument, format_args!("{name}[{i}]"));
         let offset = self.offsets.map_or(0, |o| o[i]);
         Ok((side(self.a, 3, "dof_a")?, side(self.b, 4, "dof_b")?, offset))
     }
 }
 
-/// Which array an error in the constants of an entry is about.
-fn blame_constant(e: Error, arrays: &[(&str, i32)]) -> Error {
+/// One side of an element as the caller gives it.
+pub(super) fn side(dof: i64, ndof: usize, argument: i32, name: fmt::Arguments<'_>) -> Result<Option<usize>> {
+    match dof {
+        GROUND => Ok(None),
+        dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
+        dof => fail!(Index, "{name} = {dof}, needs 0 .. {} or HBVIB_GROUND = -1", ndof - 1).blame(argument),
+    }
+}
+
+/// Which array an error in the constants of an entry is about; 0: none of them.
+pub(super) fn blame_constant(e: Error, arrays: &[(&str, i32)]) -> Error {
     let found = arrays.iter().find(|(name, _)| e.message().contains(name));
     e.in_argument(found.map_or(0, |&(_, argument)| argument))
 }
@@ -190,14 +191,9 @@ pub unsafe extern "C" fn hbvib_model_add_iwan(
     call(|| {
         let mut model = write::<Model>(model, 1)?;
         let ndof = model.ndof();
-        let side = |dof: i64, argument, name: &str| match dof {
-            GROUND => Ok(None),
-            dof if (0..ndof as i64).contains(&dof) => Ok(Some(dof as usize)),
-            dof => fail!(Index, "{name} = {dof}, needs 0 .. {} or HBVIB_GROUND = -1", ndof - 1).blame(argument),
-        };
         let between = Contact {
-            dof_a: [side(dof_a, 2, "dof_a")?, None, None],
-            dof_b: [side(dof_b, 3, "dof_b")?, None, None],
+            dof_a: [side(dof_a, ndof, 2, format_args!("dof_a"))?, None, None],
+            dof_b: [side(dof_b, ndof, 3, format_args!("dof_b"))?, None, None],
             sector_offset,
             ..Contact::jenkins(0, None, 0.0, 0.0, 0.0)
         };

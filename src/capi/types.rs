@@ -117,11 +117,21 @@ pub enum hbvib_contact_kind {
     /// Elastic Coulomb friction with constant normal load in one direction: a spring kt in series
     /// with a slider of limit mu * preload.
     HBVIB_JENKINS = 1,
+    /// Elastic Coulomb friction in one tangential direction, t1, under the normal load
+    /// N = max(preload + kn * (closing - gap), 0), closing = x_b - x_a along n: a spring kt in series
+    /// with a slider of limit mu * N. N pushes the sides apart; where it is 0 the contact is open.
+    HBVIB_FRICTION_2D = 2,
+    /// The same in the plane of t1 and t2, where slip goes along the force. Without a degree of freedom
+    /// along n the load is the preload.
+    HBVIB_FRICTION_3D = 3,
     /// Spring along the normal that opens: it pushes the sides apart with
     /// N = max(preload + kn * (closing - gap), 0), where closing = x_b - x_a along n.
     HBVIB_UNILATERAL = 4,
     /// Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
     HBVIB_CUBIC = 5,
+    /// Friction with Coulomb's jump smoothed, in one direction:
+    /// f = mu * preload * tanh(y' / velocity).
+    HBVIB_REGULARISED = 6,
 }
 
 /// Special degrees of freedom.
@@ -136,7 +146,8 @@ pub enum hbvib_special_dof {
 pub enum hbvib_contact_state {
     /// Without force.
     HBVIB_CONTACTS_FREE = 0,
-    /// Linear springs, as at small motion: kt, or kn where HBVIB_UNILATERAL presses at rest.
+    /// Linear springs, as at small motion: kt of contacts that stick and kn of those that press at
+    /// rest, the slopes of tables and polynomials; HBVIB_REGULARISED has none.
     HBVIB_CONTACTS_STUCK = 1,
 }
 
@@ -160,7 +171,8 @@ pub enum hbvib_field {
     HBVIB_NEWTON_ITERATIONS = 6,
     /// Highest harmonic number carried.
     HBVIB_HARMONICS_USED = 8,
-    /// Share of the period that each contact slips (0 for HBVIB_CUBIC): points x contacts.
+    /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
+    /// slip, so that springs have 0, HBVIB_UNILATERAL among them.
     HBVIB_SLIP_FRACTION = 9,
     /// Nonlinear modes only: log10 of the amplitude, the parameter.
     HBVIB_LOG10_AMPLITUDE = 10,
@@ -171,6 +183,10 @@ pub enum hbvib_field {
     /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
     /// of the point before; 1 for the first.
     HBVIB_MODAL_ASSURANCE = 13,
+    /// Aliasing check of laws that are sampled: relative change of their force harmonics with half the
+    /// samples (twice as many where half are too few). 0 where all laws are exact. It tells the size
+    /// of the error by sampling and is no bound of it.
+    HBVIB_SAMPLING_ERROR = 14,
 }
 
 /// Weights of log lines.
@@ -231,33 +247,41 @@ pub struct hbvib_matrix {
 pub struct hbvib_contact {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// HBVIB_JENKINS, HBVIB_UNILATERAL or HBVIB_CUBIC.
+    /// HBVIB_JENKINS .. HBVIB_REGULARISED.
     pub kind: i32,
     /// Side a: degrees of freedom from 0 in the directions t1, t2, n, or HBVIB_GROUND.
-    /// HBVIB_UNILATERAL acts along n, the others along t1; the places not used must be HBVIB_GROUND.
+    /// HBVIB_FRICTION_2D acts along t1 and n, HBVIB_FRICTION_3D along all three, HBVIB_UNILATERAL along
+    /// n, the others along t1; places not used must be HBVIB_GROUND. With `normal` all may be used.
     pub dof_a: [i64; 3],
     /// Side b, likewise.
     pub dof_b: [i64; 3],
     /// Cyclic models: side b lies in sector s + sector_offset. 0 in plain ones.
     pub sector_offset: i64,
-    /// Stiffness (tangential, at small motion), force per length, >= 0; 0 for HBVIB_UNILATERAL.
+    /// Tangential stiffness of HBVIB_JENKINS, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D, stiffness of
+    /// HBVIB_CUBIC at small motion, force per length, >= 0; 0 for HBVIB_UNILATERAL and
+    /// HBVIB_REGULARISED.
     pub kt: f64,
-    /// Normal stiffness of HBVIB_UNILATERAL, >= 0; 0 for others.
+    /// Normal stiffness, force per length, >= 0, of HBVIB_UNILATERAL; > 0 of HBVIB_FRICTION_2D and
+    /// HBVIB_FRICTION_3D, but 0 under a constant load; 0 for others.
     pub kn: f64,
-    /// Friction coefficient of HBVIB_JENKINS, >= 0; 0 for others.
+    /// Friction coefficient, >= 0; 0 for HBVIB_UNILATERAL and HBVIB_CUBIC.
     pub mu: f64,
-    /// Normal load at rest, force, >= 0; of HBVIB_JENKINS, where infinite sticks for ever, and of
-    /// HBVIB_UNILATERAL; 0 for others.
+    /// Normal load at rest where `gap` is 0, force, >= 0, finite but for HBVIB_JENKINS, where infinite
+    /// sticks for ever; 0 for HBVIB_CUBIC.
     pub preload: f64,
-    /// Closing at which HBVIB_UNILATERAL without preload begins to press, any sign: a negative one
-    /// presses at rest. 0 for others.
+    /// Closing at which HBVIB_UNILATERAL, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D of a load that
+    /// varies begin to press if they have no preload, any sign: a negative one presses at rest. 0 for
+    /// others.
     pub gap: f64,
     /// Stiffness per length squared (force / length^3) of HBVIB_CUBIC, any sign; 0 for others.
     pub cubic: f64,
+    /// Velocity at which HBVIB_REGULARISED has 76 % (tanh 1) of its slip limit, > 0; 0 for others.
+    pub velocity: f64,
     /// Direction n in the axes of the three degrees of freedom of each side, of any length. Zero, with
     /// `tangent`: the degrees of freedom lie along t1, t2 and n themselves.
     pub normal: [f64; 3],
-    /// Direction t1, orthogonal to `normal`; zero: any in the plane. t2 is n x t1.
+    /// Direction t1, orthogonal to `normal`, of any length; t2 is n x t1. Zero: any in the plane, for
+    /// HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
     pub tangent: [f64; 3],
 }
 
@@ -275,8 +299,9 @@ pub struct hbvib_solver_options {
     pub harmonics: i64,
     /// Cap on H where the tolerance decides.
     pub max_harmonics: i64,
-    /// 0: stick-slip events are located exactly; else samples per period, at least 2H + 1. Laws
-    /// without events (HBVIB_CUBIC) are exact either way.
+    /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
+    /// HBVIB_CUBIC and polynomials are exact either way; HBVIB_FRICTION_3D and HBVIB_REGULARISED
+    /// have samples always, 0: a number by H.
     pub samples: i64,
     /// First arc-length step in scaled unknowns; 0 = automatic.
     pub step: f64,

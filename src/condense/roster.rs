@@ -10,8 +10,9 @@ pub struct Roster {
     all: Vec<Contact>,
     pub(super) active: Vec<usize>,
     pub(super) never_slipping: Vec<usize>,
-    /// The linear ones, with the one direction that is shown of them.
+    /// The directions of the linear ones, as (contact, direction).
     pub(super) linear: Vec<(usize, usize)>,
+    inert: usize,
 }
 
 impl Roster {
@@ -22,11 +23,13 @@ impl Roster {
         for (i, contact) in model.contacts().iter().enumerate() {
             match contact.role() {
                 Role::Active => try_push(&mut roster.active, i, WHAT)?,
-                Role::Spring => {
-                    try_push(&mut roster.never_slipping, i, WHAT)?;
-                    try_push(&mut roster.linear, (i, 0), WHAT)?;
+                Role::Spring => try_push(&mut roster.never_slipping, i, WHAT)?,
+                Role::Inert => roster.inert += 1,
+            }
+            if contact.role() != Role::Active {
+                for direction in 0..contact.directions() {
+                    try_push(&mut roster.linear, (i, direction), WHAT)?;
                 }
-                Role::Inert => try_push(&mut roster.linear, (i, 0), WHAT)?,
             }
         }
         Ok(roster)
@@ -41,10 +44,11 @@ impl Roster {
     /// Number of contacts without force.
     #[must_use]
     pub fn inert(&self) -> usize {
-        self.linear.len() - self.never_slipping.len()
+        self.inert
     }
 
-    /// Position of a linear contact in [`super::HarmonicBlock::linear_rows`].
+    /// Position of the first direction of a linear contact in [`super::HarmonicBlock::linear_rows`]; the
+    /// others follow.
     #[must_use]
     pub fn linear(&self, contact: usize) -> Option<usize> {
         self.linear.binary_search(&(contact, 0)).ok()

@@ -15,6 +15,7 @@ use super::friction_step::step;
 use super::law::{Form, Law, Range};
 use super::marched::{March, Marched};
 use super::pointwise::automatic_samples;
+use super::state::State;
 use crate::error::Result;
 
 /// Constants of friction in a plane.
@@ -120,6 +121,14 @@ impl Marched for FrictionPlane {
             }
             out.slip[j] = step.slip;
             out.open[j] = step.open;
+            // Slip, once begun, lasts to the end of a step.
+            out.state[j] = if load <= 0.0 {
+                State::Open
+            } else if step.slip > 0.0 {
+                State::Slip
+            } else {
+                State::Stick
+            };
             (force, before, load_before) = (step.force, motion, load);
         }
         Ok(())

@@ -6,6 +6,7 @@
 //! what that means for harmonics is the matter of [`crate::aft::marched`].
 
 use super::law::Law;
+use super::state::State;
 use crate::error::{Result, try_vec};
 
 /// A law with internal states over d directions. Where nothing moves and nothing has moved before,
@@ -73,6 +74,8 @@ pub struct March {
     pub slip: Vec<f64>,
     /// Share of the step before each sample that is spent open.
     pub open: Vec<f64>,
+    /// What the contact does at each sample; a law without states in this sense always sticks.
+    pub state: Vec<State>,
     /// Memory for the law's own use, 2·d per sample.
     pub scratch: Vec<f64>,
 }
@@ -101,11 +104,12 @@ impl March {
             df_dv: memory(d.saturating_mul(d))?,
             slip: memory(1)?,
             open: memory(1)?,
+            state: try_vec(samples, State::Stick, "a march over samples")?,
             scratch: memory(d.saturating_mul(2))?,
         })
     }
 
-    /// Sets the first `samples` blocks to zero; a law then writes what is not zero.
+    /// Sets the first `samples` blocks to zero, and to sticking; a law then writes what is not so.
     pub fn clear(&mut self, samples: usize) {
         let (d, s) = (self.directions, self.states);
         for (values, size) in [
@@ -125,5 +129,6 @@ impl March {
         ] {
             values[..samples * size].fill(0.0);
         }
+        self.state[..samples].fill(State::Stick);
     }
 }

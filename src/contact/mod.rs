@@ -4,6 +4,8 @@
 //! units; [`Contact::law`] makes of it what a solver evaluates, a [`Law`] in the solver's units. One
 //! file each: the laws, the [`sides`], and the [`law`] vocabulary that they share.
 
+mod check;
+mod constructors;
 pub mod cubic;
 pub mod friction;
 pub mod friction_plane;
@@ -24,7 +26,7 @@ pub mod unilateral;
 pub mod user;
 mod user_marched;
 
-use crate::error::{Result, fail};
+use crate::error::Result;
 use cubic::Cubic;
 use friction::Friction;
 use friction_plane::FrictionPlane;
@@ -114,114 +116,6 @@ pub struct Contact {
 }
 
 impl Contact {
-    /// A Jenkins contact between degree of freedom `a` and `b` (or the ground).
-    #[must_use]
-    pub fn jenkins(a: usize, b: Option<usize>, kt: f64, mu: f64, preload: f64) -> Self {
-        Self {
-            kind: ContactKind::Jenkins,
-            dof_a: [Some(a), None, None],
-            dof_b: [b, None, None],
-            frame: None,
-            sector_offset: 0,
-            kt,
-            kn: 0.0,
-            mu,
-            preload,
-            gap: 0.0,
-            cubic: 0.0,
-            velocity: 0.0,
-            dofs: Vec::new(),
-        }
-    }
-
-    /// A law without constants of its own between degree of freedom `a` and `b` (or the ground): a
-    /// table, or a polynomial or law of the host over one motion.
-    #[must_use]
-    pub fn between(a: usize, b: Option<usize>, kind: ContactKind) -> Self {
-        Self {
-            kind,
-            ..Self::jenkins(a, b, 0.0, 0.0, 0.0)
-        }
-    }
-
-    /// A polynomial or law of the host over the motions of degrees of freedom.
-    #[must_use]
-    pub fn over(dofs: Vec<usize>, kind: ContactKind) -> Self {
-        Self {
-            kind,
-            dof_a: [None; 3],
-            dofs,
-            ..Self::jenkins(0, None, 0.0, 0.0, 0.0)
-        }
-    }
-
-    /// Friction of stiffness `kt` along a direction under a normal load of stiffness `kn`, between the
-    /// degrees of freedom (tangential, normal) of side `a` and side `b`; `None` is the ground.
-    #[must_use]
-    pub fn friction(a: [Option<usize>; 2], b: [Option<usize>; 2], (kt, kn): (f64, f64), mu: f64, preload: f64) -> Self {
-        Self {
-            kind: ContactKind::Friction,
-            dof_a: [a[0], None, a[1]],
-            dof_b: [b[0], None, b[1]],
-            kn,
-            ..Self::jenkins(0, None, kt, mu, preload)
-        }
-    }
-
-    /// The same in the plane of two tangential directions, between the degrees of freedom along t1, t2
-    /// and n.
-    #[must_use]
-    pub fn friction_plane(
-        a: [Option<usize>; 3],
-        b: [Option<usize>; 3],
-        (kt, kn): (f64, f64),
-        mu: f64,
-        preload: f64,
-    ) -> Self {
-        Self {
-            kind: ContactKind::FrictionPlane,
-            dof_a: a,
-            dof_b: b,
-            kn,
-            ..Self::jenkins(0, None, kt, mu, preload)
-        }
-    }
-
-    /// Regularised friction of limit μN₀ between degree of freedom `a` and `b` (or the ground).
-    #[must_use]
-    pub fn regularised(a: usize, b: Option<usize>, mu: f64, preload: f64, velocity: f64) -> Self {
-        Self {
-            kind: ContactKind::Regularised,
-            velocity,
-            ..Self::jenkins(a, b, 0.0, mu, preload)
-        }
-    }
-
-    /// A spring f = kt·y + k3·y³ between degree of freedom `a` and `b` (or the ground), hardening for
-    /// k3 > 0, softening for k3 < 0.
-    #[must_use]
-    pub fn cubic(a: usize, b: Option<usize>, kt: f64, k3: f64) -> Self {
-        Self {
-            kind: ContactKind::Cubic,
-            cubic: k3,
-            ..Self::jenkins(a, b, kt, 0.0, 0.0)
-        }
-    }
-
-    /// A unilateral spring of stiffness `kn` between side `a` and side `b` (`None` is the ground), which
-    /// presses when b has moved over a by more than `gap`.
-    #[must_use]
-    pub fn unilateral(a: Option<usize>, b: Option<usize>, kn: f64, gap: f64) -> Self {
-        Self {
-            kind: ContactKind::Unilateral,
-            dof_a: [None, None, a],
-            dof_b: [None, None, b],
-            kn,
-            gap,
-            ..Self::jenkins(0, None, 0.0, 0.0, 0.0)
-        }
-    }
-
     /// Closing at which a unilateral spring begins to press, the preload counted in; negative for one
     /// that presses at rest.
     #[must_use]
@@ -346,10 +240,10 @@ impl Contact {
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
             ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
             ContactKind::Friction | ContactKind::FrictionPlane if k == l && self.load() > 0.0 => self.stiffness(k),
-            ContactKind::Friction | ContactKind::FrictionPlane => 0.0,
             ContactKind::Table(table) => table.stiffness_at_rest(),
             ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),
-            ContactKind::Unilateral | ContactKind::Regularised | ContactKind::User(_) => 0.0,
+            // Open at rest, or not known.
+            _ => 0.0,
         }
     }
 
@@ -420,106 +314,5 @@ impl Contact {
     #[must_use]
     pub fn slip_limit(&self) -> f64 {
         if self.mu == 0.0 { 0.0 } else { self.mu * self.preload }
-    }
-
-    /// Checks the constants of the law.
-    ///
-    /// # Errors
-    /// `NotFinite` or `Argument`, naming the constant, its value and its range.
-    pub fn check_constants(&self) -> Result<()> {
-        for (name, value, may_be_infinite) in [
-            ("kt", self.kt, false),
-            ("kn", self.kn, false),
-            ("mu", self.mu, false),
-            ("preload", self.preload, matches!(self.kind, ContactKind::Jenkins)),
-            ("velocity", self.velocity, false),
-        ] {
-            if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
-                return fail!(NotFinite, "contact: {name} = {value}, needs a finite number >= 0");
-            }
-            if value < 0.0 {
-                return fail!(Argument, "contact: {name} = {value}, needs a number >= 0");
-            }
-        }
-        for (name, value) in [("cubic", self.cubic), ("gap", self.gap)] {
-            if !value.is_finite() {
-                return fail!(NotFinite, "contact: {name} = {value}, needs a finite number");
-            }
-        }
-        let (kt, kn, mu) = (("kt", self.kt), ("kn", self.kn), ("mu", self.mu));
-        let (preload, gap, cubic) = (("preload", self.preload), ("gap", self.gap), ("cubic", self.cubic));
-        let velocity = ("velocity", self.velocity);
-        let (unused, kind): (&[(&str, f64)], _) = match &self.kind {
-            ContactKind::Jenkins => (&[kn, gap, cubic, velocity], "Jenkins contact"),
-            ContactKind::Cubic => (&[kn, mu, preload, gap, velocity], "cubic spring"),
-            ContactKind::Unilateral => (&[kt, mu, cubic, velocity], "unilateral spring"),
-            ContactKind::Friction | ContactKind::FrictionPlane => (&[cubic, velocity], "friction contact"),
-            ContactKind::Regularised => (&[kt, kn, gap, cubic], "regularised friction"),
-            ContactKind::Table(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "table"),
-            ContactKind::Polynomial(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "polynomial"),
-            ContactKind::User(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "law of the host"),
-        };
-        for &(name, value) in unused {
-            if value != 0.0 {
-                return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
-            }
-        }
-        self.check_normal()?;
-        if let ContactKind::Regularised = self.kind {
-            TanhFriction::new(self.slip_limit(), self.velocity)?;
-        }
-        let wanted = match &self.kind {
-            ContactKind::Polynomial(law) => law.directions(),
-            ContactKind::User(law) => law.directions(),
-            _ => self.places().len(),
-        };
-        if self.directions() != wanted {
-            return fail!(
-                Dimension,
-                "contact: {} degrees of freedom for a {kind} of {wanted} motions",
-                self.directions()
-            );
-        }
-        self.check_places(kind)
-    }
-
-    /// The normal direction of friction: with a stiffness, or none at all.
-    fn check_normal(&self) -> Result<()> {
-        let plane = matches!(self.kind, ContactKind::FrictionPlane);
-        let needs_stiffness = matches!(self.kind, ContactKind::Friction) || (plane && self.has_normal());
-        if needs_stiffness && self.kn == 0.0 {
-            return fail!(
-                Argument,
-                "contact: kn = 0, needs a number > 0 for friction under a load that varies"
-            );
-        }
-        if plane && !self.has_normal() && (self.kn != 0.0 || self.gap != 0.0) {
-            return fail!(
-                Argument,
-                "contact: kn = {}, gap = {}, need 0 for friction without a degree of freedom along n",
-                self.kn,
-                self.gap
-            );
-        }
-        Ok(())
-    }
-
-    /// Degrees of freedom along directions in which the law does not act are a mistake.
-    fn check_places(&self, kind: &str) -> Result<()> {
-        if self.frame.is_some() {
-            return Ok(());
-        }
-        for (name, dofs) in [("dof_a", self.dof_a), ("dof_b", self.dof_b)] {
-            for (i, dof) in dofs.iter().enumerate() {
-                if let Some(dof) = dof.filter(|_| !self.places().contains(&i)) {
-                    return fail!(
-                        Argument,
-                        "contact: {name}[{i}] = {dof}, needs to be empty; a {kind} does not act along {}",
-                        ["t1", "t2", "n"][i]
-                    );
-                }
-            }
-        }
-        Ok(())
     }
 }

@@ -1,15 +1,15 @@
 //! A contact patch: many node pairs between two surfaces, each with the share of area that it stands
 //! for.
 
-use super::Contact;
 use super::sides::Frame;
+use super::{Contact, ContactKind};
 use crate::error::{Result, fail, try_push};
 
 /// Node pairs of two surfaces. All arrays have one entry per pair; `None` takes the value of `law`.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch<'a> {
-    /// The law per unit of area: kt and kn are force per length and area, preload is a pressure. Its
-    /// degrees of freedom and frame are not looked at.
+    /// The law per unit of area: kt and kn are force per length and area, cubic force per length cubed
+    /// and area, preload is a pressure. Its degrees of freedom and frame are not looked at.
     pub law: &'a Contact,
     /// Degrees of freedom of the nodes on side a in three orthogonal axes; `None` does not move.
     pub dof_a: &'a [[Option<usize>; 3]],
@@ -21,9 +21,9 @@ pub struct Patch<'a> {
     /// First tangential direction, orthogonal to the normal; `None`: any. A law that acts in one
     /// tangential direction alone needs it.
     pub tangent: Option<&'a [[f64; 3]]>,
-    /// Area of each pair, at least 0.
+    /// Area of each pair, at least 0; without area a pair has no force.
     pub area: &'a [f64],
-    /// Pressure at rest.
+    /// Pressure at rest, at least 0.
     pub pressure: Option<&'a [f64]>,
     /// Gap at rest, length.
     pub gap: Option<&'a [f64]>,
@@ -49,7 +49,8 @@ impl Patch<'_> {
                 return fail!(Dimension, "patch: {name} has {len} entries, needs {n} as dof_a has");
             }
         }
-        if self.tangent.is_none() && self.law.needs_tangent() {
+        self.check_law().map_err(|e| e.at(format_args!("patch, law")))?;
+        if n > 0 && self.tangent.is_none() && self.law.needs_tangent() {
             return fail!(
                 Argument,
                 "patch: tangent is missing; the law acts in one tangential direction, which must be given"
@@ -63,24 +64,65 @@ impl Patch<'_> {
         Ok(contacts)
     }
 
+    /// Checks the law by itself, so that what is wrong with it is not put down to an entry.
+    fn check_law(&self) -> Result<()> {
+        let law = self.law;
+        if matches!(
+            law.kind,
+            ContactKind::Table(_) | ContactKind::Polynomial(_) | ContactKind::User(_)
+        ) {
+            return fail!(
+                Unsupported,
+                "a table, a polynomial or a law of the host is no law per unit of area"
+            );
+        }
+        // Between a node that moves along t1, t2 and n, and the ground.
+        let frame = Frame::new([0.0, 0.0, 1.0], Some([1.0, 0.0, 0.0]))?;
+        Contact {
+            dof_a: [Some(0), Some(1), Some(2)],
+            dof_b: [None; 3],
+            frame: Some(frame),
+            preload: if self.pressure.is_some() { 0.0 } else { law.preload },
+            gap: if self.gap.is_some() { 0.0 } else { law.gap },
+            dofs: Vec::new(),
+            kind: law.kind.clone(),
+            ..*law
+        }
+        .check_constants()
+    }
+
     fn contact(&self, i: usize) -> Result<Contact> {
-        let area = self.area[i];
-        if !area.is_finite() {
-            return fail!(NotFinite, "area = {area}, needs a finite number >= 0");
+        let at_least_0 = |name: &str, value: f64, may_be_infinite: bool| {
+            if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
+                return fail!(NotFinite, "{name} = {value}, needs a finite number >= 0");
+            }
+            if value < 0.0 {
+                return fail!(Argument, "{name} = {value}, needs a number >= 0");
+            }
+            Ok(value)
+        };
+        let (law, area) = (self.law, at_least_0("area", self.area[i], false)?);
+        let pressure = match self.pressure {
+            Some(pressure) => at_least_0("pressure", pressure[i], matches!(law.kind, ContactKind::Jenkins))?,
+            None => law.preload,
+        };
+        let gap = self.gap.map_or(law.gap, |gap| gap[i]);
+        if !gap.is_finite() {
+            return fail!(NotFinite, "gap = {gap}, needs a finite number");
         }
-        if area < 0.0 {
-            return fail!(Argument, "area = {area}, needs a number >= 0");
-        }
-        let frame = Frame::new(self.normal[i], self.tangent.map(|t| t[i]))?;
         Ok(Contact {
+            kind: law.kind.clone(),
             dof_a: self.dof_a[i],
             dof_b: self.dof_b.map_or([None; 3], |b| b[i]),
-            frame: Some(frame),
-            kt: self.law.kt * area,
-            kn: self.law.kn * area,
-            preload: self.pressure.map_or(self.law.preload, |p| p[i]) * area,
-            gap: self.gap.map_or(self.law.gap, |g| g[i]),
-            ..self.law.clone()
+            frame: Some(Frame::new(self.normal[i], self.tangent.map(|t| t[i]))?),
+            kt: law.kt * area,
+            kn: law.kn * area,
+            // An infinite pressure on no area is no load.
+            preload: if area == 0.0 { 0.0 } else { pressure * area },
+            gap,
+            cubic: law.cubic * area,
+            dofs: Vec::new(),
+            ..*law
         })
     }
 }

@@ -221,9 +221,11 @@ impl Pointwise for Polynomial {
         true
     }
 
-    /// (P + 1)·H + 1, whatever is asked for.
+    /// (P + 1)·H + 1, whatever is asked for; at least the 2·H + 1 of a law, if no term is left.
     fn samples(&self, highest: usize, _asked: usize) -> usize {
-        (self.degree() as usize + 1).saturating_mul(highest).saturating_add(1)
+        (self.degree().max(1) as usize + 1)
+            .saturating_mul(highest)
+            .saturating_add(1)
     }
 
     fn evaluate(&self, _omega: f64, samples: usize, u: &[f64], v: &[f64], out: Samples<'_>) -> Result<()> {

@@ -6,8 +6,8 @@ use super::{Contact, ContactKind, Role};
 /// What a contact does at one time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum State {
-    /// It sticks, or presses. Laws without states (cubic springs) and contacts that are linear at any
-    /// motion are always here.
+    /// It sticks, or presses. Laws without states (springs but the unilateral one, regularised friction,
+    /// laws of the host) and contacts that are linear at any motion are always here.
     Stick,
     /// It slips: the force is at the slip limit.
     Slip,
@@ -22,12 +22,20 @@ impl Contact {
         if self.role() == Role::Inert { 0.0 } else { self.kt }
     }
 
-    /// Normal load at the relative motion y, side a minus side b; that at rest for a contact whose
-    /// load does not change, 0 for one that has none.
+    /// Place among the motions of the one along the normal, for contacts whose load varies with it.
+    #[must_use]
+    pub fn normal_direction(&self) -> Option<usize> {
+        self.places().iter().position(|place| *place == 2)
+    }
+
+    /// Normal load at the relative motion y along the normal, side a minus side b; that at rest for a
+    /// contact whose load does not change, 0 for one that has none.
     #[must_use]
     pub fn normal_load(&self, y: f64) -> f64 {
         match &self.kind {
             ContactKind::Jenkins | ContactKind::Regularised => self.preload,
+            ContactKind::FrictionPlane if self.normal_direction().is_none() => self.preload,
+            ContactKind::Friction | ContactKind::FrictionPlane => (self.load() - self.kn * y).max(0.0),
             ContactKind::Unilateral if self.role() == Role::Active => (self.kn * (-y - self.clearance())).max(0.0),
             _ => 0.0,
         }

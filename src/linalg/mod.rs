@@ -5,6 +5,7 @@ pub mod definite;
 pub mod eigen;
 pub mod factor;
 pub mod lanczos;
+pub mod least_squares;
 pub mod lu;
 pub mod matrix_view;
 pub mod quadratic;

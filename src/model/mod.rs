@@ -1,5 +1,6 @@
 //! The model: structure, contacts, excitation. Matrices and contact data go in here.
 
+mod check;
 pub mod cyclic;
 pub mod damped_mode;
 pub mod excitation;
@@ -8,16 +9,30 @@ pub mod repeated;
 pub mod spring;
 pub mod start_mode;
 pub mod structure;
+pub mod wheel;
 
 use crate::contact::Contact;
 use crate::contact::iwan::Iwan;
+use crate::contact::patch::Patch;
 use crate::contact::sides::Direction;
-use crate::error::{Result, fail, try_extend, try_push};
+use crate::error::{Error, Result, fail, try_copy, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use excitation::Excitation;
 use num_complex::Complex64;
 use spring::Spring;
 use structure::{MatrixKind, Structure};
+
+/// What memory is asked for.
+const CONTACTS: &str = "the contacts";
+
+/// A copy whose memory is asked for fallibly.
+fn copy(contact: &Contact) -> Result<Contact> {
+    Ok(Contact {
+        kind: contact.kind.clone(),
+        dofs: try_copy(&contact.dofs, CONTACTS)?,
+        ..*contact
+    })
+}
 
 /// A structure with its contacts and forces: M ẍ + C ẋ + K x + f_nl = f_ex.
 ///
@@ -59,7 +74,9 @@ impl Model {
     /// `OutOfMemory`.
     pub fn try_clone(&self) -> Result<Self> {
         let mut contacts = Vec::new();
-        try_extend(&mut contacts, &self.contacts, "the contacts")?;
+        for contact in &self.contacts {
+            try_push(&mut contacts, copy(contact)?, CONTACTS)?;
+        }
         let mut springs = Vec::new();
         try_extend(&mut springs, &self.springs, "the springs")?;
         Ok(Self {
@@ -124,10 +141,10 @@ impl Model {
     ///
     /// # Errors
     /// `Index` for a degree of freedom out of range, `Argument` for a contact of a degree of
-    /// freedom with itself, and those of [`Contact::check_constants`].
+    /// freedom with itself or one that a list names twice, and those of [`Contact::check_constants`].
     pub fn add_contact(&mut self, contact: &Contact) -> Result<usize> {
         self.check_contact(contact)?;
-        try_push(&mut self.contacts, contact.clone(), "the contacts")?;
+        try_push(&mut self.contacts, copy(contact)?, CONTACTS)?;
         Ok(self.contacts.len() - 1)
     }
 
@@ -141,8 +158,35 @@ impl Model {
             self.check_contact(contact)
                 .map_err(|e| e.at(format_args!("entry {i}")))?;
         }
-        try_extend(&mut self.contacts, contacts, "the contacts")?;
-        Ok(self.contacts.len() - contacts.len())
+        let mut copies = Vec::new();
+        for contact in contacts {
+            try_push(&mut copies, copy(contact)?, CONTACTS)?;
+        }
+        self.append(copies)
+    }
+
+    /// Adds the node pairs of a patch as contacts, whose numbers follow each other, and returns the
+    /// first. All of them are checked before any is added.
+    ///
+    /// # Errors
+    /// Those of [`Patch::contacts`] and [`Self::add_contact`], naming the entry.
+    pub fn add_patch(&mut self, patch: &Patch<'_>) -> Result<usize> {
+        let contacts = patch.contacts()?;
+        for (i, contact) in contacts.iter().enumerate() {
+            self.check_contact(contact)
+                .map_err(|e| e.at(format_args!("patch, entry {i}")))?;
+        }
+        self.append(contacts)
+    }
+
+    /// Adds checked contacts and returns the number of the first.
+    fn append(&mut self, mut contacts: Vec<Contact>) -> Result<usize> {
+        let first = self.contacts.len();
+        self.contacts
+            .try_reserve(contacts.len())
+            .map_err(|_| Error::out_of_memory(CONTACTS))?;
+        self.contacts.append(&mut contacts);
+        Ok(first)
     }
 
     /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts, whose numbers
@@ -154,14 +198,6 @@ impl Model {
         let sides = Direction::between(between.dof_a[0], between.dof_b[0]);
         self.check_sides("Iwan joint", &sides, between.sector_offset)?;
         self.add_contacts(&joint.elements(between, elements)?)
-    }
-
-    fn check_contact(&self, contact: &Contact) -> Result<()> {
-        contact.check_constants()?;
-        for k in 0..contact.directions() {
-            self.check_sides("contact", &contact.direction(k), contact.sector_offset)?;
-        }
-        Ok(())
     }
 
     /// Adds a linear spring between two degrees of freedom, or one and the ground.
@@ -193,36 +229,6 @@ impl Model {
         }
         let sides = Direction::between(spring.dof_a, spring.dof_b);
         self.check_sides("spring", &sides, spring.sector_offset)
-    }
-
-    /// Both sides of a contact or spring must exist and differ.
-    fn check_sides(&self, what: &str, sides: &Direction, sector_offset: i64) -> Result<()> {
-        let n = self.ndof();
-        for (name, side) in [("dof_a", sides.a), ("dof_b", sides.b)] {
-            if let Some((dof, _)) = side.into_iter().flatten().find(|&(d, _)| d >= n) {
-                return fail!(Index, "{what}: {name} = {dof}, needs 0 .. {}", n - 1);
-            }
-        }
-        let same_sector = self.structure.same_sector(sector_offset);
-        let grounded = sides.a.iter().all(Option::is_none);
-        if sides.a == sides.b && (same_sector || grounded) {
-            return fail!(
-                Argument,
-                "{what}: dof_a and dof_b are both {}; it needs two different sides",
-                if grounded {
-                    "the ground"
-                } else {
-                    "the same degree of freedom"
-                }
-            );
-        }
-        if sector_offset != 0 && self.structure.sectors() == 1 {
-            return fail!(
-                Argument,
-                "{what}: sector_offset = {sector_offset}, needs 0 in a plain structure"
-            );
-        }
-        Ok(())
     }
 
     /// Changes the normal load of a contact.

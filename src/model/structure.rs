@@ -23,7 +23,7 @@ pub enum MatrixKind {
 }
 
 impl MatrixKind {
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             Self::Mass => "mass",
             Self::Damping => "damping",

@@ -18,11 +18,15 @@ const MEAN_FLOOR: f64 = 1e-8;
 pub struct ContactForces<'a> {
     condensed: &'a Condensed,
     evaluator: Evaluator,
+    /// The same with other samples, where some law is sampled.
+    other: Option<Evaluator>,
     /// s, where every law is seen as s·f(y/s).
     factor: f64,
     /// y/s of all coordinates, and of those of one law.
     scaled: Vec<f64>,
     gathered: Vec<f64>,
+    /// Force of one law.
+    checked: Vec<f64>,
     /// Memory for laws of 1, 2, … directions, where there are such.
     found: Vec<Option<Evaluation>>,
     /// Packed sums per coordinate.
@@ -55,12 +59,21 @@ impl<'a> ContactForces<'a> {
             let memory = if used { Some(Evaluation::new(set, d)?) } else { None };
             try_push(&mut found, memory, WHAT)?;
         }
+        let samples = if linear { 0 } else { samples };
+        let evaluator = Evaluator::new(set, samples, laws())?;
+        let other = if laws().any(|law| evaluator.samples(law)) {
+            Some(Evaluator::otherwise(set, samples, laws())?)
+        } else {
+            None
+        };
         Ok(Self {
             condensed,
-            evaluator: Evaluator::new(set, if linear { 0 } else { samples }, laws())?,
+            evaluator,
+            other,
             factor: 1.0,
             scaled: try_vec(size, 0.0, WHAT)?,
             gathered: try_vec(most.saturating_mul(m), 0.0, WHAT)?,
+            checked: try_vec(most.saturating_mul(m), 0.0, WHAT)?,
             found,
             force: try_vec(size, 0.0, WHAT)?,
             offset: try_vec(size, 0.0, WHAT)?,
@@ -103,19 +116,11 @@ impl<'a> ContactForces<'a> {
             let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
-            let y = if let [c] = at[..] {
-                let y = &self.scaled[c * m..(c + 1) * m];
-                if prepared != c {
-                    self.evaluator.prepare(set, y);
-                    prepared = c;
-                }
-                y
-            } else {
-                for (y, &c) in self.gathered.chunks_exact_mut(m).zip(at) {
-                    y.copy_from_slice(&self.scaled[c * m..(c + 1) * m]);
-                }
-                &self.gathered[..at.len() * m]
-            };
+            let y = gather(at, m, &self.scaled, &mut self.gathered);
+            if at.len() == 1 && prepared != at[0] {
+                self.evaluator.prepare(set, y);
+                prepared = at[0];
+            }
             self.evaluator
                 .evaluate(&*placed.law, set, y, omega, found)
                 .map_err(|e| e.at(format_args!("contact {}", placed.contact)))?;
@@ -133,6 +138,42 @@ impl<'a> ContactForces<'a> {
             self.linearise(motion);
         }
         Ok(())
+    }
+
+    /// What sampling matters: ‖F_N − F_M‖/‖F_N‖ over the forces of all laws that are sampled, with M =
+    /// N/2 (2N where N is too few to halve), at given motions and frequency. 0 where all laws are exact.
+    /// It tells the size of the error and is no bound of it.
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        let Some(other) = &mut self.other else { return Ok(0.0) };
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let (mut difference, mut size) = (0.0, 0.0);
+        for placed in self.condensed.laws() {
+            let (law, at) = (&*placed.law, &placed.coordinates);
+            if !self.evaluator.samples(law) {
+                continue;
+            }
+            let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
+                continue;
+            };
+            let y = gather(at, m, motion, &mut self.gathered);
+            if at.len() == 1 {
+                self.evaluator.prepare(set, y);
+                other.prepare(set, y);
+            }
+            self.evaluator.evaluate(law, set, y, omega, found)?;
+            let checked = &mut self.checked[..found.force.len()];
+            checked.copy_from_slice(&found.force);
+            other.evaluate(law, set, y, omega, found)?;
+            for (a, b) in checked.iter().zip(&found.force) {
+                difference += (a - b) * (a - b);
+                size += a * a;
+            }
+        }
+        Ok(if size == 0.0 { 0.0 } else { f64::sqrt(difference / size) })
     }
 
     /// The forces of the laws at rest, linear in the motion.
@@ -317,6 +358,17 @@ impl<'a> ContactForces<'a> {
         }
         Ok(largest)
     }
+}
+
+/// The packed motions of one law, direction after direction.
+fn gather<'m>(at: &[usize], m: usize, motion: &'m [f64], gathered: &'m mut [f64]) -> &'m [f64] {
+    if let [c] = at[..] {
+        return &motion[c * m..(c + 1) * m];
+    }
+    for (y, &c) in gathered.chunks_exact_mut(m).zip(at) {
+        y.copy_from_slice(&motion[c * m..(c + 1) * m]);
+    }
+    &gathered[..at.len() * m]
 }
 
 /// sum += factor·term

@@ -74,6 +74,14 @@ impl<'a> Forced<'a> {
         self.forces.slip_fractions()
     }
 
+    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn sampling_error(&mut self, u: &[f64], omega: f64) -> Result<f64> {
+        self.forces.sampling_error(u, omega)
+    }
+
     /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
     /// evaluated.
     pub fn contact_force(&self, u: &[f64], i: usize, w: &mut [Complex64]) {

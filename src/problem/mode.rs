@@ -4,7 +4,7 @@
 //!
 //! M ẍ + (C − 2DωM) ẋ + K x + f(x) = 0, or −ζK ẋ with D = ζω/2. With x = a·x̂ unknown are the
 //! packed relative motions ŷ, the frequency ω and the damping ratio D; the parameter is log₁₀ a.
-//! A law sees the amplitude by scaling alone, f̂(ŷ) = f(a ŷ)/a, which is [`ContactForces::ease`] by 1/a;
+//! A law sees the amplitude by scaling alone, f̂(ŷ) = f(a ŷ)/a, as it does where it is eased by 1/a;
 //! hence ∂f̂/∂log₁₀a = −ln 10·∂f̂/∂ln s.
 //!
 //! > R = ŷ_h − W x̂_h,  x̂_h = −Z_h(ω, D)⁻¹ Wᴴ (f̂_h − κ ŷ_h),
@@ -113,6 +113,14 @@ impl<'a> Mode<'a> {
     #[must_use]
     pub fn shape(&self) -> &[Complex64] {
         &self.x
+    }
+
+    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        self.forces.sampling_error(motion, omega)
     }
 
     /// The contact forces at the point last evaluated.

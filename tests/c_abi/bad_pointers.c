@@ -96,8 +96,8 @@ static void null_pointers(hbvib_model *model, hbvib_branch *branch, hbvib_branch
     REFUSED("1", hbvib_branch_mode_info(backbone, NULL), HBVIB_E_NULL, 2, "hbvib_mode_info");
     REFUSED("4", hbvib_branch_time_history(NULL, 0, 0, 8, numbers), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("1", hbvib_branch_time_history(branch, 0, 0, 8, NULL), HBVIB_E_NULL, 5, "x");
-    REFUSED("4", hbvib_branch_contact_loop(NULL, 0, 0, 8, numbers, NULL, NULL), HBVIB_E_HANDLE, 1, "NULL");
-    REFUSED("1", hbvib_branch_contact_loop(branch, 0, 0, 8, NULL, NULL, NULL), HBVIB_E_NULL, 5, "one of them");
+    REFUSED("4", hbvib_branch_contact_loop(NULL, 0, 0, 0, 8, numbers, NULL, NULL), HBVIB_E_HANDLE, 1, "NULL");
+    REFUSED("1", hbvib_branch_contact_loop(branch, 0, 0, 0, 8, NULL, NULL, NULL), HBVIB_E_NULL, 6, "one of them");
     WORKS("1", hbvib_contact_summary_init(&summary, sizeof summary));
     REFUSED("4", hbvib_branch_contact_summary(NULL, 0, 0, &summary), HBVIB_E_HANDLE, 1, "NULL");
     REFUSED("1", hbvib_branch_contact_summary(branch, 0, 0, NULL), HBVIB_E_NULL, 4, "hbvib_contact_summary");
@@ -258,22 +258,24 @@ static void inside_contacts(hbvib_branch *branch)
     WORKS("14", hbvib_contact_summary_init(&summary, sizeof summary));
     for (i = 0; i < sizeof wrong / sizeof *wrong; i++) {
         REFUSED("9", hbvib_branch_time_history(branch, 0, 0, wrong[i], a), HBVIB_E_DIMENSION, 4, "n = ");
-        REFUSED("9", hbvib_branch_contact_loop(branch, 0, 0, wrong[i], a, b, state), HBVIB_E_DIMENSION, 4, "n = ");
+        REFUSED("9", hbvib_branch_contact_loop(branch, 0, 0, 0, wrong[i], a, b, state), HBVIB_E_DIMENSION, 5, "n = ");
     }
     REFUSED("14", hbvib_branch_time_history(branch, 0, 0, 8, misaligned(a)), HBVIB_E_ARGUMENT, 5, "misaligned");
-    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 8, misaligned(a), b, state), HBVIB_E_ARGUMENT, 5, "misaligned");
-    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 8, a, misaligned(b), state), HBVIB_E_ARGUMENT, 6, "misaligned");
-    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 8, a, b, (int32_t *)((char *)state + 2)), HBVIB_E_ARGUMENT, 7,
+    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 0, 8, misaligned(a), b, state), HBVIB_E_ARGUMENT, 6, "misaligned");
+    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 0, 8, a, misaligned(b), state), HBVIB_E_ARGUMENT, 7, "misaligned");
+    REFUSED("14", hbvib_branch_contact_loop(branch, 0, 0, 0, 8, a, b, (int32_t *)((char *)state + 2)), HBVIB_E_ARGUMENT, 8,
             "misaligned");
     REFUSED("14", hbvib_branch_contact_summary(branch, 0, 0, (hbvib_contact_summary *)misaligned(a)), HBVIB_E_ARGUMENT, 4,
             "misaligned");
-    REFUSED("16", hbvib_branch_contact_loop(branch, 0, 0, 8, a, a + 7, NULL), HBVIB_E_ARGUMENT, 6, "overlap");
-    REFUSED("16", hbvib_branch_contact_loop(branch, 0, 0, 8, NULL, a, (int32_t *)a), HBVIB_E_ARGUMENT, 7, "overlap");
+    REFUSED("16", hbvib_branch_contact_loop(branch, 0, 0, 0, 8, a, a + 7, NULL), HBVIB_E_ARGUMENT, 7, "overlap");
+    REFUSED("16", hbvib_branch_contact_loop(branch, 0, 0, 0, 8, NULL, a, (int32_t *)a), HBVIB_E_ARGUMENT, 8, "overlap");
     REFUSED("39", hbvib_branch_time_history(branch, INT64_MAX, 0, 8, a), HBVIB_E_INDEX, 2, "point");
     REFUSED("39", hbvib_branch_time_history(branch, -1, 0, 8, a), HBVIB_E_INDEX, 2, "point = -1");
     REFUSED("39", hbvib_branch_time_history(branch, 0, NDOF, 8, a), HBVIB_E_INDEX, 3, "dof = 4");
-    REFUSED("39", hbvib_branch_contact_loop(branch, -1, 0, 8, a, b, state), HBVIB_E_INDEX, 2, "point = -1");
-    REFUSED("39", hbvib_branch_contact_loop(branch, 0, 1, 8, a, b, state), HBVIB_E_INDEX, 3, "contact = 1");
+    REFUSED("39", hbvib_branch_contact_loop(branch, -1, 0, 0, 8, a, b, state), HBVIB_E_INDEX, 2, "point = -1");
+    REFUSED("39", hbvib_branch_contact_loop(branch, 0, 1, 0, 8, a, b, state), HBVIB_E_INDEX, 3, "contact = 1");
+    REFUSED("39", hbvib_branch_contact_loop(branch, 0, 0, 1, 8, a, b, state), HBVIB_E_INDEX, 4, "direction = 1, needs 0 .. 0");
+    REFUSED("39", hbvib_branch_contact_loop(branch, 0, 0, -1, 8, a, b, state), HBVIB_E_INDEX, 4, "direction = -1");
     REFUSED("39", hbvib_branch_contact_summary(branch, INT64_MAX, 0, &summary), HBVIB_E_INDEX, 2, "point");
     REFUSED("39", hbvib_branch_contact_summary(branch, 0, -1, &summary), HBVIB_E_INDEX, 3, "contact = -1");
     EXPECT("39", summary.load_max == 0 && a[0] == 0 && b[0] == 0 && state[0] == 7);

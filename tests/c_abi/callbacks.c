@@ -30,6 +30,9 @@ static int32_t intrude(void *user, const hbvib_progress *p)
     seen *s = user;
     hbvib_matrix a = matrix(NDOF, MASS);
     hbvib_contact c = ring_contact();
+    const double two[2] = {1, 2};
+    const int64_t dof = 0;
+    const int32_t power = 2;
     hbvib_model *copy = NULL;
     solution *nested = malloc(sizeof *nested);
     if (nested == NULL) return 1;
@@ -44,6 +47,11 @@ static int32_t intrude(void *user, const hbvib_progress *p)
     s->wrong += hbvib_cyclic_set_coupling_previous(s->model, HBVIB_DAMPING, &a) != HBVIB_E_BUSY;
     s->wrong += hbvib_cyclic_set_diameter(s->model, HBVIB_MASS, 0, &a) != HBVIB_E_BUSY;
     s->wrong += hbvib_cyclic_set_wave(s->model, 3) != HBVIB_E_BUSY;
+    s->wrong += hbvib_model_add_table(s->model, 0, 1, 0, 2, two, two, NULL) != HBVIB_E_BUSY;
+    s->wrong += hbvib_model_add_spring_damper(s->model, 0, 1, 0, 1, two, 0, NULL, NULL) != HBVIB_E_BUSY;
+    s->wrong += hbvib_model_add_polynomial(s->model, &dof, 1, 1, &dof, two, &power, NULL, NULL) != HBVIB_E_BUSY;
+    s->wrong += hbvib_model_add_stiffness_tensors(s->model, &dof, 1, two, NULL, NULL) != HBVIB_E_BUSY;
+    s->wrong += hbvib_model_add_patch(s->model, &c, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL, NULL) != HBVIB_E_BUSY;
     s->wrong += hbvib_model_set_preload(s->model, 0, 1) != HBVIB_E_BUSY;
     s->wrong += hbvib_model_add_force(s->model, 0, 1, 1, 0) != HBVIB_E_BUSY;
     s->wrong += hbvib_model_clear_forces(s->model) != HBVIB_E_BUSY;

@@ -83,7 +83,7 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     REFUSED(row, hbvib_branch_mode_point(b, 0, &point), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_mode_info(b, &info), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_time_history(b, 0, 0, 8, numbers), HBVIB_E_HANDLE, 1, words);
-    REFUSED(row, hbvib_branch_contact_loop(b, 0, 0, 8, numbers, NULL, NULL), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_contact_loop(b, 0, 0, 0, 8, numbers, NULL, NULL), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_contact_summary(b, 0, 0, &summary), HBVIB_E_HANDLE, 1, words);
     EXPECT(row, count == -1);
 }

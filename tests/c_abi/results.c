@@ -134,8 +134,8 @@ static void inside_contact(hbvib_branch *branch)
     int64_t point = -1, count = -1;
     int slipping = 0, wrong = 0, j;
     WORKS("loop", hbvib_branch_peaks(branch, 1, NULL, NULL, &point, &count));
-    WORKS("loop", hbvib_branch_contact_loop(branch, point, 0, TIMES, motion, force, state));
-    WORKS("loop", hbvib_branch_contact_loop(branch, point, 0, TIMES, NULL, again, NULL));
+    WORKS("loop", hbvib_branch_contact_loop(branch, point, 0, 0, TIMES, motion, force, state));
+    WORKS("loop", hbvib_branch_contact_loop(branch, point, 0, 0, TIMES, NULL, again, NULL));
     EXPECT("loop", memcmp(force, again, sizeof force) == 0);
     WORKS("loop", hbvib_branch_time_history(branch, point, 2, TIMES, disk));
     WORKS("loop", hbvib_branch_time_history(branch, point, 3, TIMES, ring));
@@ -160,6 +160,8 @@ static void inside_contact(hbvib_branch *branch)
     EXPECT("loop", s.open_share == 0 && s.load_min == c.preload && s.load_max == c.preload);
     EXPECT("loop", s.half_range >= largest && s.half_range < largest * (1 + 1e-4));
     EXPECT("loop", s.motion_max == s.half_range && s.motion_min == -s.half_range);
+    EXPECT("loop", s.directions == 1 && s.all_min[0] == s.motion_min && s.all_max[0] == s.motion_max);
+    EXPECT("loop", s.all_min[1] == 0 && s.all_max[1] == 0 && s.all_min[2] == 0 && s.all_max[2] == 0);
 }
 
 static void modes(hbvib_model *model)

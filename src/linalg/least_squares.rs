@@ -1,0 +1,167 @@
+//! Linear systems that may be singular: Householder's factors with column pivoting.
+//!
+//! A P = Q R with the diagonal of R falling tells the rank (Businger & Golub 1965,
+//! doi:10.1007/BF01436084). Of all solutions the shortest is taken: unlike elimination it does not move
+//! along what the equations leave open.
+
+use crate::error::{Result, try_vec};
+
+/// A square system and its memory.
+pub struct LeastSquares {
+    n: usize,
+    a: Vec<f64>,
+    order: Vec<usize>,
+    /// Squared lengths of what is left of the columns.
+    lengths: Vec<f64>,
+    solution: Vec<f64>,
+}
+
+impl LeastSquares {
+    /// Memory for systems of order `n`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize) -> Result<Self> {
+        const WHAT: &str = "a least-squares problem";
+        Ok(Self {
+            n,
+            a: try_vec(n.saturating_mul(n), 0.0, WHAT)?,
+            order: try_vec(n, 0, WHAT)?,
+            lengths: try_vec(n, 0.0, WHAT)?,
+            solution: try_vec(n, 0.0, WHAT)?,
+        })
+    }
+
+    /// The matrix, column-major, to be filled before [`Self::solve`], which uses it up.
+    pub fn matrix(&mut self) -> &mut [f64] {
+        &mut self.a
+    }
+
+    /// Solves A x ≈ b in place and returns the rank that was found: directions of A that are shorter than
+    /// `threshold` times the longest count as none.
+    pub fn solve(&mut self, b: &mut [f64], threshold: f64) -> usize {
+        let n = self.n;
+        let a = &mut self.a;
+        let mut rank = 0;
+        let mut longest = 0.0_f64;
+        for (j, p) in self.order.iter_mut().enumerate() {
+            *p = j;
+        }
+        for k in 0..n {
+            // Anew at each step: updated lengths would drown in rounding where the rank shows.
+            for (length, column) in self.lengths.iter_mut().zip(a.chunks_exact(n)).skip(k) {
+                *length = column[k..].iter().map(|x| x * x).sum();
+            }
+            let Some(best) = (k..n).max_by(|&i, &j| self.lengths[i].total_cmp(&self.lengths[j])) else {
+                break;
+            };
+            let length = self.lengths[best].sqrt();
+            longest = longest.max(length);
+            if length.is_nan() || length <= threshold * longest {
+                break;
+            }
+            if best != k {
+                let (left, right) = a.split_at_mut(best * n);
+                left[k * n..(k + 1) * n].swap_with_slice(&mut right[..n]);
+                self.order.swap(k, best);
+            }
+            let (done, rest) = a.split_at_mut((k + 1) * n);
+            let column = &mut done[k * n + k..];
+            let head = column[0];
+            let pivot = if head > 0.0 { -length } else { length };
+            // The reflection I − v vᵀ/s with v = column − pivot e₁ and s = −pivot·v₁.
+            column[0] = head - pivot;
+            let s = -pivot * column[0];
+            let reflect = |y: &mut [f64]| {
+                let share = column.iter().zip(y.iter()).map(|(v, y)| v * y).sum::<f64>() / s;
+                for (y, v) in y.iter_mut().zip(column.iter()) {
+                    *y -= share * v;
+                }
+            };
+            for y in rest.chunks_exact_mut(n) {
+                reflect(&mut y[k..]);
+            }
+            reflect(&mut b[k..]);
+            column[0] = pivot;
+            rank = k + 1;
+        }
+        let (r, open) = a.split_at_mut(rank * n);
+        back(r, n, rank, b);
+        b[rank..].fill(0.0);
+        // Columns (−R₁⁻¹R₂, 1) span what is open; made orthonormal, they take their part of b away.
+        for k in 0..n - rank {
+            let (before, this) = open.split_at_mut(k * n);
+            let this = &mut this[..n];
+            back(r, n, rank, this);
+            this[rank..].fill(0.0);
+            this[rank + k] = -1.0;
+            for other in before.chunks_exact(n) {
+                remove(other, this);
+            }
+            let length = this.iter().map(|x| x * x).sum::<f64>().sqrt();
+            for x in this.iter_mut() {
+                *x /= length;
+            }
+            remove(this, b);
+        }
+        for (&to, x) in self.order.iter().zip(b.iter()) {
+            self.solution[to] = *x;
+        }
+        b.copy_from_slice(&self.solution);
+        rank
+    }
+}
+
+/// R₁⁻¹ on the first `rank` entries of b, in place.
+fn back(r: &[f64], n: usize, rank: usize, b: &mut [f64]) {
+    for k in (0..rank).rev() {
+        b[k] /= r[k * n + k];
+        let x = b[k];
+        for (b, r) in b[..k].iter_mut().zip(&r[k * n..]) {
+            *b -= r * x;
+        }
+    }
+}
+
+/// Takes the part of b along a unit vector away.
+fn remove(unit: &[f64], b: &mut [f64]) {
+    let share: f64 = unit.iter().zip(b.iter()).map(|(u, b)| u * b).sum();
+    for (b, u) in b.iter_mut().zip(unit) {
+        *b -= share * u;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn regular_systems_are_solved_and_open_directions_left_alone() {
+        let n = 6;
+        let a: Vec<f64> = (0..n * n).map(|k| ((k * k + 5 * k + 1) as f64 * 0.61).sin()).collect();
+        let x: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5).cos()).collect();
+        let times =
+            |a: &[f64], x: &[f64]| -> Vec<f64> { (0..n).map(|i| (0..n).map(|j| a[j * n + i] * x[j]).sum()).collect() };
+        let mut system = LeastSquares::new(n).unwrap();
+        system.matrix().copy_from_slice(&a);
+        let mut b = times(&a, &x);
+        assert_eq!(system.solve(&mut b, 1e-12), n);
+        for (b, x) in b.iter().zip(&x) {
+            assert!((b - x).abs() < 1e-12);
+        }
+        // A column that is the sum of two others: one direction less, the equations still hold.
+        let mut singular = a.clone();
+        for i in 0..n {
+            singular[4 * n + i] = singular[n + i] + singular[2 * n + i];
+        }
+        let right = times(&singular, &x);
+        system.matrix().copy_from_slice(&singular);
+        let mut found = right.clone();
+        assert_eq!(system.solve(&mut found, 1e-12), n - 1);
+        // Across what is open, e₁ + e₂ − e₄.
+        assert!((found[1] + found[2] - found[4]).abs() < 1e-12);
+        for (a, b) in times(&singular, &found).iter().zip(&right) {
+            assert!((a - b).abs() < 1e-12);
+        }
+    }
+}

@@ -1,0 +1,345 @@
+//! From event to event through one lapse, the part of the period after which the wave has moved on by
+//! some sectors.
+
+use super::contacts::{Element, Mode, Piece, along};
+use super::implicit::Implicit;
+use super::piecewise::Taylor;
+use super::record::Recorder;
+use super::segment::{DEGREE, Segment, first_fall};
+use super::system::System;
+use crate::error::{Result, fail, try_copy, try_vec};
+
+const WHAT: &str = "the motion in time";
+
+/// Steps of one lapse before it is given up: a structure so stiff against its period is none for
+/// integration in time.
+const MOST_STEPS: usize = 20_000_000;
+
+/// Events without progress in time, per contact, before it is given up.
+const MOST_AT_ONCE: usize = 50;
+
+/// Parts of a step within which events count as simultaneous.
+const SIMULTANEOUS: f64 = 1e-13;
+
+/// Steps between two looks at the cancel flag.
+const BETWEEN_LOOKS: usize = 256;
+
+/// Displacements, velocities and the stretches of the sliders' springs.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub x: Vec<f64>,
+    pub v: Vec<f64>,
+    pub e: Vec<f64>,
+}
+
+impl State {
+    /// Rest.
+    pub fn rest(system: &System) -> Result<Self> {
+        Ok(Self {
+            x: try_vec(system.order(), 0.0, WHAT)?,
+            v: try_vec(system.order(), 0.0, WHAT)?,
+            e: try_vec(system.elements.len(), 0.0, WHAT)?,
+        })
+    }
+
+    /// A copy whose memory is asked for fallibly.
+    pub fn try_clone(&self) -> Result<Self> {
+        Ok(Self {
+            x: try_copy(&self.x, WHAT)?,
+            v: try_copy(&self.v, WHAT)?,
+            e: try_copy(&self.e, WHAT)?,
+        })
+    }
+
+    /// Takes the values of another.
+    pub fn set(&mut self, other: &Self) {
+        self.x.copy_from_slice(&other.x);
+        self.v.copy_from_slice(&other.v);
+        self.e.copy_from_slice(&other.e);
+    }
+
+    /// Numbers in it.
+    pub fn len(&self) -> usize {
+        self.x.len() + self.v.len() + self.e.len()
+    }
+}
+
+/// Derivatives of a state by the state that it began with, column by column: (δx, δv, δe), on the way with
+/// the sliders' δu = r·δx − δe in place of δe, which do not change while they rest.
+pub(super) struct Sensitivity {
+    pub columns: Vec<f64>,
+}
+
+impl Sensitivity {
+    /// Memory for the states of `system`.
+    pub fn new(state: &State) -> Result<Self> {
+        let m = state.len();
+        Ok(Self {
+            columns: try_vec(m.saturating_mul(m), 0.0, "the monodromy matrix")?,
+        })
+    }
+}
+
+/// What a lapse was like.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Travel {
+    /// Changes of piece.
+    pub events: usize,
+    /// Largest displacement and velocity at the ends of the steps.
+    pub largest: (f64, f64),
+    /// Whether the caller asked to stop before the end.
+    pub cancelled: bool,
+}
+
+impl Travel {
+    fn see(&mut self, state: &State) {
+        for (largest, values) in [(&mut self.largest.0, &state.x), (&mut self.largest.1, &state.v)] {
+            *largest = values.iter().fold(*largest, |m, x| m.max(x.abs()));
+        }
+    }
+}
+
+enum Stepper {
+    Taylor(Box<Taylor>),
+    Implicit(Box<Implicit>),
+}
+
+/// Memory of the integration.
+pub(super) struct Flow {
+    stepper: Stepper,
+    segment: Segment,
+    modes: Vec<Mode>,
+    pieces: Vec<Piece>,
+    /// Zeros by construction of a margin at the begin of the step: (margin, number).
+    zeros: Vec<(usize, usize)>,
+    /// Next event of each contact within the step: (θ, margin).
+    falls: Vec<Option<(f64, usize)>>,
+    /// Sliders that are where the motion puts them at the begin.
+    slaved: Vec<bool>,
+    /// Sliders that have moved in some lapse since [`Self::forget`].
+    pub moved: Vec<bool>,
+}
+
+impl Flow {
+    /// Memory for `system`; `tolerance` bounds the local error where a law is smooth.
+    pub fn new(system: &System, tolerance: f64) -> Result<Self> {
+        let count = system.elements.len();
+        let stepper = if system.is_piecewise_linear() {
+            Stepper::Taylor(Box::new(Taylor::new(system)?))
+        } else {
+            Stepper::Implicit(Box::new(Implicit::new(system, tolerance)?))
+        };
+        let none = Piece {
+            slope: 0.0,
+            force: 0.0,
+            origin: 0.0,
+            memory: 0.0,
+        };
+        Ok(Self {
+            stepper,
+            segment: Segment::new(system.order())?,
+            modes: try_vec(count, Mode::Stick, WHAT)?,
+            pieces: try_vec(count, none, WHAT)?,
+            zeros: try_vec(count, (0, 0), WHAT)?,
+            falls: try_vec(count, None, WHAT)?,
+            slaved: try_vec(count, false, WHAT)?,
+            moved: try_vec(count, false, WHAT)?,
+        })
+    }
+
+    /// Forgets which sliders have moved.
+    pub fn forget(&mut self) {
+        self.moved.fill(false);
+    }
+
+    /// Carries a state from time 0 over one lapse, and with it what is asked for besides.
+    pub fn run(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        mut sensitivity: Option<&mut Sensitivity>,
+        mut recorder: Option<&mut Recorder>,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Travel> {
+        let end = system.lapse();
+        let mut travel = Travel::default();
+        travel.see(state);
+        system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.slaved);
+        self.zeros.fill((0, 0));
+        if let Some(s) = sensitivity.as_deref_mut() {
+            self.identity(system, state, s);
+        }
+        for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
+            *moved |= matches!(mode, Mode::Slip(_));
+        }
+        let mut t = 0.0;
+        let (mut steps, mut at_once) = (0, 0);
+        while t < end {
+            if steps % BETWEEN_LOOKS == 0 && cancelled.is_some_and(|f| f()) {
+                travel.cancelled = true;
+                return Ok(travel);
+            }
+            steps += 1;
+            if steps > MOST_STEPS {
+                return fail!(
+                    NoConvergence,
+                    "a period takes more than {MOST_STEPS} time steps; the structure is too stiff for omega = {}",
+                    system.omega
+                );
+            }
+            for (i, e) in system.elements.iter().enumerate() {
+                self.pieces[i] = e.piece(self.modes[i], along(&e.row, &state.x), state.e[i]);
+            }
+            self.step(system, state, t, end - t)?;
+            let theta = self.next_event(system, state);
+            let h = self.segment.length;
+            if let Some(r) = recorder.as_deref_mut() {
+                r.add(&self.segment, theta);
+            }
+            if theta > 0.0 {
+                if let Some(s) = sensitivity.as_deref_mut() {
+                    self.carry(system, theta, s)?;
+                }
+                for (i, e) in system.elements.iter().enumerate() {
+                    e.stretch(self.modes[i], self.segment.growth(&e.row, theta), &mut state.e[i]);
+                }
+                self.segment.at(theta, &mut state.x, &mut state.v);
+                travel.see(state);
+                self.zeros.fill((0, 0));
+            }
+            let happened = self.switch(system, state, sensitivity.as_deref_mut());
+            travel.events += happened;
+            at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
+            if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {
+                return fail!(NoConvergence, "contacts change without end at time {t} of the period");
+            }
+            t = if theta >= 1.0 && h >= end - t {
+                end
+            } else {
+                t + theta * h
+            };
+        }
+        if let Some(s) = sensitivity {
+            // A slider that still slips is where the motion puts it.
+            for (i, e) in system.elements.iter().enumerate() {
+                if matches!(self.modes[i], Mode::Slip(_)) {
+                    enslave(e, i, state, s);
+                }
+            }
+            exchange(system, state, s);
+        }
+        Ok(travel)
+    }
+
+    fn step(&mut self, system: &mut System, state: &State, t: f64, longest: f64) -> Result<()> {
+        let (pieces, segment) = (&self.pieces, &mut self.segment);
+        match &mut self.stepper {
+            Stepper::Taylor(s) => s.step(system, pieces, &state.x, &state.v, t, longest, segment),
+            Stepper::Implicit(s) => s.step(system, pieces, &state.x, &state.v, t, longest, segment),
+        }
+    }
+
+    /// The first θ at which a contact leaves its piece, 1 where none does; `falls` notes those that leave
+    /// theirs by then.
+    fn next_event(&mut self, system: &System, state: &State) -> f64 {
+        let mut first = f64::INFINITY;
+        for (i, e) in system.elements.iter().enumerate() {
+            self.falls[i] = None;
+            let mode = self.modes[i];
+            let mut y = [0.0; DEGREE + 1];
+            if Element::margins(mode) > 0 {
+                self.segment.relative(&e.row, &mut y);
+            }
+            let used = self.segment.degree + 1;
+            for which in 0..Element::margins(mode) {
+                let mut margin = y;
+                e.margin(mode, state.e[i], which, &mut margin[..used]);
+                let zeros = if self.zeros[i].0 == which { self.zeros[i].1 } else { 0 };
+                if let Some(theta) = first_fall(&margin[..used], zeros)
+                    && self.falls[i].is_none_or(|(before, _)| theta < before)
+                {
+                    self.falls[i] = Some((theta, which));
+                }
+            }
+            if let Some((theta, _)) = self.falls[i] {
+                first = first.min(theta);
+            }
+        }
+        let until = first + SIMULTANEOUS;
+        for fall in &mut self.falls {
+            *fall = fall.filter(|(theta, _)| *theta <= until);
+        }
+        first.min(1.0)
+    }
+
+    /// Takes the contacts whose piece has ended into the next one; their number.
+    fn switch(&mut self, system: &System, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
+        let mut happened = 0;
+        for (i, e) in system.elements.iter().enumerate() {
+            let Some((_, which)) = self.falls[i] else { continue };
+            let before = self.modes[i];
+            (self.modes[i], self.zeros[i]) = e.leave(before, which, &mut state.e[i]);
+            if matches!(before, Mode::Slip(_)) {
+                if let Some(s) = sensitivity.as_deref_mut() {
+                    enslave(e, i, state, s);
+                }
+            } else {
+                self.moved[i] |= matches!(self.modes[i], Mode::Slip(_));
+            }
+            happened += 1;
+        }
+        happened
+    }
+
+    fn identity(&self, system: &System, state: &State, s: &mut Sensitivity) {
+        let m = state.len();
+        s.columns.fill(0.0);
+        for i in 0..m {
+            s.columns[i * m + i] = 1.0;
+        }
+        exchange(system, state, s);
+        for (i, e) in system.elements.iter().enumerate() {
+            if self.slaved[i] {
+                enslave(e, i, state, s);
+            }
+        }
+    }
+
+    fn carry(&mut self, system: &mut System, theta: f64, s: &mut Sensitivity) -> Result<()> {
+        let h = self.segment.length;
+        let n = system.order();
+        let m = 2 * n + system.elements.len();
+        if let Stepper::Implicit(stepper) = &mut self.stepper {
+            stepper.prepare(system, &self.pieces, h)?;
+        }
+        for column in s.columns.chunks_exact_mut(m) {
+            let (x, rest) = column.split_at_mut(n);
+            let (v, u) = rest.split_at_mut(n);
+            match &mut self.stepper {
+                Stepper::Taylor(stepper) => stepper.carry(system, &self.pieces, theta * h, x, v, u)?,
+                Stepper::Implicit(stepper) => stepper.carry(system, &self.pieces, h, theta, x, v, u),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A slider that moves with the contact has its sensitivity: δu = r·δx.
+fn enslave(e: &Element, i: usize, state: &State, s: &mut Sensitivity) {
+    let m = state.len();
+    let at = 2 * state.x.len() + i;
+    for column in s.columns.chunks_exact_mut(m) {
+        column[at] = along(&e.row, column);
+    }
+}
+
+/// Between the stretches' sensitivities and the sliders', which is the same step both ways:
+/// δu = r·δx − δe, δe = r·δx − δu.
+fn exchange(system: &System, state: &State, s: &mut Sensitivity) {
+    let (m, first) = (state.len(), 2 * state.x.len());
+    for column in s.columns.chunks_exact_mut(m) {
+        for (i, e) in system.elements.iter().enumerate() {
+            column[first + i] = along(&e.row, column) - column[first + i];
+        }
+    }
+}
