@@ -13,6 +13,7 @@ const SOURCES: &[&str] = &[
     "contact",
     "tables",
     "user_force",
+    "jacobian",
     "elements",
     "patch",
     "solve",

@@ -334,6 +334,46 @@ impl UserForce for Drag {
     }
 }
 
+/// A creep told by a callback: z follows u.
+struct Creep;
+
+impl UserForce for Creep {
+    fn evaluate(&self, call: &mut Call<'_>) -> i32 {
+        let mut z = call.states.z0[0];
+        for j in 0..call.samples {
+            z += 0.1 * (call.u[j] - z);
+            call.states.z[j] = z;
+            call.states.dz_dz[j] = 0.9;
+            call.states.dz_du[j] = 0.1;
+            call.f[j] = call.u[j] - z;
+            call.df_du[j] = 1.0;
+            call.states.df_dz[j] = -1.0;
+        }
+        0
+    }
+}
+
+#[test]
+fn a_callback_with_states_is_asked_without_memory() {
+    let set = HarmonicSet::all(5).unwrap();
+    let law = User {
+        states: 1,
+        velocity: false,
+        ..User::new(Arc::new(Creep), 1, 0).unwrap()
+    };
+    let motion: Vec<f64> = (0..11).map(|i| (0.7 + f64::from(i)).sin()).collect();
+    let mut way = MarchedWay::new(&set, &law, 256).unwrap();
+    let mut out = Evaluation::new(&set, 1).unwrap();
+    let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out));
+    result.unwrap();
+    assert_eq!(count, 0);
+    // A load that stays is crept away; the fundamental is filtered, Z = 0.1 X/(1 - 0.9 exp(-2 pi i/256)).
+    assert!(out.force[0].abs() < 1e-12);
+    let turn = Complex64::from_polar(1.0, -std::f64::consts::TAU / 256.0);
+    let left = (1.0 - 0.1 / (1.0 - 0.9 * turn)) * set.get(&motion, 1);
+    assert!((set.get(&out.force, 1) - left).norm() < 1e-12);
+}
+
 #[test]
 fn a_law_marched_over_samples_asks_for_no_memory() {
     let set = HarmonicSet::all(5).unwrap();

@@ -44,7 +44,7 @@ fn respond(model: &Model, solver: &SolverOptions) -> Result<Branch> {
     };
     let solver = SolverOptions {
         response_dof: Some(1),
-        ..solver.clone()
+        ..*solver
     };
     forced_response(model, &solver, &range, &mut Hooks::default())
 }
@@ -190,11 +190,12 @@ impl UserForce for Slider {
         let mut before = call.u[n - 1];
         for j in 0..n {
             let trial = z + self.stiffness * (call.u[j] - before);
+            let sticks = trial.abs() <= self.limit;
             z = trial.clamp(-self.limit, self.limit);
             call.f[j] = z;
             call.states.z[j] = z;
             call.states.df_dz[j] = 1.0;
-            if z == trial {
+            if sticks {
                 call.states.dz_dz[j] = 1.0;
                 call.states.dz_du[j] = self.stiffness;
                 call.states.dz_du_before[j] = -self.stiffness;
@@ -229,10 +230,7 @@ fn a_slider_with_a_state_responds_like_the_librarys_own() {
     let mut errors = Vec::new();
     for samples in [128, 512, 2048] {
         let own = respond(&model(&over(slider(samples)), 0.0), &solver).unwrap();
-        let sampled = SolverOptions {
-            samples,
-            ..solver.clone()
-        };
+        let sampled = SolverOptions { samples, ..solver };
         let same = apart(&respond(&library, &sampled).unwrap(), &own);
         errors.push(apart(&exact, &own));
         println!(

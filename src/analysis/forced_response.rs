@@ -100,7 +100,7 @@ pub fn forced_response(
         None => Ok(Status::StoppedByCaller),
     };
     let ending = Ending::of(outcome, &points.branch)?;
-    points.finish(ending)
+    points.finish(&ending)
 }
 
 /// Where contacts press at rest the first point comes from the static solution; says so where it fails.
@@ -188,7 +188,7 @@ impl Keeper for Points<'_> {
 
 impl Points<'_> {
     /// Numbers the special points after the curve.
-    fn finish(mut self, ending: Ending) -> Result<Branch> {
+    fn finish(mut self, ending: &Ending) -> Result<Branch> {
         for kept in &self.specials {
             let record = record(&kept.point, &kept.response, &kept.slip_fractions, kept.sampling_error);
             self.branch.push_special(kept.kind, &record)?;

@@ -129,7 +129,7 @@ impl<'a> ModePoints<'a> {
     }
 
     /// Numbers the special points after the curve.
-    pub fn finish(mut self, ending: Ending) -> Result<Branch> {
+    pub fn finish(mut self, ending: &Ending) -> Result<Branch> {
         let fundamental = self.condensed.set().fundamental();
         for kept in &self.specials {
             let record = record(

@@ -137,7 +137,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     let mut points = ModePoints::new(&condensed, &linear, problem, branch)?;
     let outcome = run(&mut points, solver, range, (linear_up_to, nearly), hooks);
     let ending = Ending::of(outcome, points.branch())?;
-    points.finish(ending)
+    points.finish(&ending)
 }
 
 /// Chooses the phase's degree of freedom and gives the linear mode amplitude 1.

@@ -1,7 +1,7 @@
 //! The border to C: panics become a status, errors the thread's last error, raw pointers slices.
 
+use super::told::Told;
 use super::types::hbvib_status;
-use crate::branch::Branch;
 use crate::error::{Error, Result, Status, TEXT_CAPACITY, Text};
 use core::cell::{Cell, RefCell};
 use core::ffi::{CStr, c_char};
@@ -23,28 +23,6 @@ thread_local! {
     static PANIC: RefCell<Text> = const { RefCell::new(Text::EMPTY) };
     /// Whether this thread runs code of the library (and not a callback of the host).
     static INSIDE: Cell<bool> = const { Cell::new(false) };
-}
-
-/// What a call that wrote its result tells: a status, and why the result is a part only, where the
-/// status alone does not say it.
-pub(super) struct Told {
-    pub status: Status,
-    pub reason: Option<Error>,
-}
-
-impl From<Status> for Told {
-    fn from(status: Status) -> Self {
-        Self { status, reason: None }
-    }
-}
-
-impl From<&Branch> for Told {
-    fn from(branch: &Branch) -> Self {
-        Self {
-            status: branch.status(),
-            reason: branch.reason().copied(),
-        }
-    }
 }
 
 /// Runs the body of an exported function and turns its outcome into a status. Success empties the

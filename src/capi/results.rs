@@ -1,9 +1,10 @@
 //! What a branch tells.
 
-use super::boundary::{Blame, Told, call, call_count, check_pointer, index};
+use super::boundary::{Blame, call, call_count, check_pointer, index};
 use super::contact::exact_len;
 use super::handles::{KeptBranch, free, read};
 use super::sized::{Described, check_out, fill_out, init};
+use super::told::Told;
 use super::types::{hbvib_branch, hbvib_field, hbvib_scalar, hbvib_status, hbvib_view};
 use crate::branch::mode::ModeField;
 use crate::error::{Status, fail, try_vec};

@@ -1,8 +1,9 @@
 //! Options and hooks in, a branch out.
 
-use super::boundary::{Blame, Told, call, check_pointer, count, input, outside};
+use super::boundary::{Blame, call, check_pointer, count, input, outside};
 use super::handles::{KeptBranch, insert, read};
 use super::sized::{Described, check_reserved, init, load};
+use super::told::Told;
 use super::types::{
     hbvib_branch, hbvib_cancel_flag, hbvib_forced_options, hbvib_hooks, hbvib_model, hbvib_progress,
     hbvib_solver_options, hbvib_status,

@@ -1,15 +1,14 @@
-//! Forces of the host: a callback in, and the test of its tangents.
+//! Forces of the host: a callback in.
 
 #![allow(non_camel_case_types)]
 
 use super::boundary::{Blame, call, check_pointer, count, index, input, outside};
-use super::handles::{read, write};
-use super::sized::{Described, check_out, check_reserved, fill_out, init, load};
+use super::handles::write;
+use super::sized::{Described, check_reserved, init, load};
 use super::types::{hbvib_model, hbvib_status};
-use crate::analysis::{self, JacobianGap, Tangent};
 use crate::contact::user::{Call, User, UserForce};
 use crate::contact::{Contact, ContactKind};
-use crate::error::{Error, Result, Status, fail, try_push};
+use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 use core::ffi::c_void;
 use core::ptr;
@@ -112,52 +111,6 @@ pub struct hbvib_user_force {
     pub user: *mut c_void,
 }
 
-/// Derivatives that a force callback writes.
-#[repr(C)]
-pub enum hbvib_tangent {
-    /// df_du
-    HBVIB_DF_DU = 0,
-    /// df_dv
-    HBVIB_DF_DV = 1,
-    /// df_dz
-    HBVIB_DF_DZ = 2,
-    /// dz_dz
-    HBVIB_DZ_DZ = 3,
-    /// dz_du_before
-    HBVIB_DZ_DU_BEFORE = 4,
-    /// dz_du
-    HBVIB_DZ_DU = 5,
-    /// dz_dv_before
-    HBVIB_DZ_DV_BEFORE = 6,
-    /// dz_dv
-    HBVIB_DZ_DV = 7,
-    /// dz_domega
-    HBVIB_DZ_DOMEGA = 8,
-}
-
-/// The derivative that lies farthest from its difference quotient. Fill it by hbvib_jacobian_gap_init.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub struct hbvib_jacobian_gap {
-    /// Bytes of this struct as the caller knows it.
-    pub struct_size: u32,
-    /// HBVIB_DF_DU and so on (enum hbvib_tangent).
-    pub tangent: i32,
-    /// |given - difference| times the size of what was moved, relative to the size of what it moves:
-    /// below 1e-6 for right derivatives of a smooth force, 2 for a wrong sign.
-    pub gap: f64,
-    /// Sample of the test motion.
-    pub sample: i64,
-    /// Row of the entry.
-    pub row: i64,
-    /// Its column; for HBVIB_DF_DZ the state that was moved before the step.
-    pub column: i64,
-    /// What the callback wrote; for HBVIB_DF_DZ the change of force that follows.
-    pub given: f64,
-    /// What differences of the callback's own f and z give.
-    pub difference: f64,
-}
-
 unsafe impl Described for hbvib_user_force {
     const NAME: &'static str = "hbvib_user_force";
     const FIRST: usize = 64;
@@ -174,24 +127,6 @@ unsafe impl Described for hbvib_user_force {
             samples: 0,
             force: None,
             user: ptr::null_mut(),
-        }
-    }
-}
-
-unsafe impl Described for hbvib_jacobian_gap {
-    const NAME: &'static str = "hbvib_jacobian_gap";
-    const FIRST: usize = 56;
-
-    fn filled() -> Self {
-        Self {
-            struct_size: 0,
-            tangent: 0,
-            gap: 0.0,
-            sample: 0,
-            row: 0,
-            column: 0,
-            given: 0.0,
-            difference: 0.0,
         }
     }
 }
@@ -340,89 +275,4 @@ pub unsafe extern "C" fn hbvib_model_add_user_force(
         }
         Ok(Status::Ok)
     })
-}
-
-/// Fills a gap with zeros.
-///
-/// gap          the struct; untouched on error.
-/// size_of_gap  sizeof of it.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_jacobian_gap_init(gap: *mut hbvib_jacobian_gap, size_of_gap: usize) -> hbvib_status {
-    call(|| unsafe { init(gap, size_of_gap) })
-}
-
-/// Compares every derivative that a force of the caller writes with central differences of its own f and
-/// z, on a built-in motion with a mean and the harmonics 1 and 3. The status is HBVIB_OK whatever the
-/// gap: look at it. A solve with wrong derivatives ends in HBVIB_E_NO_CONVERGENCE or needs many
-/// iterations.
-///
-/// contact        number from hbvib_model_add_user_force.
-/// omega          angular frequency, > 0.
-/// amplitude      about the largest motion of each degree of freedom of the force, > 0: the motion
-///                should reach all that the force can do.
-/// amplitude_len  their number, that of the degrees of freedom.
-/// out            receives the worst entry; untouched on error.
-/// Errors: HBVIB_E_INDEX (contact), HBVIB_E_ARGUMENT (not a force of the caller, omega, amplitude),
-/// HBVIB_E_DIMENSION (amplitude_len), HBVIB_E_CALLBACK, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
-/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_check_jacobian(
-    model: *const hbvib_model,
-    contact: i64,
-    omega: f64,
-    amplitude: *const f64,
-    amplitude_len: i64,
-    out: *mut hbvib_jacobian_gap,
-) -> hbvib_status {
-    call(|| {
-        let model = read::<Model>(model, 1)?;
-        let contact = index(contact, model.contacts().len(), 2, "contact")?;
-        if !matches!(model.contacts()[contact].kind, ContactKind::User(_)) {
-            return fail!(Argument, "contact {contact} is not a force of the caller's").blame(2);
-        }
-        let len = count(amplitude_len, 5, "amplitude_len")?;
-        let amplitudes = unsafe { input(amplitude, len, 4, "amplitude") }?;
-        unsafe { check_out(out, 6) }?;
-        let found = analysis::check_jacobian(&model, contact, omega, amplitudes);
-        let gap = found.map_err(|e| blamed(e, omega))?;
-        unsafe { fill_out(out, gap.into()) };
-        Ok(Status::Ok)
-    })
-}
-
-/// The argument to blame for what only the analysis checks.
-fn blamed(e: Error, omega: f64) -> Error {
-    match e.status {
-        Status::Dimension => e.in_argument(5),
-        Status::Argument if !(omega > 0.0 && omega.is_finite()) => e.in_argument(3),
-        Status::Argument => e.in_argument(4),
-        _ => e,
-    }
-}
-
-impl From<JacobianGap> for hbvib_jacobian_gap {
-    fn from(found: JacobianGap) -> Self {
-        let tangent = match found.tangent {
-            Tangent::ForceByMotion => hbvib_tangent::HBVIB_DF_DU,
-            Tangent::ForceByVelocity => hbvib_tangent::HBVIB_DF_DV,
-            Tangent::ForceByState => hbvib_tangent::HBVIB_DF_DZ,
-            Tangent::StateByState => hbvib_tangent::HBVIB_DZ_DZ,
-            Tangent::StateByMotionBefore => hbvib_tangent::HBVIB_DZ_DU_BEFORE,
-            Tangent::StateByMotion => hbvib_tangent::HBVIB_DZ_DU,
-            Tangent::StateByVelocityBefore => hbvib_tangent::HBVIB_DZ_DV_BEFORE,
-            Tangent::StateByVelocity => hbvib_tangent::HBVIB_DZ_DV,
-            Tangent::StateByFrequency => hbvib_tangent::HBVIB_DZ_DOMEGA,
-        };
-        Self {
-            struct_size: 0,
-            tangent: tangent as i32,
-            gap: found.gap,
-            sample: found.sample as i64,
-            row: found.row as i64,
-            column: found.column as i64,
-            given: found.given,
-            difference: found.difference,
-        }
-    }
 }

@@ -20,12 +20,11 @@ pub fn force_at_rest(condensed: &Condensed, omega: f64, samples: usize) -> Resul
     let mut found: Vec<Evaluation> = Vec::new();
     for placed in laws() {
         let d = placed.law.directions();
-        let at = match found.iter().position(|e| e.directions == d) {
-            Some(at) => at,
-            None => {
-                try_push(&mut found, Evaluation::new(&set, d)?, "the contact forces")?;
-                found.len() - 1
-            }
+        let at = if let Some(at) = found.iter().position(|e| e.directions == d) {
+            at
+        } else {
+            try_push(&mut found, Evaluation::new(&set, d)?, "the contact forces")?;
+            found.len() - 1
         };
         let rest = try_vec(d, 0.0, "the contact forces")?;
         let contact = placed.contact;
