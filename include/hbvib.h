@@ -240,8 +240,8 @@ typedef enum {
   /// of the point before; 1 for the first.
   HBVIB_MODAL_ASSURANCE = 13,
   /// Aliasing check of laws that are sampled: relative change of their force harmonics with half the
-  /// samples (twice as many where half are too few). 0 where all laws are exact. It tells the size
-  /// of the error by sampling and is no bound of it.
+  /// samples (twice as many where half are too few). 0 where all laws are exact, NaN where a force
+  /// of the caller did not answer. It tells the size of the error by sampling and is no bound of it.
   HBVIB_SAMPLING_ERROR = 14,
 } hbvib_field;
 
@@ -402,7 +402,8 @@ typedef struct {
   /// Angular frequency of the period. States may need it as their time step 2 pi / (omega *
   /// samples); the force must not depend on it in any other way.
   double omega;
-  /// Samples N over the period.
+  /// Samples N over the period: those asked for or a few more, and half or twice as many where
+  /// sampling is checked (HBVIB_SAMPLING_ERROR).
   int64_t samples;
   /// Degrees of freedom n of the force.
   int64_t n;
@@ -1071,8 +1072,8 @@ hbvib_status hbvib_model_add_contact(hbvib_model *model,
                                      const hbvib_contact *c,
                                      int64_t *id);
 
-/// Changes the normal load of a contact. HBVIB_CUBIC, tables and polynomials have none, which is
-/// HBVIB_E_ARGUMENT.
+/// Changes the normal load of a contact. HBVIB_CUBIC, tables, polynomials and forces of the caller
+/// have none, which is HBVIB_E_ARGUMENT.
 ///
 /// id       number from hbvib_model_add_contact, or of another function that adds contacts.
 /// preload  force, >= 0; infinite, of HBVIB_JENKINS alone, sticks for ever.

@@ -27,18 +27,22 @@ pub(super) trait Keeper {
 /// How a run ended.
 pub(super) struct Ending {
     pub status: Status,
-    /// The failure of a callback that ended it.
+    /// The failure of a law that ended it.
     pub reason: Option<Error>,
 }
 
 impl Ending {
-    /// The end of a run that has kept `branch` so far: a callback that failed stops it and keeps the
-    /// points.
+    /// The end of a run that has kept `branch` so far: a law that failed stops it and keeps the points.
     pub fn of(outcome: Result<Status>, branch: &Branch) -> Result<Self> {
         match outcome {
             Ok(status) => Ok(Self { status, reason: None }),
             Err(e) if e.status == Status::Callback && branch.points() > 0 => Ok(Self {
                 status: Status::StoppedCallback,
+                reason: Some(e),
+            }),
+            // A law with states that found none at a point beside the curve.
+            Err(e) if e.recoverable && branch.points() > 0 => Ok(Self {
+                status: Status::StoppedStepTooSmall,
                 reason: Some(e),
             }),
             Err(e) => Err(e),

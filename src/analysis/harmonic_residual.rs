@@ -2,7 +2,7 @@
 //! continuation of their own, and for tests. Nothing is removed or condensed here.
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::contact::Contact;
+use crate::contact::{self, Contact};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::sparse::{Csc, Form};
@@ -281,6 +281,12 @@ impl Block<'_> {
 /// A law in the caller's units at packed motions.
 fn evaluate(contact: &Contact, set: &HarmonicSet, samples: usize, omega: f64, packed: &[f64]) -> Result<Evaluation> {
     let law = contact.law(1.0)?;
+    if omega == 0.0 && matches!(law.form(), contact::Form::Marched(_)) {
+        return fail!(
+            Argument,
+            "omega = 0, needs a number > 0 for a law with states, which takes steps in time"
+        );
+    }
     let mut evaluation = Evaluation::new(set, contact.directions())?;
     let mut evaluator = Evaluator::new(set, samples, core::iter::once(&*law))?;
     evaluator.prepare(set, &packed[..set.packed_len()]);

@@ -167,7 +167,7 @@ impl Keeper for ModePoints<'_> {
             data.push(mode)?;
         }
         let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
-        let sampling_error = self.problem.sampling_error(&self.motion, omega)?;
+        let sampling_error = self.problem.sampling_error(&self.motion, omega);
         let slip = self.problem.forces().slip_fractions();
         let i = self.condensed.set().fundamental();
         let amplitude = self.response[i];
@@ -183,7 +183,7 @@ impl Keeper for ModePoints<'_> {
         let mode = self.measure(&point)?;
         let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
         let kept = Kept {
-            sampling_error: self.problem.sampling_error(&self.motion, omega)?,
+            sampling_error: self.problem.sampling_error(&self.motion, omega),
             kind,
             motion: try_copy(&self.motion, "the special points")?,
             response: try_copy(&self.response, "the special points")?,

@@ -28,7 +28,7 @@ impl<'a> Recovery<'a> {
             branch,
             workspace: Workspace::new(condensed, None)?,
             point: 0,
-            forces: ContactForces::new(condensed, branch.samples)?,
+            forces: ContactForces::unchecked(condensed, branch.samples)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, WHAT)?,
         })
     }

@@ -174,8 +174,8 @@ pub unsafe extern "C" fn hbvib_model_add_contact(
     })
 }
 
-/// Changes the normal load of a contact. HBVIB_CUBIC, tables and polynomials have none, which is
-/// HBVIB_E_ARGUMENT.
+/// Changes the normal load of a contact. HBVIB_CUBIC, tables, polynomials and forces of the caller
+/// have none, which is HBVIB_E_ARGUMENT.
 ///
 /// id       number from hbvib_model_add_contact, or of another function that adds contacts.
 /// preload  force, >= 0; infinite, of HBVIB_JENKINS alone, sticks for ever.

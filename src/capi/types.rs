@@ -184,8 +184,8 @@ pub enum hbvib_field {
     /// of the point before; 1 for the first.
     HBVIB_MODAL_ASSURANCE = 13,
     /// Aliasing check of laws that are sampled: relative change of their force harmonics with half the
-    /// samples (twice as many where half are too few). 0 where all laws are exact. It tells the size
-    /// of the error by sampling and is no bound of it.
+    /// samples (twice as many where half are too few). 0 where all laws are exact, NaN where a force
+    /// of the caller did not answer. It tells the size of the error by sampling and is no bound of it.
     HBVIB_SAMPLING_ERROR = 14,
 }
 

@@ -35,7 +35,8 @@ pub struct hbvib_force_call {
     /// Angular frequency of the period. States may need it as their time step 2 pi / (omega *
     /// samples); the force must not depend on it in any other way.
     pub omega: f64,
-    /// Samples N over the period.
+    /// Samples N over the period: those asked for or a few more, and half or twice as many where
+    /// sampling is checked (HBVIB_SAMPLING_ERROR).
     pub samples: i64,
     /// Degrees of freedom n of the force.
     pub n: i64,

@@ -43,7 +43,7 @@ pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<Placed>, Ve
     for (i, o) in order.iter_mut().enumerate() {
         *o = i;
     }
-    order.sort_by_key(|&i| key(placed[i]));
+    order.sort_unstable_by_key(|&i| (key(placed[i]), i));
     let mut representatives = Vec::new();
     for (k, &i) in order.iter().enumerate() {
         if k == 0 || key(placed[i]) != key(placed[order[k - 1]]) {

@@ -44,7 +44,7 @@ pub enum Reference {
     /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, damped structure or not.
     Complex,
     /// kt: contacts that stick drop out of Newton's method. The poles are the resonances of the
-    /// stuck structure, so this is for damped structures. Cubic springs never drop out.
+    /// stuck structure, so this is for damped structures. Springs never drop out.
     Stuck,
 }
 
@@ -79,7 +79,7 @@ pub struct Condensed {
     blocks: Vec<HarmonicBlock>,
     laws: Vec<PlacedLaw>,
     /// Stiffness per coordinate from which κ is made: the sum of kt of its contacts, or more where
-    /// one is a cubic spring.
+    /// one is a spring whose stiffness grows.
     stiffness: Vec<f64>,
     /// Whether all laws of a coordinate may stick, as friction does.
     drops: Vec<bool>,

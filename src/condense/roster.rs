@@ -1,8 +1,8 @@
 //! The contacts of a model as they were when it was condensed, sorted by what a solver makes of them.
 
 use crate::contact::{Contact, Role};
-use crate::error::{Result, try_extend, try_push};
-use crate::model::Model;
+use crate::error::{Result, try_push};
+use crate::model::{Model, copy};
 
 /// All contacts of a model. Those that are linear have no relative coordinate.
 #[derive(Clone, Debug, Default)]
@@ -19,7 +19,9 @@ impl Roster {
     pub(super) fn new(model: &Model) -> Result<Self> {
         const WHAT: &str = "the contacts";
         let mut roster = Self::default();
-        try_extend(&mut roster.all, model.contacts(), WHAT)?;
+        for contact in model.contacts() {
+            try_push(&mut roster.all, copy(contact)?, WHAT)?;
+        }
         for (i, contact) in model.contacts().iter().enumerate() {
             match contact.role() {
                 Role::Active => try_push(&mut roster.active, i, WHAT)?,

@@ -57,7 +57,8 @@ impl Contact {
             ContactKind::User(law) => law.directions(),
             _ => self.places().len(),
         };
-        if self.directions() != wanted {
+        let over_dofs = matches!(self.kind, ContactKind::Polynomial(_) | ContactKind::User(_));
+        if self.directions() != wanted || !(self.dofs.is_empty() || over_dofs) {
             return fail!(
                 Dimension,
                 "contact: {} degrees of freedom for a {kind} of {wanted} motions",

@@ -87,7 +87,7 @@ impl Marched for FrictionPlane {
     }
 
     fn sticks(&self) -> bool {
-        true
+        self.kt > 0.0 && self.mu > 0.0
     }
 
     fn march(&self, _omega: f64, samples: usize, u: &[f64], _v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {

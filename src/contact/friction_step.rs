@@ -83,8 +83,8 @@ pub(super) fn step(kt: f64, mu: f64, force: [f64; 2], travel: [f64; 2], before: 
         } else {
             0.0
         };
+        // Without a tangential force there is nothing to slip.
         return Step {
-            slip: 1.0 - open,
             open,
             ..Step::default()
         };
@@ -99,7 +99,7 @@ pub(super) fn step(kt: f64, mu: f64, force: [f64; 2], travel: [f64; 2], before: 
 /// limit falls from r to zero and the sides travel `d`.
 fn slip_before_opening(kt: f64, r: f64, force: [f64; 2], d: [f64; 2]) -> f64 {
     if r == 0.0 || kt == 0.0 {
-        return 1.0;
+        return 0.0;
     }
     let (force, at_limit) = relative(force, r);
     1.0 - onset(force, at_limit, scaled(d, kt / r), -1.0).unwrap_or(1.0)

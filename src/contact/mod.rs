@@ -239,6 +239,7 @@ impl Contact {
             ContactKind::Jenkins if self.role() == Role::Inert => 0.0,
             ContactKind::Jenkins | ContactKind::Cubic => self.kt,
             ContactKind::Unilateral if self.clearance() < 0.0 => self.kn,
+            ContactKind::Friction | ContactKind::FrictionPlane if self.mu == 0.0 && self.places()[k] != 2 => 0.0,
             ContactKind::Friction | ContactKind::FrictionPlane if k == l && self.load() > 0.0 => self.stiffness(k),
             ContactKind::Table(table) => table.stiffness_at_rest(),
             ContactKind::Polynomial(polynomial) => polynomial.stiffness_at_rest(k, l),

@@ -68,18 +68,6 @@ impl TanhFriction {
             ..*self
         }
     }
-
-    /// Slip limit.
-    #[must_use]
-    pub fn limit(&self) -> f64 {
-        self.limit
-    }
-
-    /// Damping at rest, ∂f/∂v at v = 0.
-    #[must_use]
-    pub fn damping_at_rest(&self) -> f64 {
-        self.damping
-    }
 }
 
 impl Law for TanhFriction {

@@ -124,15 +124,6 @@ impl Table {
         self.lines.iter().fold(0.0, |m, line| m.max(line.slope.abs()))
     }
 
-    /// Whether the law is one straight line through the origin.
-    #[must_use]
-    pub fn is_linear(&self) -> bool {
-        let first = &self.lines[0];
-        let straight =
-            |line: &Line| line.offset == 0.0 && (line.slope - first.slope).abs() <= ROUNDING * first.slope.abs();
-        self.lines.iter().all(straight)
-    }
-
     /// A length or force in the law's units.
     fn scaled(&self, x: f64) -> f64 {
         x / self.length

@@ -4,7 +4,7 @@ use super::Model;
 use super::spring::Wave;
 use super::structure::MatrixKind;
 use crate::contact::Role;
-use crate::error::{Result, check_memory, fail};
+use crate::error::{Result, Status, check_memory, fail};
 use crate::linalg::definite::resists_all_motion;
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
@@ -82,8 +82,9 @@ impl Model {
     /// # Errors
     /// `OutOfMemory`, and those of the eigensolvers.
     pub fn rigid_modes(&self, diameter: usize) -> Result<usize> {
-        let Ok(pencil) = self.pencil(Wave::Diameter(diameter), ContactState::Free) else {
-            return Ok(0);
+        let pencil = match self.pencil(Wave::Diameter(diameter), ContactState::Free) {
+            Err(e) if e.status == Status::NotHermitian => return Ok(0),
+            pencil => pencil?,
         };
         if resists_all_motion(&pencil.stiffness)? {
             return Ok(0);

@@ -26,7 +26,10 @@ use structure::{MatrixKind, Structure};
 const CONTACTS: &str = "the contacts";
 
 /// A copy whose memory is asked for fallibly.
-fn copy(contact: &Contact) -> Result<Contact> {
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
     Ok(Contact {
         kind: contact.kind.clone(),
         dofs: try_copy(&contact.dofs, CONTACTS)?,

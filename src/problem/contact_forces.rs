@@ -45,6 +45,19 @@ impl<'a> ContactForces<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(condensed: &'a Condensed, samples: usize) -> Result<Self> {
+        let mut forces = Self::unchecked(condensed, samples)?;
+        let laws = || condensed.laws().iter().map(|placed| &*placed.law);
+        if laws().any(|law| forces.evaluator.samples(law)) {
+            forces.other = Some(Evaluator::otherwise(condensed.set(), samples, laws())?);
+        }
+        Ok(forces)
+    }
+
+    /// The same without memory for [`Self::sampling_error`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn unchecked(condensed: &'a Condensed, samples: usize) -> Result<Self> {
         const WHAT: &str = "the contact forces";
         // A linear problem has no contact to evaluate, and its harmonics need not be a comb.
         let linear = condensed.coordinates() == 0;
@@ -61,15 +74,10 @@ impl<'a> ContactForces<'a> {
         }
         let samples = if linear { 0 } else { samples };
         let evaluator = Evaluator::new(set, samples, laws())?;
-        let other = if laws().any(|law| evaluator.samples(law)) {
-            Some(Evaluator::otherwise(set, samples, laws())?)
-        } else {
-            None
-        };
         Ok(Self {
             condensed,
             evaluator,
-            other,
+            other: None,
             factor: 1.0,
             scaled: try_vec(size, 0.0, WHAT)?,
             gathered: try_vec(most.saturating_mul(m), 0.0, WHAT)?,
@@ -142,11 +150,13 @@ impl<'a> ContactForces<'a> {
 
     /// What sampling matters: ‖F_N − F_M‖/‖F_N‖ over the forces of all laws that are sampled, with M =
     /// N/2 (2N where N is too few to halve), at given motions and frequency. 0 where all laws are exact.
-    /// It tells the size of the error and is no bound of it.
-    ///
-    /// # Errors
-    /// Those of callbacks.
-    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+    /// It tells the size of the error and is no bound of it. NaN where a callback does not answer: a
+    /// check ends no branch.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> f64 {
+        self.compare_samples(motion, omega).unwrap_or(f64::NAN)
+    }
+
+    fn compare_samples(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
         let Some(other) = &mut self.other else { return Ok(0.0) };
         let set = self.condensed.set();
         let m = set.packed_len();

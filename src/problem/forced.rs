@@ -1,9 +1,8 @@
 //! The forced response as a [`Problem`]: unknown are the packed relative motions of the contacts,
-//! the parameter is the angular frequency (in the start's homotopy: the logarithm of a factor on
-//! all slip limits).
+//! the parameter is the angular frequency. In the start's homotopies it is ln s, where every law is
+//! seen as s·f(y/s), or a factor on the forces that vibrate.
 //!
-//! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y), and in the
-//! homotopy ∂R/∂λ = G fc ∂f/∂fc.
+//! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y) + G ∂f/∂ω.
 
 use super::at_rest::force_at_rest;
 use super::contact_forces::ContactForces;
@@ -75,10 +74,7 @@ impl<'a> Forced<'a> {
     }
 
     /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
-    ///
-    /// # Errors
-    /// Those of callbacks.
-    pub fn sampling_error(&mut self, u: &[f64], omega: f64) -> Result<f64> {
+    pub fn sampling_error(&mut self, u: &[f64], omega: f64) -> f64 {
         self.forces.sampling_error(u, omega)
     }
 
@@ -222,7 +218,7 @@ impl Problem for Forced<'_> {
             // What presses at rest has no solution of the form that scales: the load must grow.
             Start::Stuck if self.loaded_at_rest => Ok(false),
             Start::Stuck => {
-                // With infinite slip limits the problem is linear: one Newton step from rest.
+                // At motions far smaller every law is linear: one Newton step from rest.
                 u.fill(0.0);
                 let mut at = Linearisation::new(u.len())?;
                 self.parameter = Parameter::Ease { omega: p };

@@ -116,10 +116,7 @@ impl<'a> Mode<'a> {
     }
 
     /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
-    ///
-    /// # Errors
-    /// Those of callbacks.
-    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> f64 {
         self.forces.sampling_error(motion, omega)
     }
 

@@ -19,7 +19,7 @@ static int32_t spring_force(void *user, const hbvib_force_call *call)
 {
     spring *s = user;
     int64_t j, number = s->calls++;
-    s->bad += call->struct_size != sizeof *call || call->reserved != 0 || call->n != 1 || call->samples < 64;
+    s->bad += call->struct_size != sizeof *call || call->reserved != 0 || call->n != 1 || call->samples < 32;
     s->bad += call->states != 0 || call->z0 != NULL || call->z != NULL || call->dz_dz != NULL || call->df_dz != NULL;
     s->bad += !(call->omega > 0) || call->u == NULL || call->v == NULL || call->df_dv == NULL;
     for (j = 0; j < call->samples; j++) {
