@@ -40,7 +40,7 @@ const FLAGS: [Flag; 6] = [
 ];
 
 /// Newton iterations at most.
-const ITERATIONS: usize = 8;
+const ITERATIONS: usize = 12;
 
 /// Relative residual at which the iteration ends.
 const TOLERANCE: f64 = 1e-10;

@@ -9,10 +9,13 @@ mod brick;
 use beam::{Beam, STEEL, Y, Z};
 use hbvib::analysis::forced_response;
 use hbvib::branch::Branch;
+use hbvib::condense::{Condensed, Reference};
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::problem::forced::Forced;
+use hbvib::problem::{Linearisation, Problem, Start};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -155,6 +158,66 @@ fn the_work_of_the_force_is_lost_in_the_beam_and_the_contacts() {
     assert!((lost + energy.structural_loss - given).abs() < 1e-6 * given);
     assert!(contacts.iter().all(|c| c.work >= 0.0 && c.slip_share > 0.0));
     assert!(contacts.iter().any(|c| c.load_max > 1.01 * c.load_min));
+}
+
+/// Contacts that stick and stay closed leave Newton's equations with all their directions, though a load
+/// rests in them; the matrix is the derivative of the residual all the same, column by column.
+#[test]
+fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences() {
+    let beam = small();
+    let model = beam.forced(6.0, LIFT).unwrap();
+    let omega = TAU * 300.0;
+    let solver = SolverOptions {
+        harmonics: 3,
+        ..SolverOptions::default()
+    };
+    let condensed = Condensed::new(&model, &solver, omega).unwrap();
+    assert_eq!(condensed.reference(), Reference::Stuck);
+    let mut problem = Forced::new(&condensed, beam.tips()[0] + Z, (omega, omega), 0, None).unwrap();
+    let n = problem.size();
+    let m = n / condensed.coordinates();
+    let mut u = vec![0.0; n];
+    assert!(problem.start(Start::Reference, omega, &mut u).unwrap());
+    // The vibration of the last contacts, but not their mean, grows until they slip.
+    let contacts = condensed.contacts();
+    for law in &condensed.laws()[contacts - 3..] {
+        for c in &law.coordinates {
+            u[c * m + 1..(c + 1) * m].iter_mut().for_each(|x| *x *= 5.0);
+        }
+    }
+    let mut at = Linearisation::new(n).unwrap();
+    problem.evaluate(&u, omega, &mut at).unwrap();
+    let slipping = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
+    let active = at.active.iter().filter(|a| **a).count();
+    println!("{slipping} of {contacts} contacts slip, {active} of {n} unknowns are solved for");
+    assert!(slipping > 0 && slipping < contacts && active >= 3 * m * slipping && active < n);
+    let largest = u.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+    let step = 1e-6 * largest;
+    let (mut low, mut high) = (Linearisation::new(n).unwrap(), Linearisation::new(n).unwrap());
+    for k in 0..n {
+        let mut v = u.clone();
+        v[k] = u[k] - step;
+        problem.evaluate(&v, omega, &mut low).unwrap();
+        v[k] = u[k] + step;
+        problem.evaluate(&v, omega, &mut high).unwrap();
+        let column = &at.jacobian[k * n..(k + 1) * n];
+        let size = column.iter().fold(1.0_f64, |m, x| m.max(x.abs()));
+        for (r, j) in column.iter().enumerate() {
+            // Newton's matrix alone has the floor of 1e-8 on the means of contacts that slip.
+            let difference = (high.residual[r] - low.residual[r]) / (2.0 * step);
+            assert!(
+                (difference - j).abs() < 3e-6 * size,
+                "column {k}, row {r}: {j}, {difference}"
+            );
+        }
+        assert!(
+            at.active[k]
+                || column
+                    .iter()
+                    .enumerate()
+                    .all(|(r, x)| *x == f64::from(u8::from(r == k)))
+        );
+    }
 }
 
 /// What rests on the lining at rest: approach of the ground and constant load, against the stiffness of
