@@ -215,7 +215,7 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
                 || column
                     .iter()
                     .enumerate()
-                    .all(|(r, x)| *x == f64::from(u8::from(r == k)))
+                    .all(|(r, x)| x.to_bits() == f64::from(u8::from(r == k)).to_bits())
         );
     }
 }
