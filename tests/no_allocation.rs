@@ -396,3 +396,81 @@ fn a_law_marched_over_samples_asks_for_no_memory() {
         assert_eq!((out.slip_fraction > 0.0, out.stuck), (load < 10.0, load > 10.0));
     }
 }
+
+#[test]
+fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
+    // A chain of five bodies in space, springs of 1 to the next and to the ground along each axis. Three
+    // rub in a plane with separation, two in one direction.
+    let (bodies, n) = (5, 15);
+    let mut model = Model::new(n).unwrap();
+    let mut stiffness = vec![0.0; n * n];
+    let mut mass = vec![0.0; n * n];
+    for i in 0..n {
+        mass[i * n + i] = 1.0;
+        stiffness[i * n + i] = 2.5;
+        if i >= 3 {
+            stiffness[i * n + i - 3] = -1.0;
+            stiffness[(i - 3) * n + i] = -1.0;
+        }
+    }
+    for body in 0..bodies {
+        let dof = |k: usize| Some(3 * body + k);
+        let preload = [1e3, 1.0, 0.3, 1.0, 0.2][body];
+        let contact = if body % 2 == 0 {
+            Contact::friction_plane([dof(0), dof(1), dof(2)], [None; 3], (0.7, 0.9), 0.3, preload)
+        } else {
+            Contact::friction([dof(0), dof(2)], [None; 2], (0.7, 0.9), 0.3, preload)
+        };
+        model.add_contact(&contact).unwrap();
+        // The ground is what presses: a constant load holds the body to it.
+        model.add_force(3 * body + 2, 0, (-preload).into()).unwrap();
+    }
+    for (kind, values) in [(MatrixKind::Mass, &mass), (MatrixKind::Stiffness, &stiffness)] {
+        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
+    }
+    model.set_rayleigh(0.0, 0.05).unwrap();
+    model.add_force(0, 1, 0.5.into()).unwrap();
+    model.add_force(13, 1, 0.3.into()).unwrap();
+    model.add_force(14, 1, Complex64::new(0.0, 0.4)).unwrap();
+    let omega = 1.3;
+    let options = options(5, 0);
+    let condensed = Condensed::new(&model, &options, omega).unwrap();
+    assert_eq!(condensed.reference(), Reference::Stuck);
+    let mut problem = Forced::new(&condensed, 0, (omega, 1.1 * omega), 0, None).unwrap();
+    let size = problem.size();
+    let mut v = vec![0.0; size + 1];
+    problem.start(Start::Reference, omega, &mut v[..size]).unwrap();
+    let settings = Settings {
+        start: omega,
+        end: 1.1 * omega,
+        tolerance: options.tol_residual,
+        max_iterations: 60,
+        steps: StepControl::new(0.0, 0.0, 0.0),
+    };
+    let metric = Metric::along(norm(&v[..size]), &settings);
+    let mut row = vec![0.0; size + 1];
+    row[size] = 1.0;
+    let mut corrector = Corrector::new(size, settings.tolerance, settings.max_iterations).unwrap();
+    let mut iterations = 0;
+    for (k, factor) in [1.0, 1.0, 1.002, 1.004].into_iter().enumerate() {
+        for x in &mut v[..size] {
+            *x *= 1.01;
+        }
+        v[size] = factor * omega;
+        let (count, outcome) = allocations(|| {
+            corrector
+                .correct(&mut problem, &mut v, &row, metric, true, None)
+                .unwrap()
+        });
+        let Outcome::Converged(corrected) = outcome else {
+            panic!("no solution at {factor} of the frequency");
+        };
+        let slipping = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
+        assert!(slipping > 0 && slipping < bodies, "{slipping} contacts slip");
+        iterations += corrected.iterations;
+        // The first factorisation lays out memory of its own.
+        let found = corrected.iterations;
+        assert!(k == 0 || count == 1, "{count} allocations in {found} iterations");
+    }
+    assert!(iterations > 8, "{iterations} iterations");
+}

@@ -47,6 +47,8 @@ pub enum Style {
     Markers,
     /// A circle round every point, beside a dashed line of the same label.
     Rings,
+    /// A large square at every point, for maps.
+    Tiles,
 }
 
 /// Named points of one curve. Points that are not finite interrupt the line.
@@ -134,10 +136,20 @@ impl Figure {
     fn draw<DB: DrawingBackend<ErrorType: 'static>>(&self, pen: &Pen<DB>) -> Outcome {
         let points = || self.series.iter().flat_map(|s| s.points.iter().copied());
         let has_markers = self.series.iter().any(|s| s.style == Style::Markers);
-        let x_pad = if has_markers { 0.03 } else { 0.0 };
+        let has_tiles = self.series.iter().any(|s| s.style == Style::Tiles);
+        let x_pad = match (has_tiles, has_markers) {
+            (true, _) => 0.06,
+            (false, true) => 0.03,
+            (false, false) => 0.0,
+        };
         let mut x = Axis::new(points().map(|p| p.0), self.x_range, self.log_x, x_pad)?;
         let shown = points().filter(|p| (0.0..=1.0).contains(&x.place(p.0)));
-        let mut y = Axis::new(shown.map(|p| p.1), self.y_range, self.log_y, 0.04)?;
+        let mut y = Axis::new(
+            shown.map(|p| p.1),
+            self.y_range,
+            self.log_y,
+            if has_tiles { 0.1 } else { 0.04 },
+        )?;
 
         let legend = palette::legend(&self.series);
         let entry = |l: &str| {
@@ -198,7 +210,7 @@ impl Figure {
         for (shape, (label, color)) in legend.iter().enumerate().filter(|l| !l.1.0.is_empty()) {
             for series in self.series.iter().filter(|s| s.label == *label) {
                 let sample: &[Point] = match series.style {
-                    Style::Markers | Style::Rings => &[(left + SAMPLE.0 / 2.0, at)],
+                    Style::Markers | Style::Rings | Style::Tiles => &[(left + SAMPLE.0 / 2.0, at)],
                     _ => &[(left, at), (left + SAMPLE.0, at)],
                 };
                 let frame = [(left, top), (right, bottom)];

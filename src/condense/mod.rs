@@ -65,6 +65,8 @@ pub struct PlacedLaw {
     pub coordinates: Vec<usize>,
     /// Number of the contact in the model.
     pub contact: usize,
+    /// Which direction of the law is its normal, if it has one.
+    pub normal: Option<usize>,
     /// The law in the solver's units.
     pub law: Arc<dyn Law>,
 }
@@ -220,7 +222,7 @@ impl Condensed {
         for at in &placed {
             let contact = &model.contacts()[at.contact];
             stiffness[at.coordinate] += contact.stiffness(at.direction);
-            drops[at.coordinate] &= contact.may_stick(at.direction);
+            drops[at.coordinate] &= contact.may_stick();
         }
         raise_for_springs(model, omega, &set, &roster.never_slipping, &placed, &mut stiffness)?;
         let unknowns = representatives.len() * set.packed_len();
@@ -278,11 +280,11 @@ impl Condensed {
                 try_push(&mut coordinates, at.coordinate, WHAT)?;
             }
             let contact = one[0].contact;
-            let law = model.contacts()[contact].law(length)?;
             let placed = PlacedLaw {
                 coordinates,
                 contact,
-                law,
+                normal: model.contacts()[contact].normal_direction(),
+                law: model.contacts()[contact].law(length)?,
             };
             try_push(&mut self.laws, placed, WHAT)?;
         }
@@ -363,8 +365,8 @@ impl Condensed {
         self.stiffness[coordinate]
     }
 
-    /// Whether a coordinate leaves Newton's equations while it sticks: its reference stiffness is then
-    /// that of the stuck contact.
+    /// Whether a coordinate leaves Newton's equations while it sticks, or along a normal is closed: its
+    /// reference stiffness is then that of the contact.
     #[must_use]
     pub fn may_drop_out(&self, coordinate: usize) -> bool {
         self.drops[coordinate] && self.reference == Reference::Stuck

@@ -264,15 +264,14 @@ impl Contact {
         self.places().contains(&0) && !self.places().contains(&1)
     }
 
-    /// Whether the k-th motion, while the contact sticks, meets exactly [`Self::stiffness`], as friction
-    /// does.
+    /// Whether every motion meets exactly [`Self::stiffness`] while the contact sticks (along the normal:
+    /// while it is closed), as with friction.
     #[must_use]
-    pub fn may_stick(&self, k: usize) -> bool {
-        match self.kind {
-            ContactKind::Jenkins | ContactKind::Friction => k == 0,
-            ContactKind::FrictionPlane => k < 2,
-            _ => false,
-        }
+    pub fn may_stick(&self) -> bool {
+        matches!(
+            self.kind,
+            ContactKind::Jenkins | ContactKind::Friction | ContactKind::FrictionPlane
+        )
     }
 
     /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.

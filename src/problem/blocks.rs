@@ -2,7 +2,7 @@
 //! coordinate by itself, and one for each pair that some law couples.
 
 use crate::condense::Condensed;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 
 /// Blocks of order m, column-major, sorted by the coordinate of the force.
 pub struct Blocks {
@@ -11,6 +11,9 @@ pub struct Blocks {
     first: Vec<usize>,
     /// Motion coordinate of each block.
     motion: Vec<usize>,
+    /// Force coordinate and number of the blocks, by the coordinate of the motion. The pattern is
+    /// symmetric, so that they begin where `first` says.
+    of_motions: Vec<(usize, usize)>,
     values: Vec<f64>,
     /// Position of the blocks of each law: force direction after force direction.
     of_laws: Vec<usize>,
@@ -47,8 +50,14 @@ impl Blocks {
             first[force + 1] += 1;
             *m = by;
         }
+        let mut of_motions = try_vec(pairs.len(), (0, 0), WHAT)?;
         for c in 0..coordinates {
             first[c + 1] += first[c];
+        }
+        let mut filled = try_copy(&first, WHAT)?;
+        for (block, &(force, by)) in pairs.iter().enumerate() {
+            of_motions[filled[by]] = (force, block);
+            filled[by] += 1;
         }
         let mut of_laws = Vec::new();
         let mut wanted = Vec::new();
@@ -64,6 +73,7 @@ impl Blocks {
             order: m,
             first,
             motion,
+            of_motions,
             values: try_vec(size, 0.0, WHAT)?,
             of_laws,
         })
@@ -97,5 +107,13 @@ impl Blocks {
         let size = self.order * self.order;
         let range = self.first[coordinate]..self.first[coordinate + 1];
         range.map(move |b| (self.motion[b], &self.values[b * size..(b + 1) * size]))
+    }
+
+    /// The blocks of one motion coordinate, as (force coordinate, block).
+    pub fn of_motion(&self, coordinate: usize) -> impl Iterator<Item = (usize, &[f64])> {
+        let size = self.order * self.order;
+        let range = self.first[coordinate]..self.first[coordinate + 1];
+        let blocks = self.of_motions[range].iter();
+        blocks.map(move |&(force, b)| (force, &self.values[b * size..(b + 1) * size]))
     }
 }

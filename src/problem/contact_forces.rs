@@ -34,8 +34,12 @@ pub struct ContactForces<'a> {
     offset: Vec<f64>,
     by_omega: Vec<f64>,
     jacobians: Blocks,
-    /// Per coordinate whether all its laws stick.
-    stuck: Vec<bool>,
+    /// Whether all laws stick.
+    all_stuck: bool,
+    /// Per coordinate whether ∂f/∂y is that of laws which all stick, or along their normal are closed.
+    linear: Vec<bool>,
+    /// Per coordinate whether all its laws stick and none acts along its normal, where a load rests.
+    silent: Vec<bool>,
     slip_fractions: Vec<f64>,
 }
 
@@ -87,7 +91,9 @@ impl<'a> ContactForces<'a> {
             offset: try_vec(size, 0.0, WHAT)?,
             by_omega: try_vec(size, 0.0, WHAT)?,
             jacobians: Blocks::new(condensed, m)?,
-            stuck: try_vec(condensed.coordinates(), false, WHAT)?,
+            all_stuck: false,
+            linear: try_vec(condensed.coordinates(), false, WHAT)?,
+            silent: try_vec(condensed.coordinates(), false, WHAT)?,
             slip_fractions: try_vec(condensed.laws().len(), 0.0, WHAT)?,
         })
     }
@@ -110,7 +116,9 @@ impl<'a> ContactForces<'a> {
             sum.fill(0.0);
         }
         self.jacobians.clear();
-        self.stuck.fill(true);
+        self.all_stuck = true;
+        self.linear.fill(true);
+        self.silent.fill(true);
         let s = self.factor;
         // What scales with the motion; at rest it follows from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
@@ -134,8 +142,15 @@ impl<'a> ContactForces<'a> {
                 .map_err(|e| e.at(format_args!("contact {}", placed.contact)))?;
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &found.jacobian);
+            self.all_stuck &= found.stuck;
             for (i, &c) in at.iter().enumerate() {
-                self.stuck[c] &= found.stuck;
+                let normal = placed.normal == Some(i);
+                self.linear[c] &= if normal {
+                    found.open_fraction == 0.0
+                } else {
+                    found.stuck
+                };
+                self.silent[c] &= found.stuck && !normal;
                 let (here, law) = (c * m..(c + 1) * m, i * m..(i + 1) * m);
                 add(&mut self.force[here.clone()], &found.force[law.clone()], unit);
                 add(&mut self.offset[here.clone()], &found.offset[law.clone()], unit);
@@ -210,14 +225,20 @@ impl<'a> ContactForces<'a> {
     /// Whether every law is linear at the motion evaluated last.
     #[must_use]
     pub fn all_stuck(&self) -> bool {
-        self.stuck.iter().all(|s| *s)
+        self.all_stuck
     }
 
-    /// Whether a coordinate sticks and its reference stiffness is that of the stuck contact: then
-    /// f = κ y, and nothing couples back.
+    /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the
+    /// contact: then ∂f/∂y = κ, and no change couples back.
     #[must_use]
     pub fn drops_out(&self, coordinate: usize) -> bool {
-        self.stuck[coordinate] && self.condensed.may_drop_out(coordinate)
+        self.linear[coordinate] && self.condensed.may_drop_out(coordinate)
+    }
+
+    /// Whether besides f = κ y, so that nothing at all couples back; a normal load at rest does.
+    #[must_use]
+    pub fn is_silent(&self, coordinate: usize) -> bool {
+        self.silent[coordinate] && self.condensed.may_drop_out(coordinate)
     }
 
     /// Tells per unknown motion whether some force that does not drop out depends on it.
@@ -280,36 +301,61 @@ impl<'a> ContactForces<'a> {
         dw
     }
 
-    /// Adds g·(∂f/∂y − κ) of the force of coordinate `force` in harmonic i to the rows of coordinate
-    /// `row` of a Jacobian with `n` rows.
-    pub fn couple(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
+    /// Adds G (∂f/∂y − κ) in harmonic i to the column of a Jacobian that belongs to number `q` of the
+    /// packed motion of coordinate `motion`. `flexibility` holds G of that harmonic, force after force at
+    /// a distance of `stride`; `sum` has one number per coordinate.
+    ///
+    /// A column is written from top to bottom and the forces are summed before, because the Jacobian
+    /// of many contacts is far larger than any cache.
+    pub fn couple(
+        &self,
+        i: usize,
+        (motion, q): (usize, usize),
+        (flexibility, stride): (&[Complex64], usize),
+        sum: &mut [Complex64],
+        column: &mut [f64],
+    ) {
         let set = self.condensed.set();
         let m = set.packed_len();
         let at = set.offset(i);
         let mean = set.numbers()[i] == 0;
-        let r = row * m + at;
-        for (by, block) in self.jacobians.of_force(force) {
-            for (q, j) in block.chunks_exact(m).enumerate() {
-                let target = &mut jacobian[(by * m + q) * n..];
+        let mut any = false;
+        for (force, block) in self.jacobians.of_motion(motion) {
+            if self.drops_out(force) {
+                continue;
+            }
+            let mut z = set.get(&block[q * m..(q + 1) * m], i);
+            if force == motion && q == at {
+                z -= self.condensed.kappa(force, i);
                 if mean {
-                    target[r] += g.re * j[at];
-                } else {
-                    let dz = g * Complex64::new(j[at], j[at + 1]);
-                    target[r] += dz.re;
-                    target[r + 1] += dz.im;
+                    column[motion * m + at] += MEAN_FLOOR;
                 }
+            } else if force == motion && q == at + 1 && !mean {
+                z -= self.condensed.kappa(force, i) * Complex64::I;
+            }
+            if z == Complex64::ZERO {
+                continue;
+            }
+            if !any {
+                sum.fill(Complex64::ZERO);
+                any = true;
+            }
+            for (s, g) in sum.iter_mut().zip(&flexibility[force * stride..]) {
+                *s += g * z;
             }
         }
-        let gk = g * self.condensed.kappa(force, i);
-        let diagonal = (force * m + at) * n + r;
-        jacobian[diagonal] -= gk.re;
-        if mean && row == force {
-            jacobian[diagonal] += MEAN_FLOOR;
+        if !any {
+            return;
         }
-        if !mean {
-            jacobian[diagonal + 1] -= gk.im;
-            jacobian[diagonal + n] += gk.im;
-            jacobian[diagonal + n + 1] -= gk.re;
+        if mean {
+            for (x, s) in column[at..].iter_mut().step_by(m).zip(sum) {
+                *x += s.re;
+            }
+        } else {
+            for (x, s) in column[at..].chunks_mut(m).zip(sum) {
+                x[0] += s.re;
+                x[1] += s.im;
+            }
         }
     }
 

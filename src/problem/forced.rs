@@ -9,7 +9,7 @@ use super::contact_forces::ContactForces;
 use super::{Linearisation, Problem, Start, put};
 use crate::condense::Condensed;
 use crate::condense::tables::Tables;
-use crate::error::Result;
+use crate::error::{Result, try_vec};
 use crate::linalg::norm;
 use num_complex::Complex64;
 
@@ -38,6 +38,8 @@ pub struct Forced<'a> {
     given: Option<Vec<f64>>,
     /// Whether the static solution is not zero, because a contact presses or a law pushes at rest.
     loaded_at_rest: bool,
+    /// One number per coordinate, for a column of the Jacobian.
+    sum: Vec<Complex64>,
 }
 
 impl<'a> Forced<'a> {
@@ -64,6 +66,7 @@ impl<'a> Forced<'a> {
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
             loaded_at_rest,
+            sum: try_vec(condensed.coordinates(), Complex64::ZERO, "the forced response")?,
         })
     }
 
@@ -76,6 +79,26 @@ impl<'a> Forced<'a> {
     /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
     pub fn sampling_error(&mut self, u: &[f64], omega: f64) -> f64 {
         self.forces.sampling_error(u, omega)
+    }
+
+    /// ∂R/∂y = I + G (∂f/∂y − κ); what no force feels that counts keeps the column of the identity.
+    fn assemble(&mut self, out: &mut Linearisation) {
+        let m = self.condensed.set().packed_len();
+        let stride = self.condensed.coordinates() + 1;
+        let n = out.residual.len();
+        self.forces.mark_active(&mut out.active);
+        for (k, column) in out.jacobian.chunks_exact_mut(n.max(1)).enumerate() {
+            column.fill(0.0);
+            column[k] = 1.0;
+            if !out.active[k] {
+                continue;
+            }
+            for (i, table) in self.tables.current().iter().enumerate() {
+                let flexibility = (&table.value[..], stride);
+                self.forces
+                    .couple(i, (k / m, k % m), flexibility, &mut self.sum, column);
+            }
+        }
     }
 
     /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
@@ -123,15 +146,11 @@ impl Problem for Forced<'_> {
         self.tables.tabulate(self.condensed, omega)?;
         self.forces.evaluate(u, omega)?;
         let set = self.condensed.set();
-        let (m, n) = (set.packed_len(), u.len());
+        let m = set.packed_len();
         let coordinates = self.condensed.coordinates();
         let outputs = coordinates + 1;
         out.residual.copy_from_slice(u);
         out.d_parameter.fill(0.0);
-        out.jacobian.fill(0.0);
-        for k in 0..n {
-            out.jacobian[k * n + k] = 1.0;
-        }
         let mut linear = 0.0_f64;
         for (i, table) in self.tables.current().iter().enumerate() {
             let at = set.offset(i);
@@ -153,8 +172,7 @@ impl Problem for Forced<'_> {
                 }
             }
             for column in 0..coordinates {
-                if self.forces.drops_out(column) {
-                    // f = κ y: nothing couples back.
+                if self.forces.is_silent(column) {
                     continue;
                 }
                 let w = self.forces.minus_reference(u, column, i);
@@ -171,11 +189,10 @@ impl Problem for Forced<'_> {
                         Parameter::Ease { .. } => put(&mut out.d_parameter, r, mean, g * eased),
                         Parameter::Load { .. } => {}
                     }
-                    self.forces.couple(i, (row, column), g, &mut out.jacobian, n);
                 }
             }
         }
-        self.forces.mark_active(&mut out.active);
+        self.assemble(out);
         out.scale = norm(u) + linear.sqrt();
         Ok(())
     }
@@ -193,7 +210,7 @@ impl Problem for Forced<'_> {
         let excited = coordinates * outputs + coordinates;
         let mut z = table.value[excited];
         let mut dz = rate(table.slope[excited]);
-        for c in (0..coordinates).filter(|&c| !self.forces.drops_out(c)) {
+        for c in (0..coordinates).filter(|&c| !self.forces.is_silent(c)) {
             let w = self.forces.minus_reference(u, c, i);
             let g = table.value[c * outputs + coordinates];
             let mut dw = self.forces.along(direction, c, i);

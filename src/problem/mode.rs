@@ -75,6 +75,10 @@ pub struct Mode<'a> {
     x: Vec<Complex64>,
     weighted: Vec<Complex64>,
     w: Vec<Complex64>,
+    /// One number per coordinate, for a column of the Jacobian.
+    sum: Vec<Complex64>,
+    /// G of one harmonic, column-major.
+    flexibility: Vec<Complex64>,
 }
 
 impl<'a> Mode<'a> {
@@ -95,6 +99,8 @@ impl<'a> Mode<'a> {
             x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, WHAT)?,
             weighted: try_vec(n, Complex64::ZERO, WHAT)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, WHAT)?,
+            sum: try_vec(condensed.coordinates(), Complex64::ZERO, WHAT)?,
+            flexibility: try_vec(condensed.coordinates().saturating_pow(2), Complex64::ZERO, WHAT)?,
         })
     }
 
@@ -274,12 +280,17 @@ impl Problem for Mode<'_> {
                 }
                 for c in 0..coordinates {
                     let g = along(row, self.modal.column(c));
-                    self.forces.couple(i, (r, c), g, &mut out.jacobian, n);
+                    self.flexibility[c * coordinates + r] = g;
                     let eased = self.forces.by_ease(c, i) * by_parameter;
                     put(&mut out.d_parameter, position, mean, g * eased);
                     let column = &mut out.jacobian[(n - 2) * n..];
                     put(column, position, mean, rates.0 * g * self.forces.by_omega(c, i));
                 }
+            }
+            for (k, column) in out.jacobian.chunks_exact_mut(n).take(n - 2).enumerate() {
+                let flexibility = (&self.flexibility[..], coordinates);
+                self.forces
+                    .couple(i, (k / m, k % m), flexibility, &mut self.sum, &mut column[..n - 2]);
             }
             if block.number == 1 {
                 self.fix_gauge(rates, by_parameter, out);

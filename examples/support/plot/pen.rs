@@ -16,6 +16,9 @@ pub(super) type Point = (f64, f64);
 /// Largest departure of a drawn line from its points.
 const TOLERANCE: f64 = 0.05;
 
+/// Half the side of a tile.
+const TILE: f64 = 11.0;
+
 /// A canvas `scale` times as large as the figure.
 pub(super) struct Pen<DB: DrawingBackend> {
     pub(super) area: DrawingArea<DB, Shift>,
@@ -79,6 +82,10 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
                 let mut shown = points.iter().filter(inside);
                 shown.try_for_each(|p| self.ring(*p, color))
             }
+            Style::Tiles => {
+                let mut shown = points.iter().filter(inside);
+                shown.try_for_each(|p| self.tile(*p, color))
+            }
         }
     }
 
@@ -94,6 +101,11 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
         };
         let corners: Vec<_> = corners.iter().map(|d| self.pixel((x + d.0, y + d.1))).collect();
         Ok(self.area.draw(&Polygon::new(corners, color.filled()))?)
+    }
+
+    fn tile(&self, (x, y): Point, color: RGBColor) -> Outcome {
+        let corners = [self.pixel((x - TILE, y - TILE)), self.pixel((x + TILE, y + TILE))];
+        Ok(self.area.draw(&Rectangle::new(corners, color.filled()))?)
     }
 
     fn ring(&self, (x, y): Point, color: RGBColor) -> Outcome {
