@@ -1,4 +1,5 @@
-//! A law of the host: a callback that is asked for one period at a time.
+//! A law of the host: a callback that is asked for one period at a time, or by integration in time for one
+//! time.
 //!
 //! It sees motions and velocities in the caller's units and answers with forces and tangents. What
 //! it returns is checked: a code other than 0, and numbers that are not finite, become errors that
@@ -23,7 +24,7 @@ pub trait UserForce: Send + Sync {
 pub struct Call<'a> {
     /// Angular frequency of harmonic 1.
     pub omega: f64,
-    /// Equidistant times N of the period, the first at 0.
+    /// Equidistant times N of the period, the first at 0; integration in time asks about 1, any time.
     pub samples: usize,
     /// Relative motions d.
     pub directions: usize,

@@ -59,7 +59,7 @@ pub struct TimeResponse {
 /// Integrates the response of a model to its forces until it is periodic.
 ///
 /// # Errors
-/// `Unsupported` for degrees of freedom without mass and complex matrices, `NoConvergence` where no
+/// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence` where no
 /// steady state was found, `NoBoundedSolution` where the motion grows without end, `OutOfMemory`.
 pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
     let mut system = System::new(model, options.omega)?;

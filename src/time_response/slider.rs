@@ -98,7 +98,7 @@ impl Slider {
 impl Events for Slider {
     fn begin(&self, at: &Instant, e: &mut f64) -> (Mode, Option<Mode>) {
         let [_, y] = at.motion;
-        if y > self.opening || (y == self.opening && at.rate[1] >= 0.0) {
+        if y >= self.opening && (y > self.opening || at.rate[1] >= 0.0) {
             *e = 0.0;
             return (Mode::Open, Some(Mode::Open));
         }
@@ -129,20 +129,13 @@ impl Events for Slider {
             piece.force[1] = self.kn * (motion[1] - self.opening);
             piece.slope[1][1] = self.kn;
         }
-        match mode {
-            Mode::Slip(sign) => {
-                piece.force[0] = if self.kn > 0.0 {
-                    sign * self.kt * self.fall * (self.opening - motion[1])
-                } else {
-                    sign * self.kt * self.play
-                };
-                piece.slope[0][1] = -sign * self.kt * self.fall;
-            }
-            _ => {
-                piece.force[0] = self.kt * e;
-                piece.slope[0][0] = self.kt;
-                piece.memory = self.kt;
-            }
+        if let Mode::Slip(sign) = mode {
+            piece.force[0] = sign * self.kt * self.range(motion[1]);
+            piece.slope[0][1] = -sign * self.kt * self.fall;
+        } else {
+            piece.force[0] = self.kt * e;
+            piece.slope[0][0] = self.kt;
+            piece.memory = self.kt;
         }
         piece
     }
