@@ -855,8 +855,8 @@ typedef struct {
   double residual;
   /// Periods that were integrated.
   int64_t periods;
-  /// Changes between stick, slip, open and closed in one period, all contacts of the (sector's)
-  /// model together.
+  /// Changes between stick, slip, open and closed, or between the lines of a table, in one period, all
+  /// contacts of the (sector's) model together.
   int64_t events;
 } hbvib_time_info;
 
@@ -1789,7 +1789,8 @@ hbvib_status hbvib_time_info_init(hbvib_time_info *i, size_t size_of_i);
 /// implicit steps where a law is smooth. Nothing is truncated, so that this is what harmonic balance
 /// tends to as its harmonics grow: a check of any of its points. A cyclic model moves in the wave of
 /// its engine order. The progress hook is called after each period integrated (in a wave after each
-/// part of it), with the largest displacement as amplitude.
+/// part of it), with the largest displacement as amplitude. A force callback is asked about one time per
+/// call: samples is 1.
 ///
 /// options        set omega; give a point of a branch as start to check that very solution.
 /// hooks          progress, log and cancellation; NULL: none.
@@ -1802,8 +1803,9 @@ hbvib_status hbvib_time_info_init(hbvib_time_info *i, size_t size_of_i);
 /// HBVIB_STOPPED_BY_CALLER: the results are those of the last period, which is not steady.
 /// Errors: HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (options, overlapping arrays), HBVIB_E_DIMENSION (a
 /// length, with the one needed), HBVIB_E_UNSUPPORTED (a degree of freedom without mass, complex
-/// matrices), HBVIB_E_NO_CONVERGENCE (no steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion
-/// grows without end), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// matrices, friction in a plane), HBVIB_E_NO_CONVERGENCE (no steady state found),
+/// HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows without end), HBVIB_E_CALLBACK (a force callback
+/// refused), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
 hbvib_status hbvib_time_response(const hbvib_model *model,
                                  const hbvib_time_options *options,

@@ -133,16 +133,15 @@ fn motions_without_mass_and_complex_matrices_are_refused() {
 }
 
 #[test]
-fn laws_that_are_not_integrated_yet_are_refused() {
+fn friction_in_a_plane_is_refused_by_name() {
     let mut model = two_masses(&[1.0, 0.0, 0.0, 1.0]);
     model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
-    model
-        .add_contact(&Contact::regularised(0, Some(1), 0.3, 1.0, 0.1))
-        .unwrap();
+    let plane = Contact::friction_plane([Some(0), Some(1), None], [None; 3], (1.0, 0.0), 0.3, 1.0);
+    model.add_contact(&plane).unwrap();
     refused(
         time_response(&model, &options(), &mut Hooks::default()),
         Status::Unsupported,
-        &["contact 1", "Jenkins"],
+        &["contact 1", "friction in a plane"],
     );
 }
 

@@ -67,8 +67,8 @@ pub struct hbvib_time_info {
     pub residual: f64,
     /// Periods that were integrated.
     pub periods: i64,
-    /// Changes between stick, slip, open and closed in one period, all contacts of the (sector's)
-    /// model together.
+    /// Changes between stick, slip, open and closed, or between the lines of a table, in one period, all
+    /// contacts of the (sector's) model together.
     pub events: i64,
 }
 
@@ -164,7 +164,8 @@ unsafe fn time_options<'a>(o: &hbvib_time_options, ndof: usize) -> Result<TimeOp
 /// implicit steps where a law is smooth. Nothing is truncated, so that this is what harmonic balance
 /// tends to as its harmonics grow: a check of any of its points. A cyclic model moves in the wave of
 /// its engine order. The progress hook is called after each period integrated (in a wave after each
-/// part of it), with the largest displacement as amplitude.
+/// part of it), with the largest displacement as amplitude. A force callback is asked about one time per
+/// call: samples is 1.
 ///
 /// options        set omega; give a point of a branch as start to check that very solution.
 /// hooks          progress, log and cancellation; NULL: none.
@@ -177,8 +178,9 @@ unsafe fn time_options<'a>(o: &hbvib_time_options, ndof: usize) -> Result<TimeOp
 /// HBVIB_STOPPED_BY_CALLER: the results are those of the last period, which is not steady.
 /// Errors: HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (options, overlapping arrays), HBVIB_E_DIMENSION (a
 /// length, with the one needed), HBVIB_E_UNSUPPORTED (a degree of freedom without mass, complex
-/// matrices), HBVIB_E_NO_CONVERGENCE (no steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion
-/// grows without end), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// matrices, friction in a plane), HBVIB_E_NO_CONVERGENCE (no steady state found),
+/// HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows without end), HBVIB_E_CALLBACK (a force callback
+/// refused), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]

@@ -134,8 +134,21 @@ impl Table {
         self.lines[1..].iter().map(|line| self.scaled(line.from))
     }
 
-    /// Line at x, the later one of two that meet there.
-    fn line_from(&self, x: f64) -> usize {
+    /// Slope and offset of a line.
+    pub(crate) fn line(&self, number: usize) -> (f64, f64) {
+        let line = &self.lines[number];
+        (line.slope, self.scaled(line.offset))
+    }
+
+    /// Displacement at which a line takes over from the one before; `None` for the first, and beyond the
+    /// last.
+    pub(crate) fn level(&self, number: usize) -> Option<f64> {
+        let line = self.lines.get(number).filter(|_| number > 0);
+        line.map(|line| self.scaled(line.from))
+    }
+
+    /// Number of the line at x, the later one of two that meet there.
+    pub(crate) fn line_from(&self, x: f64) -> usize {
         self.lines[1..].partition_point(|line| self.scaled(line.from) <= x)
     }
 

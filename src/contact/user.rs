@@ -1,9 +1,11 @@
-//! A law of the host: a callback that is asked for one period at a time.
+//! A law of the host: a callback that is asked for one period at a time, or by integration in time for
+//! one time.
 //!
 //! A force without memory is told sample by sample; one with internal states is marched over them, and
-//! tells the derivatives of its steps as well. It sees motions and velocities in the caller's units and answers with forces and tangents. What
-//! it returns is checked: a code other than 0, and numbers that are not finite, become errors that
-//! keep the code, name the place, and tell whether another motion may do.
+//! tells the derivatives of its steps as well. It sees motions and velocities in the caller's units
+//! and answers with forces and tangents. What it returns is checked: a code other than 0, and numbers
+//! that are not finite, become errors that keep the code, name the place, and tell whether another
+//! motion may do.
 
 use super::law::{Form, Law, Range};
 use super::pointwise::{Pointwise, Samples, automatic_samples};
@@ -26,7 +28,8 @@ pub struct Call<'a> {
     /// Angular frequency of the period 2π/omega: the times are 2π/(omega·N) apart. A force may need it
     /// as the time step of its states, in no other way.
     pub omega: f64,
-    /// Equidistant times N of the period, the first at 0. With states it may be 2.
+    /// Equidistant times N of the period, the first at 0. With states it may be 2; integration in time
+    /// asks about 1, any time.
     pub samples: usize,
     /// Relative motions d.
     pub directions: usize,

@@ -1,30 +1,31 @@
-//! Contacts in time: what each law does within a piece, when it leaves the piece, and what follows.
+//! Contacts in time: the laws of a structure, sorted into springs and elements, and what an element with
+//! events tells of the pieces between them.
 //!
-//! Within a piece the force is linear in the relative motion y = side a − side b: a Jenkins contact
-//! sticks, f = kt·(y − u) with its slider at u, or slips, f = ±μN₀; a unilateral spring is open, f = 0, or
-//! closed, f = kn·(y + clearance). What a Jenkins contact remembers is the stretch e = y − u of its spring:
-//! of y and u themselves a stiff spring would see the rounding.
+//! Within a piece the forces are linear in the relative motions, x and for friction under a load that
+//! varies also y, side a minus side b of each. A friction contact sticks, slips or is open (`slider`); a
+//! unilateral spring is open or closed, a table is on one of its lines (`springs`). What friction
+//! remembers is the stretch e = x − w of its spring from the slider at w: of x and w themselves a stiff
+//! spring would see the rounding.
 //!
-//! A piece ends where one of its *margins*, polynomials in time like the motion, falls through zero. The force is continuous there, and so is the whole
-//! right-hand side: sensitivities pass events unchanged (the saltation matrix is the identity; see
-//! Leine & Nijmeijer, Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004).
+//! A piece ends where one of its *margins*, polynomials in time like the motion, falls through zero. The
+//! force is continuous there, and so is the whole right-hand side: sensitivities of displacements and
+//! velocities pass events unchanged (the saltation matrix is the identity; see Leine & Nijmeijer,
+//! Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004).
 //!
-//! Smooth laws have one piece without end and are evaluated pointwise.
+//! Smooth laws have one piece without end and are evaluated pointwise (`smooth`).
 
+use super::slider::Slider;
+use super::springs::Stop;
+use crate::contact::law::{Form, Law};
+use crate::contact::pointwise::Pointwise;
+use crate::contact::polynomial::Polynomial;
 use crate::contact::sides::Direction;
+use crate::contact::table::Table;
 use crate::contact::{Contact, ContactKind, Role};
 use crate::error::{Result, fail, try_push};
+use std::sync::Arc;
 
-/// Law of one relative motion, its constants in the caller's units.
-#[derive(Clone, Copy, Debug)]
-enum Law {
-    /// Stiffness and slip limit.
-    Jenkins { kt: f64, limit: f64 },
-    /// Stiffness and the closing at which it presses.
-    Unilateral { kn: f64, clearance: f64 },
-    /// Force per length cubed; the linear part is the structure's.
-    Cubic { cubic: f64 },
-}
+const WHAT: &str = "the contacts";
 
 /// What a contact does at a time.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,30 +38,90 @@ pub(super) enum Mode {
     Open,
     /// Pressed.
     Closed,
+    /// On the line of this number of a table.
+    Line(usize),
     /// A law without events.
     Smooth,
 }
 
-/// One contact of one sector.
+/// Relative motions and velocities at a time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Element {
-    pub row: Row,
-    law: Law,
-    /// Contacts of equal family are one contact in all sectors.
-    pub family: usize,
+pub(super) struct Instant {
+    /// x and y
+    pub motion: [f64; 2],
+    /// x′ and y′
+    pub rate: [f64; 2],
 }
 
-/// Force within a step: f = force + slope·(y − origin).
-#[derive(Clone, Copy, Debug)]
+/// Forces within a step: force + slope·(motion − origin).
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Piece {
-    /// Tangent stiffness.
-    pub slope: f64,
-    /// Force at the begin of the step.
-    pub force: f64,
-    /// Relative motion at the begin of the step.
-    pub origin: f64,
-    /// Derivative of −f by the position of the slider.
+    /// Tangent stiffness, rows first.
+    pub slope: [[f64; 2]; 2],
+    /// Forces at the begin of the step.
+    pub force: [f64; 2],
+    /// Relative motions at the begin of the step.
+    pub origin: [f64; 2],
+    /// Derivative of minus the force along x by the position of the slider.
     pub memory: f64,
+}
+
+impl Piece {
+    /// Forces at a motion.
+    pub fn at(&self, motion: [f64; 2]) -> [f64; 2] {
+        let change = self.along([motion[0] - self.origin[0], motion[1] - self.origin[1]]);
+        [self.force[0] + change[0], self.force[1] + change[1]]
+    }
+
+    /// What a change of the motion adds to the forces.
+    pub fn along(&self, change: [f64; 2]) -> [f64; 2] {
+        self.slope.map(|s| s[0] * change[0] + s[1] * change[1])
+    }
+}
+
+/// Most margins of a piece.
+pub(super) const MARGINS: usize = 3;
+
+/// How many zeros each margin of a piece has at its begin by construction.
+pub(super) type Zeros = [usize; MARGINS];
+
+/// A law that is linear between events.
+pub(super) trait Events {
+    /// The mode at a state, whose stretch comes within its range; then the mode, if any, that tells where
+    /// the slider is from the motion alone.
+    fn begin(&self, at: &Instant, e: &mut f64) -> (Mode, Option<Mode>);
+
+    /// The forces in a mode from a motion on, the spring of the slider stretched by e.
+    fn piece(&self, mode: Mode, motion: [f64; 2], e: f64) -> Piece;
+
+    /// Number of margins in a mode.
+    fn margins(&self, mode: Mode) -> usize;
+
+    /// Writes the polynomial of a margin, which is positive as long as the piece lasts, from those of the
+    /// relative motions, all of one length.
+    fn margin(&self, mode: Mode, which: usize, e: f64, x: &[f64], y: &[f64], margin: &mut [f64]);
+
+    /// The mode after margin `which` has fallen to zero, and the zeros of the new margins.
+    fn leave(&self, mode: Mode, which: usize, at: &Instant, e: &mut f64) -> (Mode, Zeros);
+}
+
+/// Law of an element, its constants in the caller's units.
+#[derive(Clone, Debug)]
+enum Kind {
+    Slider(Slider),
+    Stop(Stop),
+    Table(Table),
+    Smooth(Arc<dyn Law>),
+}
+
+/// One contact of one sector.
+#[derive(Clone, Debug)]
+pub(super) struct Element {
+    /// One row for each relative motion.
+    pub rows: Vec<Row>,
+    kind: Kind,
+    /// Contacts of equal family are one contact in all sectors.
+    pub family: usize,
 }
 
 /// A linear spring between two degrees of freedom.
@@ -91,6 +152,37 @@ pub(super) fn along(row: &Row, x: &[f64]) -> f64 {
     row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
 }
 
+/// What a contact is in time: its linear part, a stiffness along the first motion, and the law of an
+/// element with the first of the contact's motions that it knows.
+fn kind(family: usize, c: &Contact) -> Result<(f64, Option<(usize, Kind)>)> {
+    let smooth = |law: Arc<dyn Law>| Some((0, Kind::Smooth(law)));
+    Ok(match (c.role(), &c.kind) {
+        (Role::Inert, _) => (0.0, None),
+        (Role::Spring, _) => (c.kt, None),
+        (Role::Active, ContactKind::Jenkins) => (0.0, Some((0, Kind::Slider(Slider::jenkins(c))))),
+        // Without friction a spring along the normal is left.
+        (Role::Active, ContactKind::Friction) if c.kt == 0.0 || c.mu == 0.0 => {
+            (0.0, Some((1, Kind::Stop(Stop::of(c)))))
+        }
+        (Role::Active, ContactKind::Friction) => (0.0, Some((0, Kind::Slider(Slider::friction(c))))),
+        (Role::Active, ContactKind::Unilateral) => (0.0, Some((0, Kind::Stop(Stop::of(c))))),
+        (Role::Active, ContactKind::Table(table)) => (0.0, Some((0, Kind::Table(table.clone())))),
+        (Role::Active, ContactKind::Cubic) => {
+            let law = Polynomial::scalar(&[0.0, 0.0, c.cubic], &[])?;
+            (c.kt, smooth(Arc::new(law)))
+        }
+        (Role::Active, ContactKind::Polynomial(_) | ContactKind::Regularised | ContactKind::User(_)) => {
+            (0.0, smooth(c.law(1.0)?))
+        }
+        (Role::Active, ContactKind::FrictionPlane) => {
+            return fail!(
+                Unsupported,
+                "contact {family}: friction in a plane is not integrated in time, friction in one direction is"
+            );
+        }
+    })
+}
+
 /// Sorts the contacts of a sector, all sectors around, into springs and elements.
 ///
 /// `place` tells the number of a degree of freedom in a sector (of any number) of the ring.
@@ -101,45 +193,21 @@ pub(super) fn unroll(
     ties: &mut Vec<Tie>,
     elements: &mut Vec<Element>,
 ) -> Result<()> {
-    const WHAT: &str = "the contacts";
     for (family, c) in contacts.iter().enumerate() {
+        let (stiffness, law) = kind(family, c)?;
         for s in 0..sectors {
-            if c.role() == Role::Inert {
-                break;
-            }
             let other = (s as i64 + c.sector_offset).rem_euclid(sectors as i64) as usize;
-            let row = row(&c.direction(0), (s, other), &place);
-            let (law, linear) = match (c.role(), &c.kind) {
-                (Role::Inert, _) => (None, 0.0),
-                (Role::Spring, _) => (None, c.kt),
-                (Role::Active, ContactKind::Jenkins) => (
-                    Some(Law::Jenkins {
-                        kt: c.kt,
-                        limit: c.slip_limit(),
-                    }),
-                    0.0,
-                ),
-                (Role::Active, ContactKind::Unilateral) => (
-                    Some(Law::Unilateral {
-                        kn: c.kn,
-                        clearance: c.clearance(),
-                    }),
-                    0.0,
-                ),
-                (Role::Active, ContactKind::Cubic) => (Some(Law::Cubic { cubic: c.cubic }), c.kt),
-                (Role::Active, _) => {
-                    return fail!(
-                        Unsupported,
-                        "contact {family}: only Jenkins contacts, unilateral and cubic springs are integrated in time"
-                    );
-                }
-            };
-            if linear != 0.0 {
-                let stiffness = linear;
+            if stiffness != 0.0 {
+                let row = row(&c.direction(0), (s, other), &place);
                 try_push(ties, Tie { row, stiffness }, WHAT)?;
             }
-            if let Some(law) = law {
-                try_push(elements, Element { row, law, family }, WHAT)?;
+            if let Some((first, kind)) = &law {
+                let mut rows = Vec::new();
+                for k in *first..c.directions() {
+                    try_push(&mut rows, row(&c.direction(k), (s, other), &place), WHAT)?;
+                }
+                let kind = kind.clone();
+                try_push(elements, Element { rows, kind, family }, WHAT)?;
             }
         }
     }
@@ -147,134 +215,60 @@ pub(super) fn unroll(
 }
 
 impl Element {
-    /// Whether the law has no pieces and is integrated numerically.
-    pub fn is_smooth(&self) -> bool {
-        matches!(self.law, Law::Cubic { .. })
-    }
-
-    /// Whether the contact remembers: its slider is part of the state.
-    pub fn has_memory(&self) -> bool {
-        matches!(self.law, Law::Jenkins { .. })
-    }
-
-    /// Force and tangent of a smooth law at y; zero for a law with pieces.
-    pub fn smooth(&self, y: f64) -> (f64, f64) {
-        match self.law {
-            Law::Cubic { cubic } => (cubic * y * y * y, 3.0 * cubic * y * y),
-            Law::Jenkins { .. } | Law::Unilateral { .. } => (0.0, 0.0),
+    /// The law of an element that is integrated numerically.
+    pub fn smooth(&self) -> Option<&dyn Pointwise> {
+        match &self.kind {
+            Kind::Smooth(law) => match law.form() {
+                Form::Pointwise(law) => Some(law),
+                _ => None,
+            },
+            _ => None,
         }
     }
 
-    /// The force in a mode from y on, the spring of the slider stretched by e.
-    pub fn piece(&self, mode: Mode, y: f64, e: f64) -> Piece {
-        let (slope, force, memory) = match (self.law, mode) {
-            (Law::Jenkins { kt, .. }, Mode::Stick) => (kt, kt * e, kt),
-            (Law::Jenkins { limit, .. }, Mode::Slip(sign)) => (0.0, sign * limit, 0.0),
-            (Law::Unilateral { kn, clearance }, Mode::Closed) => (kn, kn * (y + clearance), 0.0),
-            _ => (0.0, 0.0, 0.0),
-        };
-        Piece {
-            slope,
-            force,
-            origin: y,
-            memory,
+    /// The law of an element that is linear between events.
+    pub fn events(&self) -> Option<&dyn Events> {
+        match &self.kind {
+            Kind::Slider(law) => Some(law),
+            Kind::Stop(law) => Some(law),
+            Kind::Table(law) => Some(law),
+            Kind::Smooth(_) => None,
         }
     }
 
-    /// The slider after any motion that ends at y, from u: the play operator.
-    pub fn drag(&self, y: f64, u: f64) -> f64 {
-        match self.law {
-            Law::Jenkins { kt, limit } => u.max(y - limit / kt).min(y + limit / kt),
-            _ => u,
+    /// The slider of an element that remembers, part of the state.
+    pub fn slider(&self) -> Option<&Slider> {
+        match &self.kind {
+            Kind::Slider(slider) => Some(slider),
+            _ => None,
         }
     }
 
-    /// The mode at a state, whose stretch comes within its range; `true`: it had to be cut, or the contact
-    /// slips, so that y alone tells where the slider is.
-    pub fn begin(&self, y: f64, rate: f64, e: &mut f64) -> (Mode, bool) {
-        match self.law {
-            Law::Jenkins { kt, limit } => {
-                let range = limit / kt;
-                let sign = e.signum();
-                let (at_limit, beyond) = (e.abs() >= range, e.abs() > range);
-                if at_limit {
-                    *e = sign * range;
-                }
-                if at_limit && sign * rate > 0.0 {
-                    (Mode::Slip(sign), true)
-                } else {
-                    (Mode::Stick, beyond)
+    /// The first two relative motions of displacements, or velocities.
+    pub fn relative(&self, x: &[f64]) -> [f64; 2] {
+        let mut motion = [0.0; 2];
+        for (motion, row) in motion.iter_mut().zip(&self.rows) {
+            *motion = along(row, x);
+        }
+        motion
+    }
+
+    /// The relative motions and velocities.
+    pub fn instant(&self, x: &[f64], v: &[f64]) -> Instant {
+        Instant {
+            motion: self.relative(x),
+            rate: self.relative(v),
+        }
+    }
+
+    /// f += s·Rᵀ g of forces g along the first two relative motions
+    pub fn push(&self, s: f64, g: [f64; 2], f: &mut [f64]) {
+        for (row, g) in self.rows.iter().zip(g) {
+            if g != 0.0 {
+                for &(dof, a) in row.iter().flatten() {
+                    f[dof] += s * a * g;
                 }
             }
-            Law::Unilateral { clearance, .. } if y < -clearance => (Mode::Closed, false),
-            Law::Unilateral { .. } => (Mode::Open, false),
-            Law::Cubic { .. } => (Mode::Smooth, false),
-        }
-    }
-
-    /// Number of margins in a mode.
-    pub fn margins(mode: Mode) -> usize {
-        match mode {
-            Mode::Stick => 2,
-            Mode::Slip(_) | Mode::Open | Mode::Closed => 1,
-            Mode::Smooth => 0,
-        }
-    }
-
-    /// Turns the polynomial of the relative motion into that of a margin, which is positive as long as
-    /// the piece lasts: to the slip limit in the positive and the negative direction while it sticks, the
-    /// speed of the slider while it slips, the distance while it is open, the compression while closed.
-    pub fn margin(&self, mode: Mode, e: f64, which: usize, y: &mut [f64]) {
-        match (self.law, mode) {
-            (Law::Jenkins { kt, limit }, Mode::Stick) => {
-                let sign = if which == 0 { 1.0 } else { -1.0 };
-                y[0] = e;
-                for c in y.iter_mut() {
-                    *c *= -sign;
-                }
-                y[0] += limit / kt;
-            }
-            (Law::Jenkins { .. }, Mode::Slip(sign)) => {
-                for k in 1..y.len() {
-                    y[k - 1] = sign * k as f64 * y[k];
-                }
-                if let Some(last) = y.last_mut() {
-                    *last = 0.0;
-                }
-            }
-            (Law::Unilateral { clearance, .. }, Mode::Open) => y[0] += clearance,
-            (Law::Unilateral { clearance, .. }, Mode::Closed) => {
-                y[0] += clearance;
-                for c in y.iter_mut() {
-                    *c = -*c;
-                }
-            }
-            _ => y.fill(0.0),
-        }
-    }
-
-    /// The mode after margin `which` has fallen to zero, and how many zeros the new margins have at their
-    /// begin by construction: (margin, number).
-    ///
-    /// Slip ends where the slider's speed does, so that the stretch stands at the limit with slope zero.
-    pub fn leave(&self, mode: Mode, which: usize, e: &mut f64) -> (Mode, (usize, usize)) {
-        match (self.law, mode) {
-            (Law::Jenkins { kt, limit }, Mode::Stick) => {
-                let sign = if which == 0 { 1.0 } else { -1.0 };
-                *e = sign * limit / kt;
-                (Mode::Slip(sign), (0, 0))
-            }
-            (Law::Jenkins { .. }, Mode::Slip(sign)) => (Mode::Stick, (usize::from(sign < 0.0), 2)),
-            (Law::Unilateral { .. }, Mode::Open) => (Mode::Closed, (0, 1)),
-            (Law::Unilateral { .. }, Mode::Closed) => (Mode::Open, (0, 1)),
-            _ => (mode, (0, 0)),
-        }
-    }
-
-    /// The stretch after y has grown by `growth` within a piece.
-    pub fn stretch(&self, mode: Mode, growth: f64, e: &mut f64) {
-        if self.has_memory() && mode == Mode::Stick {
-            *e += growth;
         }
     }
 }

@@ -1,11 +1,12 @@
 //! From event to event through one lapse, the part of the period after which the wave has moved on by
 //! some sectors.
 
-use super::contacts::{Element, Mode, Piece, along};
+use super::contacts::{Element, Mode, Piece, Zeros, along};
 use super::implicit::Implicit;
 use super::piecewise::Taylor;
 use super::record::Recorder;
 use super::segment::{DEGREE, Segment, first_fall};
+use super::slider::Slider;
 use super::system::System;
 use crate::error::{Result, fail, try_copy, try_vec};
 
@@ -110,12 +111,12 @@ pub(super) struct Flow {
     segment: Segment,
     modes: Vec<Mode>,
     pieces: Vec<Piece>,
-    /// Zeros by construction of a margin at the begin of the step: (margin, number).
-    zeros: Vec<(usize, usize)>,
+    /// Zeros by construction of the margins at the begin of the step.
+    zeros: Vec<Zeros>,
     /// Next event of each contact within the step: (θ, margin).
     falls: Vec<Option<(f64, usize)>>,
-    /// Sliders that are where the motion puts them at the begin.
-    slaved: Vec<bool>,
+    /// Modes that tell of sliders where the motion puts them at the begin.
+    slaved: Vec<Option<Mode>>,
     /// Sliders that have moved in some lapse since [`Self::forget`].
     pub moved: Vec<bool>,
 }
@@ -129,20 +130,14 @@ impl Flow {
         } else {
             Stepper::Implicit(Box::new(Implicit::new(system, tolerance)?))
         };
-        let none = Piece {
-            slope: 0.0,
-            force: 0.0,
-            origin: 0.0,
-            memory: 0.0,
-        };
         Ok(Self {
             stepper,
             segment: Segment::new(system.order())?,
             modes: try_vec(count, Mode::Stick, WHAT)?,
-            pieces: try_vec(count, none, WHAT)?,
-            zeros: try_vec(count, (0, 0), WHAT)?,
+            pieces: try_vec(count, Piece::default(), WHAT)?,
+            zeros: try_vec(count, Zeros::default(), WHAT)?,
             falls: try_vec(count, None, WHAT)?,
-            slaved: try_vec(count, false, WHAT)?,
+            slaved: try_vec(count, None, WHAT)?,
             moved: try_vec(count, false, WHAT)?,
         })
     }
@@ -165,12 +160,12 @@ impl Flow {
         let mut travel = Travel::default();
         travel.see(state);
         system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.slaved);
-        self.zeros.fill((0, 0));
+        self.zeros.fill(Zeros::default());
         if let Some(s) = sensitivity.as_deref_mut() {
             self.identity(system, state, s);
         }
         for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
-            *moved |= matches!(mode, Mode::Slip(_));
+            *moved |= Slider::moves(*mode);
         }
         let mut t = 0.0;
         let (mut steps, mut at_once) = (0, 0);
@@ -188,7 +183,9 @@ impl Flow {
                 );
             }
             for (i, e) in system.elements.iter().enumerate() {
-                self.pieces[i] = e.piece(self.modes[i], along(&e.row, &state.x), state.e[i]);
+                if let Some(law) = e.events() {
+                    self.pieces[i] = law.piece(self.modes[i], e.relative(&state.x), state.e[i]);
+                }
             }
             self.step(system, state, t, end - t)?;
             let theta = self.next_event(system, state);
@@ -200,12 +197,16 @@ impl Flow {
                 if let Some(s) = sensitivity.as_deref_mut() {
                     self.carry(system, theta, s)?;
                 }
-                for (i, e) in system.elements.iter().enumerate() {
-                    e.stretch(self.modes[i], self.segment.growth(&e.row, theta), &mut state.e[i]);
-                }
                 self.segment.at(theta, &mut state.x, &mut state.v);
+                for (i, e) in system.elements.iter().enumerate() {
+                    if let Some(slider) = e.slider() {
+                        let growth = self.segment.growth(&e.rows[0], theta);
+                        let [_, y] = e.relative(&state.x);
+                        slider.stretch(self.modes[i], growth, y, &mut state.e[i]);
+                    }
+                }
                 travel.see(state);
-                self.zeros.fill((0, 0));
+                self.zeros.fill(Zeros::default());
             }
             let happened = self.switch(system, state, sensitivity.as_deref_mut());
             travel.events += happened;
@@ -220,11 +221,9 @@ impl Flow {
             };
         }
         if let Some(s) = sensitivity {
-            // A slider that still slips is where the motion puts it.
+            // A slider that still moves is where the motion puts it.
             for (i, e) in system.elements.iter().enumerate() {
-                if matches!(self.modes[i], Mode::Slip(_)) {
-                    enslave(e, i, state, s);
-                }
+                enslave(e, i, (self.modes[i], self.modes[i]), state, s);
             }
             exchange(system, state, s);
         }
@@ -245,17 +244,18 @@ impl Flow {
         let mut first = f64::INFINITY;
         for (i, e) in system.elements.iter().enumerate() {
             self.falls[i] = None;
+            let Some(law) = e.events() else { continue };
             let mode = self.modes[i];
-            let mut y = [0.0; DEGREE + 1];
-            if Element::margins(mode) > 0 {
-                self.segment.relative(&e.row, &mut y);
-            }
             let used = self.segment.degree + 1;
-            for which in 0..Element::margins(mode) {
-                let mut margin = y;
-                e.margin(mode, state.e[i], which, &mut margin[..used]);
-                let zeros = if self.zeros[i].0 == which { self.zeros[i].1 } else { 0 };
-                if let Some(theta) = first_fall(&margin[..used], zeros)
+            let mut motion = [[0.0; DEGREE + 1]; 2];
+            for (motion, row) in motion.iter_mut().zip(&e.rows) {
+                self.segment.relative(row, motion);
+            }
+            let [x, y] = &motion;
+            for which in 0..law.margins(mode) {
+                let mut margin = [0.0; DEGREE + 1];
+                law.margin(mode, which, state.e[i], &x[..used], &y[..used], &mut margin[..used]);
+                if let Some(theta) = first_fall(&margin[..used], self.zeros[i][which])
                     && self.falls[i].is_none_or(|(before, _)| theta < before)
                 {
                     self.falls[i] = Some((theta, which));
@@ -276,15 +276,15 @@ impl Flow {
     fn switch(&mut self, system: &System, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
         let mut happened = 0;
         for (i, e) in system.elements.iter().enumerate() {
-            let Some((_, which)) = self.falls[i] else { continue };
+            let (Some(law), Some((_, which))) = (e.events(), self.falls[i]) else {
+                continue;
+            };
             let before = self.modes[i];
-            (self.modes[i], self.zeros[i]) = e.leave(before, which, &mut state.e[i]);
-            if matches!(before, Mode::Slip(_)) {
-                if let Some(s) = sensitivity.as_deref_mut() {
-                    enslave(e, i, state, s);
-                }
-            } else {
-                self.moved[i] |= matches!(self.modes[i], Mode::Slip(_));
+            let at = e.instant(&state.x, &state.v);
+            (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
+            self.moved[i] |= Slider::moves(self.modes[i]);
+            if let Some(s) = sensitivity.as_deref_mut() {
+                enslave(e, i, (before, self.modes[i]), state, s);
             }
             happened += 1;
         }
@@ -299,8 +299,8 @@ impl Flow {
         }
         exchange(system, state, s);
         for (i, e) in system.elements.iter().enumerate() {
-            if self.slaved[i] {
-                enslave(e, i, state, s);
+            if let Some(mode) = self.slaved[i] {
+                enslave(e, i, (mode, mode), state, s);
             }
         }
     }
@@ -324,12 +324,16 @@ impl Flow {
     }
 }
 
-/// A slider that moves with the contact has its sensitivity: δu = r·δx.
-fn enslave(e: &Element, i: usize, state: &State, s: &mut Sensitivity) {
-    let m = state.len();
-    let at = 2 * state.x.len() + i;
+/// At the end of a mode, before the next one, a slider that has moved has the sensitivity of the motion.
+fn enslave(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s: &mut Sensitivity) {
+    let Some(slider) = e.slider().filter(|_| Slider::moves(mode)) else {
+        return;
+    };
+    let (m, at) = (state.len(), 2 * state.x.len() + i);
+    let share = slider.follows(mode, after, e.relative(&state.v));
     for column in s.columns.chunks_exact_mut(m) {
-        column[at] = along(&e.row, column);
+        let [x, y] = e.relative(column);
+        column[at] = x + share * y;
     }
 }
 
@@ -339,7 +343,7 @@ fn exchange(system: &System, state: &State, s: &mut Sensitivity) {
     let (m, first) = (state.len(), 2 * state.x.len());
     for column in s.columns.chunks_exact_mut(m) {
         for (i, e) in system.elements.iter().enumerate() {
-            column[first + i] = along(&e.row, column) - column[first + i];
+            column[first + i] = along(&e.rows[0], column) - column[first + i];
         }
     }
 }

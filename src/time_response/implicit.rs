@@ -7,11 +7,12 @@
 //! estimates the error and sets the step; see Hairer, Nørsett & Wanner, Solving Ordinary Differential
 //! Equations I (1993), II.7, doi:10.1007/978-3-540-78862-1.
 
-use super::contacts::{Piece, along};
+use super::contacts::Piece;
 use super::gauss::{STAGES, Tables};
 use super::segment::Segment;
+use super::smooth::Smooth;
 use super::system::System;
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Error, Result, fail, try_vec};
 use crate::linalg::lu::Lu;
 
 /// Newton iterations of a step before it is halved.
@@ -24,14 +25,15 @@ pub(super) struct Implicit {
     /// Accelerations at the nodes, node after node.
     accelerations: Vec<f64>,
     residual: Vec<f64>,
-    /// Tangents of the smooth laws at the nodes, node after node.
-    tangents: Vec<f64>,
+    smooth: Smooth,
     x: Vec<f64>,
     v: Vec<f64>,
     trial: f64,
     tolerance: f64,
     /// Largest displacement and velocity so far.
     largest: (f64, f64),
+    /// What a callback said of the last motion that it could not answer for.
+    refusal: Option<Error>,
 }
 
 impl Implicit {
@@ -45,12 +47,13 @@ impl Implicit {
             lu: Lu::new(all, 1)?,
             accelerations: try_vec(all, 0.0, WHAT)?,
             residual: try_vec(all, 0.0, WHAT)?,
-            tangents: try_vec(STAGES * system.elements.len(), 0.0, WHAT)?,
+            smooth: Smooth::new(system, STAGES)?,
             x: try_vec(n, 0.0, WHAT)?,
             v: try_vec(n, 0.0, WHAT)?,
             trial: 0.05 * system.lapse(),
             tolerance,
             largest: (0.0, 0.0),
+            refusal: None,
         })
     }
 
@@ -70,14 +73,28 @@ impl Implicit {
         loop {
             let h = self.trial.min(longest);
             if self.trial < shortest {
+                if let Some(refusal) = self.refusal.take() {
+                    return Err(refusal);
+                }
                 return fail!(
                     NoConvergence,
                     "the time step fell below {shortest:.1e} at time {t}: the motion grows beyond all bounds"
                 );
             }
-            if !self.collocate(system, pieces, x, v, t, h) {
-                self.trial = 0.25 * h;
-                continue;
+            match self.collocate(system, pieces, x, v, t, h) {
+                Ok(true) => self.refusal = None,
+                Ok(false) => {
+                    self.refusal = None;
+                    self.trial = 0.25 * h;
+                    continue;
+                }
+                // Another motion may do.
+                Err(e) if e.recoverable => {
+                    self.refusal = Some(e);
+                    self.trial = 0.25 * h;
+                    continue;
+                }
+                Err(e) => return Err(e),
             }
             let error = self.interpolate(x, v, h, step);
             step.begin = t;
@@ -93,11 +110,10 @@ impl Implicit {
         }
     }
 
-    /// The matrix δᵢⱼM + h aᵢⱼC + h² (A²)ᵢⱼ Kᵢ, with the tangents as they are.
+    /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the tangents as they are.
     fn factor(&mut self, system: &System, pieces: &[Piece], h: f64) -> Result<()> {
         let n = self.x.len();
         let all = n * STAGES;
-        let count = system.elements.len();
         let tables = &self.tables;
         let matrix = self.lu.matrix();
         matrix.fill(0.0);
@@ -110,35 +126,36 @@ impl Implicit {
                 let mut add = |r: usize, c: usize, value: f64| matrix[(j * n + c) * all + i * n + r] += value;
                 system.damping.each(|r, c, d| add(r, c, once * d));
                 system.stiffness.each(|r, c, k| add(r, c, twice * k));
-                for (e, (element, piece)) in system.elements.iter().zip(pieces).enumerate() {
-                    let slope = piece.slope + self.tangents[i * count + e];
-                    for &(r, a) in element.row.iter().flatten() {
-                        for &(c, b) in element.row.iter().flatten() {
-                            add(r, c, twice * slope * a * b);
+                for (element, piece) in system.elements.iter().zip(pieces) {
+                    for (to, slopes) in element.rows.iter().zip(&piece.slope) {
+                        for (from, slope) in element.rows.iter().zip(slopes).filter(|(_, slope)| **slope != 0.0) {
+                            for &(r, a) in to.iter().flatten() {
+                                for &(c, b) in from.iter().flatten() {
+                                    add(r, c, twice * slope * a * b);
+                                }
+                            }
                         }
                     }
                 }
+                self.smooth
+                    .each(system, i, |r, c, by_x, by_v| add(r, c, twice * by_x + once * by_v));
             }
         }
         self.lu.factor()
     }
 
     /// Newton's method for the accelerations, with the tangents of the step's begin; `false`: it failed.
-    fn collocate(&mut self, system: &System, pieces: &[Piece], x: &[f64], v: &[f64], t: f64, h: f64) -> bool {
-        let count = system.elements.len();
-        for (e, element) in system.elements.iter().enumerate() {
-            let (_, tangent) = element.smooth(along(&element.row, x));
-            for i in 0..STAGES {
-                self.tangents[i * count + e] = tangent;
-            }
-        }
+    fn collocate(&mut self, system: &System, pieces: &[Piece], x: &[f64], v: &[f64], t: f64, h: f64) -> Result<bool> {
+        let n = x.len();
+        self.smooth.evaluate(system, 0, x, v, &mut self.residual[..n])?;
+        self.smooth.repeat();
         if self.factor(system, pieces, h).is_err() {
-            return false;
+            return Ok(false);
         }
         self.accelerations.fill(0.0);
         let mut before = f64::INFINITY;
         for iteration in 0..MOST_ITERATIONS {
-            self.evaluate(system, pieces, x, v, t, h);
+            self.evaluate(system, pieces, x, v, t, h)?;
             self.lu.solve(&mut self.residual);
             let (mut change, mut size) = (0.0_f64, 0.0_f64);
             for (a, r) in self.accelerations.iter_mut().zip(&self.residual) {
@@ -147,21 +164,20 @@ impl Implicit {
                 size = size.max(a.abs());
             }
             if !size.is_finite() || (iteration > 3 && change > before && change > 1e-8 * size) {
-                return false;
+                return Ok(false);
             }
             if change <= 2.0 * f64::EPSILON * size || (change > 0.5 * before && change <= 1e-11 * size) {
-                self.evaluate(system, pieces, x, v, t, h);
-                return true;
+                self.evaluate(system, pieces, x, v, t, h)?;
+                return Ok(true);
             }
             before = change;
         }
-        false
+        Ok(false)
     }
 
     /// M a + C v + K x + f − F at the nodes, and the tangents there.
-    fn evaluate(&mut self, system: &System, pieces: &[Piece], x0: &[f64], v0: &[f64], t: f64, h: f64) {
+    fn evaluate(&mut self, system: &System, pieces: &[Piece], x0: &[f64], v0: &[f64], t: f64, h: f64) -> Result<()> {
         let n = self.x.len();
-        let count = system.elements.len();
         for i in 0..STAGES {
             let c = self.tables.nodes[i];
             for d in 0..n {
@@ -185,16 +201,12 @@ impl Implicit {
                 .multiply_add(1.0, &self.accelerations[i * n..(i + 1) * n], r);
             system.damping.multiply_add(1.0, &self.v, r);
             system.stiffness.multiply_add(1.0, &self.x, r);
-            for (e, (element, piece)) in system.elements.iter().zip(pieces).enumerate() {
-                let y = along(&element.row, &self.x);
-                let (smooth, tangent) = element.smooth(y);
-                self.tangents[i * count + e] = tangent;
-                let force = piece.force + piece.slope * (y - piece.origin) + smooth;
-                for &(dof, a) in element.row.iter().flatten() {
-                    r[dof] += a * force;
-                }
+            for (element, piece) in system.elements.iter().zip(pieces) {
+                element.push(1.0, piece.at(element.relative(&self.x)), r);
             }
+            self.smooth.evaluate(system, i, &self.x, &self.v, r)?;
         }
+        Ok(())
     }
 
     /// Fills the polynomials of the step and returns its relative error.
@@ -260,7 +272,6 @@ impl Implicit {
         u: &[f64],
     ) {
         let n = x.len();
-        let count = system.elements.len();
         for i in 0..STAGES {
             let c = self.tables.nodes[i];
             for d in 0..n {
@@ -271,12 +282,13 @@ impl Implicit {
             system.damping.multiply_add(-1.0, v, r);
             system.stiffness.multiply_add(-1.0, &self.x, r);
             for (e, (element, piece)) in system.elements.iter().zip(pieces).enumerate() {
-                let slope = piece.slope + self.tangents[i * count + e];
-                let force = slope * along(&element.row, &self.x) - piece.memory * u[e];
-                for &(dof, a) in element.row.iter().flatten() {
-                    r[dof] -= a * force;
-                }
+                let mut force = piece.along(element.relative(&self.x));
+                force[0] -= piece.memory * u[e];
+                element.push(-1.0, force, r);
             }
+            let (to, from) = (&mut *r, &self.x);
+            self.smooth
+                .each(system, i, |r, c, by_x, by_v| to[r] -= by_x * from[c] + by_v * v[c]);
         }
         self.lu.solve(&mut self.residual);
         let (p, q) = self.tables.weights(theta);

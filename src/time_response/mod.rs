@@ -1,7 +1,8 @@
 //! The truth in time: a periodic response by integration from event to event, without a harmonic series.
 //!
 //! `system` holds the structure, unrolled to as many sectors as a travelling wave needs; `contacts` says
-//! what each law does between events; `piecewise` makes exact steps where all laws are linear between
+//! what laws with events tell, `slider` and `springs` what each of them does, `smooth` asks the laws without;
+//! `piecewise` makes exact steps where all laws are linear between
 //! events, `implicit` adaptive ones where a law is smooth; `segment` locates events within a step;
 //! `flow` goes from event to event through a lapse; `steady` closes the period; `record` turns the motion
 //! into harmonics, free of the truncation of harmonic balance.
@@ -13,6 +14,9 @@ mod implicit;
 mod piecewise;
 mod record;
 mod segment;
+mod slider;
+mod smooth;
+mod springs;
 mod steady;
 mod system;
 
@@ -20,7 +24,6 @@ use crate::error::{Result, Status, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::options::TimeOptions;
-use contacts::along;
 use flow::{Flow, State};
 use num_complex::Complex64;
 use record::Recorder;
@@ -41,8 +44,8 @@ pub struct TimeResponse {
     pub residual: f64,
     /// Periods that were integrated, rounded up.
     pub periods: usize,
-    /// Changes of a contact between stick, slip, open and closed in one period, all contacts of one
-    /// sector together.
+    /// Changes of a contact between stick, slip, open and closed, or between the lines of a table, in one
+    /// period, all contacts of one sector together.
     pub events: usize,
     /// Degrees of freedom of one sector.
     pub ndof: usize,
@@ -56,7 +59,7 @@ pub struct TimeResponse {
 /// Integrates the response of a model to its forces until it is periodic.
 ///
 /// # Errors
-/// `Unsupported` for degrees of freedom without mass and complex matrices, `NoConvergence` where no
+/// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence` where no
 /// steady state was found, `NoBoundedSolution` where the motion grows without end, `OutOfMemory`.
 pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
     let mut system = System::new(model, options.omega)?;
@@ -115,11 +118,11 @@ fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) -> Result<S
             }
         }
         for (stretch, e) in state.e.iter_mut().zip(&system.elements) {
-            if e.has_memory() {
-                // The slider is kept until the end, where the spring spans from it to y.
-                let y = along(&e.row, &part);
-                let slider = e.drag(y, *stretch);
-                *stretch = if i < 2 * times { slider } else { y - slider };
+            if let Some(slider) = e.slider() {
+                // Its place is kept until the end, where the spring spans from it to x.
+                let motion = e.relative(&part);
+                let place = slider.drag(motion, *stretch);
+                *stretch = if i < 2 * times { place } else { motion[0] - place };
             }
         }
     }

@@ -2,12 +2,12 @@
 //!
 //! Between events z′ = A z + g(t) with constant A and harmonic g, whose solution is a matrix exponential.
 //! Its series is summed in the displacements alone, xₖ being their Taylor coefficients:
-//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k for k > 0. The step is so
+//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative motions y for k > 0. The step is so
 //! long that the last terms are below rounding, which needs |A|h of about 2; a step is then exact, and
 //! a polynomial as well (Moler & Van Loan 2003, doi:10.1137/S00361445024180, method 1 with short
 //! steps; Jorba & Zou 2005, doi:10.1080/10586458.2005.10128904, for the choice of h).
 
-use super::contacts::{Piece, along};
+use super::contacts::Piece;
 use super::segment::{DEGREE, Segment};
 use super::system::System;
 use crate::error::{Result, fail, try_vec};
@@ -113,11 +113,9 @@ impl Taylor {
             let force = if k == 0 {
                 piece.force
             } else {
-                piece.slope * along(&e.row, this)
+                piece.along(e.relative(this))
             };
-            for &(dof, a) in e.row.iter().flatten() {
-                f[dof] -= a * force;
-            }
+            e.push(-1.0, force, f);
         }
         system.accelerate(f)?;
         let scale = h * h / ((k + 1) * (k + 2)) as f64;
@@ -182,15 +180,11 @@ impl Taylor {
             system.stiffness.multiply_add(-1.0, this, new);
             system.damping.multiply_add(-((k + 1) as f64) / h, next, new);
             for (i, (e, piece)) in system.elements.iter().zip(pieces).enumerate() {
-                let mut force = piece.slope * along(&e.row, this);
+                let mut force = piece.along(e.relative(this));
                 if k == 0 {
-                    force -= piece.memory * u[i];
+                    force[0] -= piece.memory * u[i];
                 }
-                if force != 0.0 {
-                    for &(dof, a) in e.row.iter().flatten() {
-                        new[dof] -= a * force;
-                    }
-                }
+                e.push(-1.0, force, new);
             }
             system.accelerate(new)?;
             let scale = h * h / ((k + 1) * (k + 2)) as f64;

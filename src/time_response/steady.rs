@@ -205,7 +205,12 @@ impl<'a, 'h> Search<'a, 'h> {
                     Ok(false) => {}
                     Ok(true) => return Ok(Outcome::Stopped),
                     // A step far too long may lead to where nothing can be integrated.
-                    Err(e) if !matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence) => return Err(e),
+                    Err(e)
+                        if !(e.recoverable
+                            || matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence)) =>
+                    {
+                        return Err(e);
+                    }
                     Err(e) if self.laps >= self.most_laps => return Err(e),
                     Err(_) => self.residual = f64::INFINITY,
                 }
@@ -243,11 +248,9 @@ impl<'a, 'h> Search<'a, 'h> {
         // A slider that rests in all sectors keeps its place.
         let rests = |i: usize| {
             i >= 2 * n
-                && system
-                    .elements
-                    .iter()
-                    .zip(&self.flow.moved)
-                    .all(|(e, &moved)| e.family != system.elements[i - 2 * n].family || !(moved && e.has_memory()))
+                && system.elements.iter().zip(&self.flow.moved).all(|(e, &moved)| {
+                    e.family != system.elements[i - 2 * n].family || !(moved && e.slider().is_some())
+                })
         };
         let source = |i: usize| {
             if i < n {
@@ -275,8 +278,8 @@ impl<'a, 'h> Search<'a, 'h> {
         }
         // Where the slider rests its spring follows the motion: δe = r·δx.
         for (i, e) in system.elements.iter().enumerate() {
-            if rests(2 * n + i) && e.has_memory() {
-                for &(dof, a) in e.row.iter().flatten() {
+            if rests(2 * n + i) && e.slider().is_some() {
+                for &(dof, a) in e.rows[0].iter().flatten() {
                     matrix[dof * m + 2 * n + i] -= a;
                 }
             }

@@ -1,7 +1,7 @@
 //! The structure in time: M ẍ + C ẋ + K x + f = F(t) for all sectors that the wave needs, with its
 //! loads, springs and contacts.
 
-use super::contacts::{Element, Mode, Tie, along, row, unroll};
+use super::contacts::{Element, Mode, Tie, row, unroll};
 use crate::contact::sides::Direction;
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::linalg::factor::Factor;
@@ -160,7 +160,7 @@ impl System {
 
     /// Whether every law is linear between events.
     pub fn is_piecewise_linear(&self) -> bool {
-        !self.elements.iter().any(Element::is_smooth)
+        !self.elements.iter().any(|e| e.smooth().is_some())
     }
 
     /// a ← M⁻¹ a
@@ -191,11 +191,14 @@ impl System {
         }
     }
 
-    /// Modes at a state; stretches come within their range. `slaved` notes the contacts whose slider is
-    /// where the motion puts it.
-    pub fn begin(&self, x: &[f64], v: &[f64], stretch: &mut [f64], modes: &mut [Mode], slaved: &mut [bool]) {
+    /// Modes at a state; stretches come within their range. `slaved` notes the modes that tell of sliders
+    /// where the motion puts them.
+    pub fn begin(&self, x: &[f64], v: &[f64], stretch: &mut [f64], modes: &mut [Mode], slaved: &mut [Option<Mode>]) {
         for (i, e) in self.elements.iter().enumerate() {
-            (modes[i], slaved[i]) = e.begin(along(&e.row, x), along(&e.row, v), &mut stretch[i]);
+            (modes[i], slaved[i]) = match e.events() {
+                Some(law) => law.begin(&e.instant(x, v), &mut stretch[i]),
+                None => (Mode::Smooth, None),
+            };
         }
     }
 }
