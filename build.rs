@@ -10,6 +10,7 @@ const SOURCES: &[&str] = &[
     "boundary",
     "matrix",
     "model",
+    "contact_types",
     "contact",
     "tables",
     "user_force",

@@ -252,7 +252,7 @@ impl Branch {
 
     /// Aliasing check of laws that are sampled, at each point: the relative change of their forces with
     /// half the samples (twice as many, where half are too few). 0 where all laws are exact,
-    /// NaN where a callback did not answer to it. It tells the size of the error by sampling and is no bound of it.
+    /// NaN where a law did not answer to it. It tells the size of the error by sampling and is no bound of it.
     #[must_use]
     pub fn sampling_error(&self) -> &[f64] {
         &self.sampling_error[..self.curve]

@@ -140,7 +140,7 @@ impl Keeper for Points<'_> {
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.stalled |= point.stalled;
         self.problem.response(point.unknowns(), &mut self.response);
-        let sampling_error = self.problem.sampling_error(point.unknowns(), point.parameter());
+        let sampling_error = self.problem.sampling_error(point.unknowns(), point.parameter())?;
         let slips = self.problem.slip_fractions();
         self.branch
             .push_curve(&record(point, &self.response, slips, sampling_error))
@@ -177,7 +177,7 @@ impl Keeper for Points<'_> {
         self.problem.response(point.unknowns(), &mut self.response);
         let kept = Kept {
             kind,
-            sampling_error: self.problem.sampling_error(point.unknowns(), point.parameter()),
+            sampling_error: self.problem.sampling_error(point.unknowns(), point.parameter())?,
             response: try_copy(&self.response, "the special points")?,
             slip_fractions: try_copy(self.problem.slip_fractions(), "the special points")?,
             point,

@@ -161,13 +161,14 @@ impl Keeper for ModePoints<'_> {
 
     fn keep(&mut self, point: &Point) -> Result<()> {
         let mode = self.measure(point)?;
+        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
+        // All that may fail comes before anything is kept.
+        let sampling_error = self.problem.sampling_error(&self.motion, omega)?;
         self.stalled |= point.stalled;
         if let Some(data) = self.branch.mode_data_mut() {
             data.push_state(&point.v, &point.tangent)?;
             data.push(mode)?;
         }
-        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
-        let sampling_error = self.problem.sampling_error(&self.motion, omega);
         let slip = self.problem.forces().slip_fractions();
         let i = self.condensed.set().fundamental();
         let amplitude = self.response[i];
@@ -183,7 +184,7 @@ impl Keeper for ModePoints<'_> {
         let mode = self.measure(&point)?;
         let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
         let kept = Kept {
-            sampling_error: self.problem.sampling_error(&self.motion, omega),
+            sampling_error: self.problem.sampling_error(&self.motion, omega)?,
             kind,
             motion: try_copy(&self.motion, "the special points")?,
             response: try_copy(&self.response, "the special points")?,

@@ -1,9 +1,10 @@
 //! Contacts of a model, and a law on a motion of the caller's.
 
 use super::boundary::{Blame, Range, call, check_pointer, count, disjoint, index, input, output};
+use super::contact_types::{hbvib_contact, hbvib_contact_kind};
 use super::handles::write;
 use super::sized::{Described, init, load};
-use super::types::{hbvib_contact, hbvib_contact_kind, hbvib_model, hbvib_special_dof, hbvib_status};
+use super::types::{hbvib_model, hbvib_special_dof, hbvib_status};
 use crate::analysis;
 use crate::contact::sides::Frame;
 use crate::contact::{Contact, ContactKind};

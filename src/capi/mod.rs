@@ -13,6 +13,7 @@
 pub mod boundary;
 pub mod contact;
 pub mod contact_results;
+pub mod contact_types;
 pub mod elements;
 pub mod energy;
 mod handles;

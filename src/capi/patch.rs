@@ -2,11 +2,12 @@
 
 use super::boundary::{Blame, call, count, input};
 use super::contact::law;
+use super::contact_types::hbvib_contact;
 use super::elements::check_id;
 use super::handles::write;
 use super::sized::load;
 use super::tables::{blame_constant, side};
-use super::types::{hbvib_contact, hbvib_model, hbvib_status};
+use super::types::{hbvib_model, hbvib_status};
 use crate::contact::patch::Patch;
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;

@@ -1,18 +1,15 @@
 //! The contact forces of all relative coordinates at one packed motion, with their Jacobians: what
 //! every problem with contacts needs of the laws.
 
+mod coupling;
+mod ranges;
+
 use super::blocks::Blocks;
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
-use crate::contact::law::Range;
 use crate::error::{Result, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
-
-/// Added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact
-/// does not resist a mean motion; where nothing else does, as for a ring free to turn, the mean is
-/// indeterminate and the matrix singular. With the floor it stays where it started.
-const MEAN_FLOOR: f64 = 1e-8;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
 pub struct ContactForces<'a> {
@@ -163,44 +160,6 @@ impl<'a> ContactForces<'a> {
         Ok(())
     }
 
-    /// What sampling matters: ‖F_N − F_M‖/‖F_N‖ over the forces of all laws that are sampled, with M =
-    /// N/2 (2N where N is too few to halve), at given motions and frequency. 0 where all laws are exact.
-    /// It tells the size of the error and is no bound of it. NaN where a callback does not answer: a
-    /// check ends no branch.
-    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> f64 {
-        self.compare_samples(motion, omega).unwrap_or(f64::NAN)
-    }
-
-    fn compare_samples(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
-        let Some(other) = &mut self.other else { return Ok(0.0) };
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let (mut difference, mut size) = (0.0, 0.0);
-        for placed in self.condensed.laws() {
-            let (law, at) = (&*placed.law, &placed.coordinates);
-            if !self.evaluator.samples(law) {
-                continue;
-            }
-            let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
-                continue;
-            };
-            let y = gather(at, m, motion, &mut self.gathered);
-            if at.len() == 1 {
-                self.evaluator.prepare(set, y);
-                other.prepare(set, y);
-            }
-            self.evaluator.evaluate(law, set, y, omega, found)?;
-            let checked = &mut self.checked[..found.force.len()];
-            checked.copy_from_slice(&found.force);
-            other.evaluate(law, set, y, omega, found)?;
-            for (a, b) in checked.iter().zip(&found.force) {
-                difference += (a - b) * (a - b);
-                size += a * a;
-            }
-        }
-        Ok(if size == 0.0 { 0.0 } else { f64::sqrt(difference / size) })
-    }
-
     /// The forces of the laws at rest, linear in the motion.
     fn linearise(&mut self, motion: &[f64]) {
         let m = self.condensed.set().packed_len();
@@ -226,30 +185,6 @@ impl<'a> ContactForces<'a> {
     #[must_use]
     pub fn all_stuck(&self) -> bool {
         self.all_stuck
-    }
-
-    /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the
-    /// contact: then ∂f/∂y = κ, and no change couples back.
-    #[must_use]
-    pub fn drops_out(&self, coordinate: usize) -> bool {
-        self.linear[coordinate] && self.condensed.may_drop_out(coordinate)
-    }
-
-    /// Whether besides f = κ y, so that nothing at all couples back; a normal load at rest does.
-    #[must_use]
-    pub fn is_silent(&self, coordinate: usize) -> bool {
-        self.silent[coordinate] && self.condensed.may_drop_out(coordinate)
-    }
-
-    /// Tells per unknown motion whether some force that does not drop out depends on it.
-    pub fn mark_active(&self, active: &mut [bool]) {
-        let m = self.condensed.set().packed_len();
-        active.fill(false);
-        for c in (0..self.condensed.coordinates()).filter(|&c| !self.drops_out(c)) {
-            for (by, _) in self.jacobians.of_force(c) {
-                active[by * m..(by + 1) * m].fill(true);
-            }
-        }
     }
 
     /// w = f − κ y of a coordinate in the i-th carried harmonic.
@@ -286,133 +221,11 @@ impl<'a> ContactForces<'a> {
         set.get(&packed[coordinate * m..(coordinate + 1) * m], i)
     }
 
-    /// Change of w in the i-th carried harmonic along a change of the motion.
-    #[must_use]
-    pub fn along(&self, direction: &[f64], coordinate: usize, i: usize) -> Complex64 {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let du = &direction[coordinate * m..(coordinate + 1) * m];
-        let mut dw = -self.condensed.kappa(coordinate, i) * set.get(du, i);
-        for (by, block) in self.jacobians.of_force(coordinate) {
-            for (column, d) in block.chunks_exact(m).zip(&direction[by * m..]) {
-                dw += set.get(column, i) * d;
-            }
-        }
-        dw
-    }
-
-    /// Adds G (∂f/∂y − κ) in harmonic i to the column of a Jacobian that belongs to number `q` of the
-    /// packed motion of coordinate `motion`. `flexibility` holds G of that harmonic, force after force at
-    /// a distance of `stride`; `sum` has one number per coordinate.
-    ///
-    /// A column is written from top to bottom and the forces are summed before, because the Jacobian
-    /// of many contacts is far larger than any cache.
-    pub fn couple(
-        &self,
-        i: usize,
-        (motion, q): (usize, usize),
-        (flexibility, stride): (&[Complex64], usize),
-        sum: &mut [Complex64],
-        column: &mut [f64],
-    ) {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let at = set.offset(i);
-        let mean = set.numbers()[i] == 0;
-        let mut any = false;
-        for (force, block) in self.jacobians.of_motion(motion) {
-            if self.drops_out(force) {
-                continue;
-            }
-            let mut z = set.get(&block[q * m..(q + 1) * m], i);
-            if force == motion && q == at {
-                z -= self.condensed.kappa(force, i);
-                if mean {
-                    column[motion * m + at] += MEAN_FLOOR;
-                }
-            } else if force == motion && q == at + 1 && !mean {
-                z -= self.condensed.kappa(force, i) * Complex64::I;
-            }
-            if z == Complex64::ZERO {
-                continue;
-            }
-            if !any {
-                sum.fill(Complex64::ZERO);
-                any = true;
-            }
-            for (s, g) in sum.iter_mut().zip(&flexibility[force * stride..]) {
-                *s += g * z;
-            }
-        }
-        if !any {
-            return;
-        }
-        if mean {
-            for (x, s) in column[at..].iter_mut().step_by(m).zip(sum) {
-                *x += s.re;
-            }
-        } else {
-            for (x, s) in column[at..].chunks_mut(m).zip(sum) {
-                x[0] += s.re;
-                x[1] += s.im;
-            }
-        }
-    }
-
-    /// Adds Re(g·∂w/∂y) of the force of coordinate `force` in harmonic i to one row of a Jacobian with
-    /// `n` rows.
-    pub fn couple_scalar(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        for (by, block) in self.jacobians.of_force(force) {
-            for (q, column) in block.chunks_exact(m).enumerate() {
-                jacobian[(by * m + q) * n + row] += (g * set.get(column, i)).re;
-            }
-        }
-        let gk = g * self.condensed.kappa(force, i);
-        let at = force * m + set.offset(i);
-        jacobian[at * n + row] -= gk.re;
-        if set.numbers()[i] != 0 {
-            jacobian[(at + 1) * n + row] += gk.im;
-        }
-    }
-
     /// Whether all laws know from which motion on they are (nearly) linear.
     #[must_use]
     pub fn know_their_linear_range(&self) -> bool {
         let mut laws = self.condensed.laws().iter();
         laws.all(|placed| placed.law.knows_its_linear_range())
-    }
-
-    /// The factor of [`Self::ease`] from which on the forces of the given motion are (nearly) linear.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn sticking_factor(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let mut ranges = Vec::new();
-        for y in motion.chunks_exact(m.max(1)) {
-            self.evaluator.prepare(set, y);
-            let range = Range {
-                half: self.evaluator.half_range(set),
-                mean: if set.has_mean() { y[0] } else { 0.0 },
-                speed: set.speed(y, omega),
-            };
-            try_push(&mut ranges, range, "the contacts")?;
-        }
-        let mut own = Vec::new();
-        let mut largest = 0.0_f64;
-        for placed in self.condensed.laws() {
-            own.clear();
-            let mut reference = f64::INFINITY;
-            for &c in &placed.coordinates {
-                try_push(&mut own, ranges[c], "the contacts")?;
-                reference = reference.min(self.condensed.stiffness(c));
-            }
-            largest = largest.max(placed.law.sticking_factor(&own, reference));
-        }
-        Ok(largest)
     }
 }
 

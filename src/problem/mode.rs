@@ -122,7 +122,10 @@ impl<'a> Mode<'a> {
     }
 
     /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
-    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> f64 {
+    ///
+    /// # Errors
+    /// Those of callbacks that give up.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
         self.forces.sampling_error(motion, omega)
     }
 

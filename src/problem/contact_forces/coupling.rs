@@ -1,0 +1,127 @@
+//! How the contact forces couple the relative motions: their Jacobians in Newton's matrix, and which
+//! of them leave it because they are those of the reference stiffness.
+
+use super::ContactForces;
+use num_complex::Complex64;
+
+/// Added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact
+/// does not resist a mean motion; where nothing else does, as for a ring free to turn, the mean is
+/// indeterminate and the matrix singular. With the floor it stays where it started.
+const MEAN_FLOOR: f64 = 1e-8;
+
+impl ContactForces<'_> {
+    /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the
+    /// contact: then ∂f/∂y = κ, and no change couples back.
+    #[must_use]
+    pub fn drops_out(&self, coordinate: usize) -> bool {
+        self.linear[coordinate] && self.condensed.may_drop_out(coordinate)
+    }
+
+    /// Whether besides f = κ y, so that nothing at all couples back; a normal load at rest does.
+    #[must_use]
+    pub fn is_silent(&self, coordinate: usize) -> bool {
+        self.silent[coordinate] && self.condensed.may_drop_out(coordinate)
+    }
+
+    /// Tells per unknown motion whether some force that does not drop out depends on it.
+    pub fn mark_active(&self, active: &mut [bool]) {
+        let m = self.condensed.set().packed_len();
+        active.fill(false);
+        for c in (0..self.condensed.coordinates()).filter(|&c| !self.drops_out(c)) {
+            for (by, _) in self.jacobians.of_force(c) {
+                active[by * m..(by + 1) * m].fill(true);
+            }
+        }
+    }
+
+    /// Change of w in the i-th carried harmonic along a change of the motion.
+    #[must_use]
+    pub fn along(&self, direction: &[f64], coordinate: usize, i: usize) -> Complex64 {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let du = &direction[coordinate * m..(coordinate + 1) * m];
+        let mut dw = -self.condensed.kappa(coordinate, i) * set.get(du, i);
+        for (by, block) in self.jacobians.of_force(coordinate) {
+            for (column, d) in block.chunks_exact(m).zip(&direction[by * m..]) {
+                dw += set.get(column, i) * d;
+            }
+        }
+        dw
+    }
+
+    /// Adds G (∂f/∂y − κ) in harmonic i to the column of a Jacobian that belongs to number `q` of the
+    /// packed motion of coordinate `motion`. `flexibility` holds G of that harmonic, force after force at
+    /// a distance of `stride`; `sum` has one number per coordinate.
+    ///
+    /// A column is written from top to bottom and the forces are summed before, because the Jacobian
+    /// of many contacts is far larger than any cache.
+    pub fn couple(
+        &self,
+        i: usize,
+        (motion, q): (usize, usize),
+        (flexibility, stride): (&[Complex64], usize),
+        sum: &mut [Complex64],
+        column: &mut [f64],
+    ) {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let at = set.offset(i);
+        let mean = set.numbers()[i] == 0;
+        let mut any = false;
+        for (force, block) in self.jacobians.of_motion(motion) {
+            if self.drops_out(force) {
+                continue;
+            }
+            let mut z = set.get(&block[q * m..(q + 1) * m], i);
+            if force == motion && q == at {
+                z -= self.condensed.kappa(force, i);
+                if mean {
+                    column[motion * m + at] += MEAN_FLOOR;
+                }
+            } else if force == motion && q == at + 1 && !mean {
+                z -= self.condensed.kappa(force, i) * Complex64::I;
+            }
+            if z == Complex64::ZERO {
+                continue;
+            }
+            if !any {
+                sum.fill(Complex64::ZERO);
+                any = true;
+            }
+            for (s, g) in sum.iter_mut().zip(&flexibility[force * stride..]) {
+                *s += g * z;
+            }
+        }
+        if !any {
+            return;
+        }
+        if mean {
+            for (x, s) in column[at..].iter_mut().step_by(m).zip(sum) {
+                *x += s.re;
+            }
+        } else {
+            for (x, s) in column[at..].chunks_mut(m).zip(sum) {
+                x[0] += s.re;
+                x[1] += s.im;
+            }
+        }
+    }
+
+    /// Adds Re(g·∂w/∂y) of the force of coordinate `force` in harmonic i to one row of a Jacobian with
+    /// `n` rows.
+    pub fn couple_scalar(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        for (by, block) in self.jacobians.of_force(force) {
+            for (q, column) in block.chunks_exact(m).enumerate() {
+                jacobian[(by * m + q) * n + row] += (g * set.get(column, i)).re;
+            }
+        }
+        let gk = g * self.condensed.kappa(force, i);
+        let at = force * m + set.offset(i);
+        jacobian[at * n + row] -= gk.re;
+        if set.numbers()[i] != 0 {
+            jacobian[(at + 1) * n + row] += gk.im;
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! What the laws look like at other motions and other samples: where they are linear, and how much
+//! their sampling matters.
+
+use super::{ContactForces, gather};
+use crate::contact::law::Range;
+use crate::error::{Error, Result, try_push};
+
+impl ContactForces<'_> {
+    /// What sampling matters: ‖F_N − F_M‖/‖F_N‖ over the forces of all laws that are sampled, with M =
+    /// N/2 (2N where N is too few to halve), at given motions and frequency. 0 where all laws are exact.
+    /// It tells the size of the error and is no bound of it. NaN where a law does not answer to the
+    /// check, which ends no branch.
+    ///
+    /// # Errors
+    /// Those of callbacks that give up.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        match self.compare_samples(motion, omega) {
+            Err(e) if e.recoverable => Ok(f64::NAN),
+            compared => compared,
+        }
+    }
+
+    fn compare_samples(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        let Some(other) = &mut self.other else { return Ok(0.0) };
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let (mut difference, mut size) = (0.0, 0.0);
+        for placed in self.condensed.laws() {
+            let (law, at) = (&*placed.law, &placed.coordinates);
+            if !self.evaluator.samples(law) {
+                continue;
+            }
+            let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
+                continue;
+            };
+            let y = gather(at, m, motion, &mut self.gathered);
+            if at.len() == 1 {
+                self.evaluator.prepare(set, y);
+                other.prepare(set, y);
+            }
+            let told = |e: Error| e.at(format_args!("contact {}", placed.contact));
+            self.evaluator.evaluate(law, set, y, omega, found).map_err(told)?;
+            let checked = &mut self.checked[..found.force.len()];
+            checked.copy_from_slice(&found.force);
+            other.evaluate(law, set, y, omega, found).map_err(told)?;
+            for (a, b) in checked.iter().zip(&found.force) {
+                difference += (a - b) * (a - b);
+                size += a * a;
+            }
+        }
+        Ok(if size == 0.0 { 0.0 } else { f64::sqrt(difference / size) })
+    }
+
+    /// The factor of [`Self::ease`] from which on the forces of the given motion are (nearly) linear.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn sticking_factor(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let mut ranges = Vec::new();
+        for y in motion.chunks_exact(m.max(1)) {
+            self.evaluator.prepare(set, y);
+            let range = Range {
+                half: self.evaluator.half_range(set),
+                mean: if set.has_mean() { y[0] } else { 0.0 },
+                speed: set.speed(y, omega),
+            };
+            try_push(&mut ranges, range, "the contacts")?;
+        }
+        let mut own = Vec::new();
+        let mut largest = 0.0_f64;
+        for placed in self.condensed.laws() {
+            own.clear();
+            let mut reference = f64::INFINITY;
+            for &c in &placed.coordinates {
+                try_push(&mut own, ranges[c], "the contacts")?;
+                reference = reference.min(self.condensed.stiffness(c));
+            }
+            largest = largest.max(placed.law.sticking_factor(&own, reference));
+        }
+        Ok(largest)
+    }
+}
