@@ -96,11 +96,11 @@ impl<'a> Forced<'a> {
             if !out.active[k] {
                 continue;
             }
-            for (i, table) in self.tables.current().iter().enumerate() {
-                let flexibility = (&table.value[..], stride);
-                self.forces
-                    .couple(i, (k / m, k % m), flexibility, &mut self.sum, column);
-            }
+            let tables = self.tables.current();
+            let flexibility = (|i: usize| &tables[i].value[..], stride);
+            let at = (k / m, k % m);
+            self.forces
+                .couple(0..tables.len(), at, flexibility, &mut self.sum, column);
         }
     }
 

@@ -291,9 +291,10 @@ impl Problem for Mode<'_> {
                 }
             }
             for (k, column) in out.jacobian.chunks_exact_mut(n).take(n - 2).enumerate() {
-                let flexibility = (&self.flexibility[..], coordinates);
+                let flexibility = (|_| &self.flexibility[..], coordinates);
+                let column = &mut column[..n - 2];
                 self.forces
-                    .couple(i, (k / m, k % m), flexibility, &mut self.sum, &mut column[..n - 2]);
+                    .couple(i..i + 1, (k / m, k % m), flexibility, &mut self.sum, column);
             }
             if block.number == 1 {
                 self.fix_gauge(rates, by_parameter, out);

@@ -2,6 +2,7 @@
 //! of them leave it because they are those of the reference stiffness.
 
 use super::ContactForces;
+use core::ops::Range;
 use num_complex::Complex64;
 
 /// Added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact
@@ -49,60 +50,71 @@ impl ContactForces<'_> {
         dw
     }
 
-    /// Adds G (∂f/∂y − κ) in harmonic i to the column of a Jacobian that belongs to number `q` of the
-    /// packed motion of coordinate `motion`. `flexibility` holds G of that harmonic, force after force at
-    /// a distance of `stride`; `sum` has one number per coordinate.
+    /// Adds G (∂f/∂y − κ) in a range of carried harmonics to the column of a Jacobian that belongs to number
+    /// `q` of the packed motion of coordinate `motion`. `flexibility` gives G of a harmonic, force after
+    /// force at a distance of `stride`; `sum` has one number per coordinate.
     ///
     /// A column is written from top to bottom and the forces are summed before, because the Jacobian
     /// of many contacts is far larger than any cache.
-    pub fn couple(
+    pub fn couple<'g>(
         &self,
-        i: usize,
+        harmonics: Range<usize>,
         (motion, q): (usize, usize),
-        (flexibility, stride): (&[Complex64], usize),
+        (flexibility, stride): (impl Fn(usize) -> &'g [Complex64], usize),
         sum: &mut [Complex64],
         column: &mut [f64],
     ) {
         let set = self.condensed.set();
         let m = set.packed_len();
-        let at = set.offset(i);
-        let mean = set.numbers()[i] == 0;
-        let mut any = false;
-        for (force, block) in self.jacobians.of_motion(motion) {
-            if self.drops_out(force) {
-                continue;
+        let counts = |(force, _): &(usize, &[f64])| !self.drops_out(*force);
+        let forces = || self.jacobians.of_motion(motion).filter(counts);
+        let mut several = forces().skip(1);
+        let only = if several.next().is_none() {
+            forces().next()
+        } else {
+            None
+        };
+        for i in harmonics {
+            let at = set.offset(i);
+            let mean = set.numbers()[i] == 0;
+            let change = |force: usize, block: &[f64]| {
+                let z = set.get(&block[q * m..(q + 1) * m], i);
+                if force != motion || (q != at && (mean || q != at + 1)) {
+                    return z;
+                }
+                let kappa = self.condensed.kappa(force, i);
+                z - if q == at { kappa } else { kappa * Complex64::I }
+            };
+            if let Some((force, block)) = only {
+                let z = change(force, block);
+                if z == Complex64::ZERO {
+                    continue;
+                }
+                let g = &flexibility(i)[force * stride..];
+                for (s, g) in sum.iter_mut().zip(g) {
+                    *s = g * z;
+                }
+            } else {
+                sum.fill(Complex64::ZERO);
+                for (force, block) in forces() {
+                    let z = change(force, block);
+                    for (s, g) in sum.iter_mut().zip(&flexibility(i)[force * stride..]) {
+                        *s += g * z;
+                    }
+                }
             }
-            let mut z = set.get(&block[q * m..(q + 1) * m], i);
-            if force == motion && q == at {
-                z -= self.condensed.kappa(force, i);
-                if mean {
+            if mean {
+                for (x, s) in column[at..].iter_mut().step_by(m).zip(&*sum) {
+                    *x += s.re;
+                }
+                if q == at && !self.drops_out(motion) {
                     column[motion * m + at] += MEAN_FLOOR;
                 }
-            } else if force == motion && q == at + 1 && !mean {
-                z -= self.condensed.kappa(force, i) * Complex64::I;
-            }
-            if z == Complex64::ZERO {
-                continue;
-            }
-            if !any {
-                sum.fill(Complex64::ZERO);
-                any = true;
-            }
-            for (s, g) in sum.iter_mut().zip(&flexibility[force * stride..]) {
-                *s += g * z;
-            }
-        }
-        if !any {
-            return;
-        }
-        if mean {
-            for (x, s) in column[at..].iter_mut().step_by(m).zip(sum) {
-                *x += s.re;
-            }
-        } else {
-            for (x, s) in column[at..].chunks_mut(m).zip(sum) {
-                x[0] += s.re;
-                x[1] += s.im;
+            } else {
+                for (x, s) in column[at..].chunks_mut(m).zip(&*sum) {
+                    x[0] += s.re;
+                    x[1] += s.im;
+                }
             }
         }
     }
