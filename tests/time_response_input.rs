@@ -6,7 +6,8 @@ mod refusal;
 
 use common::BASE;
 use hbvib::analysis::time_response::time_response;
-use hbvib::contact::Contact;
+use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
 use hbvib::hooks::{Hooks, Progress};
 use hbvib::linalg::matrix_view::{MatrixView, Part};
@@ -15,6 +16,7 @@ use hbvib::model::structure::MatrixKind;
 use hbvib::options::{SteadyMethod, TimeOptions};
 use num_complex::Complex64;
 use refusal::{OMEGA, refused};
+use std::sync::Arc;
 
 fn options() -> TimeOptions<'static> {
     TimeOptions {
@@ -133,7 +135,7 @@ fn motions_without_mass_and_complex_matrices_are_refused() {
 }
 
 #[test]
-fn friction_in_a_plane_is_refused_by_name() {
+fn laws_that_are_not_integrated_are_refused_by_name() {
     let mut model = two_masses(&[1.0, 0.0, 0.0, 1.0]);
     model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
     let plane = Contact::friction_plane([Some(0), Some(1), None], [None; 3], (1.0, 0.0), 0.3, 1.0);
@@ -143,6 +145,27 @@ fn friction_in_a_plane_is_refused_by_name() {
         Status::Unsupported,
         &["contact 1", "friction in a plane"],
     );
+    let mut model = two_masses(&[1.0, 0.0, 0.0, 1.0]);
+    let user = User {
+        states: 1,
+        ..User::new(Arc::new(NotAsked), 1, 0).unwrap()
+    };
+    let law = Contact::between(0, None, ContactKind::User(user));
+    model.add_contact(&law).unwrap();
+    refused(
+        time_response(&model, &options(), &mut Hooks::default()),
+        Status::Unsupported,
+        &["contact 0", "states"],
+    );
+}
+
+/// A law of the host with states, refused before it is asked.
+struct NotAsked;
+
+impl UserForce for NotAsked {
+    fn evaluate(&self, _: &mut Call<'_>) -> i32 {
+        -1
+    }
 }
 
 /// An undamped oscillator at its resonance, held by friction up to a force of 4 μN₀/π alone.

@@ -178,7 +178,7 @@ unsafe fn time_options<'a>(o: &hbvib_time_options, ndof: usize) -> Result<TimeOp
 /// HBVIB_STOPPED_BY_CALLER: the results are those of the last period, which is not steady.
 /// Errors: HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (options, overlapping arrays), HBVIB_E_DIMENSION (a
 /// length, with the one needed), HBVIB_E_UNSUPPORTED (a degree of freedom without mass, complex
-/// matrices, friction in a plane), HBVIB_E_NO_CONVERGENCE (no steady state found),
+/// matrices, HBVIB_FRICTION_3D, a force of the caller with states), HBVIB_E_NO_CONVERGENCE (no steady state found),
 /// HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows without end), HBVIB_E_CALLBACK (a force callback
 /// refused), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.

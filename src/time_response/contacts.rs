@@ -171,6 +171,12 @@ fn kind(family: usize, c: &Contact) -> Result<(f64, Option<(usize, Kind)>)> {
             let law = Polynomial::scalar(&[0.0, 0.0, c.cubic], &[])?;
             (c.kt, smooth(Arc::new(law)))
         }
+        (Role::Active, ContactKind::User(user)) if user.states > 0 => {
+            return fail!(
+                Unsupported,
+                "contact {family}: a law of the host with states is not integrated in time"
+            );
+        }
         (Role::Active, ContactKind::Polynomial(_) | ContactKind::Regularised | ContactKind::User(_)) => {
             (0.0, smooth(c.law(1.0)?))
         }
