@@ -236,7 +236,6 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::time::Instant;
 
     fn wave(len: usize, seed: usize) -> Vec<f64> {
         (0..len).map(|i| ((i * 37 + seed) as f64 * 0.7).sin()).collect()
@@ -283,44 +282,6 @@ mod tests {
                         let gap = a.zip(b).fold(0.0, |m: f64, (a, b)| m.max((a - b).norm()));
                         assert!(gap < 1e-14, "H {highest}, {turn} samples, half {half}: {gap:e}");
                     }
-                }
-            }
-        }
-    }
-
-    /// The measurement behind [`TABLE_LIMIT`].
-    #[test]
-    #[ignore = "a measurement"]
-    fn time_of_table_and_fast_transform() {
-        for odd in [false, true] {
-            for highest in [3, 7, 15, 23, 31, 47, 63, 95] {
-                for degree in [3, 7, 15] {
-                    let set = HarmonicSet::excited(&[1], highest, true, odd, false).unwrap();
-                    let turn = ((degree + 1) * highest + 1).next_multiple_of(2);
-                    let packed = wave(set.packed_len(), turn);
-                    let mut signal = vec![0.0; turn];
-                    let mut all = vec![Complex64::ZERO; 2 * highest + 1];
-                    let lane = Lane { first: 0, step: 1 };
-                    let [table, fast] = [
-                        Transform::with_table(&set, turn, odd).unwrap(),
-                        Transform::fast(turn, odd).unwrap(),
-                    ]
-                    .map(|mut way| {
-                        let mut best = f64::INFINITY;
-                        for _ in 0..50 {
-                            let begin = Instant::now();
-                            for _ in 0..10 {
-                                way.synthesise(&set, &packed, &mut signal, lane);
-                                way.analyse(&signal, lane, Half::Opposite, &mut all[..=highest]);
-                                way.analyse(&signal, lane, Half::Repeats, &mut all);
-                            }
-                            best = best.min(begin.elapsed().as_secs_f64() / 10.0);
-                        }
-                        best * 1e6
-                    });
-                    let held = if odd { turn / 2 } else { turn };
-                    let size = held * (2 * highest + 1);
-                    println!("odd {odd} H {highest} N {turn} size {size}: table {table:.2} us, fast {fast:.2} us");
                 }
             }
         }

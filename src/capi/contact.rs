@@ -4,6 +4,7 @@ use super::boundary::{Blame, Range, call, check_pointer, count, disjoint, index,
 use super::contact_types::{hbvib_contact, hbvib_contact_kind};
 use super::handles::write;
 use super::sized::{Described, init, load};
+use super::tables;
 use super::types::{hbvib_model, hbvib_special_dof, hbvib_status};
 use crate::analysis;
 use crate::contact::sides::Frame;
@@ -105,17 +106,7 @@ fn frame(c: &hbvib_contact, law: &Contact) -> Result<Option<Frame>> {
 fn side(dofs: [i64; 3], ndof: usize, name: &str) -> Result<[Option<usize>; 3]> {
     let mut side = [None; 3];
     for (i, (place, &dof)) in side.iter_mut().zip(&dofs).enumerate() {
-        *place = match dof {
-            GROUND => None,
-            dof if (0..ndof as i64).contains(&dof) => Some(dof as usize),
-            dof => {
-                return fail!(
-                    Index,
-                    "hbvib_contact: {name}[{i}] = {dof}, needs 0 .. {} or HBVIB_GROUND = -1",
-                    ndof - 1
-                );
-            }
-        };
+        *place = tables::side(dof, ndof, 2, format_args!("hbvib_contact: {name}[{i}]"))?;
     }
     Ok(side)
 }
