@@ -10,6 +10,7 @@ const SOURCES: &[&str] = &[
     "boundary",
     "matrix",
     "model",
+    "counting",
     "contact_types",
     "contact",
     "tables",

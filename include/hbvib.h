@@ -1042,6 +1042,36 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
                                 double *omega,
                                 double *shapes);
 
+/// Degrees of freedom of a model, of one sector if it is cyclic; or a negative status.
+///
+/// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed). Threads: any number on one model.
+int64_t hbvib_model_dofs(const hbvib_model *model);
+
+/// Sectors of a model, 1 of a plain structure; or a negative status.
+///
+/// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed). Threads: any number on one model.
+int64_t hbvib_model_sectors(const hbvib_model *model);
+
+/// Contacts of a model, tables, polynomials and forces of the caller among them; or a negative status.
+/// Contacts are numbered from 0 in the order in which they were added.
+///
+/// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed). Threads: any number on one model.
+int64_t hbvib_model_contacts(const hbvib_model *model);
+
+/// Turns an index of a language that counts from 1 into one of this library, which counts from 0, and
+/// refuses what lies outside in the words of that language: "dof = 0, needs 1 .. 4".
+///
+/// name       what the index is called, ends with NUL; of more than 40 bytes the first 40 are used.
+///            NULL: "index".
+/// index      1 .. count.
+/// count      how many there are, >= 0.
+/// from_zero  receives index - 1; untouched on error.
+/// Errors: HBVIB_E_INDEX, HBVIB_E_DIMENSION (count), HBVIB_E_NULL. Threads: any.
+hbvib_status hbvib_index_from_one(const char *name,
+                                  int64_t index,
+                                  int64_t count,
+                                  int64_t *from_zero);
+
 /// Fills a contact description: struct_size, every degree of freedom HBVIB_GROUND, the rest zero.
 /// Then set kind, the degrees of freedom and the constants of the kind:
 /// HBVIB_JENKINS      first places of dof_a and dof_b; kt, mu, preload;

@@ -127,6 +127,11 @@ fn bad_options_and_ranges_are_refused() {
 }
 
 #[test]
+fn sizes_are_told_and_indices_may_count_from_one() {
+    silent("counting", |_| vec![]);
+}
+
+#[test]
 fn results_are_what_they_say() {
     silent("results", |_| vec![]);
 }

@@ -14,6 +14,7 @@ pub mod boundary;
 pub mod contact;
 pub mod contact_results;
 pub mod contact_types;
+pub mod counting;
 pub mod elements;
 pub mod energy;
 mod handles;

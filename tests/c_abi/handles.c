@@ -45,6 +45,9 @@ static void no_model(const char *row, hbvib_model *m, const char *words)
     REFUSED(row, hbvib_model_set_preload(m, 0, 1), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_model_add_force(m, 0, 1, 1, 0), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_model_clear_forces(m), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_model_dofs(m), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_model_sectors(m), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_model_contacts(m), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_linear_modes(m, 0, 0, 4, numbers, NULL), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_forced_response(m, NULL, &o, NULL, &branch), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_nonlinear_mode(m, NULL, &mode, NULL, &branch), HBVIB_E_HANDLE, 1, words);
