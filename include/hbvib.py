@@ -357,6 +357,14 @@ def _numbers(name: str, value: Any, dtype: Any) -> np.ndarray:
     return array
 
 
+def _counted_array(name: str, value: Any, dtype: Any = np.float64, shape: Sequence = (None,)) -> dict:
+    """An optional array, and its length beside it, as options have them."""
+    if value is None:
+        return {}
+    array = _array(name, [value] if np.ndim(value) == 0 else value, dtype, shape)
+    return {name: array, name + "_len": array.size}
+
+
 def _columns(**columns: tuple) -> list:
     """Packed one-dimensional arrays of one length from numbers and arrays, given as (value, dtype)."""
     arrays = [_numbers(name, *given) for name, given in columns.items()]
@@ -389,14 +397,14 @@ def _new(name: str, **values: Any) -> Any:
     return struct
 
 
-def _options(caller: str, name: str, given: dict, hidden: str = "") -> Any:
-    """A struct from keyword arguments: TypeError for one that is no field of it."""
+def _options(caller: str, name: str, given: dict, hidden: str = "", **more: Any) -> Any:
+    """A struct from the user's keyword arguments and `more`: TypeError for one that is no field or hidden."""
     fields = {field for field, _ in structs[name]._fields_} - {"struct_size", "reserved", *hidden.split()}
     for key in given:
         if key not in fields:
             raise TypeError(f"{caller}() got an unexpected keyword argument {key!r}; options are "
                             + ", ".join(sorted(fields)))
-    return _new(name, **given)
+    return _new(name, **given, **more)
 
 
 def _matrix(value: Any, part: Any) -> Any:
@@ -492,9 +500,9 @@ class _Guard:
         self.held: Optional[BaseException] = None
         self.branch: Optional[Branch] = None
         self.inside = False  # the host's own code is running
+        self.wrapped = False  # so is the handler of SIGINT
 
     def __enter__(self) -> _Guard:
-        self.outer, _running.guard = getattr(_running, "guard", None), self
         self.before = signal.getsignal(signal.SIGINT)
         outer = getattr(self.before, "__self__", None)
         self.handler = outer.handler if isinstance(outer, _Guard) else self.before
@@ -502,9 +510,8 @@ class _Guard:
             with contextlib.suppress(ValueError):  # not the main thread, which alone handles signals
                 signal.signal(signal.SIGINT, self.interrupted)
                 self.wrapped = True
+        self.outer, _running.guard = getattr(_running, "guard", None), self
         return self
-
-    wrapped = False
 
     def __exit__(self, *_: Any) -> None:
         _running.guard = self.outer
@@ -515,7 +522,10 @@ class _Guard:
             if self.branch is not None:
                 with contextlib.suppress(AttributeError, TypeError):  # an exception without room for it
                     held.branch = self.branch  # type: ignore[attr-defined]
-            raise held
+            try:
+                raise held
+            finally:
+                del held  # else it would hold this frame, and this frame it
 
     def interrupted(self, number: int, frame: Any) -> None:
         if self.inside:
@@ -532,7 +542,7 @@ class _Guard:
             return result
         except BaseException as error:  # goes through C and is raised on the other side
             self.inside = False
-            self.held = self.held or error
+            self.held = error if self.held is None else self.held
             return None
 
 
@@ -632,7 +642,7 @@ class _Owner:
     """Owns a handle of the library, and the callables that the library may call on its behalf."""
 
     _handle: Optional[int] = None
-    _kept: tuple = ()
+    _kept: Sequence = ()
 
     @property
     def handle(self) -> int:
@@ -688,9 +698,7 @@ def _side(kind: Any, dofs: Any) -> list:
 
 
 def _law(caller: str, kind: Any, constants: dict) -> Any:
-    law = _options(caller, "hbvib_contact", constants, "kind dof_a dof_b")
-    law.kind = _member(ContactKind, kind)
-    return law
+    return _options(caller, "hbvib_contact", constants, "kind dof_a dof_b", kind=_member(ContactKind, kind))
 
 
 class Model(_Owner):
@@ -708,7 +716,7 @@ class Model(_Owner):
         self._create(None, ndof, dict(mass=mass, damping=damping, stiffness=stiffness), {}, rayleigh)
 
     @classmethod
-    def cyclic(cls, sectors: int, ndof: Optional[int] = None, *, engine_order: int = 0, mass: Any = None,
+    def cyclic(cls, ndof: Optional[int] = None, *, sectors: int, engine_order: int = 0, mass: Any = None,
                damping: Any = None, stiffness: Any = None, coupling: Optional[dict] = None,
                rayleigh: Optional[Sequence[float]] = None) -> Model:
         """A wheel of equal sectors under an engine order; ndof and matrices are those of one sector.
@@ -731,7 +739,7 @@ class Model(_Owner):
             _call("hbvib_model_new", ndof, handle)
         else:
             _call("hbvib_cyclic_new", ndof, sectors, handle)
-        self._handle = handle.value
+        self._handle, self._kept = handle.value, []
         for kind, value in given:
             self.set_matrix(kind, value)
         for kind, value in coupling.items():
@@ -744,21 +752,21 @@ class Model(_Owner):
             return "<hbvib.Model, freed>"
         return f"<hbvib.Model: {self.ndof} degrees of freedom, {self.sectors} sectors, {self.contacts} contacts>"
 
-    def __del__(self) -> None:
+    def __del__(self, free: Any = lib.hbvib_model_free) -> None:
         if self._handle is not None:
-            lib.hbvib_model_free(self._handle)
+            free(self._handle)
 
     def free(self) -> None:
         """Frees the model; branches solved from it stay. FreedError if it was freed, BusyError while in use."""
         _call("hbvib_model_free", self.handle)
-        self._handle, self._kept = None, ()
+        self._handle, self._kept = None, []
 
     def clone(self) -> Model:
         """A copy with the same matrices, contacts, forces and user forces."""
-        handle = ctypes.c_void_p()
+        handle, kept = ctypes.c_void_p(), self._kept
         self._call("hbvib_model_clone", handle)
         copy = type(self).__new__(type(self))
-        copy._handle, copy._kept = handle.value, self._kept
+        copy._handle, copy._kept = handle.value, list(kept)
         return copy
 
     __copy__ = clone
@@ -946,9 +954,13 @@ class Model(_Owner):
         callback = _TYPES["force_fn"](trampoline)
         force = _new("hbvib_user_force", dofs=dofs, n=len(dofs), states=states, samples=samples, force=callback,
                      uses_velocity=uses_velocity, is_odd=is_odd)
-        number = self._identified("hbvib_model_add_user_force", force)
-        self._kept += (callback,)
-        return number
+        kept = self._kept
+        kept.append(callback)  # before another thread can solve with it
+        try:
+            return self._identified("hbvib_model_add_user_force", force)
+        except BaseException:
+            kept.remove(callback)
+            raise
 
     def check_jacobian(self, contact: int, omega: float, amplitude: ArrayLike) -> JacobianGap:
         """The derivative of a user force that lies farthest from its difference quotient; `gap` below 1e-6 is right.
@@ -968,13 +980,12 @@ class Model(_Owner):
         return Modes(omega, shapes)
 
     def _solve(self, name: str, solver: dict, options: Any, hooks: tuple) -> Branch:
-        caller, handle = name[6:], ctypes.c_void_p()
-        settings = _options(caller, "hbvib_solver_options", solver)
+        settings = _options(name[6:], "hbvib_solver_options", solver)
+        handle, kept = ctypes.c_void_p(), self._kept
         with _Guard() as guard:
-            kept = self._kept
             status = _call(name, self.handle, settings, options, _hooks(guard, *hooks), handle, guard=guard)
             if handle.value:
-                guard.branch = branch = Branch(handle.value, kept, _sentence(status) if status > 0 else "")
+                guard.branch = branch = Branch(handle.value, tuple(kept), _sentence(status) if status else "")
         if status > Status.STOPPED_BY_CALLER:
             try:
                 warnings.warn(StoppedEarly(branch.message, branch.status), stacklevel=3)
@@ -998,10 +1009,8 @@ class Model(_Owner):
         Others are the solver options of hbvib.h: harmonics, samples, response_dof, step, step_min, step_max,
         tol_residual, max_newton, max_points, keep_even_harmonics, num_threads, tolerance, max_harmonics."""
         start, stop = (omega, omega) if np.ndim(omega) == 0 else omega
-        options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop)
-        _points(options, at)
-        if guess is not None:
-            _motion(options, "guess", guess, self.ndof)
+        options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
+                       **_counted_array("guess", guess, np.complex128, [None, self.ndof]))
         return self._solve("hbvib_forced_response", solver, options, (progress, log, log_level, cancel))
 
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,
@@ -1020,11 +1029,8 @@ class Model(_Owner):
         start, stop = log10_amplitude
         options = _new("hbvib_mode_options", log10_start=start, log10_stop=stop, diameter=diameter,
                        damping_form=_member(DampingForm, damping_form), mode_index=mode_index, near_omega=near_omega,
-                       amplitude_contact=amplitude_contact, reference_dof=reference_dof)
-        _points(options, at)
-        if shape is not None:
-            options.array_shape = array = _array("shape", shape, np.complex128, [self.ndof])
-            options.shape, options.shape_len = _pointer(array), array.size
+                       amplitude_contact=amplitude_contact, reference_dof=reference_dof, **_counted_array("at", at),
+                       **_counted_array("shape", shape, np.complex128, [self.ndof]))
         return self._solve("hbvib_nonlinear_mode", solver, options, (progress, log, log_level, cancel))
 
     def time_response(self, omega: float, *, harmonics: int = 9, samples: int = 0, method: Any = SteadyMethod.SHOOTING,
@@ -1038,11 +1044,10 @@ class Model(_Owner):
         progress   after each period; the rest as in forced_response.
         Returns harmonics (harmonics + 1, ndof) complex, samples (samples, ndof) at equidistant times, info, and status:
         STOPPED_BY_CALLER where the results are those of the last period, not steady."""
-        settings = _options("time_response", "hbvib_time_options",
-                            dict(options, omega=omega, harmonics=harmonics, samples=samples), "start start_len")
-        settings.method = _member(SteadyMethod, method)
-        if start is not None:
-            _motion(settings, "start", start, self.ndof)
+        settings = _options(
+            "time_response", "hbvib_time_options", options, "start start_len", omega=omega, harmonics=harmonics,
+            samples=samples, method=_member(SteadyMethod, method),
+            **_counted_array("start", start, np.complex128, [None, self.ndof]))
         shapes = (max(settings.harmonics, -1) + 1, self.ndof), (max(settings.samples, 0), self.ndof)
         x, times, info = np.empty(shapes[0], complex), np.empty(shapes[1]), _new("hbvib_time_info")
         with _Guard() as guard:
@@ -1062,18 +1067,6 @@ class Model(_Owner):
         self._call("hbvib_forced_residual", solver, omega, x, x.size, residual, x.size, matrix,
                    matrix.size if jacobian else 0, slope, x.size if d_omega else 0)
         return Residual(residual, matrix, slope)
-
-
-def _points(options: Any, at: Any) -> None:
-    if at is not None:
-        options.array_at = array = _array("at", np.atleast_1d(at), shape=[None])
-        options.at, options.at_len = _pointer(array), array.size
-
-
-def _motion(options: Any, name: str, value: Any, ndof: int) -> None:
-    options.array_motion = array = _array(name, value, np.complex128, [None, ndof])
-    setattr(options, name, _pointer(array))
-    setattr(options, name + "_len", array.size)
 
 
 forced_response = Model.forced_response
@@ -1126,9 +1119,9 @@ class Branch(_Owner):
     def __repr__(self) -> str:
         return "<hbvib.Branch, freed>" if self._handle is None else f"<hbvib.Branch: {len(self)} points>"
 
-    def __del__(self) -> None:
+    def __del__(self, free: Any = lib.hbvib_branch_free) -> None:
         if self._handle is not None:
-            lib.hbvib_branch_free(self._handle)
+            free(self._handle)
 
     def free(self) -> None:
         """Frees the branch. BufferError while arrays look into its memory, BusyError while a call uses it, FreedError

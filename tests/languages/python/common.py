@@ -53,7 +53,7 @@ COUPLING = np.diag([0, 0, -5e7, -2e7])
 
 
 def ring_damper(force=5.0):
-    model = hbvib.Model.cyclic(24, engine_order=2, mass=MASS, stiffness=STIFFNESS, coupling=dict(stiffness=COUPLING),
+    model = hbvib.Model.cyclic(sectors=24, engine_order=2, mass=MASS, stiffness=STIFFNESS, coupling=dict(stiffness=COUPLING),
                                rayleigh=(0, 1.5e-6))
     model.add_contact("jenkins", 2, 3, kt=5e7, mu=0.3, preload=0.03 * 0.165 * (3000 * HZ / 60) ** 2)
     for dof in (0, 1):

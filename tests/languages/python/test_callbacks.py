@@ -63,6 +63,19 @@ check("the same object", error is mine)
 check("with its traceback", "failing" in [frame.name for frame in traceback.extract_tb(error.__traceback__)])
 check("with the branch so far", np.array_equal(error.branch.omega, whole.omega[:5]))
 check("which nothing else holds", error.__context__ is None and error.__cause__ is None)
+
+
+def lost():
+    """What a failure keeps alive once it was dealt with, without the collector's help."""
+    try:
+        solve(model, progress=lambda state: 1 / 0)
+    except ZeroDivisionError as error:
+        return weakref.ref(error.branch)
+
+
+gc.disable()
+check("and goes with it", lost()() is None)
+gc.enable()
 lines = []
 check("logging changes nothing", bits(solve(model, log=lambda level, text: lines.append((level, text)), log_level="debug")) == reference)
 check("lines come with their weight", lines and all(type(level) is hbvib.LogLevel and text for level, text in lines))
@@ -257,4 +270,4 @@ error, took = interrupting(solve, 0.1, model, harmonics=63, step_max=1e-3, max_p
 check("a handler of one's own is called and goes on", error is None and own_handler == [signal.SIGINT])
 signal.signal(signal.SIGINT, handler)
 
-finish(76)
+finish(77)

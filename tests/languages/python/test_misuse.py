@@ -34,6 +34,7 @@ refused("an unknown option", TypeError, solve, model, harmonic=3, words="forced_
 refused("struct_size is no option", TypeError, solve, model, struct_size=3)
 refused("an unknown option of a mode", TypeError, model.nonlinear_mode, (-6, -5), reserve=3, words="nonlinear_mode()")
 refused("an unknown option in time", TypeError, model.time_response, 1300.0, harmonix=3, words="time_response()")
+refused("a length that the array tells", TypeError, model.time_response, 1300.0, start_len=3)
 refused("an unknown constant", TypeError, model.add_contact, "jenkins", 0, dof_a=1, words="add_contact()")
 refused("an unknown law", ValueError, model.add_contact, "coulomb", 0, words="friction_2d")
 refused("a law by a wrong number", ValueError, model.add_contact, 17, 0)
@@ -61,6 +62,7 @@ refused("tables of two lengths", ValueError, model.add_table, 0, displacement=[0
 refused("powers that overflow", ValueError, model.add_polynomial, [0], [0], [1.0], [[2**32 + 1]])
 refused("coupling of a plain structure", NotImplementedError, hbvib.Model(1).set_coupling, "stiffness", 1)
 raises("a model without size", TypeError, hbvib.Model)
+raises("a wheel without sectors", TypeError, hbvib.Model.cyclic, 4, 24)
 raises("a model of no size", ValueError, hbvib.Model, 0)
 raises("a model of half a degree of freedom", TypeError, hbvib.Model, 1.5)
 raises("a model cannot be pickled", TypeError, pickle.dumps, model)
@@ -117,4 +119,4 @@ close("wanted solutions are those of the curve", single.at(0).amplitude, single.
 check("a small law by names and numbers alike",
       oscillator().add_contact(hbvib.ContactKind.CUBIC, [0], cubic=1) == oscillator().add_contact("CUBIC", 0, cubic=1) == 1)
 
-finish(109)
+finish(112)

@@ -13,11 +13,11 @@ number = np.arange(1, n + 1)
 close("a chain's frequencies in closed form", modes.omega, 2 * np.sin(number * np.pi / (2 * (n + 1))), 1e-13)
 close("its shapes are orthonormal", modes.shapes.conj() @ modes.shapes.T, np.eye(n), 1e-12)
 close("and sines", np.abs(modes.shapes[2]), np.abs(np.sqrt(2 / (n + 1)) * np.sin(3 * number * np.pi / (n + 1))), 1e-12)
-ring = hbvib.Model.cyclic(24, mass=1, stiffness=2 + 0.1, coupling=dict(stiffness=-1))
+ring = hbvib.Model.cyclic(sectors=24, mass=1, stiffness=2 + 0.1, coupling=dict(stiffness=-1))
 for diameter in (0, 1, 5, 12):
     close("a ring's frequencies by nodal diameter", ring.linear_modes(1, diameter).omega,
           [math.sqrt(0.1 + 2 - 2 * math.cos(diameter * HZ / 24))], 1e-13)
-waves = hbvib.Model.cyclic(24, 1, mass=1)
+waves = hbvib.Model.cyclic(1, sectors=24, mass=1)
 waves.set_diameter("stiffness", 5, ring.linear_modes(1, 5).omega[0] ** 2)
 close("the same by the matrix of a diameter", waves.linear_modes(1, 5).omega, ring.linear_modes(1, 5).omega, 1e-14)
 

@@ -72,17 +72,15 @@ check("forces of one's own in many threads", all(job.result() == alone for job i
 
 # The GIL is free during a call: this thread counts while another solves, without callbacks.
 def long_solve():
-    started.set()
     begin = time.perf_counter()
     solve(model, harmonics=63, step_max=2e-4, max_points=10**6, max_newton=20)
     times.append(time.perf_counter() - begin)
 
 
-started, times = threading.Event(), []
+times = []
 worker = threading.Thread(target=long_solve)
-worker.start()
-started.wait()
 ticks, pause, last = 0, 0.0, time.perf_counter()
+worker.start()
 while worker.is_alive():
     now = time.perf_counter()
     ticks, pause, last = ticks + 1, max(pause, now - last), now
