@@ -11,7 +11,7 @@ Errors      Below zero, a status is raised as a subclass of `Error` that is also
             IndexError, MemoryError ...). Above zero, the branch is returned and `StoppedEarly` is warned of,
             unless the caller stopped the solve. Wrong types are TypeError, wrong shapes ValueError.
 Arrays      C- or Fortran-ordered and strided float64 and complex128 matrices are handed over without a
-            copy; types that fit without loss are converted; scipy.sparse matrices are taken as they are.
+            copy; types that fit without loss are converted; scipy.sparse matrices of any format are taken.
             Fields of a branch are read-only arrays in the library's own memory and keep the branch alive.
 Threads     Any number of threads may solve one model and read one branch at once: calls release the GIL.
             Changing or freeing an object in use is BusyError.
@@ -35,7 +35,7 @@ import threading
 import warnings
 import weakref
 from collections import namedtuple
-from typing import Any, Callable, NamedTuple, Optional, Sequence
+from typing import Any, Callable, Iterator, NamedTuple, Optional, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -199,34 +199,38 @@ def _open(path: str) -> ctypes.CDLL:
     return library
 
 
-def _load() -> ctypes.CDLL:
-    """The library: HBVIB_LIBRARY, beside this module, in the cargo target folder, in the lib folder of an
-    install prefix, then wherever the system's loader finds it. ImportError says what was tried."""
-    here = os.path.dirname(os.path.abspath(__file__))
-    if sys.platform == "win32":
-        names = ["hbvib.dll"]
-    elif sys.platform == "darwin":
-        names = ["libhbvib.dylib"]
-    else:
-        names = [f"libhbvib.so.{_VERSION[0]}.{_VERSION[1]}", "libhbvib.so"]
+_HERE = os.path.dirname(os.path.abspath(__file__))
+_FOLDERS = [os.path.normpath(os.path.join(_HERE, folder)) for folder in (
+    "", "../target/release", "../target/debug", "../../lib", "../lib")]
+
+
+def _candidates() -> Iterator[str]:
+    """Where the library may be: HBVIB_LIBRARY and nowhere else; or beside this module, in the cargo target folder, in
+    the lib folder of an install prefix, then wherever the system's loader finds it."""
     wanted = os.environ.get("HBVIB_LIBRARY")
     if wanted is not None:
-        candidates = [wanted if os.path.dirname(wanted) else os.path.join(os.curdir, wanted)]
-    else:
-        folders = ["", "../target/release", "../target/debug", "../../lib", "../lib"]
-        paths = [os.path.normpath(os.path.join(here, folder, name)) for folder in folders for name in names]
-        candidates = [path for path in paths if os.path.exists(path)] + names[:1]
-        candidates += filter(None, [ctypes.util.find_library("hbvib")])
+        yield wanted if os.path.dirname(wanted) else os.path.join(os.curdir, wanted)
+        return
+    names = dict(win32=["hbvib.dll"], darwin=["libhbvib.dylib"]).get(
+        sys.platform, [f"libhbvib.so.{_VERSION[0]}.{_VERSION[1]}", "libhbvib.so"])
+    paths = (os.path.join(place, name) for place in _FOLDERS for name in names)
+    yield from filter(os.path.exists, paths)
+    yield names[0]
+    yield from filter(None, [ctypes.util.find_library("hbvib")])
+
+
+def _load() -> ctypes.CDLL:
+    """The first library that is the right one. ImportError says what was tried."""
     tried = []
-    for path in candidates:
+    for path in _candidates():
         try:
             return _open(path)
         except OSError as error:
             tried.append(f"{path}: {error}")
-    if wanted is not None:
+    if "HBVIB_LIBRARY" in os.environ:
         raise ImportError(f"HBVIB_LIBRARY names no library of hbvib: {tried[0]}")
-    places = ", ".join(os.path.normpath(os.path.join(here, folder)) for folder in folders)
-    raise ImportError(f"no library of hbvib in {places} or where the system looks; tried " + "; ".join(tried))
+    raise ImportError("no library of hbvib in " + ", ".join(_FOLDERS)
+                      + " or where the system looks; tried " + "; ".join(tried))
 
 
 #: The library itself, every function of hbvib.h with its prototype: hbvib.lib.hbvib_version().
@@ -415,10 +419,13 @@ def _matrix(value: Any, part: Any) -> Any:
         numbers = _numbers("matrix", sparse.data, np.complex128)
         dtype = np.complex128 if numbers.dtype.kind == "c" else np.float64
         rows, cols = sparse.shape
+        starts = _array("indptr", sparse.indptr, np.int64, [cols + 1])
+        places = _array("indices", sparse.indices, np.int64, [None])
+        if starts[-1] > min(len(places), len(numbers)):  # all that the library cannot check itself
+            raise ValueError(
+                f"matrix: indptr ends at {starts[-1]}, beyond {len(places)} indices and {len(numbers)} numbers")
         return _new("hbvib_matrix", storage=Storage.CSC, scalar=int(dtype is np.complex128), part=part, rows=rows,
-                    cols=cols, values=_array("matrix", numbers, dtype),
-                    col_ptr=_array("indptr", sparse.indptr, np.int64),
-                    row_idx=_array("indices", sparse.indices, np.int64))
+                    cols=cols, values=_array("matrix", numbers, dtype), col_ptr=starts, row_idx=places)
     dense = _numbers("matrix", value, np.complex128)
     if dense.ndim == 0:
         dense = dense.reshape(1, 1)
@@ -868,7 +875,8 @@ class Model(_Owner):
     def add_iwan(self, a: int, b: int = GROUND, *, slip_force: float, stiffness: float, chi: float, beta: float,
                  elements: int = 100, sector_offset: int = 0) -> range:
         """Adds an Iwan joint as that many Jenkins contacts; returns their numbers."""
-        first = self._identified("hbvib_model_add_iwan", a, b, sector_offset, slip_force, stiffness, chi, beta, elements)
+        first = self._identified("hbvib_model_add_iwan", a, b, sector_offset,
+                                 slip_force, stiffness, chi, beta, elements)
         return range(first, first + elements)
 
     def add_table(self, a: int, b: int = GROUND, *, displacement: ArrayLike, force: ArrayLike,
@@ -1051,8 +1059,9 @@ class Model(_Owner):
         shapes = (max(settings.harmonics, -1) + 1, self.ndof), (max(settings.samples, 0), self.ndof)
         x, times, info = np.empty(shapes[0], complex), np.empty(shapes[1]), _new("hbvib_time_info")
         with _Guard() as guard:
-            status = _call("hbvib_time_response", self.handle, settings, _hooks(guard, progress, log, log_level, cancel),
-                           x, x.size, times if times.size else None, times.size, info, guard=guard)
+            hooks = _hooks(guard, progress, log, log_level, cancel)
+            status = _call("hbvib_time_response", self.handle, settings, hooks, x, x.size,
+                           times if times.size else None, times.size, info, guard=guard)
         return TimeResponse(x, times, TimeInfo.of(info), Status(status))
 
     def forced_residual(self, omega: float, x: ArrayLike, *, jacobian: bool = False, d_omega: bool = False,
@@ -1129,7 +1138,8 @@ class Branch(_Owner):
         handle, self._handle = self.handle, None  # first, so that no thread borrows an array from here on
         try:
             if len(self._leases):
-                raise BufferError(f"{len(self._leases)} arrays look into the memory of this branch: delete or copy them")
+                raise BufferError(
+                    f"{len(self._leases)} arrays look into the memory of this branch: delete or copy them")
             _call("hbvib_branch_free", handle)
         except (BufferError, BusyError):
             self._handle = handle

@@ -27,7 +27,8 @@ def ring_damper(force, ring_mass=0.03, rpm=3000):
                           [-kb2, kb2 + kb1, -kb1, 0],
                           [0, -kb1, kb1 + kg + 2 * kd, 0],
                           [0, 0, 0, 2 * kr]])
-    model = hbvib.Model.cyclic(sectors=24, engine_order=2, mass=np.diag([0.2, 0.3, 1.2, ring_mass]), stiffness=stiffness,
+    model = hbvib.Model.cyclic(sectors=24, engine_order=2,
+                               mass=np.diag([0.2, 0.3, 1.2, ring_mass]), stiffness=stiffness,
                                coupling=dict(stiffness=np.diag([0, 0, -kd, -kr])),
                                rayleigh=(0, 1.5e-6))  # C = 1.5e-6 s * K
     model.add_contact("jenkins", D, R, kt=5e7, mu=0.3, preload=ring_mass * radius * spin * spin)

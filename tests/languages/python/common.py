@@ -1,4 +1,5 @@
 """What the tests share: checks that name their claim, and the ring damper as reference model."""
+
 import math
 import os
 import sys
@@ -53,8 +54,14 @@ COUPLING = np.diag([0, 0, -5e7, -2e7])
 
 
 def ring_damper(force=5.0):
-    model = hbvib.Model.cyclic(sectors=24, engine_order=2, mass=MASS, stiffness=STIFFNESS, coupling=dict(stiffness=COUPLING),
-                               rayleigh=(0, 1.5e-6))
+    model = hbvib.Model.cyclic(
+        sectors=24,
+        engine_order=2,
+        mass=MASS,
+        stiffness=STIFFNESS,
+        coupling=dict(stiffness=COUPLING),
+        rayleigh=(0, 1.5e-6),
+    )
     model.add_contact("jenkins", 2, 3, kt=5e7, mu=0.3, preload=0.03 * 0.165 * (3000 * HZ / 60) ** 2)
     for dof in (0, 1):
         model.add_force(dof, force)
@@ -67,8 +74,15 @@ def solve(model, **options):
 
 def bits(branch):
     """All that a branch says of its curve, to the bit."""
-    return b"".join([branch.omega.tobytes(), branch.amplitude.tobytes(), branch.slip_fraction.tobytes(),
-                     branch.harmonics(len(branch) // 2).tobytes(), branch.peaks().amplitude.tobytes()])
+    return b"".join(
+        [
+            branch.omega.tobytes(),
+            branch.amplitude.tobytes(),
+            branch.slip_fraction.tobytes(),
+            branch.harmonics(len(branch) // 2).tobytes(),
+            branch.peaks().amplitude.tobytes(),
+        ]
+    )
 
 
 def oscillator(force=0.2):

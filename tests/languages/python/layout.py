@@ -1,4 +1,5 @@
 """Prints the size of every struct of hbvib.h and the offset and size of each of its fields, in the header's order."""
+
 import ctypes
 
 import hbvib

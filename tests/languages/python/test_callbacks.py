@@ -1,4 +1,5 @@
 """Callbacks see what happens, stop what they should, and what they raise comes out whole."""
+
 import gc
 import os
 import signal
@@ -21,10 +22,16 @@ seen = []
 watched = solve(model, progress=seen.append)
 check("watching changes nothing", bits(watched) == reference)
 check("each point is told once", [state.point for state in seen] == list(range(1, len(whole) + 1)))
-check("with its frequency and amplitude", np.array_equal([state.parameter for state in seen], whole.omega)
-      and np.array_equal([state.amplitude for state in seen], whole.amplitude))
+check(
+    "with its frequency and amplitude",
+    np.array_equal([state.parameter for state in seen], whole.omega)
+    and np.array_equal([state.amplitude for state in seen], whole.amplitude),
+)
 check("the share done ends at 1", seen[-1].fraction_done == 1 and type(seen[0]) is hbvib.Progress)
-check("None, True, 0 and texts go on", bits(solve(model, progress=lambda state: [None, True, 0, ""][state.point % 4])) == reference)
+check(
+    "None, True, 0 and texts go on",
+    bits(solve(model, progress=lambda state: [None, True, 0, ""][state.point % 4])) == reference,
+)
 
 
 def stopping(state):
@@ -32,11 +39,19 @@ def stopping(state):
         raise StopIteration
 
 
-for name, callback in (("False", lambda state: state.point < 7), ("numpy's False", lambda state: np.bool_(state.point < 7)),
-                       ("StopIteration", stopping)):
+for name, callback in (
+    ("False", lambda state: state.point < 7),
+    ("numpy's False", lambda state: np.bool_(state.point < 7)),
+    ("StopIteration", stopping),
+):
     stopped = solve(model, progress=callback)
-    check(f"{name} stops with the points so far", stopped.status is hbvib.Status.STOPPED_BY_CALLER
-          and np.array_equal(stopped.omega, whole.omega[:7]) and len(stopped) < len(whole) and not stopped.complete)
+    check(
+        f"{name} stops with the points so far",
+        stopped.status is hbvib.Status.STOPPED_BY_CALLER
+        and np.array_equal(stopped.omega, whole.omega[:7])
+        and len(stopped) < len(whole)
+        and not stopped.complete,
+    )
     check(f"{name} is not a failure", stopped.message != "")
 flag = hbvib.CancelFlag()
 cancelled = solve(model, cancel=flag, progress=lambda state: flag.set() if state.point == 7 else None)
@@ -51,6 +66,10 @@ class Mine(Exception):
 
 
 mine = Mine("mine")
+
+
+def throw(*_):
+    raise mine
 
 
 def failing(state):
@@ -77,17 +96,26 @@ gc.disable()
 check("and goes with it", lost()() is None)
 gc.enable()
 lines = []
-check("logging changes nothing", bits(solve(model, log=lambda level, text: lines.append((level, text)), log_level="debug")) == reference)
+check(
+    "logging changes nothing",
+    bits(solve(model, log=lambda level, text: lines.append((level, text)), log_level="debug")) == reference,
+)
 check("lines come with their weight", lines and all(type(level) is hbvib.LogLevel and text for level, text in lines))
 few = []
 solve(model, log=lambda level, text: few.append(level), log_level=hbvib.LogLevel.WARN)
-check("the finest wanted is the finest had", all(level == hbvib.LogLevel.WARN for level in few) and len(few) < len(lines))
-raises("an exception of log comes out", Mine, solve, model, log=lambda level, text: exec("raise mine", globals()), log_level="debug")
+check(
+    "the finest wanted is the finest had", all(level == hbvib.LogLevel.WARN for level in few) and len(few) < len(lines)
+)
+raises("an exception of log comes out", Mine, solve, model, log=throw, log_level="debug")
 for kind in (SystemExit, KeyboardInterrupt, GeneratorExit, StopAsyncIteration):
-    error = raises(f"{kind.__name__} comes out", kind, solve, model, progress=lambda state: exec("raise kind", globals()))
+
+    def progress(state, kind=kind):
+        raise kind
+
+    error = raises(f"{kind.__name__} comes out", kind, solve, model, progress=progress)
     check(f"{kind.__name__} has the branch", len(error.branch) == 1)
-raises("an exception in time integration", Mine, model.time_response, HZ * 208, progress=lambda state: exec("raise mine", globals()))
-raises("in a nonlinear mode", Mine, model.nonlinear_mode, (-6, -3), progress=lambda state: exec("raise mine", globals()))
+raises("an exception in time integration", Mine, model.time_response, HZ * 208, progress=throw)
+raises("in a nonlinear mode", Mine, model.nonlinear_mode, (-6, -3), progress=throw)
 check("and the model solves to the same bits", bits(solve(model)) == reference)
 stopped = model.time_response(HZ * 208, progress=lambda state: False)
 check("time integration stops likewise", stopped.status is hbvib.Status.STOPPED_BY_CALLER)
@@ -106,8 +134,13 @@ def nested(state):
 
 
 check("the outer one goes on", bits(solve(model, progress=nested)) == reference and len(inner) == 4)
-error = raises("an inner failure that is not caught ends both", Mine, solve, model,
-               progress=lambda state: state.point < 3 or solve(model, progress=failing))
+error = raises(
+    "an inner failure that is not caught ends both",
+    Mine,
+    solve,
+    model,
+    progress=lambda state: state.point < 3 or solve(model, progress=failing),
+)
 check("and has the outer branch", len(error.branch) == 3)
 
 
@@ -132,7 +165,9 @@ class Counting:
 
     def __call__(self, call):
         self.calls += 1
-        shapes.add((call.u.shape, call.f.shape, call.df_du.shape, call.v is None, call.z is None, call.u.flags.writeable))
+        shapes.add(
+            (call.u.shape, call.f.shape, call.df_du.shape, call.v is None, call.z is None, call.u.flags.writeable)
+        )
         cubic(call)
 
 
@@ -150,13 +185,18 @@ for i in range(3):
     for ours, theirs in zip(mine_at.point, theirs_at.point):
         close("and its harmonics", curve.harmonics(ours), wanted.harmonics(theirs), 1e-10)
 samples = max(shape[0][0] for shape in shapes)
-check("arrays have the shapes promised", all(
-    shape == (shape[0], shape[0], (*shape[0], 1), True, True, False) for shape in shapes) and samples >= 64, shapes)
+check(
+    "arrays have the shapes promised",
+    all(shape == (shape[0], shape[0], (*shape[0], 1), True, True, False) for shape in shapes) and samples >= 64,
+    shapes,
+)
 check("its derivatives are right", own.check_jacobian(0, 1.0, 0.8).gap < 1e-6)
 half = duffing(lambda call: (cubic(call), call.df_du.__imul__(0.5)) and None)
 gap = half.check_jacobian(0, 1.0, 0.8)
 check("wrong ones are found", gap.gap > 0.1 and gap.tangent is hbvib.Tangent.DF_DU)
-velocities = duffing(lambda call: (cubic(call), call.f.__iadd__(0.01 * call.v), call.df_dv.__iadd__(0.01)) and None, uses_velocity=True)
+velocities = duffing(
+    lambda call: (cubic(call), call.f.__iadd__(0.01 * call.v), call.df_dv.__iadd__(0.01)) and None, uses_velocity=True
+)
 more = hbvib.Model(mass=1, stiffness=1, damping=0.06)
 more.add_force(0, 0.2)
 more.add_contact("cubic", 0, kt=0.3, cubic=0.7)
@@ -169,8 +209,9 @@ copy = own.clone()
 own.free()
 del own, counting
 gc.collect()
-check("branches and copies keep a force alive", alive() is not None
-      and np.array_equal(curve.loop(point, 0).force, force))
+check(
+    "branches and copies keep a force alive", alive() is not None and np.array_equal(curve.loop(point, 0).force, force)
+)
 close("a copy solves like its model", follow(copy).amplitude, curve.amplitude, 0)
 copy.free()
 del copy, curve
@@ -195,10 +236,15 @@ def raising(call):
 with warnings.catch_warnings(record=True) as caught:
     warnings.simplefilter("always")
     refused = follow(duffing(refusing))
-check("False is a motion that the force cannot do: the branch ends there", caught and len(refused)
-      and refused.status is hbvib.Status.STOPPED_CALLBACK and refused.amplitude.max() <= limit)
+check(
+    "False is a motion that the force cannot do: the branch ends there",
+    caught and len(refused) and refused.status is hbvib.Status.STOPPED_CALLBACK and refused.amplitude.max() <= limit,
+)
 error = raises("an exception of a force comes out of the solve", Mine, follow, duffing(raising))
-check("the same object, with the branch", error is mine and 0 < len(error.branch) and error.branch.amplitude.max() <= limit)
+check(
+    "the same object, with the branch",
+    error is mine and 0 < len(error.branch) and error.branch.amplitude.max() <= limit,
+)
 limit = 0.0
 raises("where no point was found, too", Mine, follow, duffing(raising))
 raises("and a refusal is CallbackError", hbvib.CallbackError, follow, duffing(refusing))
@@ -266,7 +312,9 @@ check("and a solve within a solve", error is not None and len(error.branch) == 1
 check("the handler of signals is what it was", signal.getsignal(signal.SIGINT) is handler)
 own_handler = []
 signal.signal(signal.SIGINT, lambda number, frame: own_handler.append(number))
-error, took = interrupting(solve, 0.1, model, harmonics=63, step_max=1e-3, max_points=10**6, progress=lambda state: None)
+error, took = interrupting(
+    solve, 0.1, model, harmonics=63, step_max=1e-3, max_points=10**6, progress=lambda state: None
+)
 check("a handler of one's own is called and goes on", error is None and own_handler == [signal.SIGINT])
 signal.signal(signal.SIGINT, handler)
 

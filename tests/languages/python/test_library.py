@@ -1,4 +1,5 @@
 """The module covers the header, and finds the library or says why it does not."""
+
 import ctypes.util
 import os
 import re
@@ -35,11 +36,19 @@ for name, text in declared:
 # Every struct and every constant.
 structs = re.findall(r"\}\s*(hbvib_\w+);", re.sub(r"typedef enum \{.*?\}[^;]*;", "", HEADER, flags=re.S))
 check("every struct in the header's order", structs == list(hbvib.structs), set(structs) ^ set(hbvib.structs))
-PREFIXES = dict(ContactState="CONTACTS_", State="STATE_", DampingForm="DAMPING_", ModeMultiple="MODE_",
-                SynthesisFlag="SYNTHESIS_", LogLevel="LOG_")
+PREFIXES = dict(
+    ContactState="CONTACTS_",
+    State="STATE_",
+    DampingForm="DAMPING_",
+    ModeMultiple="MODE_",
+    SynthesisFlag="SYNTHESIS_",
+    LogLevel="LOG_",
+)
 ours = {"HBVIB_GROUND": hbvib.GROUND}
-for title in ("Status Storage Scalar Part MatrixKind ContactKind ContactState State Tangent Field DampingForm "
-              "ModeMultiple SynthesisFlag LogLevel SteadyMethod").split():
+for title in (
+    "Status Storage Scalar Part MatrixKind ContactKind ContactState State Tangent Field DampingForm "
+    "ModeMultiple SynthesisFlag LogLevel SteadyMethod"
+).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)
 theirs = {name: int(value) for name, value in re.findall(r"\b(HBVIB_\w+) = (-?\d+)", HEADER)}
@@ -50,15 +59,23 @@ check("the version is the library's", hbvib.__version__.encode() == hbvib.lib.hb
 def imported(module=MODULE, **environment):
     """What an interpreter says that imports a copy of the module."""
     kept = {key: value for key, value in os.environ.items() if key not in ("HBVIB_LIBRARY", "PYTHONPATH")}
-    run = subprocess.run([sys.executable, "-c", "import hbvib; print(hbvib.lib._name)"], capture_output=True, text=True,
-                         env=dict(kept, PYTHONPATH=os.path.dirname(module), **environment))
+    run = subprocess.run(
+        [sys.executable, "-c", "import hbvib; print(hbvib.lib._name)"],
+        capture_output=True,
+        text=True,
+        env=dict(kept, PYTHONPATH=os.path.dirname(module), **environment),
+    )
     return run.stdout.strip() + run.stderr.strip().rpartition("\n")[2]
 
 
 path = os.path.realpath(hbvib.lib._name) if os.path.exists(hbvib.lib._name) else hbvib.lib._name
 check("HBVIB_LIBRARY names the file", imported(HBVIB_LIBRARY=path) == path)
 said = imported(HBVIB_LIBRARY="/nowhere/libhbvib.so")
-check("a wrong HBVIB_LIBRARY is an ImportError with its path", "ImportError" in said and "/nowhere/libhbvib.so" in said, said)
+check(
+    "a wrong HBVIB_LIBRARY is an ImportError with its path",
+    "ImportError" in said and "/nowhere/libhbvib.so" in said,
+    said,
+)
 said = imported(HBVIB_LIBRARY="")
 check("an empty HBVIB_LIBRARY is an ImportError", "ImportError" in said, said)
 other = ctypes.util.find_library("m")

@@ -1,4 +1,5 @@
 """Misuse gives Python's natural errors with the library's words, and changes nothing."""
+
 import pickle
 import warnings
 
@@ -23,14 +24,24 @@ error = refused("a degree of freedom out of range", IndexError, model.add_force,
 check("status of an error", error.status is hbvib.Status.E_INDEX and isinstance(error, hbvib.Error))
 check("number of the argument", error.argument == 2 and error.sentence == str(error))
 again = pickle.loads(pickle.dumps(error))
-check("an error crosses processes", (str(again), again.status, again.argument) == (str(error), error.status, error.argument))
+check(
+    "an error crosses processes",
+    (str(again), again.status, again.argument) == (str(error), error.status, error.argument),
+)
 error = refused("options out of range", ValueError, solve, model, harmonics=-1, words="harmonics = -1")
 check("argument 2 is the solver options", error.argument == 2 and error.status == hbvib.Status.E_ARGUMENT)
 error = refused("an empty range", ValueError, model.nonlinear_mode, (1, 0), words="log10")
 check("argument 3 is the mode options", error.argument == 3)
 
 # Python's own.
-refused("an unknown option", TypeError, solve, model, harmonic=3, words="forced_response() got an unexpected keyword argument 'harmonic'")
+refused(
+    "an unknown option",
+    TypeError,
+    solve,
+    model,
+    harmonic=3,
+    words="forced_response() got an unexpected keyword argument 'harmonic'",
+)
 refused("struct_size is no option", TypeError, solve, model, struct_size=3)
 refused("an unknown option of a mode", TypeError, model.nonlinear_mode, (-6, -5), reserve=3, words="nonlinear_mode()")
 refused("an unknown option in time", TypeError, model.time_response, 1300.0, harmonix=3, words="time_response()")
@@ -51,7 +62,9 @@ refused("progress that cannot be called", TypeError, solve, model, progress=1)
 refused("a flag that is none", TypeError, solve, model, cancel=True)
 refused("a guess of another shape", ValueError, solve, model, guess=np.zeros((10, 3)))
 refused("a guess of another type", TypeError, solve, model, guess=np.full((10, 4), None))
-refused("directions of another length", ValueError, model.add_contact, "friction_3d", [0, 1, 2], kt=1, kn=1, normal=[0, 1])
+refused(
+    "directions of another length", ValueError, model.add_contact, "friction_3d", [0, 1, 2], kt=1, kn=1, normal=[0, 1]
+)
 refused("more degrees of freedom than a law has", ValueError, model.add_contact, "jenkins", [0, 1], kt=1)
 refused("no user force", TypeError, model.add_user_force, [0], None)
 refused("infinity", ValueError, model.add_force, 0, complex(1, float("inf")), words="inf")
@@ -91,7 +104,13 @@ check("branches outlive their model", bits(other) == reference)
 other.free()
 raises("a freed branch", ValueError, lambda: len(other), words="freed")
 check("freed objects still print", "freed" in repr(copy) and "freed" in repr(other))
-raises("a raw call on a stale handle is the library's own refusal", hbvib.FreedError, hbvib._call, "hbvib_model_clear_forces", 12345)
+raises(
+    "a raw call on a stale handle is the library's own refusal",
+    hbvib.FreedError,
+    hbvib._call,
+    "hbvib_model_clear_forces",
+    12345,
+)
 with hbvib.Model(1) as short:
     pass
 raises("a with block frees a model", hbvib.FreedError, lambda: short.ndof)
@@ -105,8 +124,13 @@ with warnings.catch_warnings(record=True) as caught:
     short = model.forced_response((HZ * 207, HZ * 211), response_dof=0, max_points=5)
 check("an early stop warns", [type(warning.message) for warning in caught] == [hbvib.StoppedEarly])
 check("the warning points here", caught[0].filename == __file__, caught[0].filename)
-check("with the reason", caught[0].message.status is hbvib.Status.STOPPED_MAX_POINTS and "max_points" in str(caught[0].message))
-check("the branch tells it, too", short.status is hbvib.Status.STOPPED_MAX_POINTS and not short.complete and short.message)
+check(
+    "with the reason",
+    caught[0].message.status is hbvib.Status.STOPPED_MAX_POINTS and "max_points" in str(caught[0].message),
+)
+check(
+    "the branch tells it, too", short.status is hbvib.Status.STOPPED_MAX_POINTS and not short.complete and short.message
+)
 check("and has its points", len(short) == 5 and np.array_equal(short.omega, branch.omega[:5]))
 check("a whole branch says so", branch.complete and branch.status == 0 and branch.message == "")
 with warnings.catch_warnings():
@@ -116,7 +140,11 @@ check("which carry the branch", len(error.branch) == 5)
 single = model.forced_response(HZ * 208, response_dof=0, at=HZ * 208)
 close("a single frequency", single.omega, [HZ * 208], 1e-15)
 close("wanted solutions are those of the curve", single.at(0).amplitude, single.amplitude, 1e-12)
-check("a small law by names and numbers alike",
-      oscillator().add_contact(hbvib.ContactKind.CUBIC, [0], cubic=1) == oscillator().add_contact("CUBIC", 0, cubic=1) == 1)
+check(
+    "a small law by names and numbers alike",
+    oscillator().add_contact(hbvib.ContactKind.CUBIC, [0], cubic=1)
+    == oscillator().add_contact("CUBIC", 0, cubic=1)
+    == 1,
+)
 
 finish(112)

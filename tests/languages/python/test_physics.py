@@ -1,4 +1,5 @@
 """Each analysis against something independent: closed forms, or another analysis."""
+
 import math
 
 import numpy as np
@@ -15,8 +16,12 @@ close("its shapes are orthonormal", modes.shapes.conj() @ modes.shapes.T, np.eye
 close("and sines", np.abs(modes.shapes[2]), np.abs(np.sqrt(2 / (n + 1)) * np.sin(3 * number * np.pi / (n + 1))), 1e-12)
 ring = hbvib.Model.cyclic(sectors=24, mass=1, stiffness=2 + 0.1, coupling=dict(stiffness=-1))
 for diameter in (0, 1, 5, 12):
-    close("a ring's frequencies by nodal diameter", ring.linear_modes(1, diameter).omega,
-          [math.sqrt(0.1 + 2 - 2 * math.cos(diameter * HZ / 24))], 1e-13)
+    close(
+        "a ring's frequencies by nodal diameter",
+        ring.linear_modes(1, diameter).omega,
+        [math.sqrt(0.1 + 2 - 2 * math.cos(diameter * HZ / 24))],
+        1e-13,
+    )
 waves = hbvib.Model.cyclic(1, sectors=24, mass=1)
 waves.set_diameter("stiffness", 5, ring.linear_modes(1, 5).omega[0] ** 2)
 close("the same by the matrix of a diameter", waves.linear_modes(1, 5).omega, ring.linear_modes(1, 5).omega, 1e-14)
@@ -46,11 +51,19 @@ mode = free.nonlinear_mode((-2, 1), harmonics=1, at=np.log10([0.5, 2.0]))
 slips = mode.modal_amplitude > LIMIT / KT
 secant, loss = jenkins(mode.modal_amplitude[slips])
 close("the backbone of a slider", mode.omega[slips], np.sqrt(1 + secant), 1e-8)
-close("its damping ratio", mode.damping_ratio[slips], loss / (2 * np.pi * (1 + secant) * mode.modal_amplitude[slips] ** 2), 1e-7)
+close(
+    "its damping ratio",
+    mode.damping_ratio[slips],
+    loss / (2 * np.pi * (1 + secant) * mode.modal_amplitude[slips] ** 2),
+    1e-7,
+)
 close("stuck, it is linear", mode.omega[~slips], np.full((~slips).sum(), math.sqrt(2)), 1e-9)
 close("its parameter", mode.log10_amplitude, np.log10(mode.modal_amplitude), 1e-9)
 check("its linear range ends at the slip limit", abs(mode.mode_info.linear_up_to - math.log10(LIMIT / KT)) < 1e-9)
-check("there was one mode to choose", mode.mode_info.multiple is hbvib.ModeMultiple.SINGLE and mode.mode_info.mode_index == 0)
+check(
+    "there was one mode to choose",
+    mode.mode_info.multiple is hbvib.ModeMultiple.SINGLE and mode.mode_info.mode_index == 0,
+)
 best = mode.peaks()
 grid = np.linspace(0.31, 2, 200001)
 secant, loss = jenkins(grid)
@@ -65,10 +78,19 @@ for i, wanted in enumerate((0.5, 2.0)):
 # A loop against its rectangle with slanting sides, and the works of a forced response.
 where = int(mode.at(1).point[0])
 loop, summary = mode.loop(where, 0, n=4096), mode.summary(where, 0)
-close("the area of a loop is its work", -np.sum(loop.force * (np.roll(loop.motion, -1) - np.roll(loop.motion, 1))) / -2,
-      summary.work, 1e-5)
+close(
+    "the area of a loop is its work",
+    -np.sum(loop.force * (np.roll(loop.motion, -1) - np.roll(loop.motion, 1))) / -2,
+    summary.work,
+    1e-5,
+)
 check("the force stays below its limit", np.abs(loop.force).max() <= LIMIT * (1 + 1e-14))
-close("and is there where it slips", np.abs(loop.force[loop.state == hbvib.State.SLIP]), np.full((loop.state == 1).sum(), LIMIT), 1e-12)
+close(
+    "and is there where it slips",
+    np.abs(loop.force[loop.state == hbvib.State.SLIP]),
+    np.full((loop.state == 1).sum(), LIMIT),
+    1e-12,
+)
 check("the share of slip", abs((loop.state == hbvib.State.SLIP).mean() - summary.slip_share) < 2 / 4096 * 2)
 close("ranges of motion", [summary.motion_max, summary.half_range], [loop.motion.max(), np.ptp(loop.motion) / 2], 1e-6)
 close("time history and loop tell one motion", mode.time_history(where, 0, 4096), loop.motion, 1e-12)
@@ -78,14 +100,29 @@ model = ring_damper(20.0)
 branch = solve(model, harmonics=31)
 for point in (0, len(branch) // 2, int(branch.peaks().point[0])):
     energy, x = branch.energy(point), branch.harmonics(point)
-    close("forced work is structural and friction loss", -np.pi * 20.0 * (x[1, 0].imag + x[1, 1].imag),
-          energy.structural_loss + energy.friction_loss, 1e-6)
+    close(
+        "forced work is structural and friction loss",
+        -np.pi * 20.0 * (x[1, 0].imag + x[1, 1].imag),
+        energy.structural_loss + energy.friction_loss,
+        1e-6,
+    )
     close("friction loss is the work of the contact", energy.friction_loss, branch.summary(point, 0).work, 1e-9)
-close("the amplitude is that of the harmonics", [abs(branch.harmonics(i, 0, 1)[1, 0]) for i in range(len(branch))],
-      branch.amplitude, 1e-12)
-close("residual of harmonic balance at a point", 1 + np.abs(model.forced_residual(
-    branch.omega[3], branch.harmonics(3)).residual).max() / 20, 1, 1e-6)
-check("what was removed", branch.reduction.sectors == 24 and branch.reduction.coordinates == 1 and branch.reduction.even_removed)
+close(
+    "the amplitude is that of the harmonics",
+    [abs(branch.harmonics(i, 0, 1)[1, 0]) for i in range(len(branch))],
+    branch.amplitude,
+    1e-12,
+)
+close(
+    "residual of harmonic balance at a point",
+    1 + np.abs(model.forced_residual(branch.omega[3], branch.harmonics(3)).residual).max() / 20,
+    1,
+    1e-6,
+)
+check(
+    "what was removed",
+    branch.reduction.sectors == 24 and branch.reduction.coordinates == 1 and branch.reduction.even_removed,
+)
 
 # Time: a linear structure in closed form, friction against harmonic balance that converges to it.
 linear = hbvib.Model(mass=1, stiffness=1, damping=0.02)
@@ -114,8 +151,10 @@ peaks = branch.peaks()
 close("the mode foretells the resonance", foretold.amplitude, [peaks.amplitude.max()], 1e-4)
 close("and its frequency", foretold.omega, [peaks.omega[peaks.amplitude.argmax()]], 1e-5)
 curve = backbone.synthesis(wave, force_factor=0.5)
-check("a synthesised response is a curve of complex numbers",
-      curve.response.dtype == complex and len(curve.omega) == len(curve.response) > 10)
+check(
+    "a synthesised response is a curve of complex numbers",
+    curve.response.dtype == complex and len(curve.omega) == len(curve.response) > 10,
+)
 check("half the force stays below the whole", np.abs(curve.response).max() < foretold.amplitude.max())
 
 # Laws in other words: tables, polynomials, tensors and patches against the plain kinds.
@@ -130,28 +169,34 @@ def response(add):
 
 cubic = response(lambda made: made.add_contact("cubic", 0, kt=0.3, cubic=0.7))
 for name, add in dict(
-        spring_damper=lambda made: made.add_spring_damper(0, spring=[0.3, 0, 0.7]),
-        polynomial=lambda made: made.add_polynomial([0], [0, 0], [0.3, 0.7], [[1], [3]]),
-        tensors=lambda made: (made.add_springs(0, -1, 0.3), made.add_stiffness_tensors([0], cubic=[[[[0.7]]]])),
-        ).items():
+    spring_damper=lambda made: made.add_spring_damper(0, spring=[0.3, 0, 0.7]),
+    polynomial=lambda made: made.add_polynomial([0], [0, 0], [0.3, 0.7], [[1], [3]]),
+    tensors=lambda made: (made.add_springs(0, -1, 0.3), made.add_stiffness_tensors([0], cubic=[[[[0.7]]]])),
+).items():
     close(f"a cubic spring as {name}", response(add), cubic, 1e-9)
 stuck = response(lambda made: made.add_springs(0, hbvib.GROUND, 0.4))
 for name, add in dict(
-        table=lambda made: made.add_table(0, displacement=[-1, 1], force=[-0.4, 0.4]),
-        jenkins=lambda made: made.add_jenkins(0, hbvib.GROUND, 0.4, 1, np.inf),
-        iwan=lambda made: made.add_iwan(0, slip_force=1e9, stiffness=0.4, chi=-0.5, beta=0.1),
-        damper=lambda made: (made.add_springs(0, -1, 0.4), made.add_spring_damper(0, damper=[0.0, 0.0]))).items():
+    table=lambda made: made.add_table(0, displacement=[-1, 1], force=[-0.4, 0.4]),
+    jenkins=lambda made: made.add_jenkins(0, hbvib.GROUND, 0.4, 1, np.inf),
+    iwan=lambda made: made.add_iwan(0, slip_force=1e9, stiffness=0.4, chi=-0.5, beta=0.1),
+    damper=lambda made: (made.add_springs(0, -1, 0.4), made.add_spring_damper(0, damper=[0.0, 0.0])),
+).items():
     close(f"a linear spring as {name}", response(add), stuck, 1e-9)
 block = hbvib.Model(3, mass=np.eye(3), stiffness=np.eye(3), damping=0.05 * np.eye(3))
 one = block.clone()
 one.add_contact("friction_2d", [0, 2], kt=0.5, kn=0.5, mu=0.3, preload=0.2)
 patch = block.clone()
-ids = patch.add_patch("friction_2d", [[0, 1, 2]] * 4, None, [0, 0, 1], 0.25, tangent=[1, 0, 0], pressure=0.2,
-                      kt=0.5, kn=0.5, mu=0.3)
+ids = patch.add_patch(
+    "friction_2d", [[0, 1, 2]] * 4, None, [0, 0, 1], 0.25, tangent=[1, 0, 0], pressure=0.2, kt=0.5, kn=0.5, mu=0.3
+)
 check("a patch numbers its pairs", ids == range(4) and patch.contacts == 4)
 for made in (one, patch):
     made.add_force(0, 0.2)
-close("a patch of four is one contact of its area", patch.forced_response(1.1, harmonics=3).amplitude,
-      one.forced_response(1.1, harmonics=3).amplitude, 1e-9)
+close(
+    "a patch of four is one contact of its area",
+    patch.forced_response(1.1, harmonics=3).amplitude,
+    one.forced_response(1.1, harmonics=3).amplitude,
+    1e-9,
+)
 
 finish(57)

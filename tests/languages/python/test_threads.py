@@ -1,4 +1,5 @@
 """Threads solve one model at once, bit for bit as one alone, while others run Python."""
+
 import concurrent.futures
 import gc
 import sys
@@ -32,6 +33,7 @@ def failing(number):
     def progress(state):
         if state.point == 2 + number % 5:
             raise LookupError(number)
+
     try:
         solve(model, progress=progress)
     except LookupError as error:
@@ -142,6 +144,9 @@ flag = hbvib.CancelFlag()
 timer = threading.Timer(0.1, flag.set)
 timer.start()
 stopped = solve(model, harmonics=63, step_max=2e-5, max_points=10**6, cancel=flag)
-check("another thread's flag stops a solve", stopped.status is hbvib.Status.STOPPED_BY_CALLER and stopped.omega[-1] < HZ * 211)
+check(
+    "another thread's flag stops a solve",
+    stopped.status is hbvib.Status.STOPPED_BY_CALLER and stopped.omega[-1] < HZ * 211,
+)
 
 finish(16)
