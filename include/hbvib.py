@@ -507,7 +507,7 @@ class _Guard:
         self.held: Optional[BaseException] = None
         self.branch: Optional[Branch] = None
         self.inside = False  # the host's own code is running
-        self.wrapped = False  # so is the handler of SIGINT
+        self.wrapped = False  # the handler of SIGINT is this one
 
     def __enter__(self) -> _Guard:
         self.before = signal.getsignal(signal.SIGINT)
