@@ -1,0 +1,202 @@
+"""Each analysis against something independent: closed forms, or another analysis."""
+
+import math
+
+import numpy as np
+
+from common import HZ, check, close, finish, hbvib, oscillator, ring_damper, solve
+
+# Linear modes: a chain between walls, a ring of masses.
+n = 12
+chain = hbvib.Model(mass=np.eye(n), stiffness=2 * np.eye(n) - np.eye(n, k=1) - np.eye(n, k=-1))
+modes = chain.linear_modes(n)
+number = np.arange(1, n + 1)
+close("a chain's frequencies in closed form", modes.omega, 2 * np.sin(number * np.pi / (2 * (n + 1))), 1e-13)
+close("its shapes are orthonormal", modes.shapes.conj() @ modes.shapes.T, np.eye(n), 1e-12)
+close("and sines", np.abs(modes.shapes[2]), np.abs(np.sqrt(2 / (n + 1)) * np.sin(3 * number * np.pi / (n + 1))), 1e-12)
+ring = hbvib.Model.cyclic(sectors=24, mass=1, stiffness=2 + 0.1, coupling=dict(stiffness=-1))
+for diameter in (0, 1, 5, 12):
+    close(
+        "a ring's frequencies by nodal diameter",
+        ring.linear_modes(1, diameter).omega,
+        [math.sqrt(0.1 + 2 - 2 * math.cos(diameter * HZ / 24))],
+        1e-13,
+    )
+waves = hbvib.Model.cyclic(1, sectors=24, mass=1)
+waves.set_diameter("stiffness", 5, ring.linear_modes(1, 5).omega[0] ** 2)
+close("the same by the matrix of a diameter", waves.linear_modes(1, 5).omega, ring.linear_modes(1, 5).omega, 1e-14)
+
+# Jenkins under a harmonic motion of amplitude a: secant stiffness and loss by integrals of the loop.
+KT, LIMIT = 1.0, 0.3
+
+
+def jenkins(a):
+    turn = np.arccos(1 - 2 * LIMIT / (KT * a))
+    return KT / np.pi * (turn - 0.5 * np.sin(2 * turn)), 4 * LIMIT * (a - LIMIT / KT)
+
+
+a = 0.8
+secant, loss = jenkins(a)
+force = hbvib.evaluate_contact("jenkins", [0, a], kt=KT, mu=0.3, preload=1, jacobian=True)
+close("describing function of friction", force.force[1], a * secant + 1j * loss / (np.pi * a), 1e-13)
+step = 1e-6
+moved = hbvib.evaluate_contact("jenkins", [0, a + step], kt=KT, mu=0.3, preload=1).force
+less = hbvib.evaluate_contact("jenkins", [0, a - step], kt=KT, mu=0.3, preload=1).force
+close("its Jacobian is the slope", force.jacobian[:, 2], ((moved - less) / (2 * step)).view(float), 1e-8)
+
+# Nonlinear mode with one harmonic: frequency and damping follow from secant and loss.
+free = hbvib.Model(mass=1, stiffness=1)
+free.add_contact("jenkins", 0, kt=KT, mu=0.3, preload=1)
+mode = free.nonlinear_mode((-2, 1), harmonics=1, at=np.log10([0.5, 2.0]))
+slips = mode.modal_amplitude > LIMIT / KT
+secant, loss = jenkins(mode.modal_amplitude[slips])
+close("the backbone of a slider", mode.omega[slips], np.sqrt(1 + secant), 1e-8)
+close(
+    "its damping ratio",
+    mode.damping_ratio[slips],
+    loss / (2 * np.pi * (1 + secant) * mode.modal_amplitude[slips] ** 2),
+    1e-7,
+)
+close("stuck, it is linear", mode.omega[~slips], np.full((~slips).sum(), math.sqrt(2)), 1e-9)
+close("its parameter", mode.log10_amplitude, np.log10(mode.modal_amplitude), 1e-9)
+check("its linear range ends at the slip limit", abs(mode.mode_info.linear_up_to - math.log10(LIMIT / KT)) < 1e-9)
+check(
+    "there was one mode to choose",
+    mode.mode_info.multiple is hbvib.ModeMultiple.SINGLE and mode.mode_info.mode_index == 0,
+)
+best = mode.peaks()
+grid = np.linspace(0.31, 2, 200001)
+secant, loss = jenkins(grid)
+ratio = loss / (2 * np.pi * (1 + secant) * grid**2)
+close("the largest damping", [mode.mode_point(int(best.point[0])).damping_ratio], [ratio.max()], 1e-7)
+for i, wanted in enumerate((0.5, 2.0)):
+    point = mode.mode_point(int(mode.at(i).point[0]))
+    close("wanted amplitudes", point.modal_amplitude, wanted, 1e-9)
+    close("the work of a point makes its damping ratio", point.energy_damping_ratio, point.damping_ratio, 1e-7)
+    close("friction loss of a point", point.friction_loss, jenkins(wanted)[1], 1e-8)
+
+# A loop against its rectangle with slanting sides, and the works of a forced response.
+where = int(mode.at(1).point[0])
+loop, summary = mode.loop(where, 0, n=4096), mode.summary(where, 0)
+close(
+    "the area of a loop is its work",
+    -np.sum(loop.force * (np.roll(loop.motion, -1) - np.roll(loop.motion, 1))) / -2,
+    summary.work,
+    1e-5,
+)
+check("the force stays below its limit", np.abs(loop.force).max() <= LIMIT * (1 + 1e-14))
+close(
+    "and is there where it slips",
+    np.abs(loop.force[loop.state == hbvib.State.SLIP]),
+    np.full((loop.state == 1).sum(), LIMIT),
+    1e-12,
+)
+check("the share of slip", abs((loop.state == hbvib.State.SLIP).mean() - summary.slip_share) < 2 / 4096 * 2)
+close("ranges of motion", [summary.motion_max, summary.half_range], [loop.motion.max(), np.ptp(loop.motion) / 2], 1e-6)
+close("time history and loop tell one motion", mode.time_history(where, 0, 4096), loop.motion, 1e-12)
+close("slip at a point", mode.slip(where), [summary.slip_share], 1e-12)
+
+model = ring_damper(20.0)
+branch = solve(model, harmonics=31)
+for point in (0, len(branch) // 2, int(branch.peaks().point[0])):
+    energy, x = branch.energy(point), branch.harmonics(point)
+    close(
+        "forced work is structural and friction loss",
+        -np.pi * 20.0 * (x[1, 0].imag + x[1, 1].imag),
+        energy.structural_loss + energy.friction_loss,
+        1e-6,
+    )
+    close("friction loss is the work of the contact", energy.friction_loss, branch.summary(point, 0).work, 1e-9)
+close(
+    "the amplitude is that of the harmonics",
+    [abs(branch.harmonics(i, 0, 1)[1, 0]) for i in range(len(branch))],
+    branch.amplitude,
+    1e-12,
+)
+close(
+    "residual of harmonic balance at a point",
+    1 + np.abs(model.forced_residual(branch.omega[3], branch.harmonics(3)).residual).max() / 20,
+    1,
+    1e-6,
+)
+check(
+    "what was removed",
+    branch.reduction.sectors == 24 and branch.reduction.coordinates == 1 and branch.reduction.even_removed,
+)
+
+# Time: a linear structure in closed form, friction against harmonic balance that converges to it.
+linear = hbvib.Model(mass=1, stiffness=1, damping=0.02)
+linear.add_force(0, 0.2 + 0.1j)
+time = linear.time_response(1.1, harmonics=3, samples=64)
+x = (0.2 + 0.1j) / (1 - 1.21 + 0.022j)
+close("linear motion in time", time.harmonics[:, 0], [0, x, 0, 0], 1e-10)
+close("its samples", time.samples[:, 0], (x * np.exp(1j * HZ * np.arange(64) / 64)).real, 1e-9)
+check("a period", time.info.period == HZ / 1.1 and time.info.events == 0 and time.status == hbvib.Status.OK)
+rubbing = oscillator()
+rubbing.set_rayleigh(0, 0.01)
+truth = rubbing.time_response(1.3, harmonics=3).harmonics
+errors = []
+for harmonics in (3, 9, 31):
+    point = rubbing.forced_response(1.3, harmonics=harmonics)
+    errors.append(abs(point.harmonics(0)[1, 0] - truth[1, 0]) / abs(truth[1, 0]))
+check("harmonic balance tends to the response in time", errors[0] > errors[1] > errors[2] and errors[2] < 1e-4, errors)
+started = rubbing.time_response(1.3, harmonics=3, start=point.harmonics(0), method="marching")
+close("marching from a point of a branch finds the same", started.harmonics, truth, 1e-6)
+
+# Synthesis from the mode against the response itself.
+wave = ring_damper(20.0)
+backbone = wave.nonlinear_mode((-6, -1), harmonics=31, response_dof=0)
+foretold = backbone.synthesis_peaks(wave)
+peaks = branch.peaks()
+close("the mode foretells the resonance", foretold.amplitude, [peaks.amplitude.max()], 1e-4)
+close("and its frequency", foretold.omega, [peaks.omega[peaks.amplitude.argmax()]], 1e-5)
+curve = backbone.synthesis(wave, force_factor=0.5)
+check(
+    "a synthesised response is a curve of complex numbers",
+    curve.response.dtype == complex and len(curve.omega) == len(curve.response) > 10,
+)
+check("half the force stays below the whole", np.abs(curve.response).max() < foretold.amplitude.max())
+
+# Laws in other words: tables, polynomials, tensors and patches against the plain kinds.
+
+
+def response(add):
+    made = hbvib.Model(mass=1, stiffness=1, damping=0.05)
+    made.add_force(0, 0.2)
+    add(made)
+    return made.forced_response((0.7, 2), at=[1.2], harmonics=7).at(0).amplitude
+
+
+cubic = response(lambda made: made.add_contact("cubic", 0, kt=0.3, cubic=0.7))
+for name, add in dict(
+    spring_damper=lambda made: made.add_spring_damper(0, spring=[0.3, 0, 0.7]),
+    polynomial=lambda made: made.add_polynomial([0], [0, 0], [0.3, 0.7], [[1], [3]]),
+    tensors=lambda made: (made.add_springs(0, -1, 0.3), made.add_stiffness_tensors([0], cubic=[[[[0.7]]]])),
+).items():
+    close(f"a cubic spring as {name}", response(add), cubic, 1e-9)
+stuck = response(lambda made: made.add_springs(0, hbvib.GROUND, 0.4))
+for name, add in dict(
+    table=lambda made: made.add_table(0, displacement=[-1, 1], force=[-0.4, 0.4]),
+    jenkins=lambda made: made.add_jenkins(0, hbvib.GROUND, 0.4, 1, np.inf),
+    iwan=lambda made: made.add_iwan(0, slip_force=1e9, stiffness=0.4, chi=-0.5, beta=0.1),
+    damper=lambda made: (made.add_springs(0, -1, 0.4), made.add_spring_damper(0, damper=[0.0, 0.0])),
+).items():
+    close(f"a linear spring as {name}", response(add), stuck, 1e-9)
+block = hbvib.Model(3, mass=np.eye(3), stiffness=np.eye(3), damping=0.05 * np.eye(3))
+one = block.clone()
+one.add_contact("friction_2d", [0, 2], kt=0.5, kn=0.5, mu=0.3, preload=0.2)
+patch = block.clone()
+ids = patch.add_patch(
+    "friction_2d", [[0, 1, 2]] * 4, None, [0, 0, 1], 0.25, tangent=[1, 0, 0], pressure=0.2, kt=0.5, kn=0.5, mu=0.3
+)
+check("a patch numbers its pairs", ids == range(4) and patch.contacts == 4)
+for made in (one, patch):
+    made.add_force(0, 0.2)
+close(
+    "a patch of four is one contact of its area",
+    patch.forced_response(1.1, harmonics=3).amplitude,
+    one.forced_response(1.1, harmonics=3).amplitude,
+    1e-9,
+)
+
+finish(57)
