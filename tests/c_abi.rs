@@ -5,45 +5,16 @@
 #![cfg(target_os = "linux")]
 
 mod common;
+#[path = "common/programs.rs"]
+mod programs;
 
 use common::{data, number};
-use hbvib::analysis::forced_response;
-use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
-use hbvib::model::Model;
-use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use num_complex::Complex64;
+use programs::{library, root, run, soname};
 use serde_json::Value;
 use std::collections::BTreeSet;
-use std::f64::consts::PI;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-use std::{env, fs};
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
-
-/// The shared library that cargo has built for this very test.
-fn library() -> PathBuf {
-    let folder = env::current_exe().unwrap();
-    let folder = folder.parent().unwrap();
-    let name = "libhbvib.so";
-    let found = [folder.join(name), folder.parent().unwrap().join(name)]
-        .into_iter()
-        .find(|path| path.is_file());
-    found.unwrap_or_else(|| panic!("{name} is neither in {} nor above it", folder.display()))
-}
-
-fn soname() -> String {
-    format!(
-        "libhbvib.so.{}.{}",
-        env!("CARGO_PKG_VERSION_MAJOR"),
-        env!("CARGO_PKG_VERSION_MINOR")
-    )
-}
+use std::process::Command;
 
 /// A folder of the test's own with the library under the names that linker and loader look for.
 fn workshop(test: &str) -> PathBuf {
@@ -54,20 +25,6 @@ fn workshop(test: &str) -> PathBuf {
         std::os::unix::fs::symlink(library(), folder.join(name)).unwrap();
     }
     folder
-}
-
-fn run(command: &mut Command) -> Output {
-    // Cargo's search path has the library of the last `cargo build`, which may be an older one.
-    let output = command.env_remove("LD_LIBRARY_PATH").output().unwrap_or_else(|error| {
-        panic!("{command:?} could not be started: {error}. The C interface is NOT tested without it; install gcc and binutils")
-    });
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        output.status.success(),
-        "{command:?} failed, {}:\n{text}",
-        output.status
-    );
-    output
 }
 
 /// Compiles a C file with warnings denied, and links it with the library and the libraries of
@@ -205,73 +162,6 @@ fn the_library_is_a_guest_in_its_process() {
         fs::copy(library(), &copy).unwrap();
         vec![copy]
     });
-}
-
-#[test]
-fn the_c_example_finds_the_peak_that_rust_finds() {
-    let folder = workshop("ring_damper");
-    let program = compile("examples/c/ring_damper.c", &folder, &["-std=c99"]);
-    let output = run(&mut Command::new(program));
-    let text = String::from_utf8(output.stdout).unwrap();
-    let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
-    let [frequency, amplitude] = numbers[..] else {
-        panic!("the example printed {text:?}");
-    };
-
-    let mut model = Model::cyclic(4, 24).unwrap();
-    let diagonal = |d: [f64; 4]| {
-        let mut a = [0.0; 16];
-        for (i, x) in d.into_iter().enumerate() {
-            a[5 * i] = x;
-        }
-        a
-    };
-    let mut k = diagonal([2e6, 3e6, 101.6e6, 4e7]);
-    for (i, j, x) in [(0, 1, -2e6), (1, 2, -1e6)] {
-        k[4 * i + j] = x;
-        k[4 * j + i] = x;
-    }
-    let next = diagonal([0.0, 0.0, -5e7, -2e7]);
-    let mass = diagonal([0.2, 0.3, 1.2, 0.03]);
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(4, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(4, &k))
-        .unwrap();
-    let next = MatrixView::dense(4, &next).part(Part::General);
-    model.set_coupling(MatrixKind::Stiffness, &next).unwrap();
-    model.set_rayleigh(0.0, 1.5e-6).unwrap();
-    model.set_wave(2);
-    for dof in [0, 1] {
-        model.add_force(dof, 1, Complex64::new(5.0, 0.0)).unwrap();
-    }
-    let spin: f64 = 3000.0 * 2.0 * PI / 60.0;
-    let preload = 0.03 * 0.165 * spin * spin;
-    model
-        .add_contact(&Contact::jenkins(2, Some(3), 5e7, 0.3, preload))
-        .unwrap();
-    let solver = SolverOptions {
-        response_dof: Some(0),
-        ..SolverOptions::default()
-    };
-    let range = ForcedOptions {
-        omega_start: 2.0 * PI * 207.0,
-        omega_stop: 2.0 * PI * 211.0,
-        ..ForcedOptions::default()
-    };
-    let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
-    let peak = branch
-        .peaks()
-        .iter()
-        .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
-        .unwrap();
-    let near = |a: f64, b: f64| (a - b).abs() <= 1e-12 * b.abs();
-    assert!(
-        near(frequency, peak.omega / (2.0 * PI)),
-        "{frequency} Hz, Rust: {peak:?}"
-    );
-    assert!(near(amplitude, peak.amplitude), "{amplitude} m, Rust: {peak:?}");
 }
 
 /// The words after a label in what a program printed, as numbers.

@@ -1,27 +1,49 @@
 #!/bin/sh
-# All tests: the Rust ones, and the C programs that they compile against header and library.
-# Installs the C and C++ compilers where it may (apt as root); else says what is missing and fails.
+# All tests: the Rust ones, and the C, C++, Fortran and Python programs that they build and run.
+# Installs compilers and tools where it may (apt as root) and Python packages in .venv; else says what
+# is missing and fails.
 set -eu
 cd "$(dirname "$0")/.."
 
-need() { # program, Debian package
-    command -v "$1" >/dev/null 2>&1 && return
-    if [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1; then
-        echo "installing $2 for $1"
-        apt-get -o DPkg::Lock::Timeout=300 update -qq
-        DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y -qq --no-install-recommends "$2" >/dev/null
-    fi
-    command -v "$1" >/dev/null 2>&1 || {
-        echo "tests/run.sh: no $1 here; install it (Debian: apt-get install $2) and run again" >&2
+packages() { # Debian packages
+    [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null 2>&1 || return 0
+    echo "installing $*"
+    apt-get -o DPkg::Lock::Timeout=300 update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get -o DPkg::Lock::Timeout=300 install -y -qq --no-install-recommends "$@" >/dev/null
+}
+need() { # Debian package, command that shows that it is there
+    package=$1
+    shift
+    "$@" >/dev/null 2>&1 && return
+    packages "$package"
+    "$@" >/dev/null 2>&1 || {
+        echo "tests/run.sh: '$*' fails; install it (Debian: apt-get install $package) and run again" >&2
         exit 1
     }
 }
-command -v cargo >/dev/null 2>&1 || { echo "tests/run.sh: no cargo here; install Rust from https://rustup.rs" >&2; exit 1; }
-need cc gcc
-need c++ g++
-need nm binutils
-need readelf binutils
+cargo --version >/dev/null 2>&1 || { echo "tests/run.sh: no cargo here; install Rust from https://rustup.rs" >&2; exit 1; }
+need gcc cc --version
+need g++ c++ --version
+need gfortran gfortran --version
+need binutils readelf --version
+need make make --version
+need cmake cmake --version
+need pkg-config pkg-config --version
+need libeigen3-dev pkg-config --exists eigen3
+need python3 python3 --version
 
-# The library first: the C programs link against it; and the examples, which tests run.
+# Python with numpy, scipy, matplotlib and pip: the system's, or one of our own.
+complete() { "$1" -c 'import numpy, scipy, matplotlib, pip' >/dev/null 2>&1; }
+if { [ -e .venv ] || ! complete python3; } && ! complete .venv/bin/python; then
+    need python3-venv python3 -c 'import venv, ensurepip'
+    echo "installing numpy, scipy and matplotlib in .venv"
+    python3 -m venv .venv
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check numpy scipy matplotlib || {
+        echo "tests/run.sh: no numpy, scipy and matplotlib; install them for python3 (pip or apt) and run again" >&2
+        exit 1
+    }
+fi
+
+# The library first: the programs link against it; and the examples, which tests run.
 cargo build --release --lib --examples
 cargo test --release --lib --tests

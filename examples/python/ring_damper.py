@@ -50,11 +50,11 @@ def responses(model):
 
 
 def table(branches):
-    print("   F/N            f/Hz            |X1|/m")
+    print("   F/N              f/Hz            |X1|/m")
     for force, branch in branches:
         peaks = branch.peaks()
         best = peaks.amplitude.argmax()
-        print(f"{force:6.1f}  {peaks.omega[best] / HZ:14.9f}  {peaks.amplitude[best]:19.12E}")
+        print(f"{force:6.1f}  {peaks.omega[best] / HZ:16.11f}  {peaks.amplitude[best]:19.12E}")
 
 
 def figures(model, branches, folder):

@@ -1,0 +1,65 @@
+#!/bin/sh
+# Installs hbvib so that CMake, pkg-config, compilers and Python find it:
+#
+#   sh examples/install.sh PREFIX
+#
+# The result may be moved: no file in it knows where it stands. DESTDIR is put in front of PREFIX for
+# packagers; CARGO and STRIP name other programs than cargo and strip.
+set -eu
+
+[ $# = 1 ] && [ -n "$1" ] || { echo "usage: sh examples/install.sh PREFIX" >&2; exit 2; }
+case $1 in
+/*) prefix=${DESTDIR:-}$1 ;;
+*) [ -z "${DESTDIR:-}" ] || { echo "install.sh: with DESTDIR the prefix must be absolute, not $1" >&2; exit 2; }
+   prefix=$PWD/$1 ;;
+esac
+cd "$(dirname "$0")/.."
+cargo=${CARGO:-cargo}
+strip=${STRIP:-strip}
+
+[ "$(uname -s)" = Linux ] || { echo "install.sh knows shared libraries of Linux only; elsewhere use cargo-c" >&2; exit 1; }
+"$cargo" build --release --lib
+target=$("$cargo" metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
+built=$target/${CARGO_BUILD_TARGET:+$CARGO_BUILD_TARGET/}release
+version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
+# Before 1.0 every minor version may change the interface, and so the SONAME (build.rs).
+abi=${version%.*}
+
+# Puts a file in its place whole or not at all, so that a program that runs keeps its old library.
+put() { # mode, file, place
+    mkdir -p "$(dirname "$prefix/$3")"
+    cp "$2" "$prefix/$3.new"
+    chmod "$1" "$prefix/$3.new"
+    mv -f "$prefix/$3.new" "$prefix/$3"
+}
+
+# A template with the version filled in.
+fill() { # template, place
+    sed -e "s/@VERSION@/$version/g" -e "s/@ABI@/$abi/g" "examples/install/$1" >"$scratch/$1"
+    put 644 "$scratch/$1" "$2"
+}
+
+# Without the names of the inside a library is smaller; without strip it works as well.
+stripped() { # file, option
+    cp "$built/$1" "$scratch/$1"
+    if command -v "$strip" >/dev/null 2>&1; then "$strip" "$2" "$scratch/$1"; fi
+}
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+trap 'exit 1' HUP INT TERM
+
+stripped libhbvib.so --strip-unneeded
+put 755 "$scratch/libhbvib.so" "lib/libhbvib.so.$version"
+ln -sf "libhbvib.so.$version" "$prefix/lib/libhbvib.so.$abi"
+ln -sf "libhbvib.so.$abi" "$prefix/lib/libhbvib.so"
+stripped libhbvib.a --strip-debug
+put 644 "$scratch/libhbvib.a" lib/libhbvib.a
+
+for file in hbvib.h hbvib.hpp hbvib.f90; do put 644 "include/$file" "include/$file"; done
+put 644 include/hbvib.py share/hbvib/hbvib.py
+for file in LICENSE-MIT LICENSE-APACHE; do put 644 "$file" "share/doc/hbvib/$file"; done
+fill hbvib.pc lib/pkgconfig/hbvib.pc
+fill hbvib-config.cmake lib/cmake/hbvib/hbvib-config.cmake
+fill hbvib-config-version.cmake lib/cmake/hbvib/hbvib-config-version.cmake
+echo "hbvib $version installed in $prefix"

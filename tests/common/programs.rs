@@ -1,0 +1,59 @@
+//! What the tests of other languages share: the checkout, the library under test, programs that must
+//! succeed.
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// The checkout.
+pub fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// The shared library that cargo has built for this very test.
+pub fn library() -> PathBuf {
+    let folder = env::current_exe().unwrap();
+    let folder = folder.parent().unwrap();
+    let name = "libhbvib.so";
+    let found = [folder.join(name), folder.parent().unwrap().join(name)]
+        .into_iter()
+        .find(|path| path.is_file());
+    found.unwrap_or_else(|| panic!("{name} is neither in {} nor above it", folder.display()))
+}
+
+/// The name by which the loader knows the library.
+pub fn soname() -> String {
+    format!(
+        "libhbvib.so.{}.{}",
+        env!("CARGO_PKG_VERSION_MAJOR"),
+        env!("CARGO_PKG_VERSION_MINOR")
+    )
+}
+
+/// Runs a program that must succeed.
+pub fn run(command: &mut Command) -> Output {
+    // Cargo's search path has the library of the last `cargo build`, which may be an older one.
+    let output = command.env_remove("LD_LIBRARY_PATH").output().unwrap_or_else(|error| {
+        panic!("{command:?} could not be started: {error}. It is NOT tested without it; sh tests/run.sh installs it")
+    });
+    assert!(
+        output.status.success(),
+        "{command:?} failed, {}:\n{}{}",
+        output.status,
+        String::from_utf8_lossy(&output.stdout),
+        String::from_utf8_lossy(&output.stderr)
+    );
+    output
+}
+
+/// What a program printed; it must succeed.
+pub fn printed(command: &mut Command) -> String {
+    String::from_utf8(run(command).stdout).unwrap()
+}
+
+/// The Python of the tests: that of the virtual environment that tests/run.sh makes where the system
+/// has no numpy.
+pub fn python() -> PathBuf {
+    let own = root().join(".venv/bin/python");
+    if own.is_file() { own } else { "python3".into() }
+}
