@@ -2045,12 +2045,13 @@ contains
    function branch_harmonics(self, point, x) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: point
-      complex(dp), allocatable, intent(out) :: x(:, :)
+      complex(dp), allocatable, intent(inout) :: x(:, :)
       integer(i32) :: status
       type(hbvib_reduction) :: size_of
       integer :: stat
       status = hbvib_branch_reduction(self%handle, size_of)
       if (status /= HBVIB_OK) return
+      if (allocated(x)) deallocate (x)
       allocate (x(size_of%degrees_of_freedom, 0:size_of%harmonics_asked), stat=stat)
       status = made(stat)
       if (status == HBVIB_OK) status = self%harmonics_into(point, 1, x)
@@ -2107,10 +2108,11 @@ contains
    end function branch_reduction
 
    !> Peaks (of a nonlinear mode: the largest damping ratios), as many as there are: angular frequencies, amplitudes, point numbers.
+   !> Arrays are untouched on error.
    function branch_peaks(self, omega, amplitude, point) result(status)
       class(hbvib_branch), intent(in) :: self
-      real(dp), allocatable, intent(out), optional :: omega(:), amplitude(:)
-      integer, allocatable, intent(out), optional :: point(:)
+      real(dp), allocatable, intent(inout), optional :: omega(:), amplitude(:)
+      integer, allocatable, intent(inout), optional :: point(:)
       integer(i32) :: status
       status = special(self, -1_i64, omega, amplitude, point)
    end function branch_peaks
@@ -2118,8 +2120,8 @@ contains
    !> Turning points in frequency (of a nonlinear mode: in amplitude) likewise.
    function branch_folds(self, omega, amplitude, point) result(status)
       class(hbvib_branch), intent(in) :: self
-      real(dp), allocatable, intent(out), optional :: omega(:), amplitude(:)
-      integer, allocatable, intent(out), optional :: point(:)
+      real(dp), allocatable, intent(inout), optional :: omega(:), amplitude(:)
+      integer, allocatable, intent(inout), optional :: point(:)
       integer(i32) :: status
       status = special(self, -2_i64, omega, amplitude, point)
    end function branch_folds
@@ -2128,8 +2130,8 @@ contains
    function branch_at(self, wanted, amplitude, point) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: wanted
-      real(dp), allocatable, intent(out), optional :: amplitude(:)
-      integer, allocatable, intent(out), optional :: point(:)
+      real(dp), allocatable, intent(inout), optional :: amplitude(:)
+      integer, allocatable, intent(inout), optional :: point(:)
       integer(i32) :: status
       integer(i64) :: zero, unused
       status = self%status()
@@ -2143,8 +2145,8 @@ contains
    function special(self, which, omega, amplitude, point) result(status)
       class(hbvib_branch), intent(in) :: self
       integer(i64), intent(in) :: which
-      real(dp), allocatable, intent(out), optional :: omega(:), amplitude(:)
-      integer, allocatable, intent(out), optional :: point(:)
+      real(dp), allocatable, intent(inout), optional :: omega(:), amplitude(:)
+      integer, allocatable, intent(inout), optional :: point(:)
       integer(i32) :: status
       real(dp), allocatable :: w(:), a(:)
       integer(i64), allocatable :: p(:)
@@ -2276,8 +2278,8 @@ contains
    function branch_synthesis(self, model, omega, response, modal_amplitude, options) result(status)
       class(hbvib_branch), intent(in) :: self
       type(hbvib_model), intent(in) :: model
-      real(dp), allocatable, intent(out), optional :: omega(:), modal_amplitude(:)
-      complex(dp), allocatable, intent(out), optional :: response(:)
+      real(dp), allocatable, intent(inout), optional :: omega(:), modal_amplitude(:)
+      complex(dp), allocatable, intent(inout), optional :: response(:)
       type(hbvib_synthesis_options), intent(in), optional :: options
       integer(i32) :: status
       real(dp), allocatable :: w(:), a(:)
@@ -2302,8 +2304,8 @@ contains
       result(status)
       class(hbvib_branch), intent(in) :: self
       type(hbvib_model), intent(in) :: model
-      real(dp), allocatable, intent(out), optional :: omega(:), amplitude(:), log10_amplitude(:), damping_ratio(:), other_mode(:)
-      integer(i32), allocatable, intent(out), optional :: flags(:)
+      real(dp), allocatable, intent(inout), optional :: omega(:), amplitude(:), log10_amplitude(:), damping_ratio(:), other_mode(:)
+      integer(i32), allocatable, intent(inout), optional :: flags(:)
       type(hbvib_synthesis_options), intent(in), optional :: options
       integer(i32) :: status
       real(dp), allocatable :: x(:, :)
