@@ -1681,12 +1681,12 @@ contains
       call to_zero_all(status, 'direction', direction, n, along)
       call same_length(status, 'coefficient', size(coefficient, kind=i64), terms)
       if (present(x_powers)) then
-         x = int(x_powers, i32)
+         allocate (x, source=int(x_powers, i32))
          call same_length(status, 'x_powers(:, 1)', size(x, 1, i64), n)
          call same_length(status, 'x_powers(1, :)', size(x, 2, i64), terms)
       end if
       if (present(v_powers)) then
-         v = int(v_powers, i32)
+         allocate (v, source=int(v_powers, i32))
          call same_length(status, 'v_powers(:, 1)', size(v, 1, i64), n)
          call same_length(status, 'v_powers(1, :)', size(v, 2, i64), terms)
       end if
