@@ -36,8 +36,10 @@ contains
    subroutine refused(status, wanted, words, claim)
       integer(c_int32_t), intent(in) :: status, wanted
       character(*), intent(in) :: words, claim
+      character(:), allocatable :: told
+      told = hbvib_error_text()
       call expect(claim//' is refused as '//hbvib_text(hbvib_status_name(wanted))//' with "'//words//'"', &
-                  status == wanted .and. index(hbvib_error_text(), words) > 0)
+                  status == wanted .and. index(told, words) > 0)
    end subroutine refused
 
    subroutine verdict(least_checks)
