@@ -8,7 +8,8 @@
 !>
 !> status     Every function called through a type returns it, integer(c_int32_t): HBVIB_OK, negative (error), positive (stopped
 !>            early, results are there). hbvib_error_text() is the sentence to it, this thread's own. Nothing stops or prints.
-!>            hbvib_last_error_argument() counts the arguments of the C function.
+!>            hbvib_last_error_argument() counts the arguments of the C function that refused (hbvib_index_from_one for an
+!>            index). Entries of matrices and indices are told from 1; what a solve says of a contact by its number, from 0.
 !> objects    hbvib_model and hbvib_branch hold a handle. Assignment copies the handle, not the object; model%clone copies a model.
 !>            %free ends the object and empties the variable; copies of the handle are then refused (HBVIB_E_HANDLE). There is no
 !>            finaliser, because it would free what a copy still uses. A procedure that fills a model or branch first frees what

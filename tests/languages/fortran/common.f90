@@ -9,7 +9,7 @@ module common
    real(dp), parameter :: pi = acos(-1._dp)
    integer :: checks = 0, failures = 0
 
-   !> The bits of a solution: frequencies, amplitudes, harmonics at the peak.
+   !> The bits of a solution: frequencies, amplitudes, harmonics at the last peak, or first point.
    type :: solution
       real(dp), allocatable :: omega(:), amplitude(:)
       complex(dp), allocatable :: harmonics(:, :)
@@ -98,7 +98,8 @@ contains
       if (status == HBVIB_OK) status = branch%field(HBVIB_AMPLITUDE, view)
       found%amplitude = view
       if (status == HBVIB_OK) status = branch%peaks(point=peak)
-      if (status == HBVIB_OK) status = branch%harmonics(peak(1), found%harmonics)
+      if (status /= HBVIB_OK) return
+      status = branch%harmonics(merge(1, maxval(peak), size(peak) == 0), found%harmonics)
       if (status == HBVIB_OK) status = branch%free()
    end function solve
 

@@ -205,6 +205,8 @@ contains
       call works(wheel%set_coupling(HBVIB_STIFFNESS, transpose(coupling), previous=.true.), 'the previous sector')
       call expect('the coupling to the previous sector is the transpose', &
                   solve(wheel, again) == HBVIB_OK .and. same(again, reference))
+      call refused(wheel%set_coupling(HBVIB_MASS, coupling, previous=.true.), HBVIB_E_UNSUPPORTED, 'mass', &
+                   'a mass coupled to the previous sector')
       call works(wheel%set_coupling(HBVIB_STIFFNESS, 2*coupling, previous=.true.), 'twice the coupling')
       call expect('another coupling is another wheel', solve(wheel, again) /= HBVIB_OK .or. .not. same(again, reference))
       call works(model%clone(wheel), 'a clone')
