@@ -45,7 +45,7 @@ program misuse
    call hooks()
    call results()
    call handles()
-   call verdict(150)
+   call verdict(220)
 
 contains
 

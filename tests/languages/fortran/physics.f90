@@ -62,20 +62,26 @@ contains
 end module own_forces
 
 program physics
+   use, intrinsic :: ieee_exceptions
    use common
    use own_forces
    implicit none
    type(hbvib_model) :: model
    type(hbvib_branch) :: branch
+   logical :: traps(size(ieee_usual))
 
+   call ieee_set_halting_mode(ieee_usual, .true.) ! as -ffpe-trap=invalid,zero,overflow does
    call own_force()
    call modes()
    call friction()
    call in_time()
    call one_law_in_many_words()
+   call never_slipping()
+   call ieee_get_halting_mode(ieee_usual, traps)
+   call expect('the caller''s traps are as they were', all(traps))
    call works(model%free(), 'free')
    call works(branch%free(), 'free')
-   call verdict(90)
+   call verdict(190)
 
 contains
 
@@ -221,6 +227,23 @@ contains
          call expect('a point of the branch leaves no residual', maxval(abs(r(:, 0:harmonics))) < 1e-8_dp*load)
       end do
    end subroutine friction
+
+   !> An infinite load makes infinite slip limits, which must not trip the traps of the caller.
+   subroutine never_slipping()
+      type(hbvib_contact) :: contact
+      real(dp), allocatable :: amplitude(:)
+      contact = ground(HBVIB_JENKINS)
+      contact%kt = 1
+      contact%mu = 0.3_dp
+      contact%preload = transfer(int(z'7FF0000000000000', c_int64_t), 1._dp)
+      call oscillator(1._dp, 0.1_dp, 0.2_dp)
+      call works(model%add_contact(contact), 'an infinite preload')
+      call works(model%forced_response(branch, 0.8_dp, 2._dp, at=[1.2_dp]), 'a response')
+      call works(branch%at(1, amplitude), 'at')
+      call expect('a contact that never slips is a spring', &
+                  close(amplitude(1), 0.2_dp/abs(cmplx(2 - 1.2_dp**2, 0.1_dp*1.2_dp, dp)), 1e-9_dp))
+      call expect('no mode without friction', model%nonlinear_mode(branch, -4._dp, 0._dp) < HBVIB_OK)
+   end subroutine never_slipping
 
    subroutine in_time()
       real(dp), parameter :: omega = 1.3_dp, k = 2, c = 0.3_dp, load = 0.7_dp
