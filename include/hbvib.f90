@@ -1,5 +1,6 @@
 !> hbvib from Fortran: harmonic balance of vibrating structures with friction contacts (the equations, units and errors stand in
-!> hbvib.h). `use hbvib` also brings in iso_c_binding. Compile this file with your program and its options (gfortran: -std=f2018 or looser).
+!> hbvib.h). `use hbvib` also brings in iso_c_binding. Compile this file with your program and with its options (gfortran:
+!> -std=f2018 or looser).
 !>
 !> A procedure called by its C name is the C function: indices count from 0, handles are type(c_ptr). What is called through a
 !> type (model%..., branch%...) is Fortran: indices count from 1, those inside structs that are passed or returned included
