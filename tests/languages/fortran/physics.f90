@@ -1,0 +1,374 @@
+! Results against what is known otherwise: closed forms, balances of work, and one law said in several ways.
+module own_forces
+   use hbvib
+   implicit none
+   real(c_double), target :: duffing(2) = [1._c_double, 0.5_c_double]
+contains
+   !> f = k y + k3 y**3, user's target being [k, k3].
+   function cubic_spring(user, asked) bind(c) result(refusal)
+      type(c_ptr), value :: user
+      type(hbvib_force_call), intent(in) :: asked
+      integer(c_int32_t) :: refusal
+      real(c_double), pointer :: k(:)
+      real(c_double), pointer, contiguous :: u(:, :), f(:, :), df_du(:, :, :), v(:, :), z0(:)
+      call c_f_pointer(user, k, [2])
+      call hbvib_force_arrays(asked, u, v=v, f=f, df_du=df_du, z0=z0)
+      refusal = merge(-9_c_int32_t, 0_c_int32_t, associated(v) .or. associated(z0))
+      f = k(1)*u + k(2)*u**3
+      df_du(1, :, :) = k(1) + 3*k(2)*u**2
+   end function cubic_spring
+
+   !> f1 = u1 u2**2 + v2, f2 = u1**2.
+   function lopsided(user, asked) bind(c) result(refusal)
+      type(c_ptr), value :: user
+      type(hbvib_force_call), intent(in) :: asked
+      integer(c_int32_t) :: refusal
+      real(c_double), pointer, contiguous :: u(:, :), v(:, :), f(:, :), df_du(:, :, :), df_dv(:, :, :)
+      call hbvib_force_arrays(asked, u, v, f, df_du, df_dv)
+      f(1, :) = u(1, :)*u(2, :)**2 + v(2, :)
+      f(2, :) = u(1, :)**2
+      df_du(1, 1, :) = u(2, :)**2
+      df_du(2, 1, :) = 2*u(1, :)*u(2, :)
+      df_du(1, 2, :) = 2*u(1, :)
+      df_dv(2, 1, :) = 1
+      refusal = merge(-1_c_int32_t, 0_c_int32_t, c_associated(user))
+   end function lopsided
+
+   !> A state that leaks: z_j = 0.5 z_(j-1) + u_j, f = z.
+   function leaking(user, asked) bind(c) result(refusal)
+      type(c_ptr), value :: user
+      type(hbvib_force_call), intent(in) :: asked
+      integer(c_int32_t) :: refusal
+      real(c_double), pointer, contiguous :: u(:, :), f(:, :), z0(:), z(:, :), dz_dz(:, :, :), dz_du(:, :, :), df_dz(:, :, :)
+      integer :: j
+      call hbvib_force_arrays(asked, u, f=f, z0=z0, z=z, dz_dz=dz_dz, dz_du=dz_du, df_dz=df_dz)
+      z(:, 1) = 0.5_c_double*z0 + u(:, 1)
+      do j = 2, size(z, 2)
+         z(:, j) = 0.5_c_double*z(:, j - 1) + u(:, j)
+      end do
+      f = z
+      dz_dz = 0.5_c_double
+      dz_du = 1
+      df_dz = 1
+      refusal = merge(-1_c_int32_t, 0_c_int32_t, c_associated(user))
+   end function leaking
+
+   function failing(user, asked) bind(c) result(refusal)
+      type(c_ptr), value :: user
+      type(hbvib_force_call), intent(in) :: asked
+      integer(c_int32_t) :: refusal
+      refusal = merge(-42_c_int32_t, -43_c_int32_t, asked%n == 1 .and. .not. c_associated(user))
+   end function failing
+end module own_forces
+
+program physics
+   use, intrinsic :: ieee_exceptions
+   use common
+   use own_forces
+   implicit none
+   type(hbvib_model) :: model
+   type(hbvib_branch) :: branch
+   logical :: traps(size(ieee_usual))
+
+   call ieee_set_halting_mode(ieee_usual, .true.) ! as -ffpe-trap=invalid,zero,overflow does
+   call own_force()
+   call modes()
+   call friction()
+   call in_time()
+   call one_law_in_many_words()
+   call never_slipping()
+   call ieee_get_halting_mode(ieee_usual, traps)
+   call expect('the caller''s traps are as they were', all(traps))
+   call works(model%free(), 'free')
+   call works(branch%free(), 'free')
+   call verdict(190)
+
+contains
+
+   pure function close(a, b, tolerance)
+      real(dp), intent(in) :: a, b, tolerance
+      logical :: close
+      close = abs(a - b) <= tolerance*abs(b)
+   end function close
+
+   !> mass 1, stiffness k, damping c, force load.
+   subroutine oscillator(k, c, load)
+      real(dp), intent(in) :: k, c, load
+      call works(model%new(1), 'a model')
+      call works(model%set_matrix(HBVIB_MASS, reshape([1._dp], [1, 1])), 'mass')
+      call works(model%set_matrix(HBVIB_DAMPING, reshape([c], [1, 1])), 'damping')
+      call works(model%set_matrix(HBVIB_STIFFNESS, reshape([k], [1, 1])), 'stiffness')
+      if (load > 0) call works(model%add_force(1, 1, load), 'force')
+   end subroutine oscillator
+
+   function ground(kind) result(contact)
+      integer(c_int32_t), intent(in) :: kind
+      type(hbvib_contact) :: contact
+      contact%kind = kind
+      contact%dof_a(1) = 1
+   end function ground
+
+   subroutine own_force()
+      real(dp), parameter :: at(3) = [1.1_dp, 1.4_dp, 1.7_dp]
+      type(hbvib_contact) :: contact
+      type(hbvib_jacobian_gap) :: gap
+      real(dp), allocatable :: theirs(:), ours(:)
+      integer :: i, id
+      contact = ground(HBVIB_CUBIC)
+      contact%kt = duffing(1)
+      contact%cubic = duffing(2)
+      call oscillator(0.2_dp, 0.1_dp, 0.3_dp)
+      call works(model%add_contact(contact), 'a cubic spring')
+      call works(model%forced_response(branch, 0.8_dp, 2._dp, at=at), 'the response of HBVIB_CUBIC')
+      allocate (theirs(0))
+      do i = 1, size(at)
+         call works(branch%at(i, ours), 'at')
+         theirs = [theirs, ours]
+      end do
+      call oscillator(0.2_dp, 0.1_dp, 0.3_dp)
+      call works(model%add_user_force(cubic_spring, [1], c_loc(duffing), is_odd=.true., id=id), 'a force of one''s own')
+      call expect('contacts count from 1', id == 1)
+      call works(model%check_jacobian(id, 1._dp, [1._dp], gap), 'the check of derivatives')
+      call expect('derivatives are right', gap%gap < 1e-6_dp .and. gap%sample >= 1)
+      call works(model%forced_response(branch, 0.8_dp, 2._dp, at=at), 'the response of one''s own spring')
+      do i = 1, size(at)
+         call works(branch%at(i, ours), 'at')
+         call expect('a spring of one''s own is HBVIB_CUBIC', size(ours) > 0)
+         call expect('a spring of one''s own is HBVIB_CUBIC', all(abs(ours/theirs(:size(ours)) - 1) < 1e-10_dp))
+         theirs = theirs(size(ours) + 1:)
+      end do
+      call oscillator(0.2_dp, 0.1_dp, 0.3_dp)
+      call works(model%add_user_force(failing, [1]), 'a failing force')
+      call refused(model%forced_response(branch, 0.8_dp, 2._dp), HBVIB_E_CALLBACK, '-42', 'a force that fails')
+      call oscillator(0.2_dp, 0.1_dp, 0.3_dp)
+      call works(model%add_user_force(leaking, [1], states=1), 'a force with a state')
+      call works(model%check_jacobian(1, 1._dp, [1._dp], gap), 'the check of derivatives')
+      call expect('derivatives of a state are right', gap%gap < 1e-6_dp)
+   end subroutine own_force
+
+   subroutine modes()
+      real(dp) :: omega(2)
+      complex(dp) :: shapes(2, 2)
+      real(dp), pointer :: w(:), log10_a(:)
+      real(dp), allocatable :: w_peak(:), a_peak(:), w_mode(:), a_mode(:), curve(:)
+      complex(dp), allocatable :: response(:)
+      integer(c_int32_t), allocatable :: flags(:)
+      type(hbvib_branch) :: forced
+      type(hbvib_solver_options) :: one
+      type(hbvib_mode_info) :: info
+      type(hbvib_mode_point) :: point
+      type(hbvib_contact) :: contact
+      call works(model%new(2), 'two masses')
+      call works(model%set_matrix(HBVIB_MASS, reshape([1._dp, 0._dp, 0._dp, 1._dp], [2, 2])), 'mass')
+      call works(model%set_matrix(HBVIB_STIFFNESS, reshape([2._dp, -1._dp, -1._dp, 2._dp], [2, 2])), 'stiffness')
+      call works(model%linear_modes(omega, shapes), 'linear modes')
+      call expect('two masses have omega**2 = 1 and 3', maxval(abs(omega**2 - [1, 3])) < 1e-12_dp)
+      call expect('their shapes stand in columns', abs(abs(shapes(1, 1) + shapes(2, 1)) - sqrt(2._dp)) < 1e-12_dp .and. &
+                  abs(abs(shapes(1, 2) - shapes(2, 2)) - sqrt(2._dp)) < 1e-12_dp)
+      contact = ground(HBVIB_CUBIC)
+      contact%cubic = 0.5_dp
+      call oscillator(1._dp, 0.01_dp, 0.01_dp)
+      call works(model%add_contact(contact), 'a cubic spring')
+      one%harmonics = 1
+      call works(model%nonlinear_mode(branch, -2._dp, 0.5_dp, solver=one), 'a nonlinear mode')
+      call works(branch%field(HBVIB_OMEGA, w), 'omega')
+      call works(branch%field(HBVIB_LOG10_AMPLITUDE, log10_a), 'amplitude')
+      call expect('the backbone in one harmonic is omega**2 = k + 3/4 k3 a**2', &
+                  maxval(abs(w**2/(1 + 0.375_dp*100**log10_a) - 1)) < 1e-8_dp)
+      call works(branch%mode_info(info), 'info')
+      call expect('modes count from 1', info%mode_index == 1 .and. info%reference_dof == 1)
+      call works(branch%mode_point(branch%points(), point), 'a point')
+      call expect('damping is c / (2 omega m)', close(point%damping_ratio, 0.01_dp/(2*point%omega), 1e-6_dp))
+      call works(branch%synthesis_peaks(model, w_mode, a_mode, flags=flags), 'synthesised peaks')
+      call works(branch%synthesis(model, curve, response), 'a synthesised response')
+      call works(model%forced_response(forced, 0.8_dp, 1.6_dp, one), 'the response')
+      call works(forced%peaks(w_peak, a_peak), 'peaks')
+      call expect('there is one resonance either way', size(a_peak) == 1 .and. size(a_mode) == 1 .and. size(flags) == 1)
+      call expect('the mode foretells the resonance', close(w_mode(1), w_peak(1), 1e-3_dp) .and. &
+                  close(a_mode(1), a_peak(1), 1e-3_dp))
+      call expect('the synthesised curve reaches it and no more', size(curve) == size(response) .and. &
+                  maxval(abs(response)) <= a_mode(1)*(1 + 1e-6_dp) .and. maxval(abs(response)) > a_mode(1)/2)
+      call works(forced%free(), 'free')
+   end subroutine modes
+
+   subroutine friction()
+      integer, parameter :: n = 4096
+      real(dp), parameter :: kt = 1, mu = 0.3_dp, preload = 1, load = 0.2_dp
+      real(dp) :: motion(n), force(n), area, slip
+      integer(c_int32_t) :: state(n)
+      integer, allocatable :: point(:)
+      real(dp), allocatable :: omega(:)
+      complex(dp), allocatable :: x(:, :)
+      complex(dp) :: r(1, 0:9)
+      type(hbvib_contact_summary) :: summary
+      type(hbvib_energies) :: energy
+      type(hbvib_solver_options) :: one
+      integer :: harmonics
+      do harmonics = 1, 9, 8
+         call oscillator(1._dp, 0.02_dp, load)
+         call works(model%add_jenkins([1], [kt], [mu], [preload]), 'a friction contact')
+         one%harmonics = harmonics
+         call works(model%forced_response(branch, 0.8_dp, 1.6_dp, one), 'a response')
+         call works(branch%peaks(omega, point=point), 'peaks')
+         call works(branch%contact_loop(point(1), 1, motion, force, state, direction=1), 'a loop')
+         call works(branch%contact_summary(point(1), 1, summary), 'a summary')
+         call works(branch%energy(point(1), energy), 'energies')
+         call works(branch%harmonics(point(1), x), 'harmonics')
+         area = sum((force + cshift(force, 1))*(cshift(motion, 1) - motion))/2
+         slip = 4*mu*preload*(summary%half_range - mu*preload/kt)
+         call expect('the loop closes the work of friction', close(area, summary%work, 1e-5_dp))
+         call expect('the work is that of a parallelogram', close(summary%work, slip, 1e-9_dp))
+         call expect('friction is the sum of its contacts', close(energy%friction_loss, summary%work, 1e-9_dp))
+         call expect('the load''s work is what friction and damping take', &
+                     close(-pi*load*aimag(x(1, 1)), energy%structural_loss + energy%friction_loss, 1e-8_dp))
+         call expect('the force is at its limit where it slips', &
+                     maxval(abs(abs(pack(force, state == HBVIB_STATE_SLIP)) - mu*preload)) < 1e-9_dp)
+         call works(model%forced_residual(omega(1), x, r(:, 0:harmonics), solver=one), 'the residual')
+         call expect('a point of the branch leaves no residual', maxval(abs(r(:, 0:harmonics))) < 1e-8_dp*load)
+      end do
+   end subroutine friction
+
+   !> An infinite load makes infinite slip limits, which must not trip the traps of the caller.
+   subroutine never_slipping()
+      type(hbvib_contact) :: contact
+      real(dp), allocatable :: amplitude(:)
+      contact = ground(HBVIB_JENKINS)
+      contact%kt = 1
+      contact%mu = 0.3_dp
+      contact%preload = transfer(int(z'7FF0000000000000', c_int64_t), 1._dp)
+      call oscillator(1._dp, 0.1_dp, 0.2_dp)
+      call works(model%add_contact(contact), 'an infinite preload')
+      call works(model%forced_response(branch, 0.8_dp, 2._dp, at=[1.2_dp]), 'a response')
+      call works(branch%at(1, amplitude), 'at')
+      call expect('a contact that never slips is a spring', &
+                  close(amplitude(1), 0.2_dp/abs(cmplx(2 - 1.2_dp**2, 0.1_dp*1.2_dp, dp)), 1e-9_dp))
+      call expect('no mode without friction', model%nonlinear_mode(branch, -4._dp, 0._dp) < HBVIB_OK)
+   end subroutine never_slipping
+
+   subroutine in_time()
+      real(dp), parameter :: omega = 1.3_dp, k = 2, c = 0.3_dp, load = 0.7_dp
+      complex(dp) :: x(1, 0:2), exact
+      complex(dp), allocatable :: start(:, :)
+      real(dp) :: y(1, 8)
+      real(dp), allocatable :: amplitude(:)
+      integer, allocatable :: point(:)
+      type(hbvib_time_info) :: info
+      integer :: j
+      exact = load/cmplx(k - omega**2, c*omega, dp)
+      call oscillator(k, c, load)
+      call works(model%time_response(omega, x, y, info), 'a linear response in time')
+      call expect('it is F / (k - omega**2 m + i omega c)', abs(x(1, 1)/exact - 1) < 1e-9_dp .and. abs(x(1, 2)) < 1e-9_dp)
+      call expect('its samples start at t = 0', maxval(abs(y(1, :) - [(real(exact*exp(cmplx(0, pi*(j - 1)/4, dp))), j=1, 8)])) &
+                  < 1e-9_dp)
+      call expect('its period is 2 pi / omega', close(info%period, 2*pi/omega, 1e-14_dp))
+      call works(model%add_jenkins([1], [1._dp], [0.3_dp], [1._dp]), 'a friction contact')
+      call works(model%forced_response(branch, omega, omega, hbvib_solver_options(harmonics=63), at=[omega]), 'one point')
+      call works(branch%at(1, amplitude, point), 'at')
+      call works(branch%harmonics(point(1), start), 'harmonics')
+      call works(model%time_response(omega, x, start=start, info=info), 'the point in time')
+      call expect('harmonic balance is what time integration finds', abs(x(1, 1)/start(1, 1) - 1) < 1e-5_dp)
+      call expect('friction had events', info%events > 0)
+      call refused(model%time_response(omega, x, start=reshape(start, [2, 32])), HBVIB_E_DIMENSION, 'start', &
+                   'a start of two degrees of freedom')
+   end subroutine in_time
+
+   !> Residual and its derivative of a structure without matrices but for masses: the contacts alone.
+   subroutine laws(what, ndof, r, jac, like_r, like_jac)
+      character(*), intent(in) :: what
+      integer, intent(in) :: ndof
+      complex(dp), allocatable, intent(inout) :: r(:, :)
+      real(dp), allocatable, intent(inout) :: jac(:, :)
+      complex(dp), intent(in), optional :: like_r(:, :)
+      real(dp), intent(in), optional :: like_jac(:, :)
+      complex(dp) :: x(ndof, 0:3)
+      integer :: i, h
+      do h = 0, 3
+         do i = 1, ndof
+            x(i, h) = cmplx(cos(1._dp + 3*i + h), merge(0._dp, sin(2._dp + i*h), h == 0), dp)/(1 + h)
+         end do
+      end do
+      if (allocated(r)) deallocate (r, jac)
+      allocate (r(ndof, 0:3), jac(8*ndof, 8*ndof))
+      call works(model%forced_residual(1.1_dp, x, r, jac, solver=hbvib_solver_options(harmonics=3)), what)
+      if (.not. present(like_r)) return
+      call expect(what//': the same force', maxval(abs(r - like_r)) < 1e-10_dp)
+      call expect(what//': the same derivative', maxval(abs(jac - like_jac)) < 1e-9_dp)
+   end subroutine laws
+
+   subroutine masses(ndof)
+      integer, intent(in) :: ndof
+      real(dp) :: m(ndof, ndof)
+      integer :: i
+      m = 0
+      do i = 1, ndof
+         m(i, i) = 1
+      end do
+      call works(model%new(ndof), 'a model')
+      call works(model%set_matrix(HBVIB_MASS, m), 'mass')
+   end subroutine masses
+
+   subroutine one_law_in_many_words()
+      complex(dp), allocatable :: r(:, :), like_r(:, :)
+      real(dp), allocatable :: jac(:, :), like_jac(:, :)
+      real(dp) :: quadratic(2, 2, 2), cubic(2, 2, 2, 2), normal(3, 1), tangent(3, 1)
+      type(hbvib_contact) :: contact
+      integer :: id
+
+      ! f1 = x1 x2**2 + v2, f2 = x1**2
+      call masses(2)
+      call works(model%add_polynomial([1, 2], [1, 2, 1], [1._dp, 1._dp, 1._dp], reshape([1, 2, 2, 0, 0, 0], [2, 3]), &
+                                      reshape([0, 0, 0, 0, 0, 1], [2, 3]), id), 'a polynomial')
+      call laws('a polynomial', 2, like_r, like_jac)
+      call masses(2)
+      call works(model%add_user_force(lopsided, [1, 2], uses_velocity=.true.), 'a force of one''s own')
+      call laws('a force of one''s own', 2, r, jac, like_r, like_jac)
+      ! the same without v2
+      call masses(2)
+      call works(model%add_polynomial([1, 2], [1, 2], [1._dp, 1._dp], reshape([1, 2, 2, 0], [2, 2])), 'a polynomial')
+      call laws('a polynomial', 2, like_r, like_jac)
+      quadratic = 0
+      cubic = 0
+      quadratic(1, 1, 2) = 1
+      cubic(1, 2, 2, 1) = 1
+      call masses(2)
+      call works(model%add_stiffness_tensors([1, 2], quadratic, cubic), 'tensors')
+      call laws('tensors', 2, r, jac, like_r, like_jac)
+
+      ! f = 2 (x1 - x2)
+      call masses(2)
+      call works(model%add_springs([1], [2._dp], [2]), 'springs')
+      call laws('springs', 2, like_r, like_jac)
+      call masses(2)
+      call works(model%add_table(1, 2, [-9._dp, 9._dp], [-18._dp, 18._dp], id=id), 'a table')
+      call laws('a straight table', 2, r, jac, like_r, like_jac)
+      call masses(2)
+      call works(model%add_spring_damper(2, 1, spring=[2._dp]), 'a spring')
+      call laws('a spring', 2, r, jac, like_r, like_jac)
+
+      ! elastic Coulomb friction from x1 to the ground
+      contact = ground(HBVIB_JENKINS)
+      contact%kt = 2
+      contact%mu = 0.5_dp
+      contact%preload = 0.4_dp
+      call masses(3)
+      call works(model%add_contact(contact, id), 'friction')
+      call laws('friction', 3, like_r, like_jac)
+      call masses(3)
+      call works(model%add_jenkins([3, 1], [1._dp, 2._dp], [0._dp, 0.5_dp], [0._dp, 0.4_dp], first_id=id), 'a list')
+      call laws('a list of friction', 3, r, jac, like_r, like_jac)
+      call works(model%set_preload(id + 1, 0.8_dp), 'another preload')
+      call works(model%set_preload(id + 1, 0.4_dp), 'the old preload')
+      call laws('a preload set', 3, r, jac, like_r, like_jac)
+      contact%kt = 4
+      contact%preload = 0.8_dp
+      normal(:, 1) = [0, 0, 1]
+      tangent(:, 1) = [2, 0, 0]
+      call masses(3)
+      call works(model%add_patch(contact, reshape([1, 2, 3], [3, 1]), normal, [0.5_dp], tangent=tangent, first_id=id), 'a patch')
+      call laws('a patch', 3, r, jac, like_r, like_jac)
+      call expect('ids count from 1', id == 1)
+      call works(model%add_iwan(1, HBVIB_GROUND, 1._dp, 2._dp, -0.5_dp, 0.1_dp, elements=20, first_id=id), 'an Iwan joint')
+      call expect('an Iwan joint is as many contacts', all([id, model%contacts()] == [2, 21]))
+   end subroutine one_law_in_many_words
+
+end program physics
