@@ -21,8 +21,10 @@
  *             Pointers to double and int64_t must be aligned to 8 bytes.
  *   threads   a handle taken as const may be used by any number of calls at once; one that is not
  *             const belongs to one call at a time, and others get HBVIB_E_BUSY. The text of the
- *             last error is the thread's own. Nothing is printed, no signal, environment or
- *             floating-point state is touched, and no thread is started unless num_threads > 1.
+ *             last error is the thread's own. Nothing is printed, no signal or environment is
+ *             touched, and no thread is started unless num_threads > 1. Inside, floating-point traps,
+ *             flushing to zero and other roundings of the caller are laid aside; callbacks have them,
+ *             and so does the caller afterwards.
  *   safety    no panic leaves the library (HBVIB_E_INTERNAL). Callbacks must not throw or longjmp.
  *             NaN in an input, or infinity anywhere but in a contact's preload, is
  *             HBVIB_E_NOT_FINITE. Arrays must be as long as they are said to be: that, and a

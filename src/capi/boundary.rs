@@ -1,5 +1,6 @@
 //! The border to C: panics become a status, errors the thread's last error, raw pointers slices.
 
+use super::arithmetic::Arithmetic;
 use super::told::Told;
 use super::types::hbvib_status;
 use crate::error::{Error, Result, Status, TEXT_CAPACITY, Text};
@@ -23,6 +24,8 @@ thread_local! {
     static PANIC: RefCell<Text> = const { RefCell::new(Text::EMPTY) };
     /// Whether this thread runs code of the library (and not a callback of the host).
     static INSIDE: Cell<bool> = const { Cell::new(false) };
+    /// The arithmetic of the call's host, for its callbacks.
+    static HOST: Cell<Arithmetic> = const { Cell::new(Arithmetic::DEFAULT) };
 }
 
 /// Runs the body of an exported function and turns its outcome into a status. Success empties the
@@ -55,10 +58,12 @@ pub(super) fn call_count(body: impl FnOnce() -> Result<usize>) -> i64 {
     }
 }
 
-/// Runs a callback of the host: a panic of its own is none of the library's.
+/// Runs a callback of the host, in its own arithmetic: a panic of its own is none of the library's.
 pub(super) fn outside<T>(callback: impl FnOnce() -> T) -> T {
     let before = INSIDE.replace(false);
+    HOST.get().restore();
     let result = callback();
+    Arithmetic::enter();
     INSIDE.set(before);
     result
 }
@@ -66,7 +71,12 @@ pub(super) fn outside<T>(callback: impl FnOnce() -> T) -> T {
 fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
     quiet_panics();
     let before = INSIDE.replace(true);
+    let host = Arithmetic::of_the_host();
+    let host_before = HOST.replace(host);
+    Arithmetic::enter();
     let outcome = catch_unwind(AssertUnwindSafe(body));
+    host.restore();
+    HOST.set(host_before);
     INSIDE.set(before);
     outcome.unwrap_or_else(|_| {
         let said = PANIC.with_borrow(|text| *text);

@@ -10,6 +10,7 @@
 // The comments become those of a C header, whose contract ("Conventions") stands at its top.
 #![allow(clippy::missing_safety_doc, clippy::doc_markdown)]
 
+mod arithmetic;
 pub mod boundary;
 pub mod contact;
 pub mod contact_results;

@@ -4,6 +4,9 @@
 
 #include <dlfcn.h>
 #include <fenv.h>
+#ifdef __x86_64__
+#include <xmmintrin.h>
+#endif
 #include <pthread.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -32,23 +35,76 @@ static void small_stacks(void)
     }
 }
 
+enum { TRAPS = FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW };
+
+static int32_t looks_at_traps(void *user, const hbvib_progress *progress)
+{
+    *(int *)user += progress->point > 0 && fegetexcept() == TRAPS;
+    return 0;
+}
+
+static void modes_under_traps(void)
+{
+    hbvib_model *model = NULL;
+    hbvib_branch *branch = NULL;
+    hbvib_mode_options mode = amplitudes(0, 1);
+    hbvib_hooks hooks;
+    int seen = 0;
+    WORKS("107", hbvib_hooks_init(&hooks, sizeof hooks));
+    hooks.user = &seen;
+    hooks.progress = looks_at_traps;
+    WORKS("107", hbvib_nonlinear_mode(the_model, NULL, &mode, &hooks, &branch));
+    EXPECT("107", seen > 0 && seen == hbvib_branch_points(branch));
+    WORKS("107", hbvib_model_clone(the_model, &model));
+    WORKS("107", hbvib_model_set_preload(model, 0, HUGE_VAL));
+    mode.log10_start = -6;
+    mode.log10_stop = -2;
+    REFUSED("107", hbvib_nonlinear_mode(model, NULL, &mode, NULL, &branch), HBVIB_E_ARGUMENT, 0, "it is linear");
+    WORKS("107", hbvib_branch_free(branch));
+    WORKS("107", hbvib_model_free(model));
+}
+
+/* Whether the resonance is this one to the last bit; it is kept for the next question. The options come from
+ * outside, because this program's own arithmetic rounds like its host's. */
+static int same_peaks(const hbvib_forced_options *o, double *amplitude)
+{
+    const double before = *amplitude;
+    hbvib_branch *branch = NULL;
+    int64_t count = 0;
+    hbvib_solver_options s = solver_options();
+    WORKS("106", hbvib_forced_response(the_model, &s, o, NULL, &branch));
+    WORKS("106", hbvib_branch_peaks(branch, 1, NULL, amplitude, NULL, &count));
+    WORKS("106", hbvib_branch_free(branch));
+    return count == 1 && *amplitude == before;
+}
+
 static void floating_point(void)
 {
+    const hbvib_forced_options o = frequencies(207, 211);
     fenv_t plain;
-    solution *found = malloc(sizeof *found);
-    if (found == NULL || fegetenv(&plain) != 0) abort();
+    double the_peak = 0;
+    if (fegetenv(&plain) != 0) abort();
+    EXPECT("106", !same_peaks(&o, &the_peak));
     /* Row 107: a host that traps on invalid operations, division by zero and overflow. */
     feclearexcept(FE_ALL_EXCEPT);
-    if (feenableexcept(FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW) == -1) abort();
+    if (feenableexcept(TRAPS) == -1) abort();
     EXPECT("107", same_solution(the_model, &the_solution));
-    EXPECT("107", fegetexcept() == (FE_INVALID | FE_DIVBYZERO | FE_OVERFLOW));
+    EXPECT("107", fegetexcept() == TRAPS);
+    /* Where the library itself meets infinity, and a callback the host's traps. */
+    modes_under_traps();
+    EXPECT("107", fegetexcept() == TRAPS && fetestexcept(TRAPS) == 0);
     fesetenv(&plain);
-    /* Row 106: another rounding mode is neither changed nor fatal. */
+    /* Row 106: another rounding mode is neither changed nor changes anything. */
     fesetround(FE_TOWARDZERO);
-    EXPECT("106", solve(the_model, found) != HBVIB_E_INTERNAL && fegetround() == FE_TOWARDZERO);
+    EXPECT("106", same_peaks(&o, &the_peak) && fegetround() == FE_TOWARDZERO);
     fesetenv(&plain);
-    EXPECT("106", same_solution(the_model, &the_solution));
-    free(found);
+#ifdef __x86_64__
+    /* Nor do small numbers that are flushed to zero. */
+    _mm_setcsr(_mm_getcsr() | 0x8040);
+    EXPECT("106", same_peaks(&o, &the_peak) && (_mm_getcsr() & 0x8040) == 0x8040);
+    fesetenv(&plain);
+#endif
+    EXPECT("106", same_solution(the_model, &the_solution) && same_peaks(&o, &the_peak));
 }
 
 static void forks(void)
