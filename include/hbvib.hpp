@@ -440,9 +440,7 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
   /// Any compressed, column-major sparse class with valuePtr(), outerIndexPtr(), innerIndexPtr(): Eigen's.
   template <class S, class = decltype(std::declval<const S&>().outerIndexPtr()), class = void,
             class = std::enable_if_t<!S::IsRowMajor>>
-  Matrix(const S& s) : Matrix(csc(s.rows(), s.cols(), s.valuePtr(), s.outerIndexPtr(), s.innerIndexPtr())) {
-    if (!s.isCompressed()) throw Error(HBVIB_E_ARGUMENT, 0, "the sparse matrix is not compressed, needs makeCompressed()");
-  }
+  Matrix(const S& s) : Matrix(csc(s.rows(), s.cols(), s.valuePtr(), compressed(s).outerIndexPtr(), s.innerIndexPtr())) {}
   /// The same matrix with another promise: HBVIB_GENERAL, HBVIB_LOWER, ...
   Matrix as(hbvib_part given) const {
     Matrix a = *this;
@@ -458,6 +456,11 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
     if (!indices) return nullptr;
     copies_.push_back(std::make_shared<const std::vector<Index>>(indices, indices + n));
     return copies_.back()->data();
+  }
+  template <class S>
+  static const S& compressed(const S& s) {
+    if (s.isCompressed()) return s;
+    throw Error(HBVIB_E_ARGUMENT, 0, "the sparse matrix is not compressed, needs makeCompressed()");
   }
   template <class M>
   static auto adjacent(const M& m, int) -> decltype(m.innerStride() == 1) {

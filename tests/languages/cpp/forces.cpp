@@ -206,7 +206,7 @@ void with_states() {
 }  // namespace
 
 int main() {
-  return verdict(60, [] {
+  return verdict(73, [] {
     same_as_cubic();
     ownership();
     failures_of_it();

@@ -65,7 +65,7 @@ void friction() {
   const auto summary = branch.contact_summary(peak.point, 0);
   const auto energy = branch.energy(peak.point);
   const auto time = branch.time_history(peak.point, 0, 4096);
-  claim(loop.motion == time, "the loop's motion is that of the mass");
+  for (std::size_t j = 0; j < 4096; j += 64) near(loop.motion[j] + 1, time[j] + 1, 1e-12, "the loop's motion is that of the mass");
   double largest = 0, work = 0, slipping = 0;
   for (std::size_t j = 0; j < 4096; j++) {
     const std::size_t next = (j + 1) % 4096;
@@ -113,11 +113,18 @@ void friction() {
   Complex fundamental = 0;
   for (std::size_t j = 0; j < 4096; j++) fundamental += loop.force[j] * std::polar(1.0 / 2048, -2 * PI * static_cast<double>(j) / 4096);
   near(std::abs(force.force[1] - fundamental) + 1, 1, 1e-4, "the law's fundamental is the loop's");
-  claim(force.jacobian.shape(0) == 128 && force.jacobian.shape(1) == 128, "the order of the law's Jacobian");
+  claim(force.jacobian.shape(0) == 64 && force.jacobian.shape(1) == 64, "the order of the law's Jacobian");
   const double eps = 1e-6;
   motion[1] += eps;
   const auto moved = hbvib::contact_evaluate(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload), 31, 0, peak.omega, motion);
   near((moved.force[1].imag() - force.force[1].imag()) / eps, force.jacobian(3, 2), 1e-3, "a column of it is a difference");
+  std::vector<Complex> plane(64);
+  std::copy(x.data(), x.data() + x.size(), plane.begin());
+  const Contact::Dofs side = {0, 1, HBVIB_GROUND}, ground = {HBVIB_GROUND, HBVIB_GROUND, HBVIB_GROUND};
+  const auto friction = Contact::friction(HBVIB_FRICTION_3D, side, ground, kt, 0, mu, preload);
+  const auto along = hbvib::contact_evaluate(friction, 31, 4096, peak.omega, plane);
+  near(std::abs(along.force[1] - force.force[1]) + 1, 1, 1e-4, "friction in a plane, moved along a line, is the same law");
+  claim(std::abs(along.force[33]) < 1e-12, "and has no force across it");
   claim(moved.jacobian.empty(), "without derivatives there is no Jacobian");
 }
 
@@ -144,19 +151,19 @@ void equal_contacts() {
   same([](Model& m) { m.add_patch(Contact::jenkins(0, 0, 0.4, 0.3, 0.25), {0, HBVIB_GROUND, HBVIB_GROUND}, {}, {0.0, 0.0, 2.0}, {3.0, 0.0, 0.0}, {2.0}); },
        jenkins, 1e-9, "a patch of one pair");
   same([](Model& m) { m.add_iwan(0, HBVIB_GROUND, 0, 0.15, 0.8, -0.5, 1e9, 50); }, jenkins, 1e-3, "an Iwan joint that slips all at once");
-  same([](Model& m) { m.add_contact(Contact::friction(HBVIB_FRICTION_3D, {0, HBVIB_GROUND, HBVIB_GROUND}, {HBVIB_GROUND, HBVIB_GROUND, HBVIB_GROUND}, 0.8, 0, 0.3, 0.5)); },
-       jenkins, 1e-2, "friction in a plane along a line");
   same([](Model& m) { m.add_contact(Contact::regularised(0, HBVIB_GROUND, 0.3, 0.1, 50)); },
        [](Model& m) { m.add_spring_damper(0, HBVIB_GROUND, 0, {}, {0.3 * 0.1 / 50}); }, 1e-4, "smoothed friction far below its velocity is a damper");
 }
 
-// A spring of y + y^3 (H = 9): the mode's frequency against the arithmetic-geometric mean of Duffing's.
+// A spring of y + y^3 (H = 15): the mode's frequency against the arithmetic-geometric mean of Duffing's.
 void nonlinear_mode() {
   auto model = oscillator(1, 0, 1, 0.2);
   model.add_contact(Contact::cubic_spring(0, HBVIB_GROUND, 0, 1));
   const std::vector<double> at = {-1, 0, 0.2};
   hbvib::ModeOptions range(-1.5, 0.3);
-  const auto mode = model.nonlinear_mode({}, range.wanted(at));
+  SolverOptions solver;
+  solver.harmonics = 15;
+  const auto mode = model.nonlinear_mode(solver, range.wanted(at));
   claim(mode.complete(), "the mode is whole");
   for (Index i = 0; i < 3; i++) {
     const auto found = mode.at(i);
@@ -171,7 +178,7 @@ void nonlinear_mode() {
       const double next = (mean + other) / 2;
       other = std::sqrt(mean * other), mean = next;
     }
-    near(point.omega, std::sqrt(1 + a * a) * mean, 1e-8, "its frequency by elliptic integrals");
+    near(point.omega, std::sqrt(1 + a * a) * mean, 1e-11, "its frequency by elliptic integrals");
     near(point.damping_ratio + 1, 1, 1e-12, "it needs no artificial damping");
   }
   const auto info = mode.mode_info();
@@ -203,7 +210,7 @@ void nonlinear_mode() {
 int main() {
   claim(hbvib::version() == (HBVIB_VERSION_MAJOR << 16 | HBVIB_VERSION_MINOR << 8 | HBVIB_VERSION_PATCH), "the library is that of the header");
   claim(std::string(hbvib::version_string()).find('.') != std::string::npos, "its version as text");
-  return verdict(90, [] {
+  return verdict(152, [] {
     linear_modes();
     friction();
     equal_contacts();

@@ -54,7 +54,7 @@ void test() {
                                 }
                               }});
   const auto& shared = oscillator_;
-  const ForcedOptions wide(0.8, 2.0);
+  const ForcedOptions wide(0.5, 3.0);
   const auto once = bits(shared.forced_response({}, wide));
   const Index needed = calls;
   same = 0;
