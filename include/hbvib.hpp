@@ -14,7 +14,8 @@
  * Callbacks  May throw. The first exception of a call ends that call as soon as the library can stop, and
  *            leaves it as the same object, whatever the status. It is kept per call, so a callback may
  *            call the library, and catch what that throws. Only calls made through this header carry
- *            exceptions: in a plain C call the force counts as failed, HBVIB_E_CALLBACK.
+ *            exceptions (shared objects that hide their symbols have one each): in a plain C call the
+ *            force counts as failed, HBVIB_E_CALLBACK.
  * Memory     What a call only reads (In) may be a temporary. What options keep (Span) must live until
  *            they were used. A View owns its share of the memory that it shows.
  */

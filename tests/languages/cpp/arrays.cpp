@@ -167,7 +167,7 @@ void wanted_and_guess() {
 }  // namespace
 
 int main() {
-  return verdict(94, [] {
+  return verdict(60, [] {
     matrices();
     views();
     wanted_and_guess();

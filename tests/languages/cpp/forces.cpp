@@ -75,6 +75,9 @@ void same_as_cubic() {
     for (std::size_t k = 0; k < x.size(); k++) near(x[k].amplitude, y[k].amplitude, 1e-10, "the response is HBVIB_CUBIC's");
   }
   claim(several > 0, "the response bends over");
+  const auto folds = a.folds(), others = b.folds();
+  if (claim(folds.size() == 2 && others.size() == 2, "it has two folds"))
+    for (std::size_t k = 0; k < 2; k++) near(folds[k].omega, others[k].omega, 1e-9, "the folds are HBVIB_CUBIC's");
 }
 
 // The force lives as long as any model, copy or branch that may call it, and not longer.
@@ -206,7 +209,7 @@ void with_states() {
 }  // namespace
 
 int main() {
-  return verdict(73, [] {
+  return verdict(65, [] {
     same_as_cubic();
     ownership();
     failures_of_it();

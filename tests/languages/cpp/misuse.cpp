@@ -89,6 +89,7 @@ void test() {
   refused("a mode point of a forced response", HBVIB_E_UNSUPPORTED, 1, "", [&] { solved.mode_point(0); });
   refused("an index below 1 of those that count from 1", HBVIB_E_INDEX, 2, "dof = 0, needs 1 .. 4", [] { hbvib::index_from_one("dof", 0, 4); });
   claim(hbvib::index_from_one("dof", 4, 4) == 3, "an index from 1 becomes one from 0");
+  claim(std::string(Error(HBVIB_E_BUSY, 0, "").status_name()) == "HBVIB_E_BUSY", "a status has its name");
   try {
     solved.field(HBVIB_OMEGA).at(solved.points());
     claim(false, "a view refuses an index out of range");
@@ -122,4 +123,4 @@ void test() {
 
 }  // namespace
 
-int main() { return verdict(57, test); }
+int main() { return verdict(58, test); }
