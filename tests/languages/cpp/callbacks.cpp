@@ -84,6 +84,15 @@ void thrown_by_log() {
   throws_own(3, place, "an exception of the log", [&] { model.forced_response(options(), range(), hooks); });
   claim(points <= 1, "it ends the solve at the next point");
   claim(place.use_count() == 1, "nothing holds it any more");
+
+  // Every line counts, the last one too, whatever the solve has to say by then.
+  Index lines = 0, last = -1;
+  hooks.log = [&](hbvib_log_level, const char*) {
+    if (lines++ == last) throw Own(4, place);
+  };
+  model.forced_response(options(), range(), hooks);
+  last = std::exchange(lines, 0) - 1;
+  throws_own(4, place, "an exception at the last line of the log", [&] { model.forced_response(options(), range(), hooks); });
 }
 
 // What a callback catches is its own; what it lets go ends the calls that led there, one by one.
@@ -148,17 +157,18 @@ void intruders() {
   };
   const auto branch = model.forced_response(options(), range(), hooks);
   claim(busy == branch.points() && bits(model) == before, "a model in use is not changed");
+  const hbvib_model* const old = model.get();
   hooks.progress = [&](const hbvib_progress& p) {
     if (p.point == 3) model = Model::plain(1);
   };
   claim(bits(model.forced_response(options(), range(), hooks)) == before, "a model that its callback replaces is solved to the end");
-  claim(model.dofs() == 1, "and replaced");
+  claim(model.dofs() == 1 && hbvib_model_dofs(old) == HBVIB_E_HANDLE, "and replaced, the old one being freed");
 }
 
 }  // namespace
 
 int main() {
-  return verdict(31, [] {
+  return verdict(32, [] {
     progress();
     thrown_by_hooks();
     thrown_by_log();

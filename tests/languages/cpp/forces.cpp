@@ -88,10 +88,9 @@ void ownership() {
   {
     auto model = duffing_model(told);
     told.reset();
-    Model copy = model.clone();
-    branch = model.forced_response(seven(), RANGE);
+    const Model copy = model.clone();
     model = Model::plain(1);
-    claim(!alive.expired() && copy.forced_response(seven(), RANGE).points() == branch.points(), "a clone has the force of a model that is gone");
+    if (claim(!alive.expired(), "a clone has the force of a model that is gone")) branch = copy.forced_response(seven(), RANGE);
   }
   claim(!alive.expired(), "a branch keeps its force");
   const Index calls = alive.lock()->calls;
