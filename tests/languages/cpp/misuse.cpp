@@ -118,9 +118,12 @@ void test() {
   refused("peaks of a moved-from branch", HBVIB_E_HANDLE, 1, "branch", [&] { a.peaks(); });
   refused("the status of a branch that never was", HBVIB_E_HANDLE, 1, "branch", [&] { Branch().status(); });
   claim(bits(b) == before, "a branch that was moved has the same bits");
+  const hbvib_branch* const raw = b.get();
+  b = Branch();
+  claim(hbvib_branch_points(raw) == HBVIB_E_HANDLE, "a branch that is dropped is freed");
   same("moved-from branches");
 }
 
 }  // namespace
 
-int main() { return verdict(58, test); }
+int main() { return verdict(59, test); }
