@@ -1,0 +1,1009 @@
+/* hbvib.hpp - hbvib from C++17: RAII, exceptions, views without copies, lambdas.
+ *
+ * Header only; needs hbvib.h and the standard library. The mathematics, the meaning of every option and
+ * the errors of every function stand in hbvib.h. A method has the name of the C function without its
+ * prefix and its arguments in the same order, except that options which may be left out come last.
+ *
+ * Errors     A negative status is thrown as hbvib::Error. A positive one (stopped early) is none:
+ *            Branch::status and Branch::complete tell. Destructors never throw.
+ * Objects    Model and Branch are handles: they move and are not copied (Model::clone copies). One that
+ *            was moved from may be assigned to or destroyed; all else gives Error with HBVIB_E_HANDLE.
+ *            Its own calls keep an object alive, so a callback may even drop the model being solved.
+ * Threads    As in the standard library: const methods may run at once on one object, others need it for
+ *            themselves. hbvib_* calls on Model::get() obey hbvib.h.
+ * Callbacks  May throw. The first exception of a call ends that call as soon as the library can stop, and
+ *            leaves it as the same object, whatever the status. It is kept per call, so a callback may
+ *            call the library, and catch what that throws. Only calls made through this header carry
+ *            exceptions (shared objects that hide their symbols have one each): in a plain C call the
+ *            force counts as failed, HBVIB_E_CALLBACK.
+ * Memory     What a call only reads (In) may be a temporary. What options keep (Span) must live until
+ *            they were used. A View owns its share of the memory that it shows.
+ */
+#ifndef HBVIB_HPP
+#define HBVIB_HPP
+
+#include "hbvib.h"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <complex>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <functional>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace hbvib {
+
+using Index = std::int64_t;
+using Complex = std::complex<double>;
+
+/// A negative status of the library. what() is its sentence: what is wrong, where, what is accepted.
+class Error : public std::runtime_error {
+ public:
+  Error(hbvib_status status, std::int32_t argument, const std::string& sentence)
+      : std::runtime_error(sentence), status_(status), argument_(argument) {}
+
+  /// HBVIB_E_INDEX and so on.
+  hbvib_status status() const noexcept { return status_; }
+  /// Its name, "HBVIB_E_INDEX".
+  const char* status_name() const noexcept { return hbvib_status_name(status_); }
+  /// The parameter of the C function that is to blame, from 1; 0 where no single one is.
+  std::int32_t argument() const noexcept { return argument_; }
+
+ private:
+  hbvib_status status_;
+  std::int32_t argument_;
+};
+
+/// The sentence about this thread's last call of the C interface; empty after a success.
+inline std::string last_error() {
+  std::string text(hbvib_last_error_copy(nullptr, 0), '\0');
+  hbvib_last_error_copy(&text[0], text.size());
+  text.pop_back();
+  return text;
+}
+
+namespace detail {
+
+/// One call of the library by this thread. Callbacks leave their exception in the innermost one.
+class Call {
+ public:
+  Call() noexcept : outer_(innermost()) { innermost() = this; }
+  ~Call() { innermost() = outer_; }
+  Call(const Call&) = delete;
+  Call& operator=(const Call&) = delete;
+
+  bool threw() const noexcept { return thrown_ != nullptr; }
+
+  /// Turns what happened into exceptions. To be called before anything else of the library.
+  void done(Index result) {
+    if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
+    if (result < 0) throw Error(static_cast<hbvib_status>(result), hbvib_last_error_argument(), hbvib_last_error());
+  }
+
+  /// Runs a callback; `failed` is the answer where it throws, or where one before it has thrown.
+  template <class F>
+  static std::int32_t guard(std::int32_t failed, F&& callback) noexcept {
+    Call* const call = innermost();
+    if (call && call->thrown_) return failed;
+    try {
+      return callback();
+    } catch (...) {
+      if (call) call->thrown_ = std::current_exception();
+      return failed;
+    }
+  }
+
+ private:
+  static Call*& innermost() noexcept {
+    thread_local Call* call = nullptr;
+    return call;
+  }
+
+  Call* outer_;
+  std::exception_ptr thrown_;
+};
+
+/// Calls a function of the library that returns a status or a count.
+template <class F, class... A>
+auto call(F function, A... arguments) {
+  Call frame;
+  const auto result = function(arguments...);
+  frame.done(result);
+  return result;
+}
+
+/// Numbers in an array of the given lengths, 0 where one is not above 0: the library then says why.
+inline std::size_t extent(Index a, Index b = 1) {
+  if (a <= 0 || b <= 0) return 0;
+  if (a > std::numeric_limits<Index>::max() / 16 / b) throw std::bad_array_new_length();
+  return static_cast<std::size_t>(a * b);
+}
+
+/// The same where the library must see an array, however short.
+inline std::size_t room(Index a, Index b = 1) { return std::max<std::size_t>(extent(a, b), 1); }
+
+// Complex numbers are pairs of doubles ([complex.numbers]).
+inline const double* flat(const Complex* x) noexcept { return reinterpret_cast<const double*>(x); }
+inline double* flat(Complex* x) noexcept { return reinterpret_cast<double*>(x); }
+
+/// Refuses an array whose length does not fit; one that may be left out may be empty.
+inline void check_length(std::size_t size, Index needed, std::int32_t argument, const char* name, bool optional = false) {
+  if (static_cast<Index>(size) == needed || (optional && size == 0)) return;
+  throw Error(HBVIB_E_DIMENSION, argument,
+              std::string(name) + " has " + std::to_string(size) + " entries, needs " + std::to_string(needed));
+}
+
+// Whether the numbers of a container lie one after the other: Eigen's blocks and views need not.
+template <class C>
+auto is_packed(const C& c, int) -> decltype(c.innerStride() == c.outerStride()) {
+  const auto inner = C::IsRowMajor ? c.cols() : c.rows(), outer = C::IsRowMajor ? c.rows() : c.cols();
+  return (inner <= 1 || c.innerStride() == 1) && (inner == 0 || outer <= 1 || c.outerStride() == inner);
+}
+template <class C>
+auto is_packed(const C& c, int) -> decltype(c.is_packed()) {
+  return c.is_packed();
+}
+template <class C>
+bool is_packed(const C&, long) {
+  return true;
+}
+
+template <class C>
+using element = std::remove_pointer_t<decltype(std::declval<C&>().data())>;
+template <class C, class T>  // a container of T with data() and size(), where T* may point
+using holds = std::enable_if_t<std::is_convertible_v<element<C> (*)[], T (*)[]> &&
+                               std::is_convertible_v<decltype(std::declval<C&>().size()), std::size_t>>;
+template <class T>
+using number = std::enable_if_t<std::is_same_v<T, double> || std::is_same_v<T, Complex>, T>;
+
+}  // namespace detail
+
+/// A borrowed array: a pointer and a length, from anything that has data() and size().
+/// Error (HBVIB_E_ARGUMENT) for a container whose numbers do not lie one after the other.
+template <class T>
+class Span {
+ public:
+  constexpr Span() noexcept = default;
+  /// Without length there is no data: an optional array that is empty is left out.
+  constexpr Span(T* data, std::size_t size) noexcept : data_(size ? data : nullptr), size_(size) {}
+  template <std::size_t N>
+  constexpr Span(T (&array)[N]) noexcept : Span(array, N) {}
+  template <class U, class = std::enable_if_t<std::is_convertible_v<U (*)[], T (*)[]>>>
+  constexpr Span(const Span<U>& other) noexcept : Span(other.data(), other.size()) {}
+  /// Lasting containers only: what a temporary holds would be gone.
+  template <class C, class = detail::holds<C, T>>
+  Span(C& container) : Span(container.data(), static_cast<std::size_t>(container.size())) {
+    if (!detail::is_packed(container, 0))
+      throw Error(HBVIB_E_ARGUMENT, 0, "the array has gaps between its numbers, needs them one after the other");
+  }
+
+  constexpr T* data() const noexcept { return data_; }
+  constexpr std::size_t size() const noexcept { return size_; }
+  constexpr bool empty() const noexcept { return size_ == 0; }
+  constexpr T* begin() const noexcept { return data_; }
+  constexpr T* end() const noexcept { return data_ + size_; }
+  constexpr T& operator[](std::size_t i) const { return data_[i]; }
+  /// The length as the C interface wants it.
+  constexpr Index length() const noexcept { return static_cast<Index>(size_); }
+
+ private:
+  T* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// An array that a call reads and forgets: a Span that takes temporaries and {lists} too.
+template <class T>
+class In : public Span<const T> {
+ public:
+  using Span<const T>::Span;
+  In() noexcept = default;
+  In(std::initializer_list<T> list) noexcept : Span<const T>(list.begin(), list.size()) {}
+  template <class C, class = detail::holds<const C, const T>>
+  In(const C& container) : Span<const T>(container) {}
+};
+
+/// An array of one to three dimensions with strides, both counted in numbers. Copies are cheap and share
+/// the memory, which lives as long as the branch or any view of it.
+template <class T>
+class View {
+ public:
+  using Shape = std::array<Index, 3>;
+
+  View() noexcept = default;
+  View(T* data, int rank, const Shape& shape, const Shape& stride, std::shared_ptr<const void> owner = nullptr)
+      : owner_(std::move(owner)), data_(data), rank_(rank), shape_(shape), stride_(stride) {}
+  /// Row-major and packed; without numbers where data is null.
+  View(T* data, std::initializer_list<Index> lengths, std::shared_ptr<const void> owner = nullptr)
+      : owner_(std::move(owner)), data_(data), rank_(static_cast<int>(lengths.size())), shape_{1, 1, 1} {
+    std::copy(lengths.begin(), lengths.end(), shape_.begin());
+    if (!data_) shape_[0] = 0;
+    stride_ = {shape_[1] * shape_[2], shape_[2], 1};
+  }
+  template <class U, class = std::enable_if_t<std::is_convertible_v<U (*)[], T (*)[]>>>
+  View(const View<U>& other)
+      : View(other.data(), other.rank(), other.shape(), other.stride(), other.owner()) {}
+
+  T* data() const noexcept { return data_; }
+  int rank() const noexcept { return rank_; }
+  /// Lengths, 1 beyond the rank.
+  const Shape& shape() const noexcept { return shape_; }
+  Index shape(int dimension) const { return shape_.at(static_cast<std::size_t>(dimension)); }
+  /// Distances of neighbours.
+  const Shape& stride() const noexcept { return stride_; }
+  Index stride(int dimension) const { return stride_.at(static_cast<std::size_t>(dimension)); }
+  std::size_t size() const noexcept { return static_cast<std::size_t>(shape_[0] * shape_[1] * shape_[2]); }
+  bool empty() const noexcept { return size() == 0; }
+  const std::shared_ptr<const void>& owner() const noexcept { return owner_; }
+  /// Whether the numbers lie one after the other, the last index running fastest.
+  bool is_packed() const noexcept {
+    return size() == 0 || ((shape_[2] == 1 || stride_[2] == 1) && (shape_[1] == 1 || stride_[1] == shape_[2]) &&
+                           (shape_[0] == 1 || stride_[0] == shape_[1] * shape_[2]));
+  }
+
+  T& operator()(Index i, Index j = 0, Index k = 0) const { return data_[i * stride_[0] + j * stride_[1] + k * stride_[2]]; }
+  T& operator[](Index i) const { return (*this)(i); }
+  /// The same with the indices checked: std::out_of_range.
+  T& at(Index i, Index j = 0, Index k = 0) const {
+    const Shape index = {i, j, k};
+    for (std::size_t d = 0; d < 3; d++)
+      if (index[d] < 0 || index[d] >= shape_[d])
+        throw std::out_of_range("index " + std::to_string(d) + " = " + std::to_string(index[d]) + " of a view, needs 0 .. " +
+                                std::to_string(shape_[d] - 1));
+    return (*this)(i, j, k);
+  }
+
+  class Iterator {
+   public:
+    using iterator_category = std::random_access_iterator_tag;
+    using value_type = std::remove_const_t<T>;
+    using difference_type = std::ptrdiff_t;
+    using pointer = T*;
+    using reference = T&;
+
+    Iterator() = default;
+    Iterator(T* data, Index stride, Index place) : data_(data), stride_(stride), place_(place) {}
+    reference operator*() const { return data_[place_ * stride_]; }
+    pointer operator->() const { return &**this; }
+    reference operator[](difference_type n) const { return data_[(place_ + n) * stride_]; }
+    Iterator& operator+=(difference_type n) { return place_ += n, *this; }
+    Iterator& operator-=(difference_type n) { return *this += -n; }
+    Iterator& operator++() { return *this += 1; }
+    Iterator& operator--() { return *this += -1; }
+    Iterator operator++(int) { return std::exchange(*this, *this + 1); }
+    Iterator operator--(int) { return std::exchange(*this, *this - 1); }
+    friend Iterator operator+(Iterator a, difference_type n) { return a += n; }
+    friend Iterator operator+(difference_type n, Iterator a) { return a += n; }
+    friend Iterator operator-(Iterator a, difference_type n) { return a -= n; }
+    friend difference_type operator-(const Iterator& a, const Iterator& b) { return a.place_ - b.place_; }
+    friend bool operator==(const Iterator& a, const Iterator& b) { return a.place_ == b.place_; }
+    friend bool operator!=(const Iterator& a, const Iterator& b) { return a.place_ != b.place_; }
+    friend bool operator<(const Iterator& a, const Iterator& b) { return a.place_ < b.place_; }
+    friend bool operator>(const Iterator& a, const Iterator& b) { return b < a; }
+    friend bool operator<=(const Iterator& a, const Iterator& b) { return !(b < a); }
+    friend bool operator>=(const Iterator& a, const Iterator& b) { return !(a < b); }
+
+   private:
+    T* data_ = nullptr;
+    Index stride_ = 1, place_ = 0;
+  };
+  /// Views of one dimension only: std::logic_error for others.
+  Iterator begin() const { return {data_, stride_[0], line(0)}; }
+  Iterator end() const { return {data_, stride_[0], line(shape_[0])}; }
+
+ private:
+  Index line(Index place) const {
+    if (rank_ > 1) throw std::logic_error("a view of " + std::to_string(rank_) + " dimensions has no iterators, needs 1");
+    return place;
+  }
+
+  std::shared_ptr<const void> owner_;
+  T* data_ = nullptr;
+  int rank_ = 1;
+  Shape shape_ = {0, 1, 1}, stride_ = {1, 1, 1};
+};
+
+namespace detail {
+
+/// A packed array of its own, to be written through the pointer and then shown by a view.
+template <class T>
+struct Array {
+  explicit Array(std::size_t size) : numbers(std::make_shared<std::vector<T>>(size)) {}
+  T* data() const { return numbers->empty() ? nullptr : numbers->data(); }
+  Index length() const { return static_cast<Index>(numbers->size()); }
+  View<const T> view(std::initializer_list<Index> lengths) const { return {data(), lengths, numbers}; }
+  std::shared_ptr<std::vector<T>> numbers;
+};
+
+}  // namespace detail
+
+/// A struct of the C interface, filled by its _init function.
+template <class Struct, hbvib_status (*init)(Struct*, std::size_t)>
+struct Filled : Struct {
+  Filled() : Struct() { detail::call(init, static_cast<Struct*>(this), sizeof(Struct)); }
+};
+
+using SolverOptions = Filled<hbvib_solver_options, hbvib_solver_options_init>;
+using SynthesisOptions = Filled<hbvib_synthesis_options, hbvib_synthesis_options_init>;
+using Reduction = Filled<hbvib_reduction, hbvib_reduction_init>;
+using Energy = Filled<hbvib_energy, hbvib_energy_init>;
+using ContactSummary = Filled<hbvib_contact_summary, hbvib_contact_summary_init>;
+using ModePoint = Filled<hbvib_mode_point, hbvib_mode_point_init>;
+using ModeInfo = Filled<hbvib_mode_info, hbvib_mode_info_init>;
+using TimeInfo = Filled<hbvib_time_info, hbvib_time_info_init>;
+using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
+
+/// Range of a forced response, rad per time unit. Arrays handed in are borrowed until it was solved.
+struct ForcedOptions : Filled<hbvib_forced_options, hbvib_forced_options_init> {
+  ForcedOptions() = default;
+  ForcedOptions(double start, double stop) { omega_start = start, omega_stop = stop; }
+  /// Angular frequencies at which every solution is wanted as well.
+  ForcedOptions& wanted(Span<const double> omega) { return at = omega.data(), at_len = omega.length(), *this; }
+  /// Start values, (H + 1) x ndof.
+  ForcedOptions& start_from(Span<const Complex> x) { return guess = detail::flat(x.data()), guess_len = x.length(), *this; }
+};
+
+/// Range of a nonlinear mode, log10 of amplitudes. Arrays handed in are borrowed until it was solved.
+struct ModeOptions : Filled<hbvib_mode_options, hbvib_mode_options_init> {
+  ModeOptions() = default;
+  ModeOptions(double start, double stop) { log10_start = start, log10_stop = stop; }
+  /// log10 of the amplitudes at which every solution is wanted as well.
+  ModeOptions& wanted(Span<const double> amplitudes) { return at = amplitudes.data(), at_len = amplitudes.length(), *this; }
+  /// The linear mode most alike this one, ndof numbers.
+  ModeOptions& alike(Span<const Complex> x) { return shape = detail::flat(x.data()), shape_len = x.length(), *this; }
+};
+
+/// Options of a response in time. Arrays handed in are borrowed until it was solved.
+struct TimeOptions : Filled<hbvib_time_options, hbvib_time_options_init> {
+  TimeOptions() = default;
+  explicit TimeOptions(double angular_frequency) { omega = angular_frequency; }
+  /// Motion to start from, (H + 1) x ndof of any H.
+  TimeOptions& start_from(Span<const Complex> x) { return start = detail::flat(x.data()), start_len = x.length(), *this; }
+};
+
+/// A contact; the functions below set what their kind needs. b may be HBVIB_GROUND, offset is the sector
+/// of side b over that of side a.
+struct Contact : Filled<hbvib_contact, hbvib_contact_init> {
+  using Dofs = std::array<Index, 3>;
+
+  Contact() = default;
+  explicit Contact(hbvib_contact_kind law) { kind = law; }
+  Contact(hbvib_contact_kind law, const Dofs& a, const Dofs& b, Index offset = 0) : Contact(law) {
+    std::copy(a.begin(), a.end(), dof_a);
+    std::copy(b.begin(), b.end(), dof_b);
+    sector_offset = offset;
+  }
+  static Contact jenkins(Index a, Index b, double kt, double mu, double preload, Index offset = 0) {
+    return Contact(HBVIB_JENKINS, {a, HBVIB_GROUND, HBVIB_GROUND}, {b, HBVIB_GROUND, HBVIB_GROUND}, offset).with(kt, 0, mu, preload, 0);
+  }
+  /// a and b: along t1, t2 (HBVIB_GROUND for HBVIB_FRICTION_2D) and n.
+  static Contact friction(hbvib_contact_kind law, const Dofs& a, const Dofs& b, double kt, double kn, double mu, double preload,
+                          double gap = 0, Index offset = 0) {
+    return Contact(law, a, b, offset).with(kt, kn, mu, preload, gap);
+  }
+  static Contact unilateral(Index a, Index b, double kn, double gap, double preload = 0, Index offset = 0) {
+    return Contact(HBVIB_UNILATERAL, {HBVIB_GROUND, HBVIB_GROUND, a}, {HBVIB_GROUND, HBVIB_GROUND, b}, offset).with(0, kn, 0, preload, gap);
+  }
+  static Contact cubic_spring(Index a, Index b, double kt, double cubic, Index offset = 0) {
+    Contact c = jenkins(a, b, kt, 0, 0, offset);
+    return c.kind = HBVIB_CUBIC, c.cubic = cubic, c;
+  }
+  static Contact regularised(Index a, Index b, double mu, double preload, double velocity, Index offset = 0) {
+    Contact c = jenkins(a, b, 0, mu, preload, offset);
+    return c.kind = HBVIB_REGULARISED, c.velocity = velocity, c;
+  }
+
+ private:
+  Contact with(double t, double n, double friction, double load, double opening) {
+    return kt = t, kn = n, mu = friction, preload = load, gap = opening, *this;
+  }
+};
+
+/// A matrix of the caller, borrowed for a call: real or complex, dense or sparse.
+/// Number: double or std::complex<double>; any other is no Matrix.
+struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
+  /// Dense; leading: distance of columns (rows, if row-major) in numbers, 0 = packed.
+  template <class Number, class = detail::number<Number>>
+  Matrix(const Number* numbers, Index n_rows, Index n_cols, hbvib_storage order = HBVIB_COL_MAJOR, Index leading = 0) {
+    set(numbers), storage = order, rows = n_rows, cols = n_cols, ld = leading;
+  }
+  /// A matrix written in C: row after row.
+  template <class Number, std::size_t R, std::size_t C, class = detail::number<Number>>
+  Matrix(const Number (&numbers)[R][C]) : Matrix(&numbers[0][0], R, C, HBVIB_ROW_MAJOR) {}
+  /// Any dense class with data(), rows(), cols(), outerStride() and IsRowMajor: Eigen's matrices, maps and
+  /// blocks. Error (HBVIB_E_ARGUMENT) where neighbours within a column (row) are not adjacent.
+  template <class M, class = decltype(std::declval<const M&>().outerStride()),
+            class Number = detail::number<std::remove_const_t<detail::element<const M>>>>
+  Matrix(const M& m) : Matrix(m.data(), m.rows(), m.cols(), M::IsRowMajor ? HBVIB_ROW_MAJOR : HBVIB_COL_MAJOR, m.outerStride()) {
+    if (!adjacent(m, 0)) throw Error(HBVIB_E_ARGUMENT, 0, "the matrix has gaps between the numbers of a column or row, needs them adjacent");
+  }
+  /// Compressed sparse columns, indices counted from `base`; indices of other types are copied.
+  template <class Number, class I, class = detail::number<Number>>
+  static Matrix csc(Index n_rows, Index n_cols, const Number* numbers, const I* col_ptr, const I* row_idx, int base = 0) {
+    Matrix a(numbers, n_rows, n_cols, HBVIB_CSC);
+    a.index_base = base;
+    const std::size_t ends = detail::extent(n_cols) + 1;
+    a.col_ptr = a.as_index(col_ptr, ends);
+    a.row_idx = a.as_index(row_idx, col_ptr ? detail::extent(static_cast<Index>(col_ptr[ends - 1]) - base) : 0);
+    return a;
+  }
+  /// Any compressed, column-major sparse class with valuePtr(), outerIndexPtr(), innerIndexPtr(): Eigen's.
+  template <class S, class = decltype(std::declval<const S&>().outerIndexPtr()), class = void,
+            class = std::enable_if_t<!S::IsRowMajor>>
+  Matrix(const S& s) : Matrix(csc(s.rows(), s.cols(), s.valuePtr(), compressed(s).outerIndexPtr(), s.innerIndexPtr())) {}
+  /// The same matrix with another promise: HBVIB_GENERAL, HBVIB_LOWER, ...
+  Matrix as(hbvib_part given) const {
+    Matrix a = *this;
+    return a.part = given, a;
+  }
+
+ private:
+  void set(const double* numbers) { values = numbers, scalar = HBVIB_REAL; }
+  void set(const Complex* numbers) { values = detail::flat(numbers), scalar = HBVIB_COMPLEX; }
+  const Index* as_index(const Index* indices, std::size_t) { return indices; }
+  template <class I>
+  const Index* as_index(const I* indices, std::size_t n) {
+    if (!indices) return nullptr;
+    copies_.push_back(std::make_shared<const std::vector<Index>>(indices, indices + n));
+    return copies_.back()->data();
+  }
+  template <class S>
+  static const S& compressed(const S& s) {
+    if (s.isCompressed()) return s;
+    throw Error(HBVIB_E_ARGUMENT, 0, "the sparse matrix is not compressed, needs makeCompressed()");
+  }
+  template <class M>
+  static auto adjacent(const M& m, int) -> decltype(m.innerStride() == 1) {
+    return m.innerStride() == 1 || (M::IsRowMajor ? m.cols() : m.rows()) <= 1;
+  }
+  template <class M>
+  static bool adjacent(const M&, long) {
+    return true;
+  }
+
+  std::vector<std::shared_ptr<const std::vector<Index>>> copies_;
+};
+
+/// A callable that may return nothing where R is wanted: then it returns R{}.
+template <class R, class Argument>
+class Callback : public std::function<R(Argument)> {
+ public:
+  Callback() = default;
+  template <class F, class = std::enable_if_t<std::is_invocable_v<F&, Argument> && !std::is_base_of_v<Callback, F>>>
+  Callback(F callable) : std::function<R(Argument)>(answering(std::move(callable))) {}
+
+ private:
+  template <class F>
+  static auto answering(F callable) {
+    if constexpr (std::is_void_v<std::invoke_result_t<F&, Argument>>)
+      return [callable = std::move(callable)](Argument argument) mutable { return callable(argument), R{}; };
+    else
+      return callable;
+  }
+};
+
+class Branch;
+
+/// What is attached to a solve. An exception of a callback leaves the solve as it was thrown; one of
+/// `log` at the next point found.
+struct Hooks {
+  /// Called at each point; returns nothing, or true to stop and keep the points.
+  Callback<bool, const hbvib_progress&> progress{};
+  /// Receives log lines; the text is valid during the call.
+  std::function<void(hbvib_log_level, const char*)> log{};
+  /// The finest lines that `log` wants.
+  hbvib_log_level log_level = HBVIB_LOG_INFO;
+  /// Nonzero stops the solve and keeps the points; other threads and signal handlers may set it.
+  const std::atomic<std::int32_t>* cancel = nullptr;
+  /// Receives what was found where a callback's exception ends a solve; an empty Branch if nothing was.
+  Branch* partial = nullptr;
+};
+
+/// One period that a force is asked about, as views of N samples: f(j, i), df_du(j, i, k). Write f, z and
+/// the derivatives that are not 0; those that the force has no use for are empty.
+struct ForceCall {
+  explicit ForceCall(const hbvib_force_call& c)
+      : omega(c.omega), samples(c.samples), n(c.n), states(c.states), u(c.u, {samples, n}), v(c.v, {samples, n}),
+        z0(c.z0, {states}), f(c.f, {samples, n}), df_du(c.df_du, {samples, n, n}), df_dv(c.df_dv, {samples, n, n}),
+        z(c.z, {samples, states}), dz_dz(c.dz_dz, {samples, states, states}),
+        dz_du_before(c.dz_du_before, {samples, states, n}), dz_du(c.dz_du, {samples, states, n}),
+        dz_dv_before(c.dz_dv_before, {samples, states, n}), dz_dv(c.dz_dv, {samples, states, n}),
+        dz_domega(c.dz_domega, {samples, states}), df_dz(c.df_dz, {samples, n, states}) {}
+
+  double omega;
+  Index samples, n, states;
+  View<const double> u, v, z0;
+  View<double> f, df_du, df_dv, z, dz_dz, dz_du_before, dz_du, dz_dv_before, dz_dv, dz_domega, df_dz;
+};
+
+/// A force of the caller; models and branches that need it share it. It may be called by several threads
+/// at once where they use one model.
+struct UserForce {
+  std::vector<Index> dofs;
+  /// Returns nothing or 0 when done; above 0: not at this motion; below 0, or an exception: stop.
+  Callback<std::int32_t, const ForceCall&> force;
+  bool uses_velocity = false, is_odd = false;
+  Index states = 0, samples = 0;
+};
+
+namespace detail {
+
+using Forces = std::vector<std::shared_ptr<const UserForce>>;
+
+/// A handle, and the forces that the library may call as long as it lives.
+template <class Handle, hbvib_status (*release)(Handle*)>
+struct Owned {
+  Owned() = default;
+  Owned(const Owned&) = delete;
+  Owned& operator=(const Owned&) = delete;
+  ~Owned() { release(handle); }
+
+  Handle* handle = nullptr;
+  Forces forces;
+};
+
+/// What Model and Branch have in common: shared only with calls that run, and with views.
+template <class Handle, hbvib_status (*release)(Handle*)>
+class Object {
+ public:
+  /// The C handle, borrowed: NULL after a move.
+  Handle* get() const noexcept { return core_ ? core_->handle : nullptr; }
+  explicit operator bool() const noexcept { return get() != nullptr; }
+
+ protected:
+  using Core = Owned<Handle, release>;
+  Object() noexcept = default;
+  explicit Object(std::shared_ptr<Core> core) noexcept : core_(std::move(core)) {}
+  Object(Object&&) noexcept = default;
+  Object& operator=(Object&&) noexcept = default;
+  ~Object() = default;
+
+  /// Calls a function that takes the handle first.
+  template <class F, class... A>
+  auto use(F function, A... arguments) const {
+    const auto keep = core_;
+    return call(function, get(), arguments...);
+  }
+
+  std::shared_ptr<Core> core_;
+};
+
+/// Hooks as the library wants them; they live as long as the call.
+struct BoundHooks : Filled<hbvib_hooks, hbvib_hooks_init> {
+  explicit BoundHooks(const Hooks& hooks) {
+    static_assert(sizeof(std::atomic<std::int32_t>) == sizeof(std::int32_t) && std::atomic<std::int32_t>::is_always_lock_free,
+                  "the library reads the flag as a plain number");
+    user = const_cast<Hooks*>(&hooks);
+    progress = on_progress;
+    if (hooks.log) log = on_log, log_level = hooks.log_level;
+    cancel = reinterpret_cast<const hbvib_cancel_flag*>(hooks.cancel);
+  }
+
+ private:
+  static std::int32_t on_progress(void* user, const hbvib_progress* p) noexcept {
+    const auto& wanted = static_cast<const Hooks*>(user)->progress;
+    return Call::guard(1, [&] { return wanted && wanted(*p) ? 1 : 0; });
+  }
+  static void on_log(void* user, std::int32_t level, const char* line) noexcept {
+    Call::guard(0, [&] { return static_cast<const Hooks*>(user)->log(static_cast<hbvib_log_level>(level), line), 0; });
+  }
+};
+
+inline std::int32_t on_force(void* user, const hbvib_force_call* period) noexcept {
+  return Call::guard(-1, [&] { return static_cast<const UserForce*>(user)->force(ForceCall(*period)); });
+}
+
+}  // namespace detail
+
+/// A peak, fold or wanted solution; `point` is its number for the results of a branch.
+struct Peak {
+  double omega, amplitude;
+  Index point;
+};
+/// A solution at a wanted frequency or amplitude.
+struct Wanted {
+  double amplitude;
+  Index point;
+};
+/// A contact over a period: relative motion, force and HBVIB_STATE_STICK and so on at n times.
+struct ContactLoop {
+  std::vector<double> motion, force;
+  std::vector<std::int32_t> state;
+};
+/// A synthesised response, point by point.
+struct Synthesis {
+  std::vector<double> omega;
+  std::vector<Complex> response;
+  std::vector<double> modal_amplitude;
+};
+/// A synthesised resonance; flags is a sum of hbvib_synthesis_flag.
+struct SynthesisPeak {
+  double omega, amplitude, log10_amplitude, damping_ratio, other_mode;
+  std::int32_t flags;
+};
+/// Natural angular frequencies, and shapes count x ndof.
+struct LinearModes {
+  std::vector<double> omega;
+  View<const Complex> shapes;
+};
+/// A periodic response in time: harmonics (H + 1) x ndof, samples x ndof displacements.
+struct TimeResponse {
+  hbvib_status status;
+  View<const Complex> harmonics;
+  View<const double> samples;
+  TimeInfo info;
+};
+/// Residual of n complex rows; jacobian is 2 n x 2 n over the pairs (re, im). Both derivatives are empty
+/// unless asked for.
+struct Residual {
+  std::vector<Complex> r;
+  View<const double> jacobian;
+  std::vector<Complex> d_omega;
+};
+/// Force harmonics of a contact law, direction after direction; jacobian is empty unless asked for.
+struct ContactForce {
+  std::vector<Complex> force;
+  View<const double> jacobian;
+};
+
+class Model;
+
+/// A branch of solutions. Its points never change, so that all methods are const and may run at once.
+/// Results may call user forces again, whose exceptions leave them as well.
+class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
+ public:
+  /// No branch.
+  Branch() noexcept = default;
+
+  /// HBVIB_OK, or why the solve stopped early.
+  hbvib_status status() const { return use(hbvib_branch_status); }
+  /// Whether the whole range was covered.
+  bool complete() const { return status() == HBVIB_OK; }
+  /// The sentence that belongs to the status; empty where it is complete.
+  std::string sentence() const { return status(), last_error(); }
+  /// Points on the curve.
+  Index points() const { return use(hbvib_branch_points); }
+  /// A field of the curve where it lies, without a copy: points, or points x contacts.
+  View<const double> field(hbvib_field which) const {
+    Filled<hbvib_view, hbvib_view_init> v;
+    use(hbvib_branch_field, which, &v);
+    if (v.scalar != HBVIB_REAL) throw Error(HBVIB_E_UNSUPPORTED, 2, "the field is complex: use hbvib_branch_field");
+    return {v.data, v.rank, {v.shape[0], v.shape[1], v.shape[2]}, {v.stride[0], v.stride[1], v.stride[2]}, core_};
+  }
+  /// Harmonics of a range of degrees of freedom at a point, (H + 1) x n_dof; n_dof = -1: to the last.
+  View<const Complex> harmonics(Index point, Index first_dof = 0, Index n_dof = -1) const {
+    const Reduction whole = reduction();
+    const Index n = n_dof == -1 ? std::max<Index>(whole.degrees_of_freedom - first_dof, 1) : n_dof, rows = whole.harmonics_asked + 1;
+    const detail::Array<Complex> x(detail::room(rows, n));
+    harmonics(point, first_dof, n, Span<Complex>(x.data(), detail::extent(rows, n)));
+    return x.view({rows, n});
+  }
+  /// The same into an array of the caller, harmonic after harmonic.
+  void harmonics(Index point, Index first_dof, Index n_dof, Span<Complex> x) const {
+    use(hbvib_branch_harmonics, point, first_dof, n_dof, detail::flat(x.data()), x.length());
+  }
+  /// Share of the period that each contact slips.
+  std::vector<double> slip_fraction(Index point) const {
+    std::vector<double> shares(detail::extent(reduction().contacts));
+    use(hbvib_branch_slip_fraction, point, shares.data(), static_cast<Index>(shares.size()));
+    return shares;
+  }
+  Reduction reduction() const { return filled<Reduction>(hbvib_branch_reduction); }
+  /// Maxima of the amplitude; in a nonlinear mode of the damping ratio.
+  std::vector<Peak> peaks() const { return extremes(hbvib_branch_peaks); }
+  /// The highest of them; Error (HBVIB_E_INDEX) where there is none.
+  Peak highest_peak() const {
+    const auto all = peaks();
+    if (all.empty()) throw Error(HBVIB_E_INDEX, 0, "the branch has no peak");
+    return *std::max_element(all.begin(), all.end(), [](const Peak& a, const Peak& b) { return a.amplitude < b.amplitude; });
+  }
+  /// Turning points.
+  std::vector<Peak> folds() const { return extremes(hbvib_branch_folds); }
+  /// Every solution at entry `wanted` of what the options wanted.
+  std::vector<Wanted> at(Index wanted) const {
+    Index count = 0;
+    use(hbvib_branch_at, wanted, 0, nullptr, nullptr, &count);
+    std::vector<double> amplitude(detail::extent(count));
+    std::vector<Index> point(amplitude.size());
+    use(hbvib_branch_at, wanted, count, amplitude.data(), point.data(), &count);
+    std::vector<Wanted> all;
+    for (std::size_t i = 0; i < point.size(); i++) all.push_back({amplitude[i], point[i]});
+    return all;
+  }
+  Energy energy(Index point) const { return filled<Energy>(hbvib_branch_energy, point); }
+  ContactSummary contact_summary(Index point, Index contact) const {
+    return filled<ContactSummary>(hbvib_branch_contact_summary, point, contact);
+  }
+  ModePoint mode_point(Index point) const { return filled<ModePoint>(hbvib_branch_mode_point, point); }
+  ModeInfo mode_info() const { return filled<ModeInfo>(hbvib_branch_mode_info); }
+  /// Motion over a period at n times.
+  std::vector<double> time_history(Index point, Index dof, Index n) const {
+    std::vector<double> x(detail::room(n));
+    use(hbvib_branch_time_history, point, dof, n, x.data());
+    return x;
+  }
+  /// Hysteresis loop of a contact at n times.
+  ContactLoop contact_loop(Index point, Index contact, Index direction, Index n) const {
+    const std::size_t room = detail::room(n);
+    ContactLoop loop{std::vector<double>(room), std::vector<double>(room), std::vector<std::int32_t>(room)};
+    use(hbvib_branch_contact_loop, point, contact, direction, n, loop.motion.data(), loop.force.data(), loop.state.data());
+    return loop;
+  }
+  /// Response to the forces of a model, from this nonlinear mode.
+  Synthesis synthesis(const Model& model, const SynthesisOptions& options = SynthesisOptions()) const;
+  /// Its resonances.
+  std::vector<SynthesisPeak> synthesis_peaks(const Model& model, const SynthesisOptions& options = SynthesisOptions()) const;
+
+ private:
+  friend class Model;
+  using Object::Object;
+
+  template <class Struct, class F, class... A>
+  Struct filled(F function, A... arguments) const {
+    Struct s;
+    use(function, arguments..., &s);
+    return s;
+  }
+  template <class F>
+  std::vector<Peak> extremes(F function) const {
+    Index count = 0;
+    use(function, 0, nullptr, nullptr, nullptr, &count);
+    std::vector<double> omega(detail::extent(count)), amplitude(omega.size());
+    std::vector<Index> point(omega.size());
+    use(function, count, omega.data(), amplitude.data(), point.data(), &count);
+    std::vector<Peak> all;
+    for (std::size_t i = 0; i < point.size(); i++) all.push_back({omega[i], amplitude[i], point[i]});
+    return all;
+  }
+};
+
+/// A structure with its contacts and forces. Solving is const: any number of threads may solve one model.
+class Model : public detail::Object<hbvib_model, hbvib_model_free> {
+ public:
+  /// A plain structure of so many degrees of freedom: no matrices, contacts or forces yet.
+  static Model plain(Index ndof) { return make(hbvib_model_new, ndof); }
+  /// A cyclic structure of equal sectors, described by one of them.
+  static Model cyclic(Index ndof_sector, Index sectors) { return make(hbvib_cyclic_new, ndof_sector, sectors); }
+  Model clone() const {
+    Model copy = make(hbvib_model_clone, get());
+    copy.core_->forces = core_->forces;
+    return copy;
+  }
+
+  Index dofs() const { return use(hbvib_model_dofs); }
+  Index sectors() const { return use(hbvib_model_sectors); }
+  Index contacts() const { return use(hbvib_model_contacts); }
+
+  void set_matrix(hbvib_matrix_kind which, const Matrix& a) { use(hbvib_model_set_matrix, which, &a); }
+  void set_rayleigh(double alpha_mass, double beta_stiffness) { use(hbvib_model_set_rayleigh, alpha_mass, beta_stiffness); }
+  void set_coupling(hbvib_matrix_kind which, const Matrix& to_next) { use(hbvib_cyclic_set_coupling, which, &to_next); }
+  void set_coupling_previous(hbvib_matrix_kind which, const Matrix& to_previous) {
+    use(hbvib_cyclic_set_coupling_previous, which, &to_previous);
+  }
+  void set_diameter(hbvib_matrix_kind which, Index diameter, const Matrix& a) { use(hbvib_cyclic_set_diameter, which, diameter, &a); }
+  void set_wave(Index engine_order) { use(hbvib_cyclic_set_wave, engine_order); }
+
+  /// Adds Re(amplitude exp(i harmonic omega t)) on a degree of freedom.
+  void add_force(Index dof, Index harmonic, Complex amplitude) {
+    use(hbvib_model_add_force, dof, harmonic, amplitude.real(), amplitude.imag());
+  }
+  void clear_forces() { use(hbvib_model_clear_forces); }
+
+  // Contacts: each returns the number of the (first) contact added. Arrays that may be left out: {}.
+  Index add_contact(const Contact& c) { return add(hbvib_model_add_contact, &c); }
+  void set_preload(Index id, double preload) { use(hbvib_model_set_preload, id, preload); }
+  Index add_jenkins(In<Index> dof_a, In<Index> dof_b, In<Index> sector_offset, In<double> kt, In<double> mu, In<double> preload) {
+    const Index n = dof_a.length();
+    detail::check_length(dof_b.size(), n, 4, "dof_b");
+    detail::check_length(sector_offset.size(), n, 5, "sector_offset", true);
+    detail::check_length(kt.size(), n, 6, "kt");
+    detail::check_length(mu.size(), n, 7, "mu");
+    detail::check_length(preload.size(), n, 8, "preload");
+    return add(hbvib_model_add_jenkins, n, dof_a.data(), dof_b.data(), sector_offset.data(), kt.data(), mu.data(), preload.data());
+  }
+  /// Linear springs, which are no contacts.
+  void add_springs(In<Index> dof_a, In<Index> dof_b, In<Index> sector_offset, In<double> stiffness) {
+    const Index n = dof_a.length();
+    detail::check_length(dof_b.size(), n, 4, "dof_b");
+    detail::check_length(sector_offset.size(), n, 5, "sector_offset", true);
+    detail::check_length(stiffness.size(), n, 6, "stiffness");
+    use(hbvib_model_add_springs, n, dof_a.data(), dof_b.data(), sector_offset.data(), stiffness.data());
+  }
+  Index add_iwan(Index dof_a, Index dof_b, Index sector_offset, double slip_force, double stiffness, double chi, double beta, Index elements) {
+    return add(hbvib_model_add_iwan, dof_a, dof_b, sector_offset, slip_force, stiffness, chi, beta, elements);
+  }
+  /// f(y) straight between points.
+  Index add_table(Index dof_a, Index dof_b, Index sector_offset, In<double> displacement, In<double> force) {
+    detail::check_length(force.size(), displacement.length(), 7, "force");
+    return add(hbvib_model_add_table, dof_a, dof_b, sector_offset, displacement.length(), displacement.data(), force.data());
+  }
+  /// Polynomials in y and in v, from the first power on.
+  Index add_spring_damper(Index dof_a, Index dof_b, Index sector_offset, In<double> spring, In<double> damper = {}) {
+    return add(hbvib_model_add_spring_damper, dof_a, dof_b, sector_offset, spring.length(), spring.data(), damper.length(), damper.data());
+  }
+  /// Terms over several degrees of freedom; exponents terms x dofs, {}: all 0.
+  Index add_polynomial(In<Index> dofs, In<Index> direction, In<double> coefficient, In<std::int32_t> x_powers, In<std::int32_t> v_powers = {}) {
+    const Index n = dofs.length(), terms = direction.length(), exponents = static_cast<Index>(detail::extent(n, terms));
+    detail::check_length(coefficient.size(), terms, 6, "coefficient");
+    detail::check_length(x_powers.size(), exponents, 7, "x_powers", true);
+    detail::check_length(v_powers.size(), exponents, 8, "v_powers", true);
+    return add(hbvib_model_add_polynomial, dofs.data(), n, terms, direction.data(), coefficient.data(), x_powers.data(), v_powers.data());
+  }
+  /// Quadratic (n^3) and cubic (n^4) stiffness, the last index running fastest; {}: none.
+  Index add_stiffness_tensors(In<Index> dofs, In<double> quadratic, In<double> cubic) {
+    const Index n = dofs.length(), square = static_cast<Index>(detail::extent(n, n));
+    detail::check_length(quadratic.size(), static_cast<Index>(detail::extent(square, n)), 4, "quadratic", true);
+    detail::check_length(cubic.size(), static_cast<Index>(detail::extent(square, square)), 5, "cubic", true);
+    return add(hbvib_model_add_stiffness_tensors, dofs.data(), n, quadratic.data(), cubic.data());
+  }
+  /// Node pairs of two surfaces, one for each area; three degrees of freedom and directions a pair.
+  /// dof_b {}: the ground. pressure, gap {}: those of the law.
+  Index add_patch(const Contact& law, In<Index> dof_a, In<Index> dof_b, In<double> normal, In<double> tangent, In<double> area,
+                  In<double> pressure = {}, In<double> gap = {}) {
+    const Index n = area.length();
+    detail::check_length(dof_a.size(), 3 * n, 4, "dof_a");
+    detail::check_length(dof_b.size(), 3 * n, 5, "dof_b", true);
+    detail::check_length(normal.size(), 3 * n, 6, "normal");
+    detail::check_length(tangent.size(), 3 * n, 7, "tangent", true);
+    detail::check_length(pressure.size(), n, 9, "pressure", true);
+    detail::check_length(gap.size(), n, 10, "gap", true);
+    return add(hbvib_model_add_patch, &law, n, dof_a.data(), dof_b.data(), normal.data(), tangent.data(), area.data(), pressure.data(), gap.data());
+  }
+  /// A force of the caller. The model, its clones and the branches solved from them share it.
+  Index add_user_force(UserForce force) {
+    const auto shared = std::make_shared<const UserForce>(std::move(force));
+    Filled<hbvib_user_force, hbvib_user_force_init> c;
+    c.uses_velocity = shared->uses_velocity;
+    c.is_odd = shared->is_odd;
+    c.dofs = shared->dofs.data();
+    c.n = static_cast<Index>(shared->dofs.size());
+    c.states = shared->states;
+    c.samples = shared->samples;
+    c.force = shared->force ? detail::on_force : nullptr;
+    c.user = const_cast<UserForce*>(shared.get());
+    if (core_) core_->forces.reserve(core_->forces.size() + 1);  // so that nothing fails once it is in the model
+    const Index id = add(hbvib_model_add_user_force, &c);
+    core_->forces.push_back(shared);
+    return id;
+  }
+  /// The worst derivative that a force of the caller writes.
+  JacobianGap check_jacobian(Index contact, double omega, In<double> amplitude) const {
+    JacobianGap gap;
+    use(hbvib_check_jacobian, contact, omega, amplitude.data(), amplitude.length(), &gap);
+    return gap;
+  }
+
+  LinearModes linear_modes(Index diameter, hbvib_contact_state contacts, Index count) const {
+    const Index n = dofs();
+    LinearModes modes{std::vector<double>(detail::room(count)), {}};
+    const detail::Array<Complex> shapes(detail::room(count, n));
+    use(hbvib_linear_modes, diameter, contacts, count, modes.omega.data(), detail::flat(shapes.data()));
+    modes.shapes = shapes.view({count, n});
+    return modes;
+  }
+  /// The response to the forces over a range of frequency.
+  Branch forced_response(const SolverOptions& solver, const ForcedOptions& range, const Hooks& hooks = {}) const {
+    return solve(hbvib_forced_response, solver, range, hooks);
+  }
+  /// A nonlinear mode over a range of amplitude.
+  Branch nonlinear_mode(const SolverOptions& solver, const ModeOptions& range, const Hooks& hooks = {}) const {
+    return solve(hbvib_nonlinear_mode, solver, range, hooks);
+  }
+  /// Residual of harmonic balance at x, (H + 1) x ndof, with its derivatives if asked for.
+  Residual forced_residual(const SolverOptions& solver, double omega, In<Complex> x, bool derivatives = false) const {
+    const Index n = x.length(), order = 2 * n;
+    Residual out{std::vector<Complex>(detail::room(n)), {}, std::vector<Complex>(derivatives ? detail::room(n) : 0)};
+    double* const d_omega = derivatives ? detail::flat(out.d_omega.data()) : nullptr;
+    const detail::Array<double> jacobian(derivatives ? detail::extent(order, order) : 0);
+    use(hbvib_forced_residual, &solver, omega, detail::flat(x.data()), n, detail::flat(out.r.data()), n, jacobian.data(),
+        jacobian.length(), d_omega, derivatives ? n : 0);
+    if (derivatives) out.jacobian = {jacobian.data(), 2, {order, order, 1}, {1, order, 1}, jacobian.numbers};
+    return out;
+  }
+  /// The periodic response at one frequency by integration in time. hooks.partial plays no part.
+  TimeResponse time_response(const TimeOptions& options, const Hooks& hooks = {}) const {
+    const Index n = dofs(), rows = options.harmonics < 0 ? 0 : options.harmonics + 1;
+    const detail::Array<Complex> x(detail::extent(rows, n));
+    const detail::Array<double> samples(detail::extent(options.samples, n));
+    const detail::BoundHooks bound(hooks);
+    TimeResponse out{};
+    out.status = use(hbvib_time_response, &options, &bound, detail::flat(x.data()), x.length(),
+                     samples.data(), samples.length(), &out.info);
+    out.harmonics = x.view({rows, n});
+    out.samples = samples.view({options.samples, n});
+    return out;
+  }
+
+ private:
+  friend class Branch;
+  using Object::Object;
+
+  template <class F, class... A>
+  static Model make(F function, A... arguments) {
+    auto core = std::make_shared<Core>();
+    detail::call(function, arguments..., &core->handle);
+    return Model(std::move(core));
+  }
+  template <class F, class... A>
+  Index add(F function, A... arguments) {
+    Index id = 0;
+    use(function, arguments..., &id);
+    return id;
+  }
+  template <class F, class Range>
+  Branch solve(F function, const SolverOptions& solver, const Range& range, const Hooks& hooks) const {
+    const auto keep = core_;
+    const detail::BoundHooks bound(hooks);
+    auto core = std::make_shared<Branch::Core>();
+    if (keep) core->forces = keep->forces;
+    detail::Call call;
+    const hbvib_status status = function(get(), &solver, &range, &bound, &core->handle);
+    if (call.threw() && hooks.partial) *hooks.partial = core->handle ? Branch(std::move(core)) : Branch();
+    call.done(status);
+    return Branch(std::move(core));
+  }
+};
+
+inline Synthesis Branch::synthesis(const Model& model, const SynthesisOptions& options) const {
+  const auto keep = model.core_;
+  Index count = 2 * points();
+  Synthesis s{std::vector<double>(detail::extent(count)), std::vector<Complex>(detail::extent(count)), std::vector<double>(detail::extent(count))};
+  use(hbvib_branch_synthesis, model.get(), &options, count, s.omega.data(), detail::flat(s.response.data()), s.modal_amplitude.data(), &count);
+  s.omega.resize(detail::extent(count));
+  s.response.resize(s.omega.size());
+  s.modal_amplitude.resize(s.omega.size());
+  return s;
+}
+
+inline std::vector<SynthesisPeak> Branch::synthesis_peaks(const Model& model, const SynthesisOptions& options) const {
+  const auto keep = model.core_;
+  Index count = 0;
+  use(hbvib_branch_synthesis_peaks, model.get(), &options, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &count);
+  const std::size_t n = detail::extent(count);
+  std::vector<double> omega(n), amplitude(n), log10_amplitude(n), damping_ratio(n), other_mode(n);
+  std::vector<std::int32_t> flags(n);
+  use(hbvib_branch_synthesis_peaks, model.get(), &options, count, omega.data(), amplitude.data(), log10_amplitude.data(),
+      damping_ratio.data(), other_mode.data(), flags.data(), &count);
+  std::vector<SynthesisPeak> all;
+  for (std::size_t i = 0; i < n; i++)
+    all.push_back({omega[i], amplitude[i], log10_amplitude[i], damping_ratio[i], other_mode[i], flags[i]});
+  return all;
+}
+
+/// Force of one contact law on d prescribed motions of harmonics 0 .. H, one motion after the other.
+inline ContactForce contact_evaluate(const Contact& law, Index harmonics, Index samples, double omega, In<Complex> motion,
+                                     bool derivatives = false) {
+  const Index n = motion.length(), order = 2 * n;
+  ContactForce out{std::vector<Complex>(detail::room(n)), {}};
+  const detail::Array<double> jacobian(derivatives ? detail::extent(order, order) : 0);
+  detail::call(hbvib_contact_evaluate, &law, harmonics, samples, omega, detail::flat(motion.data()), n, detail::flat(out.force.data()), n,
+               jacobian.data(), jacobian.length());
+  if (derivatives) out.jacobian = {jacobian.data(), 2, {order, order, 1}, {1, order, 1}, jacobian.numbers};
+  return out;
+}
+
+/// An index that counts from 1, checked against 1 .. count, as one from 0: Error (HBVIB_E_INDEX).
+inline Index index_from_one(const char* name, Index index, Index count) {
+  Index from_zero = 0;
+  detail::call(hbvib_index_from_one, name, index, count, &from_zero);
+  return from_zero;
+}
+
+/// Version of the library in use: major * 65536 + minor * 256 + patch, and as text.
+inline std::uint32_t version() noexcept { return hbvib_version(); }
+inline const char* version_string() noexcept { return hbvib_version_string(); }
+
+}  // namespace hbvib
+
+#endif

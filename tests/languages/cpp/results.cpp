@@ -1,0 +1,246 @@
+/* Every kind of result, against closed forms or against each other. */
+#include "common.hpp"
+
+#include <algorithm>
+
+namespace {
+
+// Two equal masses in a chain of three equal springs: omega^2 = 1 and 3, shapes (1, 1) and (1, -1) / sqrt 2.
+void linear_modes() {
+  const double m[2][2] = {{1, 0}, {0, 1}}, k[2][2] = {{2, -1}, {-1, 2}};
+  auto model = Model::plain(2);
+  claim(model.dofs() == 2 && model.sectors() == 1 && model.contacts() == 0, "the size of a plain model");
+  model.set_matrix(HBVIB_MASS, m);
+  model.set_matrix(HBVIB_STIFFNESS, k);
+  const auto modes = model.linear_modes(0, HBVIB_CONTACTS_FREE, 2);
+  near(modes.omega[0], 1, 1e-14, "the first frequency of the chain");
+  near(modes.omega[1], std::sqrt(3.0), 1e-14, "the second frequency of the chain");
+  for (Index i = 0; i < 2; i++) {
+    near(std::abs(modes.shapes(i, 0)), std::sqrt(0.5), 1e-14, "a shape of unit mass");
+    near((modes.shapes(i, 1) / modes.shapes(i, 0)).real(), i == 0 ? 1 : -1, 1e-13, "its symmetry");
+  }
+
+  // Springs added by the model, and contacts that stick, are stiffness.
+  auto bare = Model::plain(2);
+  bare.set_matrix(HBVIB_MASS, m);
+  const double zero[2][2] = {};
+  bare.set_matrix(HBVIB_STIFFNESS, zero);
+  bare.add_springs({0, 0, 1}, {HBVIB_GROUND, 1, HBVIB_GROUND}, {}, {1.0, 1.0, 1.0});
+  near(bare.linear_modes(0, HBVIB_CONTACTS_FREE, 2).omega[1], std::sqrt(3.0), 1e-13, "a chain of added springs");
+  claim(bare.add_jenkins({0, 1}, {HBVIB_GROUND, HBVIB_GROUND}, {}, {1.0, 1.0}, {0.3, 0.3}, {1.0, 1.0}) == 0 && bare.contacts() == 2,
+        "contacts are numbered from 0");
+  near(bare.linear_modes(0, HBVIB_CONTACTS_STUCK, 1).omega[0], std::sqrt(2.0), 1e-13, "stuck contacts are springs");
+
+  // A ring of N equal masses on springs k0, coupled by k: omega^2 = k0 + 2 k (1 - cos(2 pi d / N)).
+  const double one[1][1] = {{1}}, own[1][1] = {{0.5 + 2 * 3}}, next[1][1] = {{-3}};
+  auto ring = Model::cyclic(1, 10), waves = Model::cyclic(1, 10), lagged = Model::cyclic(1, 10);
+  claim(ring.dofs() == 1 && ring.sectors() == 10, "the size of a cyclic model");
+  for (auto* a : {&ring, &lagged}) {
+    a->set_matrix(HBVIB_MASS, one);
+    a->set_matrix(HBVIB_STIFFNESS, own);
+    a->set_coupling(HBVIB_STIFFNESS, next);
+  }
+  lagged.set_coupling_previous(HBVIB_STIFFNESS, next);
+  for (Index d = 0; d <= 5; d++) {
+    const double square = 0.5 + 6 * (1 - std::cos(2 * PI * static_cast<double>(d) / 10)), wave[1][1] = {{square}};
+    waves.set_diameter(HBVIB_MASS, d, one);
+    waves.set_diameter(HBVIB_STIFFNESS, d, wave);
+    near(ring.linear_modes(d, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(square), 1e-13, "a wave of the ring");
+    near(lagged.linear_modes(d, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(square), 1e-13, "the same, both neighbours given");
+    near(waves.linear_modes(d, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(square), 1e-13, "the same, wave by wave");
+  }
+}
+
+// Jenkins' loop of amplitude A beyond the slip: work 4 limit (A - limit / kt), in time and in harmonics.
+void friction() {
+  const double kt = 1, mu = 0.3, preload = 1, limit = mu * preload, load = 0.4;
+  auto model = oscillator(1, 0.02, 1, load);
+  model.add_contact(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload));
+  SolverOptions solver;
+  solver.harmonics = 31;
+  const auto branch = model.forced_response(solver, {0.8, 1.6});
+  const auto peak = branch.highest_peak();
+  const auto x = branch.harmonics(peak.point);
+  const auto loop = branch.contact_loop(peak.point, 0, 0, 4096);
+  const auto summary = branch.contact_summary(peak.point, 0);
+  const auto energy = branch.energy(peak.point);
+  const auto time = branch.time_history(peak.point, 0, 4096);
+  for (std::size_t j = 0; j < 4096; j += 64) near(loop.motion[j] + 1, time[j] + 1, 1e-12, "the loop's motion is that of the mass");
+  double largest = 0, work = 0, slipping = 0;
+  for (std::size_t j = 0; j < 4096; j++) {
+    const std::size_t next = (j + 1) % 4096;
+    largest = std::max(largest, std::fabs(loop.force[j]));
+    work += 0.5 * (loop.force[j] + loop.force[next]) * (loop.motion[next] - loop.motion[j]);
+    slipping += loop.state[j] == HBVIB_STATE_SLIP;
+  }
+  near(largest, limit, 1e-12, "the force is at most mu N");
+  near(summary.work, 4 * limit * (summary.half_range - limit / kt), 1e-12, "the loop's area in closed form");
+  near(work, summary.work, 1e-5, "the area of the loop drawn");
+  near(slipping / 4096, summary.slip_share, 1e-2, "the share of slip");
+  near(summary.slip_share, branch.slip_fraction(peak.point).at(0), 1e-12, "the share of slip of the point");
+  near(energy.friction_loss, summary.work, 1e-12, "the loss by friction is the contact's work");
+  near(-PI * load * x(1, 0).imag(), energy.friction_loss + energy.structural_loss, 1e-9, "the force's work is what is lost");
+  double damped = 0, kinetic = 0;
+  for (Index h = 1; h <= 31; h++) {
+    const double hh = static_cast<double>(h * h), size = std::norm(x(h, 0));
+    damped += PI * 0.02 * peak.omega * hh * size;
+    kinetic += hh * peak.omega * peak.omega * size / 2;
+  }
+  near(energy.structural_loss, damped, 1e-12, "the damper's loss");
+  near(energy.twice_mean_kinetic, kinetic, 1e-12, "the kinetic energy");
+  const auto reduction = branch.reduction();
+  claim(reduction.harmonics_asked == 31 && reduction.contacts == 1 && reduction.degrees_of_freedom == 1 && reduction.even_removed == 1,
+        "what was removed");
+
+  // The same in time, from rest and from the point; with its samples.
+  hbvib::TimeOptions o(peak.omega);
+  o.samples = 64;
+  const auto truth = model.time_response(o);
+  claim(truth.status == HBVIB_OK && truth.harmonics.shape(0) == 10 && truth.samples.shape(0) == 64, "the shape of a response in time");
+  near(std::abs(truth.harmonics(1, 0)), peak.amplitude, 1e-4, "the response in time is that of harmonic balance");
+  near(truth.info.period, 2 * PI / peak.omega, 1e-14, "its period");
+  double sum = 0;
+  for (Index j = 0; j < 64; j++) sum += truth.samples(j, 0) * std::cos(2 * PI * static_cast<double>(j) / 64) / 32;
+  near(sum, truth.harmonics(1, 0).real(), 1e-3, "its samples have its fundamental");
+  const std::vector<Complex> start(x.data(), x.data() + x.size());
+  const auto again = model.time_response(o.start_from(start));
+  near(std::abs(again.harmonics(1, 0)), std::abs(truth.harmonics(1, 0)), 1e-9, "from the point it is the same");
+  claim(again.info.periods <= truth.info.periods, "and no later");
+
+  // The law alone, on the motion of the point.
+  std::vector<Complex> motion(x.data(), x.data() + x.size());
+  const auto force = hbvib::contact_evaluate(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload), 31, 0, peak.omega, motion, true);
+  Complex fundamental = 0;
+  for (std::size_t j = 0; j < 4096; j++) fundamental += loop.force[j] * std::polar(1.0 / 2048, -2 * PI * static_cast<double>(j) / 4096);
+  near(std::abs(force.force[1] - fundamental) + 1, 1, 1e-4, "the law's fundamental is the loop's");
+  claim(force.jacobian.shape(0) == 64 && force.jacobian.shape(1) == 64, "the order of the law's Jacobian");
+  const double eps = 1e-6;
+  motion[1] += eps;
+  const auto moved = hbvib::contact_evaluate(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload), 31, 0, peak.omega, motion);
+  near((moved.force[1].imag() - force.force[1].imag()) / eps, force.jacobian(3, 2), 1e-3, "a column of it is a difference");
+  std::vector<Complex> plane(64);
+  std::copy(x.data(), x.data() + x.size(), plane.begin());
+  const Contact::Dofs side = {0, 1, HBVIB_GROUND}, ground = {HBVIB_GROUND, HBVIB_GROUND, HBVIB_GROUND};
+  const auto friction = Contact::friction(HBVIB_FRICTION_3D, side, ground, kt, 0, mu, preload);
+  const auto along = hbvib::contact_evaluate(friction, 31, 4096, peak.omega, plane);
+  near(std::abs(along.force[1] - force.force[1]) + 1, 1, 1e-4, "friction in a plane, moved along a line, is the same law");
+  claim(std::abs(along.force[33]) < 1e-12, "and has no force across it");
+  claim(moved.jacobian.empty(), "without derivatives there is no Jacobian");
+}
+
+// Contacts written in several ways are the same contacts.
+void equal_contacts() {
+  auto peak = [](auto&& add) {
+    auto model = oscillator(1, 0.05, 1, 0.2);
+    add(model);
+    return model.forced_response({}, {0.7, 2.2}).highest_peak();
+  };
+  auto same = [&](auto&& one, auto&& other, double tolerance, const char* what) {
+    const auto a = peak(one), b = peak(other);
+    near(a.omega, b.omega, tolerance, what);
+    near(a.amplitude, b.amplitude, tolerance, what);
+  };
+  const auto cubic = [](Model& m) { m.add_contact(Contact::cubic_spring(0, HBVIB_GROUND, 0.3, 0.7)); };
+  same([](Model& m) { m.add_spring_damper(0, HBVIB_GROUND, 0, {0.3, 0, 0.7}); }, cubic, 1e-9, "a polynomial is the cubic spring");
+  same([](Model& m) { m.add_polynomial({0}, {0, 0}, {0.3, 0.7}, {1, 3}); }, cubic, 1e-9, "terms are the cubic spring");
+  same([](Model& m) { m.add_springs({0}, {HBVIB_GROUND}, {}, {0.3}), m.add_stiffness_tensors({0}, {}, {0.7}); }, cubic, 1e-9, "tensors are the cubic spring");
+  const auto stop = [](Model& m) { m.add_contact(Contact::unilateral(0, HBVIB_GROUND, 0.5, 0.2)); };
+  same([](Model& m) { m.add_table(0, HBVIB_GROUND, 0, {-1.2, -0.2, 1}, {-0.5, 0, 0}); }, stop, 1e-7, "a table is the one-sided spring");
+  const auto jenkins = [](Model& m) { m.add_contact(Contact::jenkins(0, HBVIB_GROUND, 0.8, 0.3, 0.5)); };
+  same([](Model& m) { m.set_preload(m.add_jenkins({0}, {HBVIB_GROUND}, {}, {0.8}, {0.3}, {9.0}), 0.5); }, jenkins, 1e-12, "arrays of friction, its load set later");
+  same([](Model& m) { m.add_patch(Contact::jenkins(0, 0, 0.4, 0.3, 0.25), {0, HBVIB_GROUND, HBVIB_GROUND}, {}, {0.0, 0.0, 2.0}, {3.0, 0.0, 0.0}, {2.0}); },
+       jenkins, 1e-9, "a patch of one pair");
+  same([](Model& m) { m.add_iwan(0, HBVIB_GROUND, 0, 0.15, 0.8, -0.5, 1e9, 50); }, jenkins, 1e-3, "an Iwan joint that slips all at once");
+  same([](Model& m) { m.add_contact(Contact::regularised(0, HBVIB_GROUND, 0.3, 0.1, 50)); },
+       [](Model& m) { m.add_spring_damper(0, HBVIB_GROUND, 0, {}, {0.3 * 0.1 / 50}); }, 1e-4, "smoothed friction far below its velocity is a damper");
+}
+
+// Linear models: the response has the closed form F / (k - m w^2 + i c w), force by force.
+void forces() {
+  auto model = oscillator(2, 0.1, 3, 5);
+  model.clear_forces();
+  model.add_force(0, 1, {0.3, -0.4});
+  const double w = 1.1;
+  const auto wanted = Complex(0.3, -0.4) / Complex(3 - 2 * w * w, 0.1 * w);
+  const auto x = model.forced_response({}, {w, w}).harmonics(0);
+  near(std::abs(x(1, 0) - wanted) + 1, 1, 1e-14, "forces are cleared, complex forces have their phase");
+  near(std::abs(model.time_response(hbvib::TimeOptions(w)).harmonics(1, 0) - wanted) + 1, 1, 1e-10, "in time as well");
+}
+
+// Of two modes the one most alike a shape is followed.
+void alike() {
+  const double m[2][2] = {{1, 0}, {0, 1}}, k[2][2] = {{2, -1}, {-1, 2}};
+  auto model = Model::plain(2);
+  model.set_matrix(HBVIB_MASS, m);
+  model.set_matrix(HBVIB_STIFFNESS, k);
+  model.add_contact(Contact::cubic_spring(0, HBVIB_GROUND, 0, 1));
+  const std::vector<Complex> shape = {1, -0.8};
+  hbvib::ModeOptions range(-3, -1);
+  const auto info = model.nonlinear_mode({}, range.alike(shape)).mode_info();
+  claim(info.mode_index == 1 && std::fabs(info.omega - std::sqrt(3.0)) < 1e-12, "the mode most alike a shape");
+}
+
+// A spring of y + y^3 (H = 15): the mode's frequency against the arithmetic-geometric mean of Duffing's.
+void nonlinear_mode() {
+  auto model = oscillator(1, 0, 1, 0.2);
+  model.add_contact(Contact::cubic_spring(0, HBVIB_GROUND, 0, 1));
+  const std::vector<double> at = {-1, 0, 0.2};
+  hbvib::ModeOptions range(-1.5, 0.3);
+  SolverOptions solver;
+  solver.harmonics = 15;
+  const auto mode = model.nonlinear_mode(solver, range.wanted(at));
+  claim(mode.complete(), "the mode is whole");
+  for (Index i = 0; i < 3; i++) {
+    const auto found = mode.at(i);
+    if (!claim(found.size() == 1, "one solution at a wanted amplitude")) continue;
+    const auto point = mode.mode_point(found[0].point);
+    near(point.log10_amplitude, at[static_cast<std::size_t>(i)], 1e-12, "its amplitude");
+    double a = 0;  // largest displacement: all harmonics in phase
+    const auto x = mode.harmonics(found[0].point);
+    for (Index h = 0; h < x.shape(0); h++) a += x(h, 0).real();
+    double mean = 1, other = std::sqrt((1 + a * a / 2) / (1 + a * a));
+    for (int k = 0; k < 8; k++) {
+      const double next = (mean + other) / 2;
+      other = std::sqrt(mean * other), mean = next;
+    }
+    near(point.omega, std::sqrt(1 + a * a) * mean, 1e-11, "its frequency by elliptic integrals");
+    near(point.damping_ratio + 1, 1, 1e-12, "it needs no artificial damping");
+  }
+  const auto info = mode.mode_info();
+  claim(info.mode_index == 0 && info.multiple == HBVIB_MODE_SINGLE && std::fabs(info.omega - 1) < 1e-14, "where the mode began");
+
+  // The resonance that it foretells with damping is the one computed.
+  const double c[1][1] = {{0.02}};
+  model.set_matrix(HBVIB_DAMPING, c);
+  hbvib::SynthesisOptions with;
+  with.model_damping = 1;
+  with.force_factor = 0.1;
+  const auto foretold = mode.synthesis_peaks(model, with);
+  auto small = oscillator(1, 0.02, 1, 0.02);
+  small.add_contact(Contact::cubic_spring(0, HBVIB_GROUND, 0, 1));
+  const auto peak = small.forced_response({}, {0.8, 2}).highest_peak();
+  if (claim(foretold.size() == 1, "one resonance")) {
+    near(foretold[0].amplitude, peak.amplitude, 2e-2, "its amplitude is foretold");
+    near(foretold[0].omega, peak.omega, 5e-3, "its frequency is foretold");
+  }
+  const auto curve = mode.synthesis(model, with);
+  claim(!curve.omega.empty() && curve.omega.size() == curve.response.size() && curve.omega.size() == curve.modal_amplitude.size(), "the foretold curve");
+  double largest = 0;
+  for (const auto r : curve.response) largest = std::max(largest, std::abs(r));
+  claim(largest <= foretold.at(0).amplitude * (1 + 1e-9) && largest > 0.5 * foretold.at(0).amplitude, "stays below its resonance");
+}
+
+}  // namespace
+
+int main() {
+  claim(hbvib::version() == (HBVIB_VERSION_MAJOR << 16 | HBVIB_VERSION_MINOR << 8 | HBVIB_VERSION_PATCH), "the library is that of the header");
+  claim(std::string(hbvib::version_string()).find('.') != std::string::npos, "its version as text");
+  return verdict(150, [] {
+    linear_modes();
+    friction();
+    equal_contacts();
+    forces();
+    alike();
+    nonlinear_mode();
+  });
+}
