@@ -21,8 +21,6 @@
 !>            pointer in the struct.
 !> arrays     double precision, passed without a copy where they are contiguous. Arrays of unequal length are HBVIB_E_DIMENSION.
 !>            Complex harmonics are x(dof, 0:H). Tables that C has by rows have their indices reversed here: C's [j][i] is (i, j).
-!> traps      Programs built with -ffpe-trap: what is called through a type computes without traps, callbacks included, and the
-!>            caller's come back. Functions called by their C name leave traps as they are, and may trip them.
 module hbvib
    use, intrinsic :: iso_c_binding
    implicit none
@@ -282,6 +280,7 @@ module hbvib
    contains
       procedure :: free => branch_free
       procedure :: points => branch_points
+      procedure :: stored => branch_stored
       procedure :: status => branch_status
       procedure, private :: field_1, field_2
       generic :: field => field_1, field_2
@@ -737,6 +736,12 @@ module hbvib
          integer(c_int64_t) :: answer
       end function hbvib_branch_points
 
+      function hbvib_branch_stored(branch) bind(c) result(answer)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t) :: answer
+      end function hbvib_branch_stored
+
       function hbvib_branch_status(branch) bind(c) result(status)
          import
          type(c_ptr), value :: branch
@@ -966,22 +971,9 @@ module hbvib
          type(c_ptr), value :: text
          integer(c_size_t) :: length
       end function strlen
-
-      function feholdexcept(state) bind(c) result(outcome)
-         import
-         integer(c_int64_t), intent(out) :: state(*)
-         integer(c_int) :: outcome
-      end function feholdexcept
-
-      function fesetenv(state) bind(c) result(outcome)
-         import
-         integer(c_int64_t), intent(in) :: state(*)
-         integer(c_int) :: outcome
-      end function fesetenv
    end interface
-   integer, parameter, private :: room = 32 ! 256 bytes, more than the fenv_t of any C library
 
-   private :: strlen, feholdexcept, fesetenv, hooks_of, reach_1, reach_2, reach_3, hold, release, to_zero, to_zero_all
+   private :: strlen, hooks_of, reach_1, reach_2, reach_3, to_zero, to_zero_all
    private :: same_length, struct_dofs, solver_from_one, made, model_new, model_clone, model_free, model_dofs
    private :: model_sectors, model_contacts, dense, address, dense_real, dense_complex, sparse, set, couple, set_real
    private :: set_sparse_real, couple_real, couple_sparse_real, set_complex, set_sparse_complex, couple_complex
@@ -990,7 +982,7 @@ module hbvib
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
    private :: model_add_user_force, model_check_jacobian, model_forced_response, model_nonlinear_mode, model_time_response
-   private :: model_forced_residual, branch_free, branch_points, branch_status, stored, wanted_count, field_1, field_2
+   private :: model_forced_residual, branch_free, branch_points, branch_status, branch_stored, wanted_count, field_1, field_2
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
@@ -1081,20 +1073,6 @@ contains
       nullify (x)
       if (c_associated(memory)) call c_f_pointer(memory, x, [n, m, l])
    end subroutine reach_3
-
-   ! The library's arithmetic may raise flags on its way (an infinite preload, a logarithm of 0), which would end a program built
-   ! with -ffpe-trap: it computes without traps, and the caller's flags and traps come back afterwards.
-   subroutine hold(host)
-      integer(i64), intent(out) :: host(room)
-      integer(c_int) :: unused
-      unused = feholdexcept(host)
-   end subroutine hold
-
-   subroutine release(host)
-      integer(i64), intent(in) :: host(room)
-      integer(c_int) :: unused
-      unused = fesetenv(host)
-   end subroutine release
 
    ! ---- Checks. Each does nothing where status tells of an earlier error, so that the first sentence is the one that stays. ----
 
@@ -1318,17 +1296,12 @@ contains
       type(hbvib_matrix), intent(in) :: a
       integer, intent(in), optional :: diameter
       integer(i32) :: outcome
-      integer(i64) :: host(room)
       outcome = status
       if (status /= HBVIB_OK) return
       if (present(diameter)) then
-         call hold(host)
          outcome = hbvib_cyclic_set_diameter(self%handle, which, int(diameter, i64), a)
-         call release(host)
       else
-         call hold(host)
          outcome = hbvib_model_set_matrix(self%handle, which, a)
-         call release(host)
       end if
    end function set
 
@@ -1338,20 +1311,15 @@ contains
       type(hbvib_matrix), intent(in) :: a
       logical, intent(in), optional :: previous
       integer(i32) :: outcome
-      integer(i64) :: host(room)
       logical :: backwards
       outcome = status
       if (status /= HBVIB_OK) return
       backwards = .false.
       if (present(previous)) backwards = previous
       if (backwards) then
-         call hold(host)
          outcome = hbvib_cyclic_set_coupling_previous(self%handle, which, a)
-         call release(host)
       else
-         call hold(host)
          outcome = hbvib_cyclic_set_coupling(self%handle, which, a)
-         call release(host)
       end if
    end function couple
 
@@ -1499,10 +1467,7 @@ contains
       class(hbvib_model), intent(inout) :: self
       real(dp), intent(in) :: alpha_mass, beta_stiffness
       integer(i32) :: status
-      integer(i64) :: host(room)
-      call hold(host)
       status = hbvib_model_set_rayleigh(self%handle, alpha_mass, beta_stiffness)
-      call release(host)
    end function model_set_rayleigh
 
    !> Engine order of the excitation.
@@ -1519,13 +1484,10 @@ contains
       integer, intent(in) :: dof, harmonic
       complex(dp), intent(in) :: force
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: zero
       status = HBVIB_OK
       call to_zero(status, 'dof', int(dof, i64), hbvib_model_dofs(self%handle), zero)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_model_add_force(self%handle, zero, int(harmonic, i64), real(force), aimag(force))
-      call release(host)
    end function add_force_complex
 
    function add_force_real(self, dof, harmonic, force) result(status)
@@ -1551,7 +1513,6 @@ contains
       integer, intent(in), optional :: diameter
       integer(i32), intent(in), optional :: contacts
       integer(i32) :: status, state
-      integer(i64) :: host(room)
       integer(i64) :: d
       status = HBVIB_OK
       d = 0
@@ -1562,9 +1523,7 @@ contains
          call same_length(status, 'shapes(:, 1)', size(shapes, 1, i64), hbvib_model_dofs(self%handle))
          call same_length(status, 'shapes(1, :)', size(shapes, 2, i64), size(omega, kind=i64))
       end if
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_linear_modes(self%handle, d, state, size(omega, kind=i64), omega, shapes)
-      call release(host)
    end function model_linear_modes
 
    !> id receives the number of the contact, from 1.
@@ -1573,15 +1532,12 @@ contains
       type(hbvib_contact), intent(in) :: contact
       integer, intent(inout), optional :: id
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_contact) :: c
       integer(i64) :: zero
       status = HBVIB_OK
       c = contact
       call struct_dofs(status, c, hbvib_model_dofs(self%handle))
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_model_add_contact(self%handle, c, zero)
-      call release(host)
       if (status == HBVIB_OK .and. present(id)) id = int(zero) + 1
    end function model_add_contact
 
@@ -1590,13 +1546,10 @@ contains
       integer, intent(in) :: id
       real(dp), intent(in) :: preload
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: zero
       status = HBVIB_OK
       call to_zero(status, 'id', int(id, i64), hbvib_model_contacts(self%handle), zero)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_model_set_preload(self%handle, zero, preload)
-      call release(host)
    end function model_set_preload
 
    !> Many Jenkins contacts, all arrays of one length. dof_b absent: the ground; sector_offset absent: 0.
@@ -1607,7 +1560,6 @@ contains
       integer, intent(in), optional :: dof_b(:), sector_offset(:)
       integer, intent(inout), optional :: first_id
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: n, first
       integer(i64), allocatable :: a(:), b(:), offset(:)
       n = size(dof_a)
@@ -1616,9 +1568,7 @@ contains
       call same_length(status, 'mu', size(mu, kind=i64), n)
       call same_length(status, 'preload', size(preload, kind=i64), n)
       call sides(self, status, dof_a, dof_b, sector_offset, a, b, offset)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_model_add_jenkins(self%handle, n, a, b, offset, kt, mu, preload, first)
-      call release(host)
       if (status == HBVIB_OK .and. present(first_id)) first_id = int(first) + 1
    end function model_add_jenkins
 
@@ -1629,15 +1579,12 @@ contains
       real(dp), intent(in), contiguous :: stiffness(:)
       integer, intent(in), optional :: dof_b(:), sector_offset(:)
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64), allocatable :: a(:), b(:), offset(:)
       status = HBVIB_OK
       call same_length(status, 'stiffness', size(stiffness, kind=i64), size(dof_a, kind=i64))
       call sides(self, status, dof_a, dof_b, sector_offset, a, b, offset)
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_model_add_springs(self%handle, size(a, kind=i64), a, b, offset, stiffness)
-      call release(host)
    end function model_add_springs
 
    !> Both sides of many contacts, from 0; offset stays unallocated, and so absent to C, where it was not given.
@@ -1667,13 +1614,10 @@ contains
       integer, intent(in), optional :: sector_offset
       integer, intent(inout), optional :: first_id
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: a, b, offset, first
       call side(self, status, dof_a, dof_b, sector_offset, a, b, offset)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_model_add_iwan(self%handle, a, b, offset, slip_force, stiffness, chi, beta, &
                                                             int(elements, i64), first)
-      call release(host)
       if (status == HBVIB_OK .and. present(first_id)) first_id = int(first) + 1
    end function model_add_iwan
 
@@ -1685,14 +1629,11 @@ contains
       integer, intent(in), optional :: sector_offset
       integer, intent(inout), optional :: id
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: a, b, offset, zero
       call side(self, status, dof_a, dof_b, sector_offset, a, b, offset)
       call same_length(status, 'force', size(force, kind=i64), size(displacement, kind=i64))
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_model_add_table(self%handle, a, b, offset, size(force, kind=i64), displacement, force, zero)
-      call release(host)
       if (status == HBVIB_OK .and. present(id)) id = int(zero) + 1
    end function model_add_table
 
@@ -1704,17 +1645,14 @@ contains
       integer, intent(in), optional :: sector_offset
       integer, intent(inout), optional :: id
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: a, b, offset, zero, n_spring, n_damper
       n_spring = 0
       n_damper = 0
       if (present(spring)) n_spring = size(spring)
       if (present(damper)) n_damper = size(damper)
       call side(self, status, dof_a, dof_b, sector_offset, a, b, offset)
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_model_add_spring_damper(self%handle, a, b, offset, n_spring, spring, n_damper, damper, zero)
-      call release(host)
       if (status == HBVIB_OK .and. present(id)) id = int(zero) + 1
    end function model_add_spring_damper
 
@@ -1743,7 +1681,6 @@ contains
       integer, intent(in), optional :: x_powers(:, :), v_powers(:, :)
       integer, intent(inout), optional :: id
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: zero, n, terms
       integer(i64), allocatable :: d(:), along(:)
       integer(i32), allocatable :: x(:, :), v(:, :)
@@ -1763,10 +1700,8 @@ contains
          call same_length(status, 'v_powers(:, 1)', size(v, 1, i64), n)
          call same_length(status, 'v_powers(1, :)', size(v, 2, i64), terms)
       end if
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_model_add_polynomial(self%handle, d, n, terms, along, coefficient, x, v, zero)
-      call release(host)
       if (status == HBVIB_OK .and. present(id)) id = int(zero) + 1
    end function model_add_polynomial
 
@@ -1777,7 +1712,6 @@ contains
       real(dp), intent(in), contiguous, optional :: quadratic(:, :, :), cubic(:, :, :, :)
       integer, intent(inout), optional :: id
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: zero, n
       integer(i64), allocatable :: d(:)
       status = HBVIB_OK
@@ -1785,9 +1719,7 @@ contains
       call to_zero_all(status, 'dofs', dofs, hbvib_model_dofs(self%handle), d)
       if (present(quadratic)) call all_of_length(status, 'quadratic', shape(quadratic), n)
       if (present(cubic)) call all_of_length(status, 'cubic', shape(cubic), n)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_model_add_stiffness_tensors(self%handle, d, n, quadratic, cubic, zero)
-      call release(host)
       if (status == HBVIB_OK .and. present(id)) id = int(zero) + 1
    end function model_add_stiffness_tensors
 
@@ -1812,7 +1744,6 @@ contains
       real(dp), intent(in), contiguous, optional :: tangent(:, :), pressure(:), gap(:)
       integer, intent(inout), optional :: first_id
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: n, ndof, first
       integer(i64), allocatable :: a(:), b(:)
       status = HBVIB_OK
@@ -1827,10 +1758,8 @@ contains
       ndof = hbvib_model_dofs(self%handle)
       call to_zero_all(status, 'dof_a', reshape(dof_a, [size(dof_a)]), ndof, a, HBVIB_GROUND)
       if (present(dof_b)) call to_zero_all(status, 'dof_b', reshape(dof_b, [size(dof_b)]), ndof, b, HBVIB_GROUND)
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_model_add_patch(self%handle, law, n, a, b, normal, tangent, area, pressure, gap, first)
-      call release(host)
       if (status == HBVIB_OK .and. present(first_id)) first_id = int(first) + 1
    end function model_add_patch
 
@@ -1879,14 +1808,11 @@ contains
       real(dp), intent(in), contiguous :: amplitude(:)
       type(hbvib_jacobian_gap), intent(out) :: gap
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: zero
       status = HBVIB_OK
       call to_zero(status, 'contact', int(contact, i64), hbvib_model_contacts(self%handle), zero)
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_check_jacobian(self%handle, zero, omega, amplitude, size(amplitude, kind=i64), gap)
-      call release(host)
       if (status /= HBVIB_OK) return
       gap%sample = gap%sample + 1
       gap%row = gap%row + 1
@@ -1903,7 +1829,6 @@ contains
       real(dp), intent(in), contiguous, target, optional :: at(:)
       complex(dp), intent(in), contiguous, target, optional :: guess(:, :)
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_forced_options) :: forced
       type(hbvib_solver_options), allocatable :: asked
       integer(i64) :: ndof
@@ -1923,9 +1848,7 @@ contains
          forced%guess_len = size(guess)
          if (size(guess) > 0) forced%guess = c_loc(guess)
       end if
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_forced_response(self%handle, asked, forced, hooks, branch%handle)
-      call release(host)
    end function model_forced_response
 
    !> Nonlinear mode over log10 amplitudes log10_start .. log10_stop. mode: the other options, whose range is not looked at.
@@ -1940,7 +1863,6 @@ contains
       real(dp), intent(in), contiguous, target, optional :: at(:)
       complex(dp), intent(in), contiguous, target, optional :: shape(:)
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_mode_options) :: m
       type(hbvib_solver_options), allocatable :: asked
       integer(i64) :: ndof, contacts
@@ -1964,9 +1886,7 @@ contains
          m%shape_len = size(shape)
          if (size(shape) > 0) m%shape = c_loc(shape)
       end if
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_nonlinear_mode(self%handle, asked, m, hooks, branch%handle)
-      call release(host)
    end function model_nonlinear_mode
 
    !> Periodic response at omega by integration in time. harmonics(ndof, 0:H) and samples(ndof, times) receive what they have
@@ -1981,7 +1901,6 @@ contains
       type(hbvib_hooks), intent(in), optional :: hooks
       complex(dp), intent(in), contiguous, target, optional :: start(:, :)
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_time_options) :: o
       integer(i64) :: ndof, n_harmonics, n_samples
       status = HBVIB_OK
@@ -2006,10 +1925,8 @@ contains
          o%start_len = size(start)
          if (size(start) > 0) o%start = c_loc(start)
       end if
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_time_response(self%handle, o, hooks, harmonics, n_harmonics, samples, n_samples, info)
-      call release(host)
    end function model_time_response
 
    !> Residual r(ndof, 0:H) of harmonic balance at x(ndof, 0:H), derivatives jac (2 (H + 1) ndof square) and d_omega (as r).
@@ -2022,7 +1939,6 @@ contains
       complex(dp), intent(inout), contiguous, optional :: d_omega(:, 0:)
       type(hbvib_solver_options), intent(in), optional :: solver
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_solver_options), allocatable :: asked
       integer(i64) :: ndof, n_jac, n_omega
       status = HBVIB_OK
@@ -2040,10 +1956,8 @@ contains
          call same_length(status, 'd_omega(:, 0)', size(d_omega, 1, i64), ndof)
          n_omega = size(d_omega)
       end if
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_forced_residual(self%handle, asked, omega, x, size(x, kind=i64), r, &
                                                              size(r, kind=i64), jac, n_jac, d_omega, n_omega)
-      call release(host)
    end function model_forced_residual
 
    ! ---- Branches ----
@@ -2070,25 +1984,19 @@ contains
       status = hbvib_branch_status(self%handle)
    end function branch_status
 
-   !> All points of a branch, the special ones included; or a negative status.
-   function stored(self) result(count)
+   !> All stored points: the curve, then peaks, folds and the solutions wanted; or a negative status.
+   function branch_stored(self) result(count)
       class(hbvib_branch), intent(in) :: self
-      integer(i64) :: count, more
-      count = hbvib_branch_points(self%handle)
-      if (count < 0) return
-      if (hbvib_branch_peaks(self%handle, 0_i64, count=more) == HBVIB_OK) count = count + more
-      if (hbvib_branch_folds(self%handle, 0_i64, count=more) == HBVIB_OK) count = count + more
-      more = wanted_count(self, count)
-   end function stored
+      integer :: count
+      count = int(hbvib_branch_stored(self%handle))
+   end function branch_stored
 
-   !> Frequencies or amplitudes that were wanted; the solutions found at them are added to points.
-   function wanted_count(self, points) result(wanted)
+   !> Number of the frequencies or amplitudes that were wanted.
+   function wanted_count(self) result(wanted)
       class(hbvib_branch), intent(in) :: self
-      integer(i64), intent(inout) :: points
-      integer(i64) :: wanted, more
+      integer(i64) :: wanted, found
       wanted = 0
-      do while (hbvib_branch_at(self%handle, wanted, 0_i64, count=more) == HBVIB_OK)
-         points = points + more
+      do while (hbvib_branch_at(self%handle, wanted, 0_i64, count=found) == HBVIB_OK)
          wanted = wanted + 1
       end do
    end function wanted_count
@@ -2160,16 +2068,13 @@ contains
       integer, intent(in) :: point, first_dof
       complex(dp), intent(inout), contiguous :: x(:, 0:)
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_reduction) :: size_of
       integer(i64) :: p, first
       status = hbvib_branch_reduction(self%handle, size_of)
       call to_zero(status, 'first_dof', int(first_dof, i64), size_of%degrees_of_freedom, first)
       call point_to_zero(self, status, point, p)
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_branch_harmonics(self%handle, p, first, size(x, 1, i64), x, size(x, kind=i64))
-      call release(host)
    end function branch_harmonics_into
 
    !> Number of a stored point, from 0.
@@ -2181,8 +2086,7 @@ contains
       integer(i64) :: count
       zero = point - 1
       if (status < HBVIB_OK) return
-      count = hbvib_branch_points(self%handle)
-      if (point > count .and. count >= 0) count = stored(self)
+      count = hbvib_branch_stored(self%handle)
       call to_zero(status, 'point', int(point, i64), count, zero)
    end subroutine point_to_zero
 
@@ -2232,11 +2136,10 @@ contains
       real(dp), allocatable, intent(inout), optional :: amplitude(:)
       integer, allocatable, intent(inout), optional :: point(:)
       integer(i32) :: status
-      integer(i64) :: zero, unused
+      integer(i64) :: zero
       status = self%status()
       if (status < HBVIB_OK) return
-      unused = 0
-      call to_zero(status, 'wanted', int(wanted, i64), wanted_count(self, unused), zero)
+      call to_zero(status, 'wanted', int(wanted, i64), wanted_count(self), zero)
       if (status >= HBVIB_OK) status = special(self, zero, amplitude=amplitude, point=point)
    end function branch_at
 
@@ -2280,13 +2183,10 @@ contains
       integer, intent(in) :: point
       type(hbvib_energies), intent(out) :: energy
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: p
       status = HBVIB_OK
       call point_to_zero(self, status, point, p)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_branch_energy(self%handle, p, energy)
-      call release(host)
    end function branch_energy
 
    !> Motion of a degree of freedom over a period: x(j) at omega t = 2 pi (j - 1) / size(x).
@@ -2295,15 +2195,12 @@ contains
       integer, intent(in) :: point, dof
       real(dp), intent(inout), contiguous :: x(:)
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_reduction) :: size_of
       integer(i64) :: p, d
       status = hbvib_branch_reduction(self%handle, size_of)
       call to_zero(status, 'dof', int(dof, i64), size_of%degrees_of_freedom, d)
       call point_to_zero(self, status, point, p)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_branch_time_history(self%handle, p, d, size(x, kind=i64), x)
-      call release(host)
    end function branch_time_history
 
    !> Hysteresis loop of a contact in direction 1 (default) .. contact_summary's directions, at as many times as the arrays, equally
@@ -2315,15 +2212,12 @@ contains
       integer(i32), intent(inout), contiguous, optional :: state(:)
       integer, intent(in), optional :: direction
       integer(i32) :: status
-      integer(i64) :: host(room)
       type(hbvib_contact_summary) :: summary
       integer(i64) :: p, c, d, n
       call contact_to_zero(self, status, point, contact, p, c)
       d = 0
       if (present(direction)) then
-         call hold(host)
          if (status == HBVIB_OK) status = hbvib_branch_contact_summary(self%handle, p, c, summary)
-         call release(host)
          call to_zero(status, 'direction', int(direction, i64), summary%directions, d)
       end if
       n = 1
@@ -2332,9 +2226,7 @@ contains
       if (present(motion)) n = size(motion)
       if (present(force)) call same_length(status, 'force', size(force, kind=i64), n)
       if (present(state)) call same_length(status, 'state', size(state, kind=i64), n)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_branch_contact_loop(self%handle, p, c, d, n, motion, force, state)
-      call release(host)
    end function branch_contact_loop
 
    !> Work, shares of the period and ranges of a contact at a stored point.
@@ -2343,12 +2235,9 @@ contains
       integer, intent(in) :: point, contact
       type(hbvib_contact_summary), intent(out) :: summary
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: p, c
       call contact_to_zero(self, status, point, contact, p, c)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_branch_contact_summary(self%handle, p, c, summary)
-      call release(host)
    end function branch_contact_summary
 
    subroutine contact_to_zero(self, status, point, contact, p, c)
@@ -2369,13 +2258,10 @@ contains
       integer, intent(in) :: point
       type(hbvib_mode_point), intent(out) :: numbers
       integer(i32) :: status
-      integer(i64) :: host(room)
       integer(i64) :: p
       status = HBVIB_OK
       call point_to_zero(self, status, point, p)
-      call hold(host)
       if (status == HBVIB_OK) status = hbvib_branch_mode_point(self%handle, p, numbers)
-      call release(host)
    end function branch_mode_point
 
    !> Where a nonlinear mode started; mode_index, reference_dof and amplitude_contact count from 1.
@@ -2398,7 +2284,6 @@ contains
       complex(dp), allocatable, intent(inout), optional :: response(:)
       type(hbvib_synthesis_options), intent(in), optional :: options
       integer(i32) :: status
-      integer(i64) :: host(room)
       real(dp), allocatable :: w(:), a(:)
       complex(dp), allocatable :: x(:)
       integer(i64) :: n
@@ -2408,10 +2293,8 @@ contains
       if (status /= HBVIB_OK) return
       allocate (w(2*n), a(2*n), x(2*n), stat=stat)
       status = made(stat)
-      call hold(host)
       if (status == HBVIB_OK) &
          status = hbvib_branch_synthesis(self%handle, model%handle, options, 2*n, w, x, a, n)
-      call release(host)
       if (status /= HBVIB_OK) return
       if (present(omega)) omega = w(:n)
       if (present(response)) response = x(:n)
@@ -2427,7 +2310,6 @@ contains
       integer(i32), allocatable, intent(inout), optional :: flags(:)
       type(hbvib_synthesis_options), intent(in), optional :: options
       integer(i32) :: status
-      integer(i64) :: host(room)
       real(dp), allocatable :: x(:, :)
       integer(i32), allocatable :: bits(:)
       integer(i64) :: n
@@ -2437,10 +2319,8 @@ contains
       do while (status == HBVIB_OK)
          allocate (x(n, 5), bits(n), stat=stat)
          status = made(stat)
-         call hold(host)
          if (status == HBVIB_OK) status = hbvib_branch_synthesis_peaks(self%handle, model%handle, options, n, x(:, 1), x(:, 2), &
                                                                        x(:, 3), x(:, 4), x(:, 5), bits, n)
-         call release(host)
          if (status /= HBVIB_E_DIMENSION .or. n <= size(bits)) exit
          deallocate (x, bits)
          status = HBVIB_OK

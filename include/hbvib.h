@@ -1494,6 +1494,12 @@ hbvib_status hbvib_branch_free(hbvib_branch *branch);
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 int64_t hbvib_branch_points(const hbvib_branch *branch);
 
+/// Number of all stored points, those beside the curve included: point numbers are below it. Or a
+/// negative status.
+///
+/// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
+int64_t hbvib_branch_stored(const hbvib_branch *branch);
+
 /// The status with which the solve that made the branch returned: HBVIB_OK if the whole range was
 /// covered, positive if it stopped early.
 ///

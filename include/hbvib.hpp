@@ -674,6 +674,8 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   std::string sentence() const { return status(), last_error(); }
   /// Points on the curve.
   Index points() const { return use(hbvib_branch_points); }
+  /// All stored points: the curve, then peaks, folds and the solutions wanted.
+  Index stored() const { return use(hbvib_branch_stored); }
   /// A field of the curve where it lies, without a copy: points, or points x contacts.
   View<const double> field(hbvib_field which) const {
     Filled<hbvib_view, hbvib_view_init> v;

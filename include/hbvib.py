@@ -175,7 +175,7 @@ _OTHERS = dict(  # functions that return no status, and their results
     hbvib_version=("", ctypes.c_uint32), hbvib_version_string=("", ctypes.c_char_p),
     hbvib_status_name=("i", ctypes.c_char_p), hbvib_last_error=("", ctypes.c_char_p),
     hbvib_last_error_argument=("", ctypes.c_int32), hbvib_last_error_copy=("pz", ctypes.c_size_t),
-    hbvib_branch_points=("h", ctypes.c_int64), hbvib_model_dofs=("h", ctypes.c_int64),
+    hbvib_branch_points=("h", ctypes.c_int64), hbvib_branch_stored=("h", ctypes.c_int64), hbvib_model_dofs=("h", ctypes.c_int64),
     hbvib_model_sectors=("h", ctypes.c_int64), hbvib_model_contacts=("h", ctypes.c_int64))
 _ARGUMENTS.update({name: list(letters) for name, (letters, _) in _OTHERS.items()})
 _VERSION = (0, 1)
@@ -1149,6 +1149,11 @@ class Branch(_Owner):
     def __len__(self) -> int:
         """Number of points on the curve."""
         return _call("hbvib_branch_points", self.handle)
+
+    @property
+    def stored(self) -> int:
+        """Number of all stored points: the curve, then peaks, folds and the solutions wanted."""
+        return _call("hbvib_branch_stored", self.handle)
 
     @property
     def status(self) -> Status:

@@ -161,7 +161,10 @@ fn a_narrow_curve_with_two_folds_is_followed_round_both() {
     }
     // Describing function: near the peak, a c ω = F.
     let top = peak(&up);
-    assert!((top / (1.5e-4 / (1e-3 * up.peaks()[0].omega)) - 1.0).abs() < 1e-3, "{top}");
+    assert!(
+        (top / (1.5e-4 / (1e-3 * up.peaks()[0].omega)) - 1.0).abs() < 1e-3,
+        "{top}"
+    );
 }
 
 #[test]
@@ -171,7 +174,10 @@ fn a_resonance_of_width_1e_minus_5_is_found_without_a_grid() {
     let branch = sweep(&model, &harmonics(3), 0.5, 1.7, &[]);
     check("narrow resonance", &branch, 0.5, 1.7, 200);
     let top = branch.peaks()[0];
-    assert!((top.amplitude * 1e-5 - 1.0).abs() < 1e-9 && (top.omega - 1.0).abs() < 1e-9, "{top:?}");
+    assert!(
+        (top.amplitude * 1e-5 - 1.0).abs() < 1e-9 && (top.omega - 1.0).abs() < 1e-9,
+        "{top:?}"
+    );
     // The same, stuck: at sqrt 2, and slipping from a millionth of the peak on.
     let stuck = sweep(&rubbing(1e-5, 1.0, f64::INFINITY, 1.0), &harmonics(3), 0.5, 1.7, &[]);
     check("narrow stuck resonance", &stuck, 0.5, 1.7, 200);
@@ -205,7 +211,13 @@ fn slip_sets_in_within_the_range_without_walking_back() {
     for highest in [1, 3, 9, 31] {
         for (from, to) in [(0.7, 1.9), (1.9, 0.7)] {
             let branch = sweep(&model, &harmonics(highest), from, to, &[]);
-            check(&format!("onset of slip, H = {highest}, from {from}"), &branch, from, to, 300);
+            check(
+                &format!("onset of slip, H = {highest}, from {from}"),
+                &branch,
+                from,
+                to,
+                300,
+            );
             for i in 0..branch.points() {
                 let omega = branch.omega()[i];
                 let linear = 0.1 / (2.0 - omega * omega).hypot(0.02 * omega);
@@ -226,7 +238,9 @@ fn an_isolated_curve_is_not_on_the_branch() {
     // covered its range, and has one solution there: curves of their own are not searched (README,
     // Limits).
     let mut model = structure(&[1.0], &[0.02], &[1.0]);
-    model.add_contact(&Contact::unilateral(Some(0), None, 3.0, 0.2)).unwrap();
+    model
+        .add_contact(&Contact::unilateral(Some(0), None, 3.0, 0.2))
+        .unwrap();
     model.add_force(0, 1, 0.02.into()).unwrap();
     let alone = sweep(&model, &harmonics(15), 1.3, 1.15, &[]);
     check("below an isolated solution", &alone, 1.3, 1.15, 100);

@@ -41,13 +41,13 @@ int main() try {
   solver.response_dof = B2;
   const hbvib::ForcedOptions range(2 * PI * 207, 2 * PI * 211);
 
-  std::printf("   F/N            f/Hz            |X1|/m\n");
+  std::printf("   F/N              f/Hz            |X1|/m\n");
   for (const double force : {1.0, 5.0, 20.0}) {
     model.clear_forces();
     model.add_force(B2, 1, force);
     model.add_force(B1, 1, force);
     const auto peak = model.forced_response(solver, range).highest_peak();
-    std::printf("%6.1f  %14.9f  %19.12E\n", force, peak.omega / (2 * PI), peak.amplitude);
+    std::printf("%6.1f  %16.11f  %19.12E\n", force, peak.omega / (2 * PI), peak.amplitude);
   }
 } catch (const std::exception& e) {
   std::fprintf(stderr, "%s\n", e.what());

@@ -15,7 +15,7 @@ program ring_damper
    call build(ring_mass=0.03_dp, rpm=3000._dp)
    solver%harmonics = 63
    solver%response_dof = b2
-   write (*, '(a)') '   F/N            f/Hz            |X1|/m'
+   write (*, '(a)') '   F/N              f/Hz            |X1|/m'
    do i = 1, size(force)
       call check(model%clear_forces())
       call check(model%add_force(b2, harmonic=1, force=force(i)))
@@ -24,7 +24,7 @@ program ring_damper
       call check(branch%peaks(omega, amplitude))
       if (size(omega) == 0) call fail('no peak between 207 and 211 Hz')
       best = maxloc(amplitude, 1)
-      write (*, '(f6.1, 2x, f14.9, 2x, es19.12e2)') force(i), omega(best)/(2*pi), amplitude(best)
+      write (*, '(f6.1, 2x, f16.11, 2x, es19.12e2)') force(i), omega(best)/(2*pi), amplitude(best)
    end do
    call check(branch%free())
    call check(model%free())

@@ -127,6 +127,15 @@ pub unsafe extern "C" fn hbvib_branch_points(branch: *const hbvib_branch) -> i64
     call_count(|| Ok(read::<KeptBranch>(branch, 1)?.branch.points()))
 }
 
+/// Number of all stored points, those beside the curve included: point numbers are below it. Or a
+/// negative status.
+///
+/// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_stored(branch: *const hbvib_branch) -> i64 {
+    call_count(|| Ok(read::<KeptBranch>(branch, 1)?.branch.stored()))
+}
+
 /// The status with which the solve that made the branch returned: HBVIB_OK if the whole range was
 /// covered, positive if it stopped early.
 ///

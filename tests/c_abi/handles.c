@@ -74,6 +74,7 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     WORKS(row, hbvib_contact_summary_init(&summary, sizeof summary));
     REFUSED(row, hbvib_branch_free(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_points(b), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_branch_stored(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_status(b), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_field(b, HBVIB_OMEGA, &view), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_harmonics(b, 0, 0, NDOF, numbers, 40), HBVIB_E_HANDLE, 1, words);

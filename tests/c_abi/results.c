@@ -19,7 +19,7 @@ static void names(void)
 static void special_points(hbvib_branch *branch, const double *at)
 {
     double omega = 0, amplitude = 0, x[80], part[20];
-    int64_t point = -1, count = -1, points = hbvib_branch_points(branch), h;
+    int64_t point = -1, count = -1, points = hbvib_branch_points(branch), stored = hbvib_branch_stored(branch), h;
     hbvib_view view;
     size_t i;
 
@@ -41,6 +41,9 @@ static void special_points(hbvib_branch *branch, const double *at)
         WORKS("at", hbvib_branch_harmonics(branch, point, 0, 1, part, 10));
         EXPECT("at", fabs(hypot(part[2], part[3]) / amplitude - 1) < 1e-12);
     }
+    EXPECT("stored", stored == points + 3); /* one peak, no fold, two solutions wanted */
+    WORKS("stored", hbvib_branch_harmonics(branch, stored - 1, 0, 1, part, 10));
+    EXPECT("stored", hbvib_branch_harmonics(branch, stored, 0, 1, part, 10) == HBVIB_E_INDEX);
     for (i = 0; i < 16; i++) {
         hbvib_status status;
         WORKS("views", hbvib_view_init(&view, sizeof view));
