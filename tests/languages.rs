@@ -200,6 +200,23 @@ fn header_library_and_packages_have_the_version_of_the_crate() {
         .fold(0, |n, part| n * 256 + part.parse::<u32>().unwrap());
     assert_eq!(told, format!("{VERSION} {VERSION} {number}\n"));
 
+    // The modules say for which library they were written.
+    let parts: Vec<&str> = VERSION.split('.').collect();
+    let module = fs::read_to_string(fortran_module()).unwrap();
+    for (name, part) in ["MAJOR", "MINOR", "PATCH"].iter().zip(&parts) {
+        let constant = format!("HBVIB_VERSION_{name} = {part}");
+        let after = module
+            .split(&constant)
+            .nth(1)
+            .unwrap_or_else(|| panic!("hbvib.f90 lacks {constant}"));
+        assert!(
+            !after.starts_with(|c: char| c.is_ascii_digit()),
+            "hbvib.f90: {constant}"
+        );
+    }
+    let told = printed(script(Path::new("-c")).arg("import hbvib; print(hbvib.__version__)"));
+    assert_eq!(told.trim(), VERSION);
+
     let abi = VERSION.rsplit_once('.').unwrap().0;
     for (wanted, fits) in [
         ("", true),
@@ -352,28 +369,46 @@ fn stem(path: &Path) -> &str {
 #[test]
 fn cpp_feels_native() {
     let folder = workshop("cpp_tests");
+    let eigen = printed(Command::new("pkg-config").args(["--cflags-only-I", "eigen3"]))
+        .trim()
+        .replace("-I", "-isystem");
+    let options = [&STRICT[..], &["-Wshadow", "-Wconversion", "-pthread", &eigen]].concat();
     for source in tests_in("cpp", "cpp") {
-        for dialect in ["-std=c++17", "-std=c++20"] {
-            let options = [&STRICT[..], &["-Wshadow", "-Wconversion", "-pthread", dialect]].concat();
-            let name = format!("{}{dialect}", stem(&source));
-            run(&mut compiled("c++", &options, &[source.clone()], &folder, &name));
-        }
+        let newer = [&options[..], &["-std=c++20", "-fsyntax-only"]].concat();
+        run(Command::new("c++")
+            .args(newer)
+            .arg(&source)
+            .args(pkg_config(&["--cflags"])));
+        let options = [&options[..], &["-std=c++17"]].concat();
+        let name = stem(&source).to_owned();
+        run(&mut compiled("c++", &options, &[source], &folder, &name));
     }
 }
 
 #[test]
 fn fortran_feels_native() {
-    let module = fortran_module();
-    for source in tests_in("fortran", "f90") {
-        let folder = workshop(&format!("fortran_tests/{}", stem(&source)));
-        let options = [
-            &STRICT[..],
-            &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
-        ]
-        .concat();
-        let sources = [module.clone(), source.clone()];
-        run(&mut compiled("gfortran", &options, &sources, &folder, stem(&source)));
+    let common = root().join("tests/languages/fortran/common.f90");
+    let options = [
+        &STRICT[..],
+        &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
+    ]
+    .concat();
+    for name in ["misuse", "physics", "threads"] {
+        let folder = workshop(&format!("fortran_tests/{name}"));
+        let source = root().join(format!("tests/languages/fortran/{name}.f90"));
+        let sources = [fortran_module(), common.clone(), source];
+        run(&mut compiled("gfortran", &options, &sources, &folder, name));
     }
+    // Numbers in single precision are an error of the compiler's, each of them.
+    let folder = workshop("fortran_tests/wrong_kind");
+    let output = Command::new("gfortran")
+        .args(["-std=f2018", "-fsyntax-only"])
+        .args([fortran_module(), root().join("tests/languages/fortran/wrong_kind.f90")])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(text.matches("Error:").count(), 4, "{text}");
 }
 
 #[test]
