@@ -26,7 +26,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Bad options and models (see [`SolverOptions::check`], [`ForcedOptions::check`],
-/// [`Condensed::new`]), `NoConvergence` when no first point was found, `Callback` when that is a callback's
+/// [`Condensed::new`]), `NoConvergence` when no first point was found, `NoBoundedSolution` when it is known that there is none
+/// (see [`Model::overload`]), `Callback` when that is a callback's
 /// doing.
 pub fn forced_response(
     model: &Model,
@@ -73,7 +74,7 @@ pub fn forced_response(
     );
     let held = reduction.held_by_contacts;
     let start = start::solve(&mut problem, &settings, hooks.cancelled);
-    let first = match start.map_err(|e| tell_of_load(e, &condensed, held))? {
+    let first = match start.map_err(|e| tell_why(e, model, range.omega_start, &condensed, held))? {
         First::Found(point) => Some(point),
         First::Cancelled => None,
     };
@@ -103,9 +104,24 @@ pub fn forced_response(
     points.finish(&ending)
 }
 
-/// Where contacts press at rest the first point comes from the static solution; says so where it fails.
-fn tell_of_load(e: Error, condensed: &Condensed, held: usize) -> Error {
-    if e.status != Status::NoConvergence || !condensed.is_preloaded() {
+/// Why no first point was found, as far as it is known: there is none, or, where contacts press at rest, it comes
+/// from the static solution.
+fn tell_why(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: usize) -> Error {
+    if e.status != Status::NoConvergence {
+        return e;
+    }
+    // What fails in the search for a reason is no reason.
+    if let Ok(Some(resonance)) = model.overload(omega) {
+        return Error::new(
+            Status::NoBoundedSolution,
+            format_args!(
+                "no bounded solution at {omega}: harmonic {} meets an undamped resonance, whose force {:.6e} is \
+                 above the {:.6e} that the contacts can take; add damping, or lower the force",
+                resonance.harmonic, resonance.force, resonance.capacity
+            ),
+        );
+    }
+    if !condensed.is_preloaded() {
         return e;
     }
     Error::new(

@@ -275,7 +275,8 @@ pub(super) unsafe fn load_hooks(p: *const hbvib_hooks, argument: i32) -> Result<
 /// which may be none.
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
 /// out of range, forces beyond the harmonics and missing matrices; HBVIB_E_NO_CONVERGENCE where no
-/// first point was found; HBVIB_E_SINGULAR, HBVIB_E_UNSUPPORTED, HBVIB_E_STRUCT_SIZE,
+/// first point was found; HBVIB_E_NO_BOUNDED_SOLUTION where it is known that there is none, an
+/// undamped resonance being forced beyond what the contacts can take; HBVIB_E_SINGULAR, HBVIB_E_UNSUPPORTED, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.
