@@ -8,6 +8,8 @@
 //! named as one that says nothing of the response. `cargo test --test hard_cases -- --nocapture` prints the table.
 
 mod common;
+#[path = "common/friction.rs"]
+mod friction;
 
 #[path = "hard_cases/blisk.rs"]
 mod blisk;

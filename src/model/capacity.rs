@@ -47,7 +47,7 @@ const SHIFT: f64 = 1e-8;
 const MAX_STEPS: usize = 6;
 
 /// Rounding of the force and of the capacity, relative to the sizes of their terms.
-const ROUNDING: f64 = 1e-9;
+const ROUNDING: f64 = 1e-12;
 
 /// Growth that is no motion any more: it asks for more digits of frequency and stiffness than there are.
 const BEYOND: f64 = 1e10;
