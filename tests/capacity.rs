@@ -46,10 +46,17 @@ fn solve(model: &Model, omega: f64, h: usize) -> Result<Branch> {
     forced_response(model, &harmonics(h), &range, &mut Hooks::default())
 }
 
+/// Whether the model has no bounded solution by the library; an error of another kind is no answer.
 fn refused(model: &Model, omega: f64, h: usize) -> bool {
     match solve(model, omega, h) {
-        Ok(_) => false,
-        Err(e) => e.status == Status::NoBoundedSolution,
+        Ok(branch) => {
+            assert_eq!(branch.status(), Status::Ok);
+            false
+        }
+        Err(e) => {
+            assert_eq!(e.status, Status::NoBoundedSolution, "{e}");
+            true
+        }
     }
 }
 

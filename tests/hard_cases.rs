@@ -41,8 +41,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// this H, because its light ring resonates at higher harmonics, and no fixed H knows of that; ten is a bound of sanity.
 const TRUNCATION: f64 = 0.1;
 
+/// What is asked of a case.
+type Check = fn(&Case);
+
 /// The check of each case.
-const CHECKS: [(&str, fn(&Case)); 31] = [
+const CHECKS: [(&str, Check); 31] = [
     ("HC01", one_mass::no_friction),
     ("HC02", one_mass::endless_friction),
     ("HC03", one_mass::no_stiffness),
@@ -157,7 +160,9 @@ impl Case {
         self.line(&format!(
             "H {h:>2}  {found:>24.16e}  {wanted:>24.16e}  error {error:.1e} of {bound:.1e}  {what}"
         ));
-        if !(error <= bound) {
+        // An error that is no number is none that is met.
+        let met = error <= bound;
+        if !met {
             self.wrong
                 .borrow_mut()
                 .push(format!("{what}, H {h}: {found:e} against {wanted:e}"));

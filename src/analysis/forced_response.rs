@@ -1,6 +1,7 @@
 //! Forced response over a range of frequency.
 
 use super::follow::{Ending, Keeper, Task};
+use super::unbounded;
 use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
@@ -14,8 +15,8 @@ use crate::linalg::norm;
 use crate::model::Model;
 use crate::model::spring::along;
 use crate::options::{ForcedOptions, SolverOptions};
+use crate::problem::Problem;
 use crate::problem::forced::Forced;
-use crate::problem::{Problem, Start};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -76,9 +77,7 @@ pub fn forced_response(
     let start = start::solve(&mut problem, &settings, hooks.cancelled);
     let first = match start.map_err(|e| tell_why(e, model, range.omega_start, &condensed, held))? {
         First::Found(point) => {
-            if grows(&mut problem, &point)? {
-                refuse_overload(model, range.omega_start)?;
-            }
+            unbounded::refuse_growth(model, &mut problem, &point)?;
             Some(point)
         }
         First::Cancelled => None,
@@ -116,7 +115,7 @@ fn tell_why(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: us
         return e;
     }
     // What fails in the search for a reason is no reason.
-    if let Err(reason) = refuse_overload(model, omega)
+    if let Err(reason) = unbounded::refuse_overload(model, omega)
         && reason.status == Status::NoBoundedSolution
     {
         return reason;
@@ -130,32 +129,6 @@ fn tell_why(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: us
             "contacts press at rest, and the static solution under constant loads, or the growth of the \
              vibrating ones from it, was not found; {held} rigid-body modes are held by contacts alone"
         ),
-    )
-}
-
-/// Motion, relative to that with contacts at their reference stiffness, from which on a point is suspected of having
-/// no solution: its residual is small beside the motion, and perhaps not beside the forces.
-const SUSPECT: f64 = 1e4;
-
-/// Whether a point moves so much that nothing but a resonance without damping explains it.
-fn grows(problem: &mut Forced<'_>, point: &Point) -> Result<bool> {
-    let mut reference = try_vec(point.unknowns().len(), 0.0, "the first point")?;
-    problem.start(Start::Reference, point.parameter(), &mut reference)?;
-    Ok(norm(point.unknowns()) > SUSPECT * norm(&reference))
-}
-
-/// `NoBoundedSolution` where that is known of a frequency.
-fn refuse_overload(model: &Model, omega: f64) -> Result<()> {
-    let Some(resonance) = model.overload(omega)? else {
-        return Ok(());
-    };
-    fail!(
-        NoBoundedSolution,
-        "no bounded solution at {omega}: harmonic {} meets an undamped resonance, whose force {:.6e} is above the \
-         {:.6e} that the contacts can take; add damping, or lower the force",
-        resonance.harmonic,
-        resonance.force,
-        resonance.capacity
     )
 }
 

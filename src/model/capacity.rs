@@ -178,13 +178,17 @@ fn iterate(shifted: &Csc, mass: &Csc, force: &[Complex64]) -> Result<Option<Vec<
             x.copy_from_slice(&load);
         }
         // S⁻ᴴ b is the conjugate of S⁻ᵀ times the conjugate of b.
-        x.iter_mut().for_each(|x| *x = x.conj());
+        for x in &mut x {
+            *x = x.conj();
+        }
         factor.solve(&mut x, true)?;
         let largest = x.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
         if largest == 0.0 {
             return Ok(None);
         }
-        x.iter_mut().for_each(|x| *x = x.conj() / largest);
+        for x in &mut x {
+            *x = x.conj() / largest;
+        }
     }
     Ok(Some(x))
 }
