@@ -187,3 +187,38 @@ fn a_free_body_is_dragged_by_a_constant_load_above_the_slip_limit() {
     assert!(refused(&of(0.31), 0.7, 3));
     assert!(!refused(&of(0.1), 0.7, 3));
 }
+
+/// Towards the resonance a bounded solution goes to infinity: the branch ends there and says why.
+#[test]
+fn a_sweep_into_such_a_resonance_keeps_its_points_and_says_why_it_ends() {
+    let modes = chain(0.0).linear_modes(0, ContactState::Free).unwrap();
+    let omega = modes.omega[0];
+    let of = |damping: f64| {
+        let mut model = chain(damping);
+        model.add_contact(&Contact::jenkins(1, None, 0.5, 1.0, 0.2)).unwrap();
+        model.add_force(0, 1, 2.0.into()).unwrap();
+        model
+    };
+    for (from, to) in [(0.7, 1.3), (1.3, 0.7)] {
+        let (from, to) = (from * omega, to * omega);
+        let range = ForcedOptions {
+            omega_start: from,
+            omega_stop: to,
+            ..ForcedOptions::default()
+        };
+        let sweep = |model: &Model| forced_response(model, &harmonics(5), &range, &mut Hooks::default()).unwrap();
+        let branch = sweep(&of(0.0));
+        assert_eq!(branch.status(), Status::StoppedStepTooSmall);
+        assert!(
+            branch.points() > 10 && branch.points() < 1000,
+            "{} points",
+            branch.points()
+        );
+        assert!((branch.omega().last().unwrap() / omega - 1.0).abs() < 1e-12);
+        let reason = branch.reason().unwrap();
+        assert_eq!(reason.status, Status::NoBoundedSolution);
+        // Damped, the same sweep passes.
+        let branch = sweep(&of(1e-3));
+        assert!(branch.status() == Status::Ok && branch.reason().is_none());
+    }
+}

@@ -104,7 +104,11 @@ pub fn forced_response(
         }
         None => Ok(Status::StoppedByCaller),
     };
-    let ending = Ending::of(outcome, &points.branch)?;
+    let mut ending = Ending::of(outcome, &points.branch)?;
+    if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
+        let last = points.branch.omega().last();
+        ending.reason = last.and_then(|&omega| unbounded::reason(model, omega));
+    }
     points.finish(&ending)
 }
 
@@ -114,10 +118,7 @@ fn tell_why(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: us
     if e.status != Status::NoConvergence {
         return e;
     }
-    // What fails in the search for a reason is no reason.
-    if let Err(reason) = unbounded::refuse_overload(model, omega)
-        && reason.status == Status::NoBoundedSolution
-    {
+    if let Some(reason) = unbounded::reason(model, omega) {
         return reason;
     }
     if !condensed.is_preloaded() {

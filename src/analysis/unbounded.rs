@@ -1,9 +1,9 @@
 //! Refusal of a forced response that no bounded motion has: an undamped resonance forced beyond its contacts, which
-//! [`crate::model::capacity`] proves of the model. It is asked where no solution was found, and where one was found
-//! that moves as if nothing bounded it.
+//! [`crate::model::capacity`] proves of the model. It is asked where no solution was found, where one was found that
+//! moves as if nothing bounded it, and where a branch ends on its way to infinity.
 
 use crate::continuation::Point;
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::problem::forced::Forced;
@@ -23,8 +23,15 @@ pub(super) fn refuse_growth(model: &Model, problem: &mut Forced<'_>, point: &Poi
     Ok(())
 }
 
+/// Why there is no solution at an angular frequency, where that is known. What fails in the search for a reason is no
+/// reason.
+pub(super) fn reason(model: &Model, omega: f64) -> Option<Error> {
+    let refusal = refuse_overload(model, omega).err()?;
+    (refusal.status == Status::NoBoundedSolution).then_some(refusal)
+}
+
 /// `NoBoundedSolution` where that is known of an angular frequency.
-pub(super) fn refuse_overload(model: &Model, omega: f64) -> Result<()> {
+fn refuse_overload(model: &Model, omega: f64) -> Result<()> {
     let Some(resonance) = model.overload(omega)? else {
         return Ok(());
     };

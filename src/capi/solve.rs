@@ -272,7 +272,8 @@ pub(super) unsafe fn load_hooks(p: *const hbvib_hooks, argument: i32) -> Result<
 /// hooks   progress, log and cancellation; NULL: none.
 /// out     receives the branch; untouched on error. Free it by hbvib_branch_free.
 /// A positive status says why the branch ends early; the branch is there with all points found,
-/// which may be none.
+/// which may be none. Where it ends on its way to infinity, at an undamped resonance,
+/// hbvib_last_error says so.
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
 /// out of range, forces beyond the harmonics and missing matrices; HBVIB_E_NO_CONVERGENCE where no
 /// first point was found; HBVIB_E_NO_BOUNDED_SOLUTION where it is known that there is none, an
