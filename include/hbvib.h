@@ -511,8 +511,8 @@ typedef struct {
   /// Cap on H where the tolerance decides.
   int64_t max_harmonics;
   /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
-  /// HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact either way; HBVIB_FRICTION_3D and HBVIB_REGULARISED
-  /// have samples always, 0: a number by H.
+  /// HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact either way; HBVIB_FRICTION_3D and
+  /// HBVIB_REGULARISED have samples always, 0: a number by H.
   int64_t samples;
   /// First arc-length step in scaled unknowns; 0 = automatic.
   double step;
@@ -1120,8 +1120,8 @@ hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double prel
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact either way; HBVIB_FRICTION_3D and
-///             HBVIB_REGULARISED have samples always, 0: a number by H.
+///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact either way;
+///             HBVIB_FRICTION_3D and HBVIB_REGULARISED have samples always, 0: a number by H.
 /// omega       angular frequency, >= 0; matters to laws that know velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.

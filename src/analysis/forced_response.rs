@@ -76,10 +76,7 @@ pub fn forced_response(
     let held = reduction.held_by_contacts;
     let start = start::solve(&mut problem, &settings, hooks.cancelled);
     let first = match start.map_err(|e| tell_why(e, model, range.omega_start, &condensed, held))? {
-        First::Found(point) => {
-            unbounded::refuse_growth(model, &mut problem, &point)?;
-            Some(point)
-        }
+        First::Found(point) => Some(point),
         First::Cancelled => None,
     };
     let mut points = Points {
