@@ -59,6 +59,28 @@ pub fn beyond_capacity(case: &Case) {
         let (status, sentence) = of(force, &super::common::harmonics(9));
         case.status(&format!("F = {share} of the limit: {sentence}"), status, Status::Ok);
     }
+    // So near the limit that a residual within the tolerance is far from a solution: the right amplitude, or none.
+    for below in [1e-7, 1e-8, 1e-10, 1e-13, 0.0] {
+        let force = limit * (1.0 - below);
+        let found = answer(&forced(force), w, &super::common::harmonics(1));
+        let right = match &found {
+            Ok(x) => below > 0.0 && (x[1].norm() / amplitude(case, force) - 1.0).abs() < 1e-3,
+            Err(e) => e.status == Status::NoConvergence,
+        };
+        let told = found.map(|x| x[1].norm()).map_err(|e| e.status);
+        case.holds(&format!("F = {below:e} below the limit: {told:?}"), right);
+    }
+}
+
+/// The amplitude at which the contact carries a force: |f_1| rises with it up to 4 fc/π.
+fn amplitude(case: &Case, force: f64) -> f64 {
+    let (mut low, mut high) = (0.0, 1e12);
+    for _ in 0..200 {
+        let middle = 0.5 * (low + high);
+        let carried = fundamental(case.number("kt"), case.number("fc"), middle);
+        *(if carried < force { &mut low } else { &mut high }) = middle;
+    }
+    low
 }
 
 /// |f_1| of a Jenkins contact on x = A cos t: sticks for the angle θ from each reversal, cos θ = 1 − 2δ/A.
