@@ -513,8 +513,8 @@ typedef struct {
   /// Cap on H where the tolerance decides.
   int64_t max_harmonics;
   /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
-  /// HBVIB_CUBIC and polynomials are exact either way; HBVIB_FRICTION_3D and HBVIB_REGULARISED
-  /// have samples always, 0: a number by H.
+  /// HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact either way; HBVIB_FRICTION_3D and
+  /// HBVIB_REGULARISED have samples always, 0: a number by H.
   int64_t samples;
   /// First arc-length step in scaled unknowns; 0 = automatic.
   double step;
@@ -1122,8 +1122,8 @@ hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double prel
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. HBVIB_CUBIC is exact either way; HBVIB_FRICTION_3D and
-///             HBVIB_REGULARISED have samples always, 0: a number by H.
+///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact either way;
+///             HBVIB_FRICTION_3D and HBVIB_REGULARISED have samples always, 0: a number by H.
 /// omega       angular frequency, >= 0; matters to laws that know velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.
@@ -1423,10 +1423,12 @@ hbvib_status hbvib_hooks_init(hbvib_hooks *h, size_t size_of_h);
 /// hooks   progress, log and cancellation; NULL: none.
 /// out     receives the branch; untouched on error. Free it by hbvib_branch_free.
 /// A positive status says why the branch ends early; the branch is there with all points found,
-/// which may be none.
+/// which may be none. Where it ends on its way to infinity, at an undamped resonance,
+/// hbvib_last_error says so.
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
 /// out of range, forces beyond the harmonics and missing matrices; HBVIB_E_NO_CONVERGENCE where no
-/// first point was found; HBVIB_E_SINGULAR, HBVIB_E_UNSUPPORTED, HBVIB_E_STRUCT_SIZE,
+/// first point was found; HBVIB_E_NO_BOUNDED_SOLUTION where it is known that there is none, an
+/// undamped resonance being forced beyond what the contacts can take; HBVIB_E_SINGULAR, HBVIB_E_UNSUPPORTED, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.

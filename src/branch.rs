@@ -196,7 +196,8 @@ impl Branch {
         self.status
     }
 
-    /// The failure that ended the branch early, where it was that of a callback.
+    /// What ended the branch early, where the status alone does not say it: the failure of a callback, or a frequency
+    /// at which there is no bounded solution.
     #[must_use]
     pub fn reason(&self) -> Option<&Error> {
         self.reason.as_ref()

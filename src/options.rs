@@ -17,7 +17,8 @@ pub struct SolverOptions {
     /// Cap on H where the tolerance decides.
     pub max_harmonics: usize,
     /// `0`: exact stick-slip events. Otherwise every law is sampled at so many equidistant times
-    /// per period, at least 2H + 1. Laws without events are exact either way.
+    /// per period, at least 2H + 1. Laws without events, and friction in one direction under
+    /// a load that varies, are exact either way.
     pub samples: usize,
     /// First arc-length step in scaled unknowns; `0` chooses.
     pub step: f64,

@@ -91,7 +91,7 @@ fn beyond_the_capacity_of_friction_no_solution_is_made_up() {
     let capacity = 4.0 * 0.3 / std::f64::consts::PI;
     let model = Oscillator { c: 0.0, ..BASE }.model(&[(1, 1.05 * capacity)]);
     let found = solve(&model, 1.0, 9, false);
-    assert!(found.is_err_and(|e| e.status == Status::NoConvergence));
+    assert!(found.is_err_and(|e| e.status == Status::NoBoundedSolution));
 }
 
 /// Same H. A rigid contact is near: kt is 1e3 and 1e6 times the spring.

@@ -1,6 +1,7 @@
 //! Forced response over a range of frequency.
 
 use super::follow::{Ending, Keeper, Task};
+use super::unbounded;
 use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
@@ -26,7 +27,8 @@ use std::sync::Arc;
 ///
 /// # Errors
 /// Bad options and models (see [`SolverOptions::check`], [`ForcedOptions::check`],
-/// [`Condensed::new`]), `NoConvergence` when no first point was found, `Callback` when that is a callback's
+/// [`Condensed::new`]), `NoConvergence` when no first point was found, `NoBoundedSolution` when it is known that there is none
+/// (see [`Model::overload`]), `Callback` when that is a callback's
 /// doing.
 pub fn forced_response(
     model: &Model,
@@ -73,7 +75,7 @@ pub fn forced_response(
     );
     let held = reduction.held_by_contacts;
     let start = start::solve(&mut problem, &settings, hooks.cancelled);
-    let first = match start.map_err(|e| tell_of_load(e, &condensed, held))? {
+    let first = match start.map_err(|e| tell_why(e, model, range.omega_start, &condensed, held))? {
         First::Found(point) => Some(point),
         First::Cancelled => None,
     };
@@ -99,13 +101,24 @@ pub fn forced_response(
         }
         None => Ok(Status::StoppedByCaller),
     };
-    let ending = Ending::of(outcome, &points.branch)?;
+    let mut ending = Ending::of(outcome, &points.branch)?;
+    if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
+        let last = points.branch.omega().last();
+        ending.reason = last.and_then(|&omega| unbounded::reason(model, omega));
+    }
     points.finish(&ending)
 }
 
-/// Where contacts press at rest the first point comes from the static solution; says so where it fails.
-fn tell_of_load(e: Error, condensed: &Condensed, held: usize) -> Error {
-    if e.status != Status::NoConvergence || !condensed.is_preloaded() {
+/// Why no first point was found, as far as it is known: there is none, or, where contacts press at rest, it comes
+/// from the static solution.
+fn tell_why(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: usize) -> Error {
+    if e.status != Status::NoConvergence {
+        return e;
+    }
+    if let Some(reason) = unbounded::reason(model, omega) {
+        return reason;
+    }
+    if !condensed.is_preloaded() {
         return e;
     }
     Error::new(

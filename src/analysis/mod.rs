@@ -8,6 +8,7 @@ mod mode_points;
 pub mod nonlinear_mode;
 pub mod synthesis;
 pub mod time_response;
+mod unbounded;
 
 pub use check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use forced_response::forced_response;

@@ -192,8 +192,8 @@ pub unsafe extern "C" fn hbvib_model_set_preload(model: *mut hbvib_model, id: i6
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. HBVIB_CUBIC is exact either way; HBVIB_FRICTION_3D and
-///             HBVIB_REGULARISED have samples always, 0: a number by H.
+///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact either way;
+///             HBVIB_FRICTION_3D and HBVIB_REGULARISED have samples always, 0: a number by H.
 /// omega       angular frequency, >= 0; matters to laws that know velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.

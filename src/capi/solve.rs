@@ -272,10 +272,12 @@ pub(super) unsafe fn load_hooks(p: *const hbvib_hooks, argument: i32) -> Result<
 /// hooks   progress, log and cancellation; NULL: none.
 /// out     receives the branch; untouched on error. Free it by hbvib_branch_free.
 /// A positive status says why the branch ends early; the branch is there with all points found,
-/// which may be none.
+/// which may be none. Where it ends on its way to infinity, at an undamped resonance,
+/// hbvib_last_error says so.
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
 /// out of range, forces beyond the harmonics and missing matrices; HBVIB_E_NO_CONVERGENCE where no
-/// first point was found; HBVIB_E_SINGULAR, HBVIB_E_UNSUPPORTED, HBVIB_E_STRUCT_SIZE,
+/// first point was found; HBVIB_E_NO_BOUNDED_SOLUTION where it is known that there is none, an
+/// undamped resonance being forced beyond what the contacts can take; HBVIB_E_SINGULAR, HBVIB_E_UNSUPPORTED, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.

@@ -231,8 +231,8 @@ pub struct hbvib_solver_options {
     /// Cap on H where the tolerance decides.
     pub max_harmonics: i64,
     /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
-    /// HBVIB_CUBIC and polynomials are exact either way; HBVIB_FRICTION_3D and HBVIB_REGULARISED
-    /// have samples always, 0: a number by H.
+    /// HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact either way; HBVIB_FRICTION_3D and
+    /// HBVIB_REGULARISED have samples always, 0: a number by H.
     pub samples: i64,
     /// First arc-length step in scaled unknowns; 0 = automatic.
     pub step: f64,

@@ -315,4 +315,15 @@ impl Contact {
     pub fn slip_limit(&self) -> f64 {
         if self.mu == 0.0 { 0.0 } else { self.mu * self.preload }
     }
+
+    /// A bound of the force in each direction, whatever the motion; infinite where there is none.
+    #[must_use]
+    pub fn largest_force(&self) -> f64 {
+        match self.kind {
+            _ if self.role() == Role::Inert => 0.0,
+            ContactKind::Jenkins | ContactKind::Regularised => self.slip_limit(),
+            ContactKind::FrictionPlane if self.kn == 0.0 => self.slip_limit(),
+            _ => f64::INFINITY,
+        }
+    }
 }

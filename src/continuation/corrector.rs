@@ -53,6 +53,10 @@ pub struct Corrector {
 /// Relative size of a Newton step that is round-off: no further progress can be had.
 const ROUND_OFF: f64 = 1e-13;
 
+/// Largest relative Newton step from a solution. Where the equations are nearly singular, as at a resonance without
+/// damping, a residual within the tolerance may be far from any: the last step tells.
+const NEAR: f64 = 1e-3;
+
 /// Smallest damping factor.
 const SMALLEST_DAMPING: f64 = 1.0 / 1024.0;
 
@@ -105,6 +109,7 @@ impl Corrector {
         }
         let mut damping = 1.0;
         let mut last_size = f64::INFINITY;
+        let n = v.len() - 1;
         for iteration in 0..=self.max_iterations {
             if cancelled.is_some_and(|f| f()) {
                 return Ok(Outcome::Cancelled);
@@ -116,7 +121,8 @@ impl Corrector {
             self.newton_step();
             let size = norm(&self.step);
             let round_off = self.is_round_off(v, metric);
-            if residual <= self.tolerance || round_off {
+            let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
+            if (residual <= self.tolerance && near) || round_off {
                 return Ok(Outcome::Converged(
                     self.finish(problem, v, metric, iteration, residual)?,
                 ));

@@ -1,5 +1,6 @@
 //! The model: structure, contacts, excitation. Matrices and contact data go in here.
 
+pub mod capacity;
 mod check;
 pub mod cyclic;
 pub mod damped_mode;
