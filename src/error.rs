@@ -22,7 +22,7 @@ pub enum Status {
     StoppedMaxHarmonics = 4,
     /// The residual stopped falling above the wanted tolerance (round-off); all points are kept.
     StoppedStalled = 5,
-    /// The branch turned back and left the range where it began; all points are kept.
+    /// The branch turned back, left the range where it began and did not come back; all points are kept.
     StoppedLeftRange = 6,
     /// A callback of the host failed; the points found so far are kept.
     StoppedCallback = 7,
@@ -114,7 +114,7 @@ impl Status {
                 "round-off stopped the residual above tol_residual; all points are kept; raise tol_residual"
             }
             Self::StoppedLeftRange => {
-                "the branch turned back and left the range where it began; all points are kept; start elsewhere or from the other end"
+                "the branch turned back and left the range where it began for good; all points are kept; start elsewhere or from the other end"
             }
             Self::StoppedCallback => "a callback of the host failed; the points found so far are kept",
             _ => "",

@@ -33,3 +33,6 @@ pub mod options;
 pub mod postprocess;
 pub mod problem;
 pub mod time_response;
+
+#[doc = include_str!("when_it_does_not_converge.md")]
+pub mod when_it_does_not_converge {}

@@ -42,8 +42,11 @@ fn rubbing(damping: f64, kt: f64, limit: f64, force: f64) -> Model {
 fn check(name: &str, branch: &Branch, from: f64, to: f64, most_points: usize) {
     let omega = branch.omega();
     assert_eq!(branch.status(), Status::Ok, "{name}: {:?}", branch.reason());
-    assert_eq!((omega[0], omega[omega.len() - 1]), (from, to), "{name}");
-    let turns = omega.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count();
+    let ends = [omega[0], omega[omega.len() - 1]].map(f64::to_bits);
+    assert_eq!(ends, [from, to].map(f64::to_bits), "{name}");
+    // A branch may leave at the start of the range and come back there, without turning in it.
+    let turned = |w: &&[f64]| (w[1] - w[0]) * (w[2] - w[1]) < 0.0 && w[1].to_bits() != from.to_bits();
+    let turns = omega.windows(3).filter(turned).count();
     assert_eq!(turns, branch.folds().len(), "{name}: turns without a fold");
     let amplitude = branch.amplitude();
     let scale = amplitude.iter().fold(0.0_f64, |m, a| m.max(*a));

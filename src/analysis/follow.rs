@@ -5,7 +5,8 @@ use crate::branch::{Branch, SpecialKind};
 use crate::continuation::events::{Event, Locator};
 use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Error, Result, Status};
-use crate::hooks::{Hooks, Progress};
+use crate::hooks::{Hooks, LogLevel, Progress};
+use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// What an analysis does with the points that are found. It was last evaluated at the point that it
@@ -58,6 +59,22 @@ pub(super) struct Task<'a> {
     /// Parameter values at which solutions are wanted.
     pub at: &'a [f64],
     pub max_points: usize,
+    /// Parameter value before the range up to which a branch is followed that leaves at its start, in the
+    /// hope that it comes back; none: not followed.
+    pub before: Option<f64>,
+}
+
+/// What became of a branch that left its range.
+enum Outside {
+    Back(Point),
+    Gone,
+    Cancelled,
+}
+
+/// Whether two solutions at one parameter value are one.
+fn same(a: &[f64], b: &[f64]) -> bool {
+    let difference = a.iter().zip(b).fold(0.0_f64, |d, (a, b)| d.hypot(a - b));
+    difference <= 1e-8 * norm(b)
 }
 
 impl Task<'_> {
@@ -82,6 +99,7 @@ impl Task<'_> {
             return Ok(Status::Ok);
         }
         let n = first.unknowns().len();
+        let begin = first.try_clone()?;
         let mut locator = Locator::new(n, self.settings)?;
         let mut continuation = Continuation::new(self.settings, first)?;
         loop {
@@ -107,10 +125,48 @@ impl Task<'_> {
             if stop {
                 return Ok(Status::StoppedByCaller);
             }
-            if let Some(status) = end {
-                return Ok(status);
+            match end {
+                None => {}
+                Some(Status::StoppedLeftRange) => match self.outside(keeper, point, &begin, hooks)? {
+                    Outside::Back(back) => {
+                        hooks.log(LogLevel::Info, "the branch left at its start and came back");
+                        keeper.keep(&back)?;
+                        if self.report(keeper, hooks, &back) {
+                            return Ok(Status::StoppedByCaller);
+                        }
+                        continuation = Continuation::new(self.settings, back)?;
+                    }
+                    Outside::Gone => return Ok(Status::StoppedLeftRange),
+                    Outside::Cancelled => return Ok(Status::StoppedByCaller),
+                },
+                Some(status) => return Ok(status),
             }
         }
+    }
+
+    /// Follows the branch from where it left at the start of the range to where it comes back, which folds
+    /// on both sides of the start make it do. What lies outside is not kept.
+    fn outside(&self, keeper: &mut dyn Keeper, exit: Point, begin: &Point, hooks: &mut Hooks<'_>) -> Result<Outside> {
+        let Some(before) = self.before else {
+            return Ok(Outside::Gone);
+        };
+        let settings = Settings {
+            end: before,
+            ..self.settings
+        };
+        let mut continuation = Continuation::new(settings, exit)?;
+        for _ in keeper.branch().points()..self.max_points {
+            match continuation.advance(keeper.problem(), hooks.cancelled)? {
+                Advance::Accepted { last: false, .. } => {}
+                // A closed curve would be walked for ever.
+                Advance::LeftAtStart { point } if !same(point.unknowns(), begin.unknowns()) => {
+                    return Ok(Outside::Back(point));
+                }
+                Advance::Stopped(Status::StoppedByCaller) => return Ok(Outside::Cancelled),
+                _ => break,
+            }
+        }
+        Ok(Outside::Gone)
     }
 
     /// Tells the host of the point stored last; `true` if it wants to stop.

@@ -93,6 +93,8 @@ pub fn forced_response(
         range: (range.omega_start, range.omega_stop),
         at: range.at,
         max_points: solver.max_points,
+        // As far again as the range is long, but never near zero frequency.
+        before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
     let outcome = match first {
         Some(first) => {

@@ -211,6 +211,7 @@ fn run(
         range: (start, end),
         at: range.at,
         max_points: solver.max_points,
+        before: None,
     };
     if start <= linear_up_to {
         if let Some(status) = linear_range(points, &task, linear_up_to.min(end), hooks)? {

@@ -27,7 +27,7 @@ pub enum hbvib_status_code {
     HBVIB_STOPPED_MAX_HARMONICS = 4,
     /// Round-off stopped the residual above tol_residual.
     HBVIB_STOPPED_STALLED = 5,
-    /// The branch turned back and left the range where it began.
+    /// The branch turned back, left the range where it began and did not come back.
     HBVIB_STOPPED_LEFT_RANGE = 6,
     /// A force callback failed; hbvib_last_error has the code that it returned.
     HBVIB_STOPPED_CALLBACK = 7,
