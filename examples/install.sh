@@ -6,6 +6,8 @@
 # The result may be moved: no file in it knows where it stands. DESTDIR is put in front of PREFIX for
 # packagers; CARGO and STRIP name other programs than cargo and strip.
 set -eu
+# Others are to read what root installs.
+umask 022
 
 [ $# = 1 ] && [ -n "$1" ] || { echo "usage: sh examples/install.sh PREFIX" >&2; exit 2; }
 case $1 in

@@ -10,7 +10,8 @@
 !> status     Every function called through a type returns it, integer(c_int32_t): HBVIB_OK, negative (error), positive (stopped
 !>            early, results are there). hbvib_error_text() is the sentence to it, this thread's own. Nothing stops or prints.
 !>            hbvib_last_error_argument() counts the arguments of the C function that refused (hbvib_index_from_one for an
-!>            index). Entries of matrices and indices are told from 1; what a solve says of a contact by its number, from 0.
+!>            index). Entries of matrices and indices are told from 1; positions within other arrays (entry 1,
+!>            spring[1], row_idx[1]) and contacts named by a solve count from 0.
 !> objects    hbvib_model and hbvib_branch hold a handle. Assignment copies the handle, not the object; model%clone copies a model.
 !>            %free ends the object and empties the variable; copies of the handle are then refused (HBVIB_E_HANDLE). There is no
 !>            finaliser, because it would free what a copy still uses. A procedure that fills a model or branch first frees what
@@ -1003,8 +1004,10 @@ contains
       character(:), allocatable :: text
       character(kind=c_char), pointer :: letters(:)
       integer :: i
+      text = ''
+      if (.not. c_associated(c_text)) return
       call c_f_pointer(c_text, letters, [strlen(c_text)])
-      allocate (character(size(letters)) :: text)
+      text = repeat(' ', size(letters))
       do i = 1, size(letters)
          text(i:i) = letters(i)
       end do
@@ -1131,11 +1134,21 @@ contains
       integer(i32), intent(inout) :: status
       type(hbvib_contact), intent(inout) :: contact
       integer(i64), intent(in) :: ndof
-      integer(i64), allocatable :: a(:), b(:)
-      call to_zero_all(status, 'dof_a', int(contact%dof_a), ndof, a, HBVIB_GROUND)
-      call to_zero_all(status, 'dof_b', int(contact%dof_b), ndof, b, HBVIB_GROUND)
-      contact%dof_a = a
-      contact%dof_b = b
+      integer(i64) :: zero
+      character(8) :: name
+      integer :: side, i
+      do side = 1, 2
+         do i = 1, 3
+            write (name, '(a, i0, a)') merge('dof_a(', 'dof_b(', side == 1), i, ')'
+            if (side == 1) then
+               call to_zero(status, name, contact%dof_a(i), ndof, zero, HBVIB_GROUND)
+               if (status == HBVIB_OK) contact%dof_a(i) = zero
+            else
+               call to_zero(status, name, contact%dof_b(i), ndof, zero, HBVIB_GROUND)
+               if (status == HBVIB_OK) contact%dof_b(i) = zero
+            end if
+         end do
+      end do
    end subroutine struct_dofs
 
    !> Options with indices from 0; unallocated, and so absent to C, where none were given.
@@ -1178,8 +1191,17 @@ contains
       class(hbvib_model), intent(in) :: self
       type(hbvib_model), intent(inout) :: copy
       integer(i32) :: status
-      status = copy%free()
-      if (status /= HBVIB_E_BUSY) status = hbvib_model_clone(self%handle, copy%handle)
+      type(c_ptr) :: made_now
+      made_now = c_null_ptr
+      status = hbvib_model_clone(self%handle, made_now)
+      if (status /= HBVIB_OK) return
+      if (.not. c_associated(copy%handle, self%handle)) status = copy%free()
+      if (status == HBVIB_E_BUSY) then
+         if (hbvib_model_free(made_now) == HBVIB_OK) status = HBVIB_E_BUSY
+         return
+      end if
+      copy%handle = made_now
+      status = HBVIB_OK
    end function model_clone
 
    !> Branches solved from the model stay. Freeing an empty variable is a success.
@@ -1281,9 +1303,11 @@ contains
       integer(i64), intent(in) :: values
       integer(i32), intent(in), optional :: part
       type(hbvib_matrix), intent(out) :: a
+      integer(i64) :: unused
       a = dense([size(col_ptr) - 1, size(col_ptr) - 1], part)
       a%storage = HBVIB_CSC
       if (size(col_ptr) == 0) return
+      call to_zero(status, 'col_ptr(1)', col_ptr(1), 1_i64, unused)
       call same_length(status, 'row_idx', size(row_idx, kind=i64), col_ptr(size(col_ptr)) - 1)
       call same_length(status, 'values', values, col_ptr(size(col_ptr)) - 1)
       a%col_ptr = c_loc(col_ptr)
@@ -2052,14 +2076,14 @@ contains
       complex(dp), allocatable, intent(inout) :: x(:, :)
       integer(i32) :: status
       type(hbvib_reduction) :: size_of
+      complex(dp), allocatable :: found(:, :)
       integer :: stat
       status = hbvib_branch_reduction(self%handle, size_of)
       if (status /= HBVIB_OK) return
-      if (allocated(x)) deallocate (x)
-      allocate (x(size_of%degrees_of_freedom, 0:size_of%harmonics_asked), stat=stat)
+      allocate (found(size_of%degrees_of_freedom, 0:size_of%harmonics_asked), stat=stat)
       status = made(stat)
-      if (status == HBVIB_OK) status = self%harmonics_into(point, 1, x)
-      if (status /= HBVIB_OK .and. allocated(x)) deallocate (x)
+      if (status == HBVIB_OK) status = self%harmonics_into(point, 1, found)
+      if (status == HBVIB_OK) call move_alloc(found, x)
    end function branch_harmonics
 
    !> Harmonics x(:, 0:H) of size(x, 1) degrees of freedom from first_dof on.

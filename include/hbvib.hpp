@@ -95,14 +95,18 @@ class Call {
   /// Runs a callback; `failed` is the answer where it throws, or where one before it has thrown.
   template <class F>
   static std::int32_t guard(std::int32_t failed, F&& callback) noexcept {
-    Call* const call = innermost();
+    Call* call = innermost();
+    if (call && call->running_) call = nullptr;  // in a plain C call that a callback makes: nobody carries it
     if (call && call->thrown_) return failed;
+    if (call) call->running_ = true;
+    std::int32_t answer = failed;
     try {
-      return callback();
+      answer = callback();
     } catch (...) {
       if (call) call->thrown_ = std::current_exception();
-      return failed;
     }
+    if (call) call->running_ = false;
+    return answer;
   }
 
  private:
@@ -113,6 +117,7 @@ class Call {
 
   Call* outer_;
   std::exception_ptr thrown_;
+  bool running_ = false;  // a callback of this very call
 };
 
 /// Calls a function of the library that returns a status or a count.
@@ -485,11 +490,14 @@ class Callback : public std::function<R(Argument)> {
 
  private:
   template <class F>
-  static auto answering(F callable) {
-    if constexpr (std::is_void_v<std::invoke_result_t<F&, Argument>>)
-      return [callable = std::move(callable)](Argument argument) mutable { return callable(argument), R{}; };
-    else
-      return callable;
+  static std::function<R(Argument)> answering(F callable) {
+    if constexpr (std::is_void_v<std::invoke_result_t<F&, Argument>>) {
+      std::function<void(Argument)> inner(std::move(callable));
+      if (!inner) return {};  // an empty function stays one
+      return [inner = std::move(inner)](Argument argument) { return inner(argument), R{}; };
+    } else {
+      return std::function<R(Argument)>(std::move(callable));
+    }
   }
 };
 

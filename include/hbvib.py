@@ -11,7 +11,7 @@ Errors      Below zero, a status is raised as a subclass of `Error` that is also
             IndexError, MemoryError ...). Above zero, the branch is returned and `StoppedEarly` is warned of,
             unless the caller stopped the solve. Wrong types are TypeError, wrong shapes ValueError.
 Arrays      C- or Fortran-ordered and strided float64 and complex128 matrices are handed over without a
-            copy; types that fit without loss are converted; scipy.sparse matrices of any format are taken.
+            copy; types that numpy calls safe to cast are converted; scipy.sparse matrices of any format are taken.
             Fields of a branch are read-only arrays in the library's own memory and keep the branch alive.
 Threads     Any number of threads may solve one model and read one branch at once: calls release the GIL.
             Changing or freeing an object in use is BusyError.
@@ -349,7 +349,7 @@ def _array(name: str, value: Any, dtype: Any = np.float64, shape: Optional[Seque
             want is not None and want != have for want, have in zip(shape, array.shape))):
         need = ", ".join("any" if want is None else str(want) for want in shape)
         raise ValueError(f"{name} has shape {array.shape}, needs ({need})")
-    return np.ascontiguousarray(array, dtype)
+    return np.require(array, dtype, "CA")
 
 
 def _numbers(name: str, value: Any, dtype: Any) -> np.ndarray:
@@ -377,7 +377,7 @@ def _columns(**columns: tuple) -> list:
     except ValueError:
         shapes = ", ".join(f"{name} {array.shape}" for name, array in zip(columns, arrays))
         raise ValueError(f"arrays of different shapes: {shapes}") from None
-    return [np.ascontiguousarray(np.broadcast_to(array, length), dtype)
+    return [np.require(np.broadcast_to(array, length), dtype, "CA")
             for array, (_, dtype) in zip(arrays, columns.values())]
 
 
@@ -522,7 +522,7 @@ class _Guard:
 
     def __exit__(self, *_: Any) -> None:
         _running.guard = self.outer
-        if self.wrapped:
+        if self.wrapped and signal.getsignal(signal.SIGINT) == self.interrupted:  # else a callback set its own
             signal.signal(signal.SIGINT, self.before)
         held, self.held = self.held, None
         if held is not None:
@@ -1170,7 +1170,11 @@ class Branch(_Owner):
         lease = _Lease(self)
         self._leases.add(lease)  # before the handle is read: free looks for leases after it has taken the handle
         view = _new("hbvib_view")
-        _call("hbvib_branch_field", self.handle, _member(Field, field), view)
+        try:
+            _call("hbvib_branch_field", self.handle, _member(Field, field), view)
+        except BaseException:
+            self._leases.discard(lease)  # the traceback holds it, and no array was made
+            raise
         dtype = np.dtype(np.complex128 if view.scalar == Scalar.COMPLEX else np.float64)
         shape = tuple(view.shape[:view.rank])
         if not view.data or 0 in shape:

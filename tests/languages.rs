@@ -161,6 +161,34 @@ fn the_installation_is_complete_and_may_be_moved() {
     }
 }
 
+/// Runs install.sh in a folder of the test's own; whether it succeeded.
+fn installs(folder: &Path, prefix: &str, destination: Option<&Path>) -> bool {
+    let mut command = Command::new("sh");
+    command
+        .arg(root().join("examples/install.sh"))
+        .arg(prefix)
+        .env("CARGO", env!("CARGO"))
+        .env_remove("DESTDIR")
+        .current_dir(folder);
+    if let Some(destination) = destination {
+        command.env("DESTDIR", destination);
+    }
+    command.output().unwrap().status.success()
+}
+
+#[test]
+fn prefixes_may_be_relative_spaced_staged_and_used_again() {
+    let folder = workshop("prefixes");
+    assert!(installs(&folder, "relative", None) && installs(&folder, "relative", None));
+    assert!(folder.join("relative/lib/libhbvib.so").is_file());
+    assert!(installs(&folder, "with space", None));
+    assert!(folder.join("with space/share/hbvib/hbvib.py").is_file());
+    let stage = folder.join("stage");
+    assert!(installs(&folder, "/opt/hbvib", Some(&stage)));
+    assert!(stage.join("opt/hbvib/include/hbvib.h").is_file() && !Path::new("/opt/hbvib").exists());
+    assert!(!installs(&folder, "relative", Some(&stage)) && !installs(&folder, "", None));
+}
+
 #[test]
 fn the_installed_library_shows_only_its_functions_and_needs_only_libc() {
     let library = prefix().join("lib/libhbvib.so");
@@ -321,12 +349,17 @@ fn five_languages_print_one_table() {
         folder.join("CMakeLists.txt"),
         "cmake_minimum_required(VERSION 3.16)\nproject(one Fortran)\nfind_package(hbvib REQUIRED)\n\
          add_executable(ring_damper ring_damper.f90 ${hbvib_FORTRAN_MODULE})\n\
-         target_link_libraries(ring_damper PRIVATE hbvib::hbvib)\n",
+         add_executable(alone ring_damper.f90 ${hbvib_FORTRAN_MODULE})\n\
+         set_target_properties(alone PROPERTIES Fortran_MODULE_DIRECTORY alone)\n\
+         target_link_libraries(ring_damper PRIVATE hbvib::hbvib)\n\
+         target_link_libraries(alone PRIVATE hbvib::static)\n",
     )
     .unwrap();
     cmake(&folder);
-    let text = printed(&mut Command::new(folder.join("build/ring_damper")));
-    assert_eq!(text, c, "Fortran by CMake and C");
+    for program in ["ring_damper", "alone"] {
+        let text = printed(&mut Command::new(folder.join("build").join(program)));
+        assert_eq!(text, c, "Fortran by CMake and C");
+    }
 
     let folder = copied("examples/python", "python");
     let text = printed(

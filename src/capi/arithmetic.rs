@@ -1,6 +1,6 @@
 //! The arithmetic that this code is compiled for: rounding to nearest, no traps, small numbers kept. A
 //! host may run with another one: traps on overflow (gfortran -ffpe-trap), small numbers flushed to zero
-//! (-ffast-math), another rounding. At the border its control word, its flags included, is laid aside
+//! (-ffast-math), another rounding. At the border its control word (on x86 with the flags in it) is laid aside
 //! and put back, so that no trap fires inside, results do not depend on the host's settings, and the host
 //! finds everything as it was.
 

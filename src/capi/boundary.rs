@@ -63,6 +63,8 @@ pub(super) fn outside<T>(callback: impl FnOnce() -> T) -> T {
     let before = INSIDE.replace(false);
     HOST.get().restore();
     let result = callback();
+    // What the host changes in a callback is its business as well.
+    HOST.set(Arithmetic::of_the_host());
     Arithmetic::enter();
     INSIDE.set(before);
     result
@@ -71,12 +73,10 @@ pub(super) fn outside<T>(callback: impl FnOnce() -> T) -> T {
 fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
     quiet_panics();
     let before = INSIDE.replace(true);
-    let host = Arithmetic::of_the_host();
-    let host_before = HOST.replace(host);
+    let host_before = HOST.replace(Arithmetic::of_the_host());
     Arithmetic::enter();
     let outcome = catch_unwind(AssertUnwindSafe(body));
-    host.restore();
-    HOST.set(host_before);
+    HOST.replace(host_before).restore();
     INSIDE.set(before);
     outcome.unwrap_or_else(|_| {
         let said = PANIC.with_borrow(|text| *text);

@@ -31,19 +31,10 @@ impl Excitation {
             return fail!(Argument, "force: harmonic = {harmonic}, needs 0 .. {MAX_HARMONIC}");
         }
         if !value.is_finite() {
-            return fail!(
-                NotFinite,
-                "force on dof {dof}: value = {} + {}i is not finite",
-                value.re,
-                value.im
-            );
+            return fail!(NotFinite, "force: value = {} + {}i is not finite", value.re, value.im);
         }
         if harmonic == 0 && value.im != 0.0 {
-            return fail!(
-                Argument,
-                "force on dof {dof}: a constant force is real, but im = {}",
-                value.im
-            );
+            return fail!(Argument, "force: a constant one is real, but im = {}", value.im);
         }
         try_push(&mut self.forces, Force { dof, harmonic, value }, "the forces")
     }

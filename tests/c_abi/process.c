@@ -78,6 +78,29 @@ static int same_peaks(const hbvib_forced_options *o, double *amplitude)
     return count == 1 && *amplitude == before;
 }
 
+static int32_t rounds_upward(void *user, const hbvib_progress *progress)
+{
+    *(int *)user += progress->point > 1 && fegetround() == FE_UPWARD;
+    feraiseexcept(FE_DIVBYZERO);
+    return fesetround(FE_UPWARD);
+}
+
+/* What a callback does to its own arithmetic is there in the next one, and after the call. */
+static void callbacks_keep_their_arithmetic(void)
+{
+    hbvib_forced_options o = frequencies(207, 211);
+    hbvib_branch *branch = NULL;
+    hbvib_hooks hooks;
+    int seen = 0;
+    WORKS("106", hbvib_hooks_init(&hooks, sizeof hooks));
+    hooks.user = &seen;
+    hooks.progress = rounds_upward;
+    WORKS("106", hbvib_forced_response(the_model, NULL, &o, &hooks, &branch));
+    EXPECT("106", fegetround() == FE_UPWARD && fetestexcept(FE_DIVBYZERO) != 0);
+    EXPECT("106", seen == hbvib_branch_points(branch) - 1);
+    WORKS("106", hbvib_branch_free(branch));
+}
+
 static void floating_point(void)
 {
     const hbvib_forced_options o = frequencies(207, 211);
@@ -104,6 +127,8 @@ static void floating_point(void)
     EXPECT("106", same_peaks(&o, &the_peak) && (_mm_getcsr() & 0x8040) == 0x8040);
     fesetenv(&plain);
 #endif
+    callbacks_keep_their_arithmetic();
+    fesetenv(&plain);
     EXPECT("106", same_solution(the_model, &the_solution) && same_peaks(&o, &the_peak));
 }
 

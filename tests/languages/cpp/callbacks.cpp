@@ -2,6 +2,7 @@
 #include "common.hpp"
 
 #include <atomic>
+#include <functional>
 #include <memory>
 #include <stdexcept>
 
@@ -41,6 +42,11 @@ void progress() {
   claim(part.status() == HBVIB_STOPPED_BY_CALLER && !part.complete() && !part.sentence().empty(), "a hook that returns true stops the solve");
   claim(part.points() == 5 && part.points() < whole.points(), "the points found so far are there");
   for (Index i = 0; i < 5; i++) claim(part.field(HBVIB_OMEGA)[i] == whole.field(HBVIB_OMEGA)[i], "they are those of the whole branch");
+
+  void (*nothing)(const hbvib_progress&) = nullptr;
+  const std::function<void(const hbvib_progress&)> empty;
+  claim(bits(model.forced_response(options(), range(), {nothing})) == bits(whole), "an empty pointer is no hook");
+  claim(bits(model.forced_response(options(), range(), {empty})) == bits(whole), "an empty function is no hook");
 
   int lines = 0;
   hbvib::Hooks hooks;
@@ -168,7 +174,7 @@ void intruders() {
 }  // namespace
 
 int main() {
-  return verdict(32, [] {
+  return verdict(34, [] {
     progress();
     thrown_by_hooks();
     thrown_by_log();

@@ -170,6 +170,15 @@ void failures_of_it() {
   *told = {0, 0};
   hbvib_branch* branch = nullptr;
   claim(hbvib_forced_response(model.get(), nullptr, &RANGE, nullptr, &branch) == HBVIB_E_CALLBACK, "a plain C call sees HBVIB_E_CALLBACK");
+  hbvib_status inner = HBVIB_OK;
+  const auto calls_c = [&](const hbvib_progress&) { *told = {0, 0}, inner = hbvib_forced_response(model.get(), nullptr, &RANGE, nullptr, &branch); };
+  auto other = Model::plain(1);
+  const double one[1][1] = {{1}};
+  other.set_matrix(HBVIB_MASS, one);
+  other.set_matrix(HBVIB_STIFFNESS, one);
+  other.set_rayleigh(0, 0.1);
+  other.add_force(0, 1, 1);
+  claim(other.forced_response({}, RANGE, {calls_c}).complete() && inner == HBVIB_E_CALLBACK, "so does one within a callback, which goes on");
 }
 
 // A force with a state: Jenkins' element marched from sample to sample, against the library's.

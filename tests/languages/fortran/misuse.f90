@@ -116,6 +116,8 @@ contains
       contact = hbvib_contact(kind=HBVIB_JENKINS, kt=1._dp, mu=1._dp, preload=1._dp)
       contact%dof_a(1) = 0
       call bad(model%add_contact(contact), HBVIB_E_INDEX, 'dof_a(1) = 0, needs 1 .. 4', 'a contact on dof 0')
+      contact%dof_a(1) = 4294967297_c_int64_t
+      call bad(model%add_contact(contact), HBVIB_E_INDEX, 'dof_a(1) = 4294967297, needs 1 .. 4', 'a contact on dof 2**32 + 1')
       contact%dof_a(1) = 5
       call bad(model%add_contact(contact), HBVIB_E_INDEX, 'dof_a(1) = 5, needs 1 .. 4', 'a contact on dof 5')
       call bad(model%add_jenkins([1, 0], [1._dp, 1._dp], [1._dp, 1._dp], [1._dp, 1._dp]), HBVIB_E_INDEX, &
@@ -315,6 +317,13 @@ contains
       call expect('a clone is a model of its own', solve(model, again) == HBVIB_OK .and. same(again, reference))
       call works(copy%free(), 'free')
       call works(copy%free(), 'freeing an empty variable')
+      copy = model
+      call works(model%clone(copy), 'a clone into a copy of the handle')
+      call expect('it is another object', .not. c_associated(copy%handle, model%handle))
+      call expect('the original is still there', solve(model, again) == HBVIB_OK .and. same(again, reference))
+      call expect('and the clone solves alike', solve(copy, again) == HBVIB_OK .and. same(again, reference))
+      call works(copy%free(), 'free')
+      call expect('no text has no letters', hbvib_text(c_null_ptr) == '')
       call bad(stale%set_wave(1), HBVIB_E_HANDLE, '', 'a copy of a freed handle')
       call bad(stale%add_force(1, 1, 1._dp), HBVIB_E_HANDLE, '', 'a copy of a freed handle')
       call expect('a count of a freed model is a status', stale%dofs() == HBVIB_E_HANDLE)

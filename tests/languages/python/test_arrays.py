@@ -35,6 +35,17 @@ check("fields compute", np.all(np.diff(branch.omega[[0, -1]]) > 0) and branch.sl
 
 del array
 gc.collect()
+try:
+    branch.damping_ratio
+except hbvib.Error as error:
+    refusal = error  # its traceback reaches the frame that asked for the field
+fresh = solve(model)
+try:
+    fresh.damping_ratio
+except hbvib.Error as error:
+    refusal = error
+fresh.free()
+check("a field that was refused keeps no memory", fresh is not None and refusal is not None)
 omega = branch.omega[::2]
 raises("free with a live view is BufferError, as of a memoryview", BufferError, branch.free)
 check("and the branch is as before", bits(branch) == reference)

@@ -316,6 +316,15 @@ error, took = interrupting(
     solve, 0.1, model, harmonics=63, step_max=1e-3, max_points=10**6, progress=lambda state: None
 )
 check("a handler of one's own is called and goes on", error is None and own_handler == [signal.SIGINT])
+
+
+def sets_its_own(progress):
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+signal.signal(signal.SIGINT, handler)
+solve(model, progress=sets_its_own)
+check("a handler that a callback sets stays", signal.getsignal(signal.SIGINT) is signal.SIG_IGN)
 signal.signal(signal.SIGINT, handler)
 
 finish(77)
