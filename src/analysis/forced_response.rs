@@ -74,7 +74,7 @@ pub fn forced_response(
     let held = reduction.held_by_contacts;
     let start = start::solve(&mut problem, &settings, hooks.cancelled);
     let first = match start.map_err(|e| tell_of_load(e, &condensed, held))? {
-        First::Found(point) => Some(point),
+        First::Found(point, way) => Some((point, way)),
         First::Cancelled => None,
     };
     let mut points = Points {
@@ -93,8 +93,8 @@ pub fn forced_response(
         max_points: solver.max_points,
     };
     let outcome = match first {
-        Some(first) => {
-            hooks.log(LogLevel::Info, "first point solved");
+        Some((first, way)) => {
+            hooks.log(LogLevel::Info, way.sentence());
             task.run(&mut points, first, hooks)
         }
         None => Ok(Status::StoppedByCaller),

@@ -1,9 +1,11 @@
-//! The first point of a branch: damped Newton from the problem's own starts, then a homotopy.
+//! The first point of a branch: damped Newton from the problem's own starts, then homotopies.
 //!
-//! The homotopy follows the solution from small motion, where contacts stick, to the given problem, or
+//! The first homotopy follows the solution from small motion, where contacts stick, to the given problem, or
 //! from rest under constant loads as the vibrating forces grow, by the same arc-length continuation
-//! that follows the branch afterwards.
+//! that follows the branch afterwards. What it misses is tied to an anchor and let loose, see
+//! [`super::anchored`]: slower, and sure where solutions are bounded.
 
+use super::anchored::Anchored;
 use super::corrector::{Corrector, Outcome};
 use super::step_control::StepControl;
 use super::{Advance, Continuation, Metric, Point, Settings};
@@ -14,10 +16,38 @@ use crate::problem::{Problem, Start};
 /// How the search for the first point ended.
 #[derive(Debug)]
 pub enum First {
-    /// With a point.
-    Found(Point),
+    /// With a point, and the way that led to it.
+    Found(Point, Way),
     /// On the caller's wish.
     Cancelled,
+}
+
+/// What led to a first point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Way {
+    /// Newton's method from a start of the problem's own.
+    Newton(Start),
+    /// The problem's homotopy.
+    Homotopy,
+    /// The homotopy from an anchor.
+    Anchor,
+    /// The branch itself, from another parameter.
+    Branch,
+}
+
+impl Way {
+    /// What a log says of it.
+    #[must_use]
+    pub const fn sentence(self) -> &'static str {
+        match self {
+            Self::Newton(Start::Given) => "first point solved from the given start",
+            Self::Newton(Start::Stuck) => "first point solved from small motion",
+            Self::Newton(Start::Reference) => "first point solved from the contacts' reference stiffness",
+            Self::Homotopy => "first point solved by a homotopy from small motion or rest",
+            Self::Anchor => "first point solved by a homotopy from an anchor",
+            Self::Branch => "first point solved by following the branch",
+        }
+    }
 }
 
 const WHAT: &str = "the start";
@@ -51,7 +81,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
             match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
                 Outcome::Converged(corrected) => {
                     v[n] = p;
-                    return Ok(First::Found(Point::new(v, corrected, 0.0)));
+                    return Ok(First::Found(Point::new(v, corrected, 0.0), Way::Newton(kind)));
                 }
                 Outcome::Cancelled => return Ok(First::Cancelled),
                 Outcome::Failed => failure = corrector.failure().or(failure),
@@ -66,12 +96,18 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
             failure = corrector.failure().or(failure);
         }
     }
+    if problem.is_bounded() {
+        let reached = from_anchors(problem, settings, &mut corrector, cancelled);
+        if let Some(first) = attempt(reached, None, &mut failure)? {
+            return Ok(first);
+        }
+    }
     if let Some(e) = failure {
         return Err(e.at(format_args!("no solution was found at the start, parameter {p}")));
     }
     fail!(
         NoConvergence,
-        "no solution was found at the start, parameter {p}: Newton's method and the homotopy from small motion failed; start elsewhere, or raise max_newton"
+        "no solution was found at the start, parameter {p}: Newton's method and the homotopies failed; start elsewhere, or raise max_newton"
     )
 }
 
@@ -121,18 +157,69 @@ fn homotopy(
     };
     let reached = follow(problem, &eased, u, corrector, cancelled);
     problem.end_homotopy();
-    let Some(mut v) = reached? else {
-        return Ok(None);
-    };
+    let Some(v) = reached? else { return Ok(None) };
+    at_last(problem, settings, v, Way::Homotopy, corrector, cancelled)
+}
+
+/// Newton's method on the problem itself from the end of a homotopy.
+fn at_last(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    mut v: Vec<f64>,
+    way: Way,
+    corrector: &mut Corrector,
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Option<First>> {
+    let n = v.len() - 1;
     v[n] = settings.start;
     Ok(match at_fixed(problem, settings, corrector, &mut v, cancelled)? {
         Outcome::Converged(corrected) => {
             v[n] = settings.start;
-            Some(First::Found(Point::new(v, corrected, 0.0)))
+            Some(First::Found(Point::new(v, corrected, 0.0), way))
         }
         Outcome::Cancelled => Some(First::Cancelled),
         Outcome::Failed => None,
     })
+}
+
+/// By homotopies from one anchor after the other: linear motions, then rest.
+fn from_anchors(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    corrector: &mut Corrector,
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Option<First>> {
+    let p = settings.start;
+    let mut anchor = try_vec(problem.size(), 0.0, WHAT)?;
+    let loosened = Settings {
+        start: 0.0,
+        end: 1.0,
+        steps: StepControl::new(0.0, 0.0, 0.0),
+        ..*settings
+    };
+    for kind in [Some(Start::Reference), Some(Start::Stuck), None] {
+        let exists = match kind {
+            Some(kind) => problem.start(kind, p, &mut anchor)?,
+            None => {
+                anchor.fill(0.0);
+                true
+            }
+        };
+        if !exists {
+            continue;
+        }
+        let mut tied = Anchored::new(problem, p, &anchor)?;
+        let reached = match follow(&mut tied, &loosened, &anchor, corrector, cancelled) {
+            Err(e) if e.recoverable => None,
+            reached => reached?,
+        };
+        if let Some(v) = reached
+            && let Some(first) = at_last(problem, settings, v, Way::Anchor, corrector, cancelled)?
+        {
+            return Ok(Some(first));
+        }
+    }
+    Ok(None)
 }
 
 /// Follows the homotopy to its end and returns the unknowns there.
