@@ -52,8 +52,15 @@ impl Way {
 
 const WHAT: &str = "the start";
 
-/// Most points that the homotopy may take.
-const MAX_HOMOTOPY_POINTS: usize = 2_000;
+/// Most points that a homotopy may take; one that needs more has lost its way among corners.
+const MAX_HOMOTOPY_POINTS: usize = 600;
+
+/// Longest step of a homotopy, whose way matters only for its end.
+const LONG_STEP: f64 = 0.1;
+
+/// Motions so many times those under linear contacts leave of the forces, in double precision, less
+/// than four digits.
+const FAR: f64 = 1e12;
 
 /// Solves for the first point at `settings.start`.
 ///
@@ -79,12 +86,12 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
         if exists {
             v[n] = p;
             match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
-                Outcome::Converged(corrected) => {
+                Outcome::Converged(corrected) if !is_far(problem, &v[..n], p)? => {
                     v[n] = p;
                     return Ok(First::Found(Point::new(v, corrected, 0.0), Way::Newton(kind)));
                 }
                 Outcome::Cancelled => return Ok(First::Cancelled),
-                Outcome::Failed => failure = corrector.failure().or(failure),
+                Outcome::Converged(_) | Outcome::Failed => failure = corrector.failure().or(failure),
             }
         }
         // The homotopy is surer than a poorer start.
@@ -145,19 +152,18 @@ fn homotopy(
     corrector: &mut Corrector,
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Option<First>> {
-    let n = u.len();
     let Some((begin, end)) = problem.begin_homotopy(settings.start, u)? else {
         return Ok(None);
     };
     let eased = Settings {
         start: begin,
         end,
-        steps: StepControl::new(0.0, 0.0, 0.0),
+        steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
     let reached = follow(problem, &eased, u, corrector, cancelled);
     problem.end_homotopy();
-    let Some(v) = reached? else { return Ok(None) };
+    let Reached::End(v) = reached? else { return Ok(None) };
     at_last(problem, settings, v, Way::Homotopy, corrector, cancelled)
 }
 
@@ -173,16 +179,25 @@ fn at_last(
     let n = v.len() - 1;
     v[n] = settings.start;
     Ok(match at_fixed(problem, settings, corrector, &mut v, cancelled)? {
-        Outcome::Converged(corrected) => {
+        Outcome::Converged(corrected) if !is_far(problem, &v[..n], settings.start)? => {
             v[n] = settings.start;
             Some(First::Found(Point::new(v, corrected, 0.0), way))
         }
         Outcome::Cancelled => Some(First::Cancelled),
-        Outcome::Failed => None,
+        Outcome::Converged(_) | Outcome::Failed => None,
     })
 }
 
-/// By homotopies from one anchor after the other: linear motions, then rest.
+/// Anchors, each a start times a factor.
+const ANCHORS: [(Start, f64); 5] = [
+    (Start::Reference, 1.0),
+    (Start::Stuck, 1.0),
+    (Start::Reference, 0.0),
+    (Start::Reference, -1.0),
+    (Start::Reference, 3.0),
+];
+
+/// By homotopies from one anchor after the other.
 fn from_anchors(
     problem: &mut dyn Problem,
     settings: &Settings,
@@ -194,26 +209,23 @@ fn from_anchors(
     let loosened = Settings {
         start: 0.0,
         end: 1.0,
-        steps: StepControl::new(0.0, 0.0, 0.0),
+        steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
-    for kind in [Some(Start::Reference), Some(Start::Stuck), None] {
-        let exists = match kind {
-            Some(kind) => problem.start(kind, p, &mut anchor)?,
-            None => {
-                anchor.fill(0.0);
-                true
-            }
-        };
-        if !exists {
+    for (kind, factor) in ANCHORS {
+        if !problem.start(kind, p, &mut anchor)? {
             continue;
+        }
+        for a in &mut anchor {
+            *a *= factor;
         }
         let mut tied = Anchored::new(problem, p, &anchor)?;
         let reached = match follow(&mut tied, &loosened, &anchor, corrector, cancelled) {
-            Err(e) if e.recoverable => None,
+            Err(e) if e.recoverable => Reached::Nothing,
             reached => reached?,
         };
-        if let Some(v) = reached
+        // From where a way ended early Newton's method may still arrive.
+        if let Reached::End(v) | Reached::Part(v) = reached
             && let Some(first) = at_last(problem, settings, v, Way::Anchor, corrector, cancelled)?
         {
             return Ok(Some(first));
@@ -222,26 +234,50 @@ fn from_anchors(
     Ok(None)
 }
 
-/// Follows the homotopy to its end and returns the unknowns there.
+/// Whether a solution lies so far out that the forces are lost in the rounding of what the motion
+/// asks for: nothing is known then of their balance. An undamped structure at its resonance comes here
+/// when friction does not hold it.
+fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64) -> Result<bool> {
+    let mut linear = try_vec(u.len(), 0.0, WHAT)?;
+    let known = problem.start(Start::Reference, p, &mut linear)?;
+    Ok(known && norm(u) > FAR * norm(&linear) && norm(&linear) > 0.0)
+}
+
+/// How far a homotopy led.
+enum Reached {
+    /// To its end.
+    End(Vec<f64>),
+    /// Not so far; the point nearest to the end.
+    Part(Vec<f64>),
+    Nothing,
+}
+
+/// Follows a homotopy.
 fn follow(
     problem: &mut dyn Problem,
     settings: &Settings,
     u: &[f64],
     corrector: &mut Corrector,
     cancelled: Option<&dyn Fn() -> bool>,
-) -> Result<Option<Vec<f64>>> {
+) -> Result<Reached> {
     let mut v = try_copy(u, WHAT)?;
     try_push(&mut v, settings.start, WHAT)?;
     let Outcome::Converged(corrected) = at_fixed(problem, settings, corrector, &mut v, cancelled)? else {
-        return Ok(None);
+        return Ok(Reached::Nothing);
     };
+    let left = |v: &[f64]| (settings.end - v[v.len() - 1]).abs();
+    let mut nearest = try_copy(&v, WHAT)?;
     let mut continuation = Continuation::new(*settings, Point::new(v, corrected, 0.0))?;
     for _ in 0..MAX_HOMOTOPY_POINTS {
         match continuation.advance(problem, cancelled)? {
-            Advance::Accepted { point, last: true } => return Ok(Some(point.v)),
-            Advance::Accepted { .. } => {}
-            Advance::LeftAtStart { .. } | Advance::Stopped(_) => return Ok(None),
+            Advance::Accepted { point, last: true } => return Ok(Reached::End(point.v)),
+            Advance::Accepted { point, .. } => {
+                if left(&point.v) < left(&nearest) {
+                    nearest = point.v;
+                }
+            }
+            Advance::LeftAtStart { .. } | Advance::Stopped(_) => break,
         }
     }
-    Ok(None)
+    Ok(Reached::Part(nearest))
 }

@@ -176,11 +176,6 @@ impl Law {
         }
     }
 
-    /// Whether the library samples it and is wrong by that.
-    pub fn is_sampled(&self) -> bool {
-        matches!(self, Self::Plane { .. } | Self::Tanh { .. })
-    }
-
     /// The contact of the library between degrees of freedom, direction after direction.
     pub fn contact(&self, sides: &[[Option<usize>; 2]]) -> Contact {
         let [a, b] = sides[0];
@@ -208,6 +203,31 @@ impl Law {
                 Contact::between(a.unwrap(), b, ContactKind::Polynomial(law))
             }
         }
+    }
+
+    /// Forces of friction in a plane that neither slips nor opens: the motion tells them but for a constant,
+    /// a memory, whose value `memory` is taken if friction can hold it; if not, nothing is done.
+    pub fn stick(&self, u: &[f64], memory: [f64; 2], f: &mut [f64]) -> bool {
+        let Self::Plane { kt, kn, mu, load, normal } = *self else { return false };
+        let d = self.directions();
+        let times = u.len() / d;
+        let mean = |i: usize| u.iter().skip(i).step_by(d).sum::<f64>() / times as f64;
+        let mean = [mean(0), mean(1)];
+        let largest = u.chunks_exact(d).map(|u| (u[0] - mean[0]).hypot(u[1] - mean[1])).fold(0.0, f64::max);
+        let rounding = 1e-6 * (kt * largest + memory[0].hypot(memory[1]));
+        for (u, f) in u.chunks_exact(d).zip(f.chunks_exact_mut(d)) {
+            let pressure = if normal { load - kn * u[2] } else { load };
+            for i in 0..2 {
+                f[i] = kt * (u[i] - mean[i]) + memory[i];
+            }
+            if pressure < 0.0 || f[0].hypot(f[1]) > mu * pressure + rounding {
+                return false;
+            }
+            if normal {
+                f[2] = -pressure;
+            }
+        }
+        true
     }
 
     /// Most periods that a march may take to become periodic.

@@ -208,11 +208,6 @@ impl Case {
     pub fn force(&self) -> f64 {
         self.forces.iter().map(|f| f.2.norm_sqr()).sum::<f64>().sqrt()
     }
-
-    /// Whether the library samples one of the laws.
-    pub fn is_sampled(&self) -> bool {
-        self.contacts.iter().any(|placed| placed.law.is_sampled())
-    }
 }
 
 /// A contact of the law of a number between degrees of freedom, or one and the ground.

@@ -47,11 +47,6 @@ impl Random {
         self.share() < probability
     }
 
-    /// 1 or −1.
-    pub fn sign(&mut self) -> f64 {
-        if self.happens(0.5) { 1.0 } else { -1.0 }
-    }
-
     /// A complex number of modulus 1.
     pub fn phase(&mut self) -> Complex64 {
         Complex64::cis(TAU * self.share())

@@ -1,6 +1,9 @@
-//! The residual of harmonic balance by sampling in time, nothing of it by the library.
+//! The residual of harmonic balance by sampling in time, nothing of it by the library but the constant that
+//! friction in a plane remembers where it sticks; that constant is checked against what friction can hold.
 
-use super::problem::Case;
+use super::law::Law;
+use super::problem::{Case, Placed};
+use hbvib::analysis::contact_evaluate;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -19,7 +22,6 @@ pub struct Residual {
     pub change: f64,
     /// ‖contact forces‖/‖F‖.
     pub contacts: f64,
-    pub samples: usize,
 }
 
 impl Residual {
@@ -34,7 +36,6 @@ impl Residual {
                 size,
                 change: 0.0,
                 contacts: contacts / force,
-                samples,
             };
             if size <= bound {
                 return found;
@@ -80,8 +81,7 @@ fn sampled(case: &Case, x: &[Complex64], samples: usize) -> (Vec<Complex64>, f64
         let d = placed.law.directions();
         let (mut u, mut v, mut f) = (vec![0.0; d * samples], vec![0.0; d * samples], vec![0.0; d * samples]);
         for (k, [a, b]) in placed.sides.iter().enumerate() {
-            let part = |side: &Option<usize>, h: usize| side.map_or(Complex64::ZERO, |dof| x[h * n + dof]);
-            let y: Vec<Complex64> = (0..count).map(|h| part(a, h) - part(b, h)).collect();
+            let y = relative(x, n, [*a, *b]);
             for j in 0..samples {
                 u[j * d + k] = y[0].re;
                 for (h, y) in y.iter().enumerate().skip(1) {
@@ -91,7 +91,10 @@ fn sampled(case: &Case, x: &[Complex64], samples: usize) -> (Vec<Complex64>, f64
                 }
             }
         }
-        placed.law.march(&u, &v, &mut f);
+        let stuck = memory(placed, x, n, case.omega);
+        if !stuck.is_some_and(|memory| placed.law.stick(&u, memory, &mut f)) {
+            placed.law.march(&u, &v, &mut f);
+        }
         for (k, [a, b]) in placed.sides.iter().enumerate() {
             for h in 0..count {
                 let mut sum = Complex64::ZERO;
@@ -109,4 +112,21 @@ fn sampled(case: &Case, x: &[Complex64], samples: usize) -> (Vec<Complex64>, f64
         }
     }
     (r, contacts.sqrt())
+}
+
+/// Harmonics of a relative motion.
+fn relative(x: &[Complex64], n: usize, [a, b]: [Option<usize>; 2]) -> Vec<Complex64> {
+    let part = |side: Option<usize>, x: &[Complex64]| side.map_or(Complex64::ZERO, |dof| x[dof]);
+    x.chunks_exact(n).map(|x| part(a, x) - part(b, x)).collect()
+}
+
+/// The mean force along the surface that the library has for friction in a plane.
+fn memory(placed: &Placed, x: &[Complex64], n: usize, omega: f64) -> Option<[f64; 2]> {
+    let Law::Plane { .. } = placed.law else { return None };
+    let motion: Vec<Complex64> = placed.sides.iter().flat_map(|sides| relative(x, n, *sides)).collect();
+    let count = x.len() / n;
+    let mut force = vec![Complex64::ZERO; motion.len()];
+    let contact = placed.law.contact(&placed.sides);
+    contact_evaluate(&contact, count - 1, 0, omega, &motion, &mut force, None).unwrap();
+    Some([force[0].re, force[count].re])
 }
