@@ -53,7 +53,7 @@ impl Way {
 const WHAT: &str = "the start";
 
 /// Most points that a homotopy may take; one that needs more has lost its way among corners.
-const MAX_HOMOTOPY_POINTS: usize = 600;
+const MAX_HOMOTOPY_POINTS: usize = 400;
 
 /// Longest step of a homotopy, whose way matters only for its end.
 const LONG_STEP: f64 = 0.1;
@@ -189,13 +189,7 @@ fn at_last(
 }
 
 /// Anchors, each a start times a factor.
-const ANCHORS: [(Start, f64); 5] = [
-    (Start::Reference, 1.0),
-    (Start::Stuck, 1.0),
-    (Start::Reference, 0.0),
-    (Start::Reference, -1.0),
-    (Start::Reference, 3.0),
-];
+const ANCHORS: [(Start, f64); 3] = [(Start::Reference, 1.0), (Start::Stuck, 1.0), (Start::Reference, 0.0)];
 
 /// By homotopies from one anchor after the other.
 fn from_anchors(

@@ -87,11 +87,21 @@ impl Law {
             // A preload, or now and then a gap at rest.
             1 | 2 => {
                 let gap = normal && random.happens(0.25);
-                let load = if gap { -kn * length * random.decade(-1.0, 1.0) } else { limit / mu };
+                let load = if gap {
+                    -kn * length * random.decade(-1.0, 1.0)
+                } else {
+                    limit / mu
+                };
                 if number == 1 {
                     Self::Friction { kt: k, kn, mu, load }
                 } else {
-                    Self::Plane { kt: k, kn, mu, load, normal }
+                    Self::Plane {
+                        kt: k,
+                        kn,
+                        mu,
+                        load,
+                        normal,
+                    }
                 }
             }
             3 => Self::Unilateral {
@@ -99,13 +109,20 @@ impl Law {
                 gap: length * random.decade(-1.0, 1.0),
                 preload: 0.0,
             },
-            4 => Self::Unilateral { kn, gap: 0.0, preload: limit },
-            // Softening stays bounded: the cubic term is small against the stiffness at the amplitude of a
-            // linear resonance.
+            4 => Self::Unilateral {
+                kn,
+                gap: 0.0,
+                preload: limit,
+            },
+            // Softening stays bounded: the cubic term is a hundredth of the stiffness at the amplitude of a
+            // resonance on a tenth of it, which is the least that the structures have, under two forces.
             5 if random.happens(0.25) => {
-                let largest = length / (2.0 * sizes.damping_ratio + 0.01);
-                let k3 = -0.1 * sizes.stiffness / largest.powi(2);
-                Self::Cubic { k: 0.0, k3: k3 * random.share() }
+                let largest = 20.0 * length / (2.0 * sizes.damping_ratio + 0.01);
+                let k3 = -0.01 * sizes.stiffness / largest.powi(2);
+                Self::Cubic {
+                    k: 0.0,
+                    k3: k3 * random.share(),
+                }
             }
             5 => Self::Cubic {
                 k: if random.happens(0.5) { 0.0 } else { k },
@@ -129,7 +146,11 @@ impl Law {
                     f += sizes.stiffness * random.decade(-2.0, 2.0) * step;
                 }
                 let table = Table::new(&places, &forces).unwrap();
-                let rest = if random.happens(0.5) { table.force(0.0) } else { table.force(0.0) - limit };
+                let rest = if random.happens(0.5) {
+                    table.force(0.0)
+                } else {
+                    table.force(0.0) - limit
+                };
                 for f in &mut forces {
                     *f -= rest;
                 }
@@ -188,11 +209,20 @@ impl Law {
                 gap: gap(load, kn),
                 ..Contact::friction(side(0), side(1), (kt, kn), mu, load.max(0.0))
             },
-            Self::Plane { kt, kn, mu, load, normal } => Contact {
+            Self::Plane {
+                kt,
+                kn,
+                mu,
+                load,
+                normal,
+            } => Contact {
                 gap: gap(load, kn),
                 ..Contact::friction_plane(all(0), all(1), (kt, if normal { kn } else { 0.0 }), mu, load.max(0.0))
             },
-            Self::Unilateral { kn, gap, preload } => Contact { preload, ..Contact::unilateral(a, b, kn, gap) },
+            Self::Unilateral { kn, gap, preload } => Contact {
+                preload,
+                ..Contact::unilateral(a, b, kn, gap)
+            },
             Self::Cubic { k, k3 } => Contact::cubic(a.unwrap(), b, k, k3),
             Self::Tanh { limit, velocity } => Contact::regularised(a.unwrap(), b, 1.0, limit, velocity),
             Self::Table { ref x, ref f } => {
@@ -208,12 +238,24 @@ impl Law {
     /// Forces of friction in a plane that neither slips nor opens: the motion tells them but for a constant,
     /// a memory, whose value `memory` is taken if friction can hold it; if not, nothing is done.
     pub fn stick(&self, u: &[f64], memory: [f64; 2], f: &mut [f64]) -> bool {
-        let Self::Plane { kt, kn, mu, load, normal } = *self else { return false };
+        let Self::Plane {
+            kt,
+            kn,
+            mu,
+            load,
+            normal,
+        } = *self
+        else {
+            return false;
+        };
         let d = self.directions();
         let times = u.len() / d;
         let mean = |i: usize| u.iter().skip(i).step_by(d).sum::<f64>() / times as f64;
         let mean = [mean(0), mean(1)];
-        let largest = u.chunks_exact(d).map(|u| (u[0] - mean[0]).hypot(u[1] - mean[1])).fold(0.0, f64::max);
+        let largest = u
+            .chunks_exact(d)
+            .map(|u| (u[0] - mean[0]).hypot(u[1] - mean[1]))
+            .fold(0.0, f64::max);
         let rounding = 1e-6 * (kt * largest + memory[0].hypot(memory[1]));
         for (u, f) in u.chunks_exact(d).zip(f.chunks_exact_mut(d)) {
             let pressure = if normal { load - kn * u[2] } else { load };
@@ -280,7 +322,13 @@ impl Law {
                 f[..1].copy_from_slice(&slider.drag::<1>(kt, mu * normal, &u[..1]));
                 f[1] = -normal;
             }
-            Self::Plane { kt, kn, mu, load, normal } => {
+            Self::Plane {
+                kt,
+                kn,
+                mu,
+                load,
+                normal,
+            } => {
                 let at = |u: &[f64]| if normal { load - kn * u[2] } else { load };
                 let pressure = slider.press([at(before), at(u)], [&before[..2], &u[..2]]);
                 f[..2].copy_from_slice(&slider.drag::<2>(kt, mu * pressure, &u[..2]));

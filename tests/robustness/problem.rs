@@ -45,7 +45,11 @@ pub struct Case {
 
 /// Damping ratio, up to 10 %.
 fn damping_ratio(random: &mut Random) -> f64 {
-    if random.happens(0.5) { random.decade(-4.0, -1.0) } else { random.within(0.001, 0.1) }
+    if random.happens(0.5) {
+        random.decade(-4.0, -1.0)
+    } else {
+        random.within(0.001, 0.1)
+    }
 }
 
 impl Case {
@@ -96,7 +100,11 @@ impl Case {
         };
         let mut contacts = Vec::new();
         for _ in 0..1 + random.below(4) {
-            let number = if undamped { [0, 6][random.below(2)] } else { random.below(LAWS.len()) };
+            // Friction in a plane, whose march takes a hundred times as long as the others, comes half as often.
+            let number = match random.below(2 * LAWS.len() - 1) {
+                _ if undamped => [0, 6][random.below(2)],
+                number => (number + 5) / 2 % LAWS.len(),
+            };
             contacts.push(place(number, n, sizes, &mut random));
         }
         let mut forces = vec![(random.below(n), 1, force * random.phase())];
@@ -130,10 +138,17 @@ impl Case {
             capacity += 4.0 * limit / PI;
             let kt = stiffness * random.decade(-2.0, 3.0);
             let sides = vec![[Some(0), None]];
-            contacts.push(Placed { law: Law::Jenkins { kt, limit }, sides });
+            contacts.push(Placed {
+                law: Law::Jenkins { kt, limit },
+                sides,
+            });
         }
         let bounded = random.happens(0.7);
-        let share = if bounded { random.within(0.05, 0.95) } else { random.within(1.05, 3.0) };
+        let share = if bounded {
+            random.within(0.05, 0.95)
+        } else {
+            random.within(1.05, 3.0)
+        };
         // Exactly at the resonance: ω² m = k to the last bit.
         let omega = (stiffness / mass).sqrt();
         Self {
@@ -144,7 +159,11 @@ impl Case {
             contacts,
             forces: vec![(0, 1, share * capacity * random.phase())],
             omega,
-            known: if bounded { Known::BelowCapacity } else { Known::AboveCapacity },
+            known: if bounded {
+                Known::BelowCapacity
+            } else {
+                Known::AboveCapacity
+            },
         }
     }
 
@@ -183,6 +202,22 @@ impl Case {
             omega: 1.0,
             known: Known::Damped,
         }
+    }
+
+    /// A frequency above the resonance of a single mass: beyond 3 times its own, and beyond the backbone of a
+    /// hardening spring, ω² = k + ¾·k3·a², at the amplitude a = F/(cω) that the damping allows.
+    pub fn top(&self) -> f64 {
+        let (k, k3) = match self.contacts[0].law {
+            Law::Cubic { k, k3 } => (k, k3.max(0.0)),
+            Law::Polynomial { spring, .. } => (spring[0], spring[2]),
+            _ => return 3.0,
+        };
+        let half = 0.5 * (self.stiffness[0] + k);
+        let amplitude = self.force() / self.damping[0];
+        1.5 * f64::max(
+            2.0,
+            (half + (half * half + 0.75 * k3 * amplitude.powi(2)).sqrt()).sqrt(),
+        )
     }
 
     /// The model of the library.
