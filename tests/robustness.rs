@@ -78,13 +78,18 @@ fn cold_starts_converge_to_solutions() {
     let mut per_law = [[0usize; 2]; LAWS.len()];
     let mut ways = BTreeMap::new();
     let mut worst = (0.0, 0);
-    let mut solving = 0.0;
+    let (mut solving, mut plane) = (0.0, 0.0);
     for number in 0..cases() {
         let case = Case::random(seed(), number);
         let clock = Instant::now();
         let (found, way) = cold_start(&case, &harmonics(H));
         let took = clock.elapsed().as_secs_f64();
         solving += took;
+        plane += if case.contacts.iter().any(|p| p.law.number() == PLANE) {
+            took
+        } else {
+            0.0
+        };
         let is_bounded = case.known != Known::AboveCapacity;
         bounded += usize::from(is_bounded);
         let mut has = [false; LAWS.len()];
@@ -139,7 +144,7 @@ fn cold_starts_converge_to_solutions() {
         }
     }
     println!(
-        "{converged} of {bounded} bounded cold starts converge, {solving:.1} s of {:.1} s",
+        "{converged} of {bounded} bounded cold starts converge, {solving:.1} s ({plane:.1} s for friction 3D) of {:.1} s",
         began.elapsed().as_secs_f64()
     );
     for (name, [all, good]) in LAWS.iter().zip(per_law) {

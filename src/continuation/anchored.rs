@@ -45,10 +45,11 @@ impl Problem for Anchored<'_> {
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
         self.problem.evaluate(u, self.parameter, out)?;
         let n = u.len();
-        for i in 0..n {
-            let free = u[i] - self.anchor[i];
-            out.d_parameter[i] = out.residual[i] - free;
-            out.residual[i] = p * out.residual[i] + (1.0 - p) * free;
+        let slopes = out.residual.iter_mut().zip(&mut out.d_parameter);
+        for ((r, d), (u, a)) in slopes.zip(u.iter().zip(&self.anchor)) {
+            let free = u - a;
+            *d = *r - free;
+            *r = p * *r + (1.0 - p) * free;
         }
         // A column of the identity stays one.
         for (i, column) in out.jacobian.chunks_exact_mut(n.max(1)).enumerate() {

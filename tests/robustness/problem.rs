@@ -99,11 +99,11 @@ impl Case {
             damping_ratio: least,
         };
         let mut contacts = Vec::new();
-        for _ in 0..1 + random.below(4) {
+        for _ in 0..=random.below(4) {
             // Friction in a plane, whose march takes a hundred times as long as the others, comes half as often.
             let number = match random.below(2 * LAWS.len() - 1) {
                 _ if undamped => [0, 6][random.below(2)],
-                number => (number + 5) / 2 % LAWS.len(),
+                number => number.div_ceil(2).wrapping_add(2) % LAWS.len(),
             };
             contacts.push(place(number, n, sizes, &mut random));
         }
@@ -133,7 +133,7 @@ impl Case {
     fn at_resonance(stiffness: f64, mass: f64, force: f64, random: &mut Random) -> Self {
         let mut capacity = 0.0;
         let mut contacts = Vec::new();
-        for _ in 0..1 + random.below(4) {
+        for _ in 0..=random.below(4) {
             let limit = force * random.decade(-1.0, 0.5);
             capacity += 4.0 * limit / PI;
             let kt = stiffness * random.decade(-2.0, 3.0);
