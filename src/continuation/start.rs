@@ -53,7 +53,7 @@ impl Way {
 const WHAT: &str = "the start";
 
 /// Most points that a homotopy may take; one that needs more has lost its way among corners.
-const MAX_HOMOTOPY_POINTS: usize = 400;
+const MAX_HOMOTOPY_POINTS: usize = 1_000;
 
 /// Longest step of a homotopy, whose way matters only for its end.
 const LONG_STEP: f64 = 0.1;
@@ -232,8 +232,11 @@ fn from_anchors(
 /// asks for: nothing is known then of their balance. An undamped structure at its resonance comes here
 /// when friction does not hold it.
 fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64) -> Result<bool> {
+    if !problem.is_bounded() {
+        return Ok(false);
+    }
     let mut linear = try_vec(u.len(), 0.0, WHAT)?;
-    let known = problem.start(Start::Reference, p, &mut linear)?;
+    let known = matches!(problem.start(Start::Reference, p, &mut linear), Ok(true));
     Ok(known && norm(u) > FAR * norm(&linear) && norm(&linear) > 0.0)
 }
 

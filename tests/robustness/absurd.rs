@@ -49,7 +49,7 @@ fn model(spring: &Arc<Counted>, driven: &[usize]) -> Result<Model> {
 }
 
 /// Points that all homotopies of a start may take.
-const HOMOTOPIES: usize = 4 * 400;
+const HOMOTOPIES: usize = 4 * 1_000;
 
 /// Corrections for one point: the steps shrink by 0.4 at least from the largest to the smallest, with three
 /// more at those that count as corners, and the special points beside it.
