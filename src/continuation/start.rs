@@ -62,6 +62,10 @@ const LONG_STEP: f64 = 0.1;
 /// than four digits.
 const FAR: f64 = 1e12;
 
+/// Residual, in units of the motion under linear contacts, that leaves the forces unbalanced however small
+/// it is against a large motion.
+const UNBALANCED: f64 = 1e-2;
+
 /// Solves for the first point at `settings.start`.
 ///
 /// # Errors
@@ -86,7 +90,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
         if exists {
             v[n] = p;
             match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
-                Outcome::Converged(corrected) if !is_far(problem, &v[..n], p)? => {
+                Outcome::Converged(corrected) if !is_far(problem, &v[..n], p, corrected.residual)? => {
                     v[n] = p;
                     return Ok(First::Found(Point::new(v, corrected, 0.0), Way::Newton(kind)));
                 }
@@ -179,7 +183,7 @@ fn at_last(
     let n = v.len() - 1;
     v[n] = settings.start;
     Ok(match at_fixed(problem, settings, corrector, &mut v, cancelled)? {
-        Outcome::Converged(corrected) if !is_far(problem, &v[..n], settings.start)? => {
+        Outcome::Converged(corrected) if !is_far(problem, &v[..n], settings.start, corrected.residual)? => {
             v[n] = settings.start;
             Some(First::Found(Point::new(v, corrected, 0.0), way))
         }
@@ -231,13 +235,14 @@ fn from_anchors(
 /// Whether a solution lies so far out that the forces are lost in the rounding of what the motion
 /// asks for: nothing is known then of their balance. An undamped structure at its resonance comes here
 /// when friction does not hold it.
-fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64) -> Result<bool> {
+fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64, residual: f64) -> Result<bool> {
     if !problem.is_bounded() {
         return Ok(false);
     }
     let mut linear = try_vec(u.len(), 0.0, WHAT)?;
     let known = matches!(problem.start(Start::Reference, p, &mut linear), Ok(true));
-    Ok(known && norm(u) > FAR * norm(&linear) && norm(&linear) > 0.0)
+    let (far, scale) = (norm(u), norm(&linear));
+    Ok(known && scale > 0.0 && (far > FAR * scale || residual * far > UNBALANCED * scale))
 }
 
 /// How far a homotopy led.
