@@ -76,7 +76,7 @@ pub fn forced_response(
     let held = reduction.held_by_contacts;
     let start = start::solve(&mut problem, &settings, hooks.cancelled);
     let first = match start.map_err(|e| tell_why(e, model, range.omega_start, &condensed, held))? {
-        First::Found(point) => Some(point),
+        First::Found(point, way) => Some((point, way)),
         First::Cancelled => None,
     };
     let mut points = Points {
@@ -97,8 +97,8 @@ pub fn forced_response(
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
     let outcome = match first {
-        Some(first) => {
-            hooks.log(LogLevel::Info, "first point solved");
+        Some((first, way)) => {
+            hooks.log(LogLevel::Info, way.sentence());
             task.run(&mut points, first, hooks)
         }
         None => Ok(Status::StoppedByCaller),

@@ -7,7 +7,7 @@ use crate::branch::mode::{ModeData, ModeInfo};
 use crate::branch::{Branch, SpecialKind};
 use crate::condense::Condensed;
 use crate::contact::Contact;
-use crate::continuation::start::{self, First};
+use crate::continuation::start::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
@@ -224,7 +224,7 @@ fn run(
             } else if p < from {
                 let at_it = Settings { start: p, ..settings };
                 match start::solve(points.problem(), &at_it, hooks.cancelled)? {
-                    First::Found(point) => points.keep_special(SpecialKind::At(i), point)?,
+                    First::Found(point, _) => points.keep_special(SpecialKind::At(i), point)?,
                     First::Cancelled => return Ok(Status::StoppedByCaller),
                 }
             }
@@ -253,7 +253,7 @@ fn run(
         solver.max_points,
         hooks,
     ) {
-        Ok(First::Found(first)) => {
+        Ok(First::Found(first, _)) => {
             hooks.log(LogLevel::Info, "first point with slip or a nonlinear force solved");
             task.run(points, first, hooks)
         }
@@ -289,7 +289,7 @@ fn first_nonlinear(
         ..*settings
     };
     let first = match start::solve(problem, &at_near, hooks.cancelled) {
-        Ok(First::Found(point)) => point,
+        Ok(First::Found(point, _)) => point,
         Ok(First::Cancelled) => return Ok(First::Cancelled),
         // The amplitude turns as soon as contacts slip: the way leads round the corner.
         Err(e) => match onset {
@@ -305,7 +305,7 @@ fn first_nonlinear(
     let mut continuation = Continuation::new(way, first)?;
     for _ in 0..max_points {
         match continuation.advance(problem, hooks.cancelled)? {
-            Advance::Accepted { point, last: true } => return Ok(First::Found(point)),
+            Advance::Accepted { point, last: true } => return Ok(First::Found(point, Way::Branch)),
             Advance::Accepted { .. } => {}
             Advance::Stopped(Status::StoppedByCaller) => return Ok(First::Cancelled),
             Advance::LeftAtStart { .. } | Advance::Stopped(_) => break,

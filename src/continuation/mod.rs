@@ -6,6 +6,7 @@
 //! Introduction to Numerical Continuation Methods, 2003, doi:10.1137/1.9780898719154), and is
 //! accepted when the prediction was close and the direction kept.
 
+pub mod anchored;
 pub mod corrector;
 pub mod events;
 pub mod metric;

@@ -290,6 +290,11 @@ impl Problem for Forced<'_> {
         self.forces.ease(1.0);
     }
 
+    /// Where damping takes the power of the forces; without it resonances are the exception.
+    fn is_bounded(&self) -> bool {
+        true
+    }
+
     fn set_pointwise(&mut self, pointwise: bool) {
         self.tables.set_pointwise(pointwise);
     }

@@ -86,6 +86,12 @@ pub trait Problem {
     /// Ends the homotopy.
     fn end_homotopy(&mut self);
 
+    /// Whether λ R(u) + (1 − λ)(u − a) = 0 has bounded solutions for any a, so that a homotopy can lead from
+    /// u = a to a solution.
+    fn is_bounded(&self) -> bool {
+        false
+    }
+
     /// Asks for the most accurate evaluation there is, at the parameter values that follow, rather
     /// than the one that is quick along a branch. Derivatives by the parameter may then be zero.
     fn set_pointwise(&mut self, _pointwise: bool) {}
