@@ -34,7 +34,7 @@ impl Excitation {
             return fail!(NotFinite, "force: value = {} + {}i is not finite", value.re, value.im);
         }
         if harmonic == 0 && value.im != 0.0 {
-            return fail!(Argument, "force: a constant one is real, but im = {}", value.im);
+            return fail!(Argument, "a constant force is real, but im = {}", value.im);
         }
         try_push(&mut self.forces, Force { dof, harmonic, value }, "the forces")
     }
