@@ -59,12 +59,19 @@ pub fn beyond_capacity(case: &Case) {
         let (status, sentence) = of(force, &super::common::harmonics(9));
         case.status(&format!("F = {share} of the limit: {sentence}"), status, Status::Ok);
     }
-    // So near the limit that a residual within the tolerance is far from a solution: the right amplitude, or none.
+    // So near the limit that the amplitude follows the force 1e7 times and more, and rounding beside such a motion
+    // is 1e-9 of the force: a motion that carries the force so far, and farther off the right amplitude, or none.
     for below in [1e-7, 1e-8, 1e-10, 1e-13, 0.0] {
         let force = limit * (1.0 - below);
         let found = answer(&forced(force), w, &super::common::harmonics(1));
         let right = match &found {
-            Ok(x) => below > 0.0 && (x[1].norm() / amplitude(case, force) - 1.0).abs() < 1e-3,
+            Ok(x) => {
+                let carried = fundamental(case.number("kt"), case.number("fc"), x[1].norm());
+                let near = (x[1].norm() / amplitude(case, force) - 1.0).abs() < 1e-3;
+                below > 0.0
+                    && (carried / force - 1.0).abs() < super::common::harmonics(1).tol_residual
+                    && (near || below < 1e-7)
+            }
             Err(e) => e.status == Status::NoConvergence,
         };
         let told = found.map(|x| x[1].norm()).map_err(|e| e.status);
