@@ -68,9 +68,7 @@ pub fn beyond_capacity(case: &Case) {
             Ok(x) => {
                 let carried = fundamental(case.number("kt"), case.number("fc"), x[1].norm());
                 let near = (x[1].norm() / amplitude(case, force) - 1.0).abs() < 1e-3;
-                below > 0.0
-                    && (carried / force - 1.0).abs() < super::common::harmonics(1).tol_residual
-                    && (near || below < 1e-7)
+                below > 0.0 && (carried / force - 1.0).abs() < 1e-9 && (near || below < 1e-7)
             }
             Err(e) => e.status == Status::NoConvergence,
         };
