@@ -350,7 +350,7 @@ fn five_languages_print_one_table() {
         "cmake_minimum_required(VERSION 3.16)\nproject(one Fortran)\nfind_package(hbvib REQUIRED)\n\
          add_executable(ring_damper ring_damper.f90 ${hbvib_FORTRAN_MODULE})\n\
          add_executable(alone ring_damper.f90 ${hbvib_FORTRAN_MODULE})\n\
-         set_target_properties(alone PROPERTIES Fortran_MODULE_DIRECTORY alone)\n\
+         set_target_properties(alone PROPERTIES Fortran_MODULE_DIRECTORY modules_of_alone)\n\
          target_link_libraries(ring_damper PRIVATE hbvib::hbvib)\n\
          target_link_libraries(alone PRIVATE hbvib::static)\n",
     )
