@@ -7,7 +7,7 @@ use crate::linalg::norm;
 use crate::problem::{Linearisation, Problem};
 
 /// Most Newton steps of a lift.
-const MOST_STEPS: usize = 12;
+const MOST_STEPS: usize = 24;
 
 /// Damping factor below which a step is taken as it is.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
