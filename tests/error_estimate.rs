@@ -172,3 +172,55 @@ fn the_estimate_is_the_true_error_of_slipping_points_of_the_blisk() {
 fn the_estimate_is_the_true_error_on_the_whole_grid_of_the_blisk() {
     check_cases(500);
 }
+
+/// Wall time of something that is repeated until it takes a while, in milliseconds.
+fn milliseconds(mut work: impl FnMut()) -> f64 {
+    let started = Instant::now();
+    let mut times = 0;
+    while started.elapsed().as_secs_f64() < 0.3 {
+        work();
+        times += 1;
+    }
+    1e3 * started.elapsed().as_secs_f64() / f64::from(times)
+}
+
+#[test]
+#[ignore = "times are told, not judged"]
+fn what_an_estimate_costs_is_told() {
+    let model = common::BASE.sector();
+    for highest in [3, 9, 31, 63] {
+        let plain = options(highest);
+        let estimated = SolverOptions {
+            estimate_error: true,
+            ..plain
+        };
+        let (from, to) = (1309.5, 1314.5);
+        let branch = common::sweep(&model, &estimated, from, to, &[]);
+        let points = branch.points();
+        let iterations = branch.newton_iterations().iter().sum::<f64>() / points as f64;
+        let time = |solver: &SolverOptions| {
+            milliseconds(|| {
+                common::sweep(&model, solver, from, to, &[]);
+            }) / points as f64
+        };
+        let (without, with) = (time(&plain), time(&estimated));
+        let omega = 1312.0;
+        let one = solve_at(&model, &plain, omega);
+        let found = estimate_at(&model, &plain, &one, 0).unwrap();
+        let alone = milliseconds(|| {
+            estimate_at(&model, &plain, &one, 0).unwrap();
+        });
+        let lifted = options(found.harmonics);
+        let cold = milliseconds(|| {
+            solve_at(&model, &lifted, omega);
+        });
+        let own = milliseconds(|| {
+            solve_at(&model, &plain, omega);
+        });
+        println!(
+            "H = {highest}: {points} points of {iterations:.1} iterations, {without:.3} ms each, with estimates {with:.3} ms; \
+             one estimate {alone:.3} ms, {} steps to {}; solving there {cold:.3} ms, at H {own:.3} ms",
+            found.steps, found.harmonics
+        );
+    }
+}

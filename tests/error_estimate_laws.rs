@@ -62,7 +62,7 @@ fn the_estimate_holds_for_every_law() {
                 response_dof: Some(0),
                 ..SolverOptions::default()
             };
-            let truth = with(base, 127, if case.samples > 0 { 1 << 14 } else { 0 });
+            let truth = with(base, 63, if case.samples > 0 { 1 << 15 } else { 0 });
             let (estimate, error, steps) = compare(&model, &with(base, highest, case.samples), &truth, case.omega);
             let ratio = estimate / error;
             println!(

@@ -2,15 +2,19 @@
 
 use super::lift::lift;
 use super::reach::{self, Reach};
-use super::{Corrected, Estimate, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown, tail};
+use super::system::{Core, System};
+use super::{
+    Corrected, Estimate, MOST_LIFTED, MOST_UNKNOWNS, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown,
+    tail,
+};
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::SolverOptions;
+use crate::problem::Problem;
 use crate::problem::forced::Forced;
-use crate::problem::{Linearisation, Problem};
 use num_complex::Complex64;
 
 /// Default share s of the change that the next step may have: 0.1 costs about one step more than 0.3.
@@ -54,14 +58,13 @@ impl<'a> ForcedEstimator<'a> {
         or_unknown(found, solved, 0.0)
     }
 
-    /// The highest harmonic of the lifted problem, and whether the structure's reach goes on beyond it; none
-    /// where the problem would be too large.
-    fn highest(&mut self, solved: &Solved<'_>) -> Result<Option<(usize, bool)>> {
+    /// How far to lift; none where the problem would be too large.
+    fn extent(&mut self, solved: &Solved<'_>) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let most = reach::affordable(solved.condensed);
+        let most = reach::affordable(solved.condensed, MOST_UNKNOWNS);
         let least = reach::carried_from(set, 2 * own + 1);
-        if least > most {
+        if own > most || least > reach::affordable(solved.condensed, MOST_LIFTED) {
             return Ok(None);
         }
         if self.reach.is_none() {
@@ -71,14 +74,19 @@ impl<'a> ForcedEstimator<'a> {
             self.reach = Some(Reach::new(condensed)?);
         }
         let Some(reach) = &mut self.reach else { return Ok(None) };
-        let highest = reach.at(solved.omega, least, most)?;
-        Ok(Some((highest, highest >= most)))
+        let core = reach.at(solved.omega, own, most)?.max(own);
+        Ok(Some(Extent {
+            core,
+            highest: core.max(least),
+            short: core >= most,
+        }))
     }
 
     fn lift(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
-        let Some((highest, short)) = self.highest(solved)? else {
+        let Some(extent) = self.extent(solved)? else {
             return Ok(None);
         };
+        let highest = extent.highest;
         let spare = (highest as f64 * SPARE) as usize;
         let carries = |c: &Condensed| c.set().numbers().last().is_some_and(|h| (highest..=spare).contains(h));
         if !self.lifted.as_ref().is_some_and(carries) {
@@ -88,12 +96,12 @@ impl<'a> ForcedEstimator<'a> {
             Some(condensed) => condensed,
             None => Condensed::new(self.model, &lifted_options(&self.options, highest), solved.omega)?,
         };
-        let found = self.on(&condensed, solved, short);
+        let found = self.on(&condensed, solved, extent);
         self.lifted = Some(condensed);
         found
     }
 
-    fn on(&self, condensed: &Condensed, solved: &Solved<'_>, short: bool) -> Result<Option<Estimate>> {
+    fn on(&self, condensed: &Condensed, solved: &Solved<'_>, extent: Extent) -> Result<Option<Estimate>> {
         let (omega, set) = (solved.omega, condensed.set());
         if set.numbers().len() == solved.condensed.set().numbers().len() {
             // Constant forces alone: nothing vibrates.
@@ -103,16 +111,19 @@ impl<'a> ForcedEstimator<'a> {
         let mut problem = Forced::new(condensed, self.response, (omega, omega), samples, None)?;
         let n = problem.size();
         let start = solved.lifted(condensed, n, 1.0)?;
-        let mut at = Linearisation::new(n)?;
-        problem.evaluate(&start, omega, &mut at)?;
-        if samples == 0 && above(set, solved.condensed.set(), &at.residual) <= ROUNDING * at.scale {
+        let core = set.numbers().partition_point(|&h| h <= extent.core);
+        let mut system = Core::new(&mut problem, omega, core)?;
+        if !system.evaluate(&start)? {
+            return Ok(None);
+        }
+        if samples == 0 && above(set, solved.condensed.set(), &system.at.residual) <= ROUNDING * system.at.scale {
             return solved.exact(0.0).map(Some);
         }
         let enough = |change: &[f64], next: &[f64]| {
             let next = norm(next);
             next <= SHARE * norm(change) || next <= ROUNDING * norm(&start)
         };
-        let Some(lifted) = lift(&mut problem, omega, &start, &mut at, enough)? else {
+        let Some(lifted) = lift(&mut system, &start, enough)? else {
             return Ok(None);
         };
         let mut z = lifted.corrected()?;
@@ -128,7 +139,7 @@ impl<'a> ForcedEstimator<'a> {
         let length = condensed.length();
         let (response, next) = ((x + dx) * length, dx.norm() * length);
         let tail = tail(set, solved.condensed.set(), &z)?;
-        let certified = lifted.certified && (!short || has_faded(&tail, change));
+        let certified = lifted.certified && (!extent.short || has_faded(&tail, change));
         let known = |x: f64| if certified { x } else { f64::NAN };
         for z in &mut z {
             *z *= length;
@@ -152,6 +163,17 @@ impl<'a> ForcedEstimator<'a> {
             },
         }))
     }
+}
+
+/// How far a point is lifted.
+#[derive(Clone, Copy)]
+struct Extent {
+    /// Highest harmonic of the core, in which the structure gives.
+    core: usize,
+    /// Highest harmonic of all.
+    highest: usize,
+    /// Whether the structure may give beyond the core, which would be too large.
+    short: bool,
 }
 
 /// A difference relative to a number; 0 where there is none.

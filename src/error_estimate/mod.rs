@@ -19,6 +19,7 @@ pub mod forced;
 mod lift;
 pub mod mode;
 mod reach;
+mod system;
 
 use crate::condense::Condensed;
 use crate::error::{Result, Status, try_push, try_vec};
@@ -30,8 +31,11 @@ use num_complex::Complex64;
 
 const WHAT: &str = "the error estimate";
 
-/// Unknowns of a lifted problem above which no estimate is made: its matrix is dense.
+/// Unknowns above which no dense matrix is made.
 const MOST_UNKNOWNS: usize = 3000;
+
+/// Unknowns of a lifted problem above which no estimate is made.
+const MOST_LIFTED: usize = 30_000;
 
 /// Share of the squared norm beyond the middle of the lifted harmonics up to which harmonics beyond a reach that
 /// could not be afforded may be left out.

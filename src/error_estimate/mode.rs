@@ -3,14 +3,15 @@
 use super::forced::{SHARE, above, relative};
 use super::lift::lift;
 use super::reach::{self, Reach};
-use super::{Corrected, Estimate, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown, tail};
+use super::system::{System, Whole};
+use super::{Corrected, Estimate, MOST_UNKNOWNS, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown, tail};
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
+use crate::problem::Problem;
 use crate::problem::mode::{Gauge, LinearMode, Mode};
-use crate::problem::{Linearisation, Problem};
 
 /// How many more harmonics than needed a lifted model may have to be used again.
 const SPARE: f64 = 1.25;
@@ -76,7 +77,7 @@ impl<'a> ModeEstimator<'a> {
     fn lift(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Option<Estimate>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let most = reach::affordable(solved.condensed);
+        let most = reach::affordable(solved.condensed, MOST_UNKNOWNS);
         let least = reach::carried_from(set, 2 * own + 1);
         if least > most {
             return Ok(None);
@@ -113,13 +114,15 @@ impl<'a> ModeEstimator<'a> {
         let samples = lifted_options(&self.options, highest).samples;
         let mut problem = Mode::new(condensed, self.gauge, self.linear, samples)?;
         let n = problem.size();
+        let mut system = Whole::new(&mut problem, p)?;
         let a = 10f64.powf(p);
         let mut start = solved.lifted(condensed, n, 1.0 / a)?;
         Mode::set_frequency_and_damping(self.linear, (solved.omega, damping), &mut start);
-        let mut at = Linearisation::new(n)?;
-        problem.evaluate(&start, p, &mut at)?;
-        let residual = &at.residual[..n - 2];
-        if samples == 0 && above(set, solved.condensed.set(), residual) <= ROUNDING * at.scale {
+        if !system.evaluate(&start)? {
+            return Ok(None);
+        }
+        let residual = &system.at.residual[..n - 2];
+        if samples == 0 && above(set, solved.condensed.set(), residual) <= ROUNDING * system.at.scale {
             return solved.exact(damping).map(Some);
         }
         let of_damping = |u: &[f64]| Mode::damping_of_change(u).abs();
@@ -129,7 +132,7 @@ impl<'a> ModeEstimator<'a> {
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs())
         };
-        let Some(lifted) = lift(&mut problem, p, &start, &mut at, enough)? else {
+        let Some(lifted) = lift(&mut system, &start, enough)? else {
             return Ok(None);
         };
         let z = lifted.corrected()?;
@@ -137,9 +140,11 @@ impl<'a> ModeEstimator<'a> {
         let (omega1, damping1) = Mode::frequency_and_damping(self.linear, &lifted.at);
         let unit = a * condensed.length();
         let i = set.fundamental() * condensed.ndof() + self.response;
-        let before = problem.shape()[i] * unit;
-        problem.evaluate(&z, p, &mut at)?;
-        let response = problem.shape()[i] * unit;
+        let before = system.problem.shape()[i] * unit;
+        if !system.evaluate(&z)? {
+            return Ok(None);
+        }
+        let response = system.problem.shape()[i] * unit;
         let motion = &z[..n - 2];
         let size = norm(motion);
         let mut change = try_vec(n - 2, 0.0, WHAT)?;

@@ -6,7 +6,7 @@
 //! harmonics are looked at one by one from above. On large structures, whose highest natural frequency is a matter of
 //! the mesh, they are looked at in geometric steps.
 
-use super::{MOST_UNKNOWNS, WHAT};
+use super::WHAT;
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_vec};
@@ -31,10 +31,10 @@ const NEAR: f64 = 0.01;
 /// Iterations for the norm of a matrix.
 const NORM_ITERATIONS: usize = 8;
 
-/// Highest harmonic whose lifted problem of `coordinates` relative motions is still affordable.
-pub(super) fn affordable(condensed: &Condensed) -> usize {
+/// Highest harmonic up to which a model has no more than so many unknowns.
+pub(super) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
     let set = condensed.set();
-    let each = MOST_UNKNOWNS / condensed.coordinates().max(1);
+    let each = unknowns / condensed.coordinates().max(1);
     let pairs = each.saturating_sub(usize::from(set.has_mean())) / 2;
     set.base() * (1 + pairs.saturating_sub(1) * set.stride()) * usize::from(pairs > 0)
 }
