@@ -10,6 +10,7 @@ use hbvib::branch::{Branch, Special};
 use hbvib::model::Model;
 use hbvib::options::{DampingForm, ModeOptions, SolverOptions};
 use modes::{damped, follow};
+use std::fmt::Write as _;
 use std::time::Instant;
 
 /// Harmonics of the truth.
@@ -112,10 +113,12 @@ fn table(rows: &[Row]) -> f64 {
             let (low, high) = ratios
                 .iter()
                 .fold((f64::INFINITY, 0.0_f64), |(l, h), &x| (l.min(x), h.max(x)));
-            line += &format!(
+            write!(
+                line,
                 "  {name} {inside:.3} [{low:.2}, {high:.2}] {unknown} unknown of {}",
                 ratios.len()
-            );
+            )
+            .unwrap();
             if highest.is_none() {
                 least = least.min(inside);
             }

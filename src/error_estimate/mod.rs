@@ -1,7 +1,7 @@
 //! How far a solved point is from the periodic motion that harmonic balance tends to: an estimate of the
 //! error that the harmonics left out make, found with the equations of more harmonics.
 //!
-//! A solution W with harmonics up to H is lifted to the [reach](reach) H₂ of the structure: Z = (W, 0) is the
+//! A solution W with harmonics up to H is lifted to the reach H₂ of the structure, 2H + 1 at least: Z = (W, 0) is the
 //! start of a damped Newton method on the problem with harmonics up to H₂, which is stopped as soon as
 //! its own next step is small against the way that it went. With the last iterate Z, the simplified
 //! Newton step δ after it and Z* = Z + δ

@@ -12,6 +12,7 @@ use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_vec};
 use crate::harmonics::HarmonicSet;
 use crate::linalg::eigen;
+use crate::linalg::inner;
 use crate::linalg::lu::Lu;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -57,6 +58,7 @@ pub(super) struct Reach {
     /// Frequency of the last reach, and the angular frequency that it was found at.
     found: Option<(f64, f64)>,
     matrix: Vec<Complex64>,
+    vectors: [Vec<Complex64>; 2],
     lu: Lu<Complex64>,
 }
 
@@ -66,7 +68,11 @@ impl Reach {
         let coordinates = condensed.coordinates();
         Ok(Self {
             workspace: Workspace::new(&condensed, None)?,
-            highest: highest_frequency(&condensed)?,
+            highest: highest_frequency(&condensed),
+            vectors: [
+                try_vec(coordinates, Complex64::ZERO, WHAT)?,
+                try_vec(coordinates, Complex64::ZERO, WHAT)?,
+            ],
             found: None,
             matrix: try_vec(coordinates.saturating_mul(coordinates), Complex64::ZERO, WHAT)?,
             lu: Lu::new(coordinates, coordinates)?,
@@ -167,7 +173,7 @@ impl Reach {
             return Ok(true);
         }
         self.lu.solve_columns(&mut self.matrix, false);
-        Ok(spectral_norm(&self.matrix, n) >= GIVES)
+        Ok(spectral_norm(&self.matrix, &mut self.vectors) >= GIVES)
     }
 }
 
@@ -179,30 +185,40 @@ fn block_of(condensed: &Condensed, h: usize) -> Option<usize> {
     same.or_else(|| numbers.iter().rposition(|&k| k > 0))
 }
 
-/// Largest singular value of a matrix of order n, from below and nearly always to some per cent.
-fn spectral_norm(a: &[Complex64], n: usize) -> f64 {
-    let frobenius = a.iter().fold(0.0, |s, z| f64::hypot(s, z.norm()));
-    if n == 1 || frobenius == 0.0 {
+/// Largest singular value of a column-major matrix, from below and nearly always to some per cent: the power
+/// method on AᴴA.
+fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
+    let size = |v: &[Complex64]| v.iter().fold(0.0, |s, z| f64::hypot(s, z.norm()));
+    let frobenius = size(a);
+    let n = x.len();
+    if n <= 1 || frobenius == 0.0 {
         return frobenius;
     }
-    let product = |x: &DMatrix<Complex64>, a: &DMatrix<Complex64>| a.ad_mul(&(a * x));
-    let a = DMatrix::from_column_slice(n, n, a);
-    let start = |k: usize, _| Complex64::new(1.0 + (k as f64).sin(), (k as f64 * 0.7).cos());
-    let mut x = DMatrix::from_fn(n, 1, start);
-    let mut size = 0.0;
-    for _ in 0..NORM_ITERATIONS {
-        x.unscale_mut(x.norm());
-        x = product(&x, &a);
-        size = x.norm().sqrt();
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = Complex64::new(1.0 + (k as f64).sin(), (0.7 * k as f64).cos());
     }
-    size
+    let mut largest = 0.0;
+    for _ in 0..NORM_ITERATIONS {
+        let length = size(x);
+        y.fill(Complex64::ZERO);
+        for (column, x) in a.chunks_exact(n).zip(&*x) {
+            for (y, a) in y.iter_mut().zip(column) {
+                *y += a * x / length;
+            }
+        }
+        for (x, column) in x.iter_mut().zip(a.chunks_exact(n)) {
+            *x = inner(column, y);
+        }
+        largest = size(x).sqrt();
+    }
+    largest
 }
 
 /// Highest natural frequency over the waves of a small structure without its contacts; none where it is not known.
-fn highest_frequency(condensed: &Condensed) -> Result<Option<f64>> {
+fn highest_frequency(condensed: &Condensed) -> Option<f64> {
     let n = condensed.ndof();
     if n > SMALL_UP_TO {
-        return Ok(None);
+        return None;
     }
     let mut highest = 0.0_f64;
     for block in condensed.blocks().iter().take(2 * condensed.in_step() + 1) {
@@ -216,14 +232,12 @@ fn highest_frequency(condensed: &Condensed) -> Result<Option<f64>> {
             }
         }
         if (&k - k.adjoint()).norm() > 1e-9 * k.norm() {
-            return Ok(None);
+            return None;
         }
-        let Ok(pairs) = eigen::generalised(&k, &m) else {
-            return Ok(None);
-        };
+        let pairs = eigen::generalised(&k, &m).ok()?;
         highest = pairs.values.iter().fold(highest, |w, x| w.max(x.max(0.0).sqrt()));
     }
-    Ok(Some(highest))
+    Some(highest)
 }
 
 /// The lowest harmonic number that is carried in sets like `set` and not below h.
@@ -236,4 +250,70 @@ pub(super) fn carried_from(set: &HarmonicSet, h: usize) -> usize {
 fn carried_to(set: &HarmonicSet, h: usize) -> usize {
     let (base, step) = (set.base(), set.base() * set.stride());
     base + h.saturating_sub(base) / step * step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Reach, carried_from, carried_to, spectral_norm};
+    use crate::condense::Condensed;
+    use crate::contact::Contact;
+    use crate::harmonics::HarmonicSet;
+    use crate::linalg::matrix_view::MatrixView;
+    use crate::model::Model;
+    use crate::model::structure::MatrixKind;
+    use crate::options::SolverOptions;
+    use num_complex::Complex64;
+
+    #[test]
+    fn the_norm_of_a_diagonal_matrix_is_its_largest_entry() {
+        let values = [0.3, -1.7, 0.9];
+        let a: Vec<Complex64> = (0..9)
+            .map(|k| {
+                if k % 4 == 0 {
+                    Complex64::new(0.0, values[k / 4])
+                } else {
+                    Complex64::ZERO
+                }
+            })
+            .collect();
+        let memory = || vec![Complex64::ZERO; 3];
+        assert!((spectral_norm(&a, &mut [memory(), memory()]) - 1.7).abs() < 1e-3);
+    }
+
+    #[test]
+    fn carried_numbers_are_found_on_both_sides() {
+        let set = HarmonicSet::excited(&[3], 15, true, true, false).unwrap();
+        assert_eq!(
+            (carried_from(&set, 1), carried_from(&set, 4), carried_from(&set, 9)),
+            (3, 9, 9)
+        );
+        assert_eq!((carried_to(&set, 14), carried_to(&set, 15)), (9, 15));
+    }
+
+    /// |kt G| = kt/(m Ω² − k) = 1/2 beyond the resonance.
+    #[test]
+    fn a_mass_gives_up_to_the_frequency_that_its_inertia_says() {
+        for (mass, omega) in [(1.0, 0.5), (0.01, 0.7), (1e-4, 0.7)] {
+            let (k, kt) = (1.0, 3.0);
+            let mut model = Model::new(1).unwrap();
+            for (kind, value) in [
+                (MatrixKind::Mass, mass),
+                (MatrixKind::Damping, 1e-9),
+                (MatrixKind::Stiffness, k),
+            ] {
+                model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+            }
+            model.add_contact(&Contact::jenkins(0, None, kt, 0.5, 1.0)).unwrap();
+            model.add_force(0, 1, 1.0.into()).unwrap();
+            let condensed = Condensed::new(&model, &SolverOptions::default(), omega).unwrap();
+            let mut reach = Reach::new(condensed).unwrap();
+            let last = ((k + 2.0 * kt) / mass).sqrt() / omega;
+            let found = reach.at(omega, 1, 3001).unwrap();
+            assert!(
+                found as f64 >= last - 2.0 && found as f64 <= last + 2.0,
+                "{found} for {last}"
+            );
+            assert_eq!(found % 2, 1);
+        }
+    }
 }

@@ -8,8 +8,11 @@ use crate::linalg::gmres::gmres;
 use crate::problem::forced::{Forced, packed_up_to};
 use crate::problem::{Linearisation, Problem};
 
-/// Relative residual of a step that is found by iteration.
-const TOLERANCE: f64 = 1e-6;
+/// Relative residual of a step that is found by iteration: a hundredth of what decides.
+const TOLERANCE: f64 = 1e-3;
+
+/// Unknowns up to which a factorisation of all of them is quicker.
+const WHOLE_UP_TO: usize = 100;
 
 /// Most products of an iteration.
 const MOST_PRODUCTS: usize = 80;
@@ -124,6 +127,8 @@ impl<'p, 'a> Core<'p, 'a> {
     pub fn new(problem: &'p mut Forced<'a>, omega: f64, harmonics: usize) -> Result<Self> {
         let n = problem.size();
         let set = problem.set();
+        let all = set.numbers().len();
+        let harmonics = if n <= WHOLE_UP_TO { all } else { harmonics };
         let lengths = (set.packed_len(), packed_up_to(set, harmonics));
         let order = n / lengths.0 * lengths.1;
         Ok(Self {

@@ -21,8 +21,8 @@ impl<'a> Forced<'a> {
             for c in 0..coordinates {
                 let z = set.get(&dw[c * m..(c + 1) * m], i);
                 let column = &table.value[c * (coordinates + 1)..];
-                for row in 0..coordinates {
-                    put(out, row * m + at, mean, column[row] * z);
+                for (row, g) in column.iter().take(coordinates).enumerate() {
+                    put(out, row * m + at, mean, g * z);
                 }
                 if mean {
                     out[c * m + at] += self.forces.mean_floor(c) * d[c * m + at];
