@@ -7,7 +7,7 @@ mod laws;
 #[path = "common/energy.rs"]
 mod measures;
 
-use common::{B2, BASE, all_harmonics, harmonics, largest, relative_gap, slip, solve_at};
+use common::{B2, BASE, all_harmonics, harmonics, largest, relative_gap, slip, solve_at, sweep};
 use hbvib::analysis::{estimate_at, forced_response, time_response};
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
@@ -283,6 +283,42 @@ fn the_corrected_solution_is_nearer_to_the_motion_in_time() {
         let tail: Vec<Complex64> = found.tail.iter().map(|&(_, x)| x.into()).collect();
         assert!(largest(&tail) <= found.change && relative_gap(&tail, &tail) == 0.0);
     }
+}
+
+#[test]
+fn every_point_of_a_response_has_its_error_when_it_is_asked_for() {
+    let model = BASE.sector();
+    let plain = SolverOptions {
+        response_dof: Some(B2),
+        ..harmonics(7)
+    };
+    let asked = SolverOptions {
+        estimate_error: true,
+        ..plain
+    };
+    let (from, to, at) = (1300.0, 1318.0, [1312.0]);
+    let branch = sweep(&model, &asked, from, to, &at);
+    assert!(!branch.peaks().is_empty() && branch.at(0).len() == 1);
+    let (mut slipping, mut stuck) = (0, 0);
+    for point in 0..branch.stored() {
+        let error = branch.error_estimate_at(point).unwrap();
+        if slip(&branch, point) == 0.0 {
+            stuck += 1;
+            assert_eq!(error, 0.0);
+            continue;
+        }
+        slipping += 1;
+        let alone = estimate_at(&model, &plain, &branch, point).unwrap().response;
+        // In a sweep the number of lifted harmonics may be that of a neighbour, a quarter more at most.
+        println!("{:.3}: {error:.3e} {alone:.3e}", branch.omega_at(point).unwrap());
+        assert!(error > 1e-5 && error < 0.2 && (0.5..=2.0).contains(&(error / alone)));
+    }
+    assert!(slipping > 5 && stuck > 2);
+    // Nothing else changes.
+    let other = sweep(&model, &plain, from, to, &at);
+    assert_eq!(branch.amplitude(), other.amplitude());
+    assert!(other.error_estimate().iter().all(|x| x.is_nan()));
+    assert_eq!(branch.error_estimate().len(), branch.points());
 }
 
 #[test]
