@@ -26,6 +26,9 @@ const SMALL_UP_TO: usize = 32;
 /// Ratio of neighbouring harmonics that are looked at in a large structure.
 const RATIO: f64 = 1.25;
 
+/// Relative distance within which the last of them is found.
+const FINE: f64 = 0.03;
+
 /// Relative change of frequency up to which a reach, as a frequency, is taken over.
 const NEAR: f64 = 0.01;
 
@@ -55,8 +58,8 @@ pub(super) struct Reach {
     workspace: Workspace,
     /// Highest natural frequency of the structure without its contacts, where it is known.
     highest: Option<f64>,
-    /// Frequency of the last reach, and the angular frequency that it was found at.
-    found: Option<(f64, f64)>,
+    /// Frequency of the last reach, the angular frequency that it was found at, and from which harmonic on.
+    found: Option<(f64, f64, usize)>,
     matrix: Vec<Complex64>,
     vectors: [Vec<Complex64>; 2],
     lu: Lu<Complex64>,
@@ -83,8 +86,9 @@ impl Reach {
     /// The last harmonic above `from` and up to `most` that gives, at the angular frequency ω; `from` where none
     /// does.
     pub fn at(&mut self, omega: f64, from: usize, most: usize) -> Result<usize> {
-        if let Some((frequency, near)) = self.found
+        if let Some((frequency, near, looked_from)) = self.found
             && (omega / near - 1.0).abs() <= NEAR
+            && from >= looked_from
         {
             return Ok(((frequency / omega).round() as usize).clamp(from, most.max(from)));
         }
@@ -92,8 +96,8 @@ impl Reach {
             Some(highest) => self.look_at_each(omega, highest, from, most)?,
             None => self.look_at_some(omega, from, most)?,
         };
-        if last > from && last < most {
-            self.found = Some((last as f64 * omega, omega));
+        if last < most {
+            self.found = Some((last as f64 * omega, omega, from));
         }
         Ok(last)
     }
@@ -139,6 +143,15 @@ impl Reach {
         let mut above = most;
         while h > from {
             if self.gives(omega, h)? {
+                // Nearer to the last one, but not to a single harmonic: each costs a factorisation.
+                while above - h > 1 + (FINE * h as f64) as usize {
+                    let middle = h.midpoint(above);
+                    if self.gives(omega, middle)? {
+                        h = middle;
+                    } else {
+                        above = middle;
+                    }
+                }
                 return Ok(above);
             }
             above = h;
