@@ -155,7 +155,7 @@ impl<'a> ForcedEstimator<'a> {
             change,
             tail,
             corrected: Corrected {
-                set: set.clone(),
+                set: set.try_clone()?,
                 motion: z,
                 response,
                 omega,

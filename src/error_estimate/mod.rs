@@ -130,7 +130,7 @@ impl Solved<'_> {
             change: 0.0,
             tail: Vec::new(),
             corrected: Corrected {
-                set: self.condensed.set().clone(),
+                set: self.condensed.set().try_clone()?,
                 motion,
                 response: self.response,
                 omega: self.omega,

@@ -171,7 +171,7 @@ impl<'a> ModeEstimator<'a> {
             change,
             tail,
             corrected: Corrected {
-                set: set.clone(),
+                set: set.try_clone()?,
                 motion: packed,
                 response,
                 omega: omega2,
