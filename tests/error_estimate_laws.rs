@@ -335,7 +335,7 @@ fn every_point_of_a_response_has_its_error_when_it_is_asked_for() {
         let error = branch.error_estimate_at(point).unwrap();
         if slip(&branch, point) == 0.0 {
             stuck += 1;
-            assert_eq!(error, 0.0);
+            assert!(error == 0.0);
             continue;
         }
         slipping += 1;
