@@ -187,3 +187,25 @@ fn every_point_of_a_mode_has_its_errors_when_they_are_asked_for_and_stuck_points
     }
     assert!(slipping > 5 && slipping < branch.points());
 }
+
+#[test]
+fn the_estimate_is_made_on_the_wave_of_the_branch() {
+    let of = |engine_order, diameter| {
+        let blisk = Blisk { engine_order, ..BASE };
+        let model = damped(&blisk, BETA);
+        let range = ModeOptions {
+            diameter,
+            log10_start: -3.3,
+            log10_stop: -2.5,
+            at: &[-3.0],
+            ..ModeOptions::default()
+        };
+        let branch = follow(&model, &harmonics(7), &range);
+        let point = branch.at(0)[0].point;
+        estimate_at(&model, &harmonics(7), &branch, point).unwrap()
+    };
+    let (told, own, other) = (of(2, Some(3)), of(3, None), of(2, None));
+    println!("{:.6e} {:.6e} {:.6e}", told.frequency, own.frequency, other.frequency);
+    assert!((told.frequency / own.frequency - 1.0).abs() < 1e-3);
+    assert!((told.frequency / other.frequency - 1.0).abs() > 1e-3);
+}
