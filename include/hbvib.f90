@@ -59,9 +59,11 @@ module hbvib
       HBVIB_DZ_DU_BEFORE = 4, HBVIB_DZ_DU = 5, HBVIB_DZ_DV_BEFORE = 6, HBVIB_DZ_DV = 7, HBVIB_DZ_DOMEGA = 8
    ! hbvib_field
    integer(c_int32_t), parameter, public :: HBVIB_OMEGA = 0, HBVIB_AMPLITUDE = 1, HBVIB_DAMPING_RATIO = 2, &
-      HBVIB_ENERGY = 3, HBVIB_DISSIPATION = 4, HBVIB_RESIDUAL = 5, HBVIB_NEWTON_ITERATIONS = 6, HBVIB_HARMONICS_USED = 8, &
+      HBVIB_ENERGY = 3, HBVIB_DISSIPATION = 4, HBVIB_RESIDUAL = 5, HBVIB_NEWTON_ITERATIONS = 6, &
+      HBVIB_ERROR_ESTIMATE = 7, HBVIB_HARMONICS_USED = 8, &
       HBVIB_SLIP_FRACTION = 9, HBVIB_LOG10_AMPLITUDE = 10, HBVIB_MODAL_AMPLITUDE = 11, HBVIB_STRUCTURAL_LOSS = 12, &
-      HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14
+      HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, &
+      HBVIB_DAMPING_ERROR_ESTIMATE = 15
    ! hbvib_damping_form
    integer(c_int32_t), parameter, public :: HBVIB_DAMPING_MASS = 0, HBVIB_DAMPING_STIFFNESS = 1
    ! hbvib_mode_multiple
@@ -126,7 +128,7 @@ module hbvib
       integer(c_int64_t) :: harmonics = 9, max_harmonics = 511, samples = 0
       real(c_double) :: step = 0, step_min = 0, step_max = 0, tol_residual = 1e-10_c_double
       integer(c_int64_t) :: max_newton = 25, max_points = 20000, response_dof = -1
-      integer(c_int32_t) :: keep_even_harmonics = 0, reserved = 0
+      integer(c_int32_t) :: keep_even_harmonics = 0, estimate_error = 0
    end type hbvib_solver_options
 
    !> Options of hbvib_forced_response.

@@ -227,6 +227,10 @@ typedef enum {
   HBVIB_RESIDUAL = 5,
   /// Newton iterations.
   HBVIB_NEWTON_ITERATIONS = 6,
+  /// Estimated relative error of the complex fundamental of the response degree of freedom (in a
+  /// nonlinear mode: of the frequency) by the harmonics left out. NaN where it is unknown, and
+  /// everywhere unless estimate_error asks for it.
+  HBVIB_ERROR_ESTIMATE = 7,
   /// Highest harmonic number carried.
   HBVIB_HARMONICS_USED = 8,
   /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
@@ -245,6 +249,8 @@ typedef enum {
   /// samples (twice as many where half are too few). 0 where all laws are exact, NaN where a force
   /// of the caller did not answer. It tells the size of the error by sampling and is no bound of it.
   HBVIB_SAMPLING_ERROR = 14,
+  /// Nonlinear modes only: estimated error of the damping ratio, in units of it; as HBVIB_ERROR_ESTIMATE.
+  HBVIB_DAMPING_ERROR_ESTIMATE = 15,
 } hbvib_field;
 
 /// Artificial damping that makes the motion of a damped structure periodic, D its damping ratio.
@@ -534,8 +540,9 @@ typedef struct {
   int64_t response_dof;
   /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
   int32_t keep_even_harmonics;
-  /// Must be 0.
-  int32_t reserved;
+  /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution with
+  /// more harmonics at each of them; 0 (default): do not.
+  int32_t estimate_error;
 } hbvib_solver_options;
 
 /// Options of hbvib_forced_response. Fill it by hbvib_forced_options_init, then set the range.

@@ -63,8 +63,8 @@ State = _counted("State", "STICK SLIP OPEN")
 Tangent = _counted("Tangent", "DF_DU DF_DV DF_DZ DZ_DZ DZ_DU_BEFORE DZ_DU DZ_DV_BEFORE DZ_DV DZ_DOMEGA")
 Field = enum.IntEnum("Field", dict(
     OMEGA=0, AMPLITUDE=1, DAMPING_RATIO=2, ENERGY=3, DISSIPATION=4, RESIDUAL=5, NEWTON_ITERATIONS=6,
-    HARMONICS_USED=8, SLIP_FRACTION=9, LOG10_AMPLITUDE=10, MODAL_AMPLITUDE=11, STRUCTURAL_LOSS=12,
-    MODAL_ASSURANCE=13, SAMPLING_ERROR=14), module=__name__)
+    ERROR_ESTIMATE=7, HARMONICS_USED=8, SLIP_FRACTION=9, LOG10_AMPLITUDE=10, MODAL_AMPLITUDE=11, STRUCTURAL_LOSS=12,
+    MODAL_ASSURANCE=13, SAMPLING_ERROR=14, DAMPING_ERROR_ESTIMATE=15), module=__name__)
 DampingForm = _counted("DampingForm", "MASS STIFFNESS")
 ModeMultiple = _counted("ModeMultiple", "SINGLE TRAVELLING_WAVE PROJECTED FIRST")
 SynthesisFlag = enum.IntFlag("SynthesisFlag", dict(
@@ -89,7 +89,7 @@ user_force: uint32 struct_size; int32 uses_velocity is_odd reserved; pointer dof
 jacobian_gap: uint32 struct_size; int32 tangent; double gap; int64 sample row column; double given difference
 solver_options: uint32 struct_size; int32 num_threads; double tolerance; int64 harmonics max_harmonics samples;
     double step step_min step_max tol_residual; int64 max_newton max_points response_dof;
-    int32 keep_even_harmonics reserved
+    int32 keep_even_harmonics estimate_error
 forced_options: uint32 struct_size; int32 reserved; double omega_start omega_stop; pointer at; int64 at_len;
     pointer guess; int64 guess_len
 progress: uint32 struct_size; int32 newton_iterations; int64 point;
@@ -1015,7 +1015,7 @@ class Model(_Owner):
         log       log(LogLevel, text), lines up to log_level.
         cancel    a CancelFlag.
         Others are the solver options of hbvib.h: harmonics, samples, response_dof, step, step_min, step_max,
-        tol_residual, max_newton, max_points, keep_even_harmonics, num_threads, tolerance, max_harmonics."""
+        tol_residual, max_newton, max_points, keep_even_harmonics, estimate_error, num_threads, tolerance, max_harmonics."""
         start, stop = (omega, omega) if np.ndim(omega) == 0 else omega
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))
@@ -1193,6 +1193,9 @@ class Branch(_Owner):
     harmonics_used = _field_property(Field.HARMONICS_USED, "Highest harmonic number carried, as float64.")
     slip_fraction = _field_property(Field.SLIP_FRACTION, "Share of the period that each contact slips.")
     sampling_error = _field_property(Field.SAMPLING_ERROR, "Relative change of forces with half the samples.")
+    error_estimate = _field_property(Field.ERROR_ESTIMATE, "Relative error of the response (modes: of the frequency) by"
+                                     " harmonics left out; NaN where unknown or not asked for by estimate_error.")
+    damping_error_estimate = _field_property(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, as error_estimate.")
     damping_ratio = _field_property(Field.DAMPING_RATIO, "Modes: damping ratio D.")
     mode_energy = _field_property(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")
     dissipation = _field_property(Field.DISSIPATION, "Modes: work of friction per cycle and sector.")

@@ -7,6 +7,7 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 mod energy;
+mod errors;
 mod loops;
 pub mod mode;
 mod recovery;
@@ -47,6 +48,8 @@ pub struct Branch {
     harmonics_used: Vec<f64>,
     slip_fraction: Vec<f64>,
     sampling_error: Vec<f64>,
+    error_estimate: Vec<f64>,
+    damping_error_estimate: Vec<f64>,
     motion: Vec<f64>,
     response: Vec<Complex64>,
     peaks: Vec<Special>,
@@ -74,6 +77,9 @@ pub struct Record<'a> {
     pub slip_fractions: &'a [f64],
     /// How much sampling matters, 0 where all laws are exact.
     pub sampling_error: f64,
+    /// Estimated relative error of the response amplitude, or of a mode's frequency, and error of its damping
+    /// ratio; NaN where they are unknown.
+    pub errors: (f64, f64),
 }
 
 impl Branch {
@@ -102,6 +108,8 @@ impl Branch {
             harmonics_used: Vec::new(),
             slip_fraction: Vec::new(),
             sampling_error: Vec::new(),
+            error_estimate: Vec::new(),
+            damping_error_estimate: Vec::new(),
             motion: Vec::new(),
             response: Vec::new(),
             peaks: Vec::new(),
@@ -131,6 +139,8 @@ impl Branch {
             &mut self.iterations,
             &mut self.harmonics_used,
             &mut self.sampling_error,
+            &mut self.error_estimate,
+            &mut self.damping_error_estimate,
         ] {
             v.try_reserve(1).map_err(|_| Error::out_of_memory(WHAT))?;
         }
@@ -145,6 +155,8 @@ impl Branch {
         self.response.extend(record.response.iter().map(|x| x * length));
         self.residual.push(record.residual);
         self.sampling_error.push(record.sampling_error);
+        self.error_estimate.push(record.errors.0);
+        self.damping_error_estimate.push(record.errors.1);
         self.iterations.push(record.iterations as f64);
         let highest = self.condensed.set().numbers().last().copied().unwrap_or(0);
         self.harmonics_used.push(highest as f64);
@@ -249,14 +261,6 @@ impl Branch {
     #[must_use]
     pub fn harmonics_used(&self) -> &[f64] {
         &self.harmonics_used[..self.curve]
-    }
-
-    /// Aliasing check of laws that are sampled, at each point: the relative change of their forces with
-    /// half the samples (twice as many, where half are too few). 0 where all laws are exact,
-    /// NaN where a law did not answer to it. It tells the size of the error by sampling and is no bound of it.
-    #[must_use]
-    pub fn sampling_error(&self) -> &[f64] {
-        &self.sampling_error[..self.curve]
     }
 
     /// Share of the period that each contact slips: points × contacts, a point after the other.

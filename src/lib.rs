@@ -8,7 +8,7 @@
 //! [`model`] (structure, contacts, excitation) → [`condense`] (relative coordinates) → [`problem`]
 //! (residual and Jacobian, with [`aft`] evaluating the [`contact`] laws) → [`continuation`]
 //! (predict, correct, accept) → [`branch`] (points, peaks, folds; [`postprocess`] makes energies of
-//! a point). [`time_response`] finds the same periodic motions without harmonics, in time. [`analysis`]
+//! a point; [`error_estimate`] tells how wrong it is). [`time_response`] finds the same periodic motions without harmonics, in time. [`analysis`]
 //! puts them together and [`capi`] hands them to C.
 //!
 //! Units are the caller's, consistent; angular frequencies in rad per time unit; amplitudes are
@@ -24,6 +24,7 @@ pub mod condense;
 pub mod contact;
 pub mod continuation;
 pub mod error;
+pub mod error_estimate;
 pub mod fourier;
 pub mod harmonics;
 pub mod hooks;

@@ -40,6 +40,9 @@ pub struct SolverOptions {
     pub response_dof: Option<usize>,
     /// Carry the mean and the even harmonics even where symmetry makes them zero.
     pub keep_even_harmonics: bool,
+    /// Estimate the error of every stored point, see [`crate::error_estimate`]: the time of a solution with
+    /// more harmonics at each of them.
+    pub estimate_error: bool,
     /// Threads that may be used; `1` starts none. Results do not depend on it.
     pub num_threads: usize,
 }
@@ -59,6 +62,7 @@ impl Default for SolverOptions {
             max_points: 20_000,
             response_dof: None,
             keep_even_harmonics: false,
+            estimate_error: false,
             num_threads: 1,
         }
     }

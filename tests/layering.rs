@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 /// Layer of each module of the crate. Within a layer modules do not know each other unless listed
 /// in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 17] = [
+const LAYERS: [(&str, u8); 18] = [
     ("error", 0),
     ("options", 0),
     ("hooks", 0),
@@ -21,6 +21,7 @@ const LAYERS: [(&str, u8); 17] = [
     ("continuation", 5),
     ("postprocess", 6),
     ("branch", 6),
+    ("error_estimate", 6),
     ("time_response", 6),
     ("analysis", 7),
     ("capi", 8),

@@ -1,5 +1,6 @@
 //! Forced response over a range of frequency.
 
+use super::estimate::observed;
 use super::follow::{Ending, Keeper, Task};
 use super::unbounded;
 use crate::branch::{Branch, Record, SpecialKind};
@@ -10,6 +11,8 @@ use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Error, Result, Status, fail, try_copy, try_push, try_vec};
+use crate::error_estimate::Solved;
+use crate::error_estimate::forced::ForcedEstimator;
 use crate::hooks::{Hooks, LogLevel};
 use crate::linalg::norm;
 use crate::model::Model;
@@ -85,6 +88,10 @@ pub fn forced_response(
         settings,
         problem,
         specials: Vec::new(),
+        condensed: &condensed,
+        estimator: solver
+            .estimate_error
+            .then(|| ForcedEstimator::new(model, solver, response)),
         response: try_vec(condensed.blocks().len(), Complex64::ZERO, "the response")?,
         stalled: false,
     };
@@ -137,6 +144,8 @@ struct Points<'a> {
     branch: Branch,
     problem: Forced<'a>,
     settings: Settings,
+    condensed: &'a Condensed,
+    estimator: Option<ForcedEstimator<'a>>,
     specials: Vec<Kept>,
     corrector: Corrector,
     response: Vec<Complex64>,
@@ -156,9 +165,10 @@ impl Keeper for Points<'_> {
         self.stalled |= point.stalled;
         self.problem.response(point.unknowns(), &mut self.response);
         let sampling_error = self.problem.sampling_error(point.unknowns(), point.parameter())?;
+        let error = self.estimate(point)?;
         let slips = self.problem.slip_fractions();
         self.branch
-            .push_curve(&record(point, &self.response, slips, sampling_error))
+            .push_curve(&record(point, &self.response, slips, (sampling_error, error)))
     }
 
     /// The point is solved once more at its frequency with the flexibility factorised there: along
@@ -193,6 +203,7 @@ impl Keeper for Points<'_> {
         let kept = Kept {
             kind,
             sampling_error: self.problem.sampling_error(point.unknowns(), point.parameter())?,
+            error: self.estimate(&point)?,
             response: try_copy(&self.response, "the special points")?,
             slip_fractions: try_copy(self.problem.slip_fractions(), "the special points")?,
             point,
@@ -202,10 +213,29 @@ impl Keeper for Points<'_> {
 }
 
 impl Points<'_> {
+    /// Estimated relative error of the response amplitude; NaN where it is unknown or not asked for.
+    fn estimate(&mut self, point: &Point) -> Result<f64> {
+        let Some(estimator) = &mut self.estimator else {
+            return Ok(f64::NAN);
+        };
+        let solved = Solved {
+            condensed: self.condensed,
+            motion: point.unknowns(),
+            omega: point.parameter(),
+            response: self.response[observed(self.condensed)] * self.condensed.length(),
+        };
+        Ok(estimator.at(&solved)?.response)
+    }
+
     /// Numbers the special points after the curve.
     fn finish(mut self, ending: &Ending) -> Result<Branch> {
         for kept in &self.specials {
-            let record = record(&kept.point, &kept.response, &kept.slip_fractions, kept.sampling_error);
+            let record = record(
+                &kept.point,
+                &kept.response,
+                &kept.slip_fractions,
+                (kept.sampling_error, kept.error),
+            );
             self.branch.push_special(kept.kind, &record)?;
         }
         self.branch.set_ending(ending.status, ending.reason, self.stalled);
@@ -220,13 +250,14 @@ struct Kept {
     response: Vec<Complex64>,
     slip_fractions: Vec<f64>,
     sampling_error: f64,
+    error: f64,
 }
 
 fn record<'a>(
     point: &'a Point,
     response: &'a [Complex64],
     slip_fractions: &'a [f64],
-    sampling_error: f64,
+    (sampling_error, error): (f64, f64),
 ) -> Record<'a> {
     Record {
         omega: point.parameter(),
@@ -237,6 +268,7 @@ fn record<'a>(
         iterations: point.iterations,
         slip_fractions,
         sampling_error,
+        errors: (error, f64::NAN),
     }
 }
 

@@ -1,6 +1,7 @@
 //! The crate's public face: each analysis puts the layers together.
 
 pub mod check_jacobian;
+pub mod estimate;
 mod follow;
 pub mod forced_response;
 pub mod harmonic_residual;
@@ -11,6 +12,7 @@ pub mod time_response;
 mod unbounded;
 
 pub use check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use estimate::estimate_at;
 pub use forced_response::forced_response;
 pub use harmonic_residual::{contact_evaluate, forced_residual};
 pub use nonlinear_mode::nonlinear_mode;

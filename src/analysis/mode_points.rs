@@ -6,6 +6,8 @@ use crate::branch::{Branch, Record, SpecialKind};
 use crate::condense::Condensed;
 use crate::continuation::Point;
 use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::error_estimate::Solved;
+use crate::error_estimate::mode::ModeEstimator;
 use crate::linalg::{inner, norm};
 use crate::postprocess::energy::{self, Balance};
 use crate::problem::mode::{LinearMode, Mode};
@@ -22,6 +24,7 @@ pub(super) struct ModePoints<'a> {
     problem: Mode<'a>,
     at: Linearisation,
     specials: Vec<Kept>,
+    estimator: Option<ModeEstimator<'a>>,
     motion: Vec<f64>,
     forces: Vec<f64>,
     response: Vec<Complex64>,
@@ -38,18 +41,28 @@ struct Kept {
     motion: Vec<f64>,
     response: Vec<Complex64>,
     slip_fractions: Vec<f64>,
-    sampling_error: f64,
+    numbers: Numbers,
     mode: ModePoint,
 }
 
+/// Beside the motion: amplitude, sampling error and error estimates.
+type Numbers = (Complex64, f64, (f64, f64));
+
 impl<'a> ModePoints<'a> {
     /// An empty collection.
-    pub fn new(condensed: &'a Condensed, linear: &'a LinearMode, problem: Mode<'a>, branch: Branch) -> Result<Self> {
+    pub fn new(
+        condensed: &'a Condensed,
+        linear: &'a LinearMode,
+        problem: Mode<'a>,
+        branch: Branch,
+        estimator: Option<ModeEstimator<'a>>,
+    ) -> Result<Self> {
         let unknowns = problem.size();
         let carried = condensed.blocks().len();
         Ok(Self {
             at: Linearisation::new(unknowns)?,
             specials: Vec::new(),
+            estimator,
             motion: try_vec(unknowns - 2, 0.0, WHAT)?,
             forces: try_vec(unknowns - 2, 0.0, WHAT)?,
             response: try_vec(carried, Complex64::ZERO, WHAT)?,
@@ -128,9 +141,26 @@ impl<'a> ModePoints<'a> {
         })
     }
 
+    /// Fundamental of the response and the errors of the point measured last.
+    fn numbers(&mut self, point: &Point, mode: &ModePoint) -> Result<Numbers> {
+        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
+        let amplitude = self.response[self.condensed.set().fundamental()];
+        let sampling_error = self.problem.sampling_error(&self.motion, omega)?;
+        let Some(estimator) = &mut self.estimator else {
+            return Ok((amplitude, sampling_error, (f64::NAN, f64::NAN)));
+        };
+        let solved = Solved {
+            condensed: self.condensed,
+            motion: &self.motion,
+            omega,
+            response: amplitude * self.condensed.length(),
+        };
+        let errors = estimator.at(&solved, mode.log10_amplitude, mode.damping_ratio)?;
+        Ok((amplitude, sampling_error, (errors.frequency, errors.damping)))
+    }
+
     /// Numbers the special points after the curve.
     pub fn finish(mut self, ending: &Ending) -> Result<Branch> {
-        let fundamental = self.condensed.set().fundamental();
         for kept in &self.specials {
             let record = record(
                 self.linear,
@@ -138,7 +168,7 @@ impl<'a> ModePoints<'a> {
                 &kept.motion,
                 &kept.response,
                 &kept.slip_fractions,
-                (kept.response[fundamental], kept.sampling_error),
+                kept.numbers,
             );
             self.branch.push_special(kept.kind, &record)?;
             if let Some(data) = self.branch.mode_data_mut() {
@@ -161,9 +191,8 @@ impl Keeper for ModePoints<'_> {
 
     fn keep(&mut self, point: &Point) -> Result<()> {
         let mode = self.measure(point)?;
-        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
         // All that may fail comes before anything is kept.
-        let sampling_error = self.problem.sampling_error(&self.motion, omega)?;
+        let numbers = self.numbers(point, &mode)?;
         self.stalled |= point.stalled;
         if let Some(data) = self.branch.mode_data_mut() {
             data.push_state(&point.v, &point.tangent)?;
@@ -171,8 +200,6 @@ impl Keeper for ModePoints<'_> {
         }
         let slip = self.problem.forces().slip_fractions();
         let i = self.condensed.set().fundamental();
-        let amplitude = self.response[i];
-        let numbers = (amplitude, sampling_error);
         let record = record(self.linear, point, &self.motion, &self.response, slip, numbers);
         self.branch.push_curve(&record)?;
         let dofs = self.condensed.ndof();
@@ -182,9 +209,8 @@ impl Keeper for ModePoints<'_> {
 
     fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<()> {
         let mode = self.measure(&point)?;
-        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
         let kept = Kept {
-            sampling_error: self.problem.sampling_error(&self.motion, omega)?,
+            numbers: self.numbers(&point, &mode)?,
             kind,
             motion: try_copy(&self.motion, "the special points")?,
             response: try_copy(&self.response, "the special points")?,
@@ -202,7 +228,7 @@ fn record<'a>(
     motion: &'a [f64],
     response: &'a [Complex64],
     slip_fractions: &'a [f64],
-    (amplitude, sampling_error): (Complex64, f64),
+    (amplitude, sampling_error, errors): Numbers,
 ) -> Record<'a> {
     Record {
         omega: Mode::frequency_and_damping(linear, point.unknowns()).0,
@@ -213,5 +239,6 @@ fn record<'a>(
         iterations: point.iterations,
         slip_fractions,
         sampling_error,
+        errors,
     }
 }

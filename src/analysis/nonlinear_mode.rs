@@ -11,6 +11,7 @@ use crate::continuation::start::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
+use crate::error_estimate::mode::ModeEstimator;
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::model::spring::{along, relative_row};
@@ -134,7 +135,11 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     );
     let ends = (range.log10_start, range.log10_stop);
     branch.set_mode(ModeData::new(info, linear.clone(), gauge.clone(), ends, problem.size()));
-    let mut points = ModePoints::new(&condensed, &linear, problem, branch)?;
+    let start = (&linear, &gauge);
+    let estimator = solver
+        .estimate_error
+        .then(|| ModeEstimator::new(model, solver, range.damping_form, start, response));
+    let mut points = ModePoints::new(&condensed, &linear, problem, branch, estimator)?;
     let outcome = run(&mut points, solver, range, (linear_up_to, nearly), hooks);
     let ending = Ending::of(outcome, points.branch())?;
     points.finish(&ending)

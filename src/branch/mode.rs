@@ -193,6 +193,12 @@ impl Branch {
         &self.condensed
     }
 
+    /// Packed relative motions of a stored point, in the solver's units.
+    pub(crate) fn motion_at(&self, point: usize) -> Option<&[f64]> {
+        let size = self.condensed.coordinates() * self.condensed.set().packed_len();
+        self.motion.get(point * size..(point + 1) * size)
+    }
+
     pub(crate) fn samples(&self) -> usize {
         self.samples
     }

@@ -166,6 +166,8 @@ pub unsafe extern "C" fn hbvib_branch_field(
     const NEWTON_ITERATIONS: i32 = hbvib_field::HBVIB_NEWTON_ITERATIONS as i32;
     const HARMONICS_USED: i32 = hbvib_field::HBVIB_HARMONICS_USED as i32;
     const SAMPLING_ERROR: i32 = hbvib_field::HBVIB_SAMPLING_ERROR as i32;
+    const ERROR_ESTIMATE: i32 = hbvib_field::HBVIB_ERROR_ESTIMATE as i32;
+    const DAMPING_ERROR: i32 = hbvib_field::HBVIB_DAMPING_ERROR_ESTIMATE as i32;
     const SLIP_FRACTION: i32 = hbvib_field::HBVIB_SLIP_FRACTION as i32;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
@@ -180,6 +182,9 @@ pub unsafe extern "C" fn hbvib_branch_field(
             NEWTON_ITERATIONS => branch.newton_iterations(),
             HARMONICS_USED => branch.harmonics_used(),
             SAMPLING_ERROR => branch.sampling_error(),
+            ERROR_ESTIMATE => branch.error_estimate(),
+            DAMPING_ERROR if branch.mode().is_some() => branch.damping_error_estimate(),
+            DAMPING_ERROR => return fail!(Argument, "field = {field}: only a nonlinear mode has it").blame(2),
             SLIP_FRACTION => branch.slip_fraction(),
             _ => match mode_field(field).map(|f| branch.mode_field(f)) {
                 Some(Some(data)) => data,

@@ -39,7 +39,7 @@ unsafe impl Described for hbvib_solver_options {
             max_points: defaults.max_points as i64,
             response_dof: -1,
             keep_even_harmonics: i32::from(defaults.keep_even_harmonics),
-            reserved: 0,
+            estimate_error: i32::from(defaults.estimate_error),
         }
     }
 }
@@ -143,7 +143,6 @@ pub(super) unsafe fn solver_options(p: *const hbvib_solver_options, ndof: usize)
 }
 
 fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
-    check_reserved(o.reserved, 2, "hbvib_solver_options")?;
     let num_threads = number(o.num_threads.into(), "num_threads")?.max(1);
     let response_dof = match o.response_dof {
         -1 => None,
@@ -152,10 +151,10 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
             return fail!(Index, "response_dof = {dof}, needs 0 .. {} or -1 (automatic)", ndof - 1);
         }
     };
-    let keep_even_harmonics = match o.keep_even_harmonics {
-        0 => false,
-        1 => true,
-        other => return fail!(Argument, "keep_even_harmonics = {other}, needs 0 or 1"),
+    let flag = |value: i32, name: &str| match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        other => fail!(Argument, "{name} = {other}, needs 0 or 1"),
     };
     let options = SolverOptions {
         tolerance: o.tolerance,
@@ -169,7 +168,8 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         max_newton: number(o.max_newton, "max_newton")?,
         max_points: number(o.max_points, "max_points")?,
         response_dof,
-        keep_even_harmonics,
+        keep_even_harmonics: flag(o.keep_even_harmonics, "keep_even_harmonics")?,
+        estimate_error: flag(o.estimate_error, "estimate_error")?,
         num_threads,
     };
     options.check()?;

@@ -146,6 +146,10 @@ pub enum hbvib_field {
     HBVIB_RESIDUAL = 5,
     /// Newton iterations.
     HBVIB_NEWTON_ITERATIONS = 6,
+    /// Estimated relative error of the complex fundamental of the response degree of freedom (in a
+    /// nonlinear mode: of the frequency) by the harmonics left out. NaN where it is unknown, and
+    /// everywhere unless estimate_error asks for it.
+    HBVIB_ERROR_ESTIMATE = 7,
     /// Highest harmonic number carried.
     HBVIB_HARMONICS_USED = 8,
     /// Share of the period that each contact slips: points x contacts. Time that a contact is open is not
@@ -164,6 +168,8 @@ pub enum hbvib_field {
     /// samples (twice as many where half are too few). 0 where all laws are exact, NaN where a force
     /// of the caller did not answer. It tells the size of the error by sampling and is no bound of it.
     HBVIB_SAMPLING_ERROR = 14,
+    /// Nonlinear modes only: estimated error of the damping ratio, in units of it; as HBVIB_ERROR_ESTIMATE.
+    HBVIB_DAMPING_ERROR_ESTIMATE = 15,
 }
 
 /// Weights of log lines.
@@ -252,8 +258,9 @@ pub struct hbvib_solver_options {
     pub response_dof: i64,
     /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
     pub keep_even_harmonics: i32,
-    /// Must be 0.
-    pub reserved: i32,
+    /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution with
+    /// more harmonics at each of them; 0 (default): do not.
+    pub estimate_error: i32,
 }
 
 /// Options of hbvib_forced_response. Fill it by hbvib_forced_options_init, then set the range.

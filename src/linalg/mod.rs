@@ -4,6 +4,7 @@ pub mod bordered;
 pub mod definite;
 pub mod eigen;
 pub mod factor;
+pub mod gmres;
 pub mod lanczos;
 pub mod least_squares;
 pub mod lu;

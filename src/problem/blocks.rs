@@ -2,7 +2,7 @@
 //! coordinate by itself, and one for each pair that some law couples.
 
 use crate::condense::Condensed;
-use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::error::{Result, try_copy, try_extend, try_push, try_vec};
 
 /// Blocks of order m, column-major, sorted by the coordinate of the force.
 pub struct Blocks {
@@ -100,6 +100,20 @@ impl Blocks {
             }
         }
         from + d * d
+    }
+
+    /// Exchanges all blocks for those kept elsewhere.
+    pub fn swap(&mut self, values: &mut Vec<f64>) {
+        core::mem::swap(&mut self.values, values);
+    }
+
+    /// Copies all blocks.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn copy(&self, values: &mut Vec<f64>) -> Result<()> {
+        values.clear();
+        try_extend(values, &self.values, "the contact Jacobians")
     }
 
     /// The blocks of one force coordinate, as (motion coordinate, block).

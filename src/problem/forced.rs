@@ -4,6 +4,8 @@
 //!
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y) + G ∂f/∂ω.
 
+mod products;
+
 use super::at_rest::force_at_rest;
 use super::contact_forces::ContactForces;
 use super::{Linearisation, Problem, Start, put};
@@ -12,6 +14,7 @@ use crate::condense::tables::Tables;
 use crate::error::{Result, try_vec};
 use crate::linalg::norm;
 use num_complex::Complex64;
+pub use products::packed_up_to;
 
 /// What the parameter means.
 #[derive(Clone, Copy, Debug)]
@@ -84,54 +87,11 @@ impl<'a> Forced<'a> {
         self.forces.sampling_error(u, omega)
     }
 
-    /// ∂R/∂y = I + G (∂f/∂y − κ); what no force feels that counts keeps the column of the identity.
-    fn assemble(&mut self, out: &mut Linearisation) {
-        let m = self.condensed.set().packed_len();
-        let stride = self.condensed.coordinates() + 1;
-        let n = out.residual.len();
-        self.forces.mark_active(&mut out.active);
-        for (k, column) in out.jacobian.chunks_exact_mut(n.max(1)).enumerate() {
-            column.fill(0.0);
-            column[k] = 1.0;
-            if !out.active[k] {
-                continue;
-            }
-            let tables = self.tables.current();
-            let flexibility = (|i: usize| &tables[i].value[..], stride);
-            let at = (k / m, k % m);
-            self.forces
-                .couple(0..tables.len(), at, flexibility, &mut self.sum, column);
-        }
-    }
-
-    /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
-    /// evaluated.
-    pub fn contact_force(&self, u: &[f64], i: usize, w: &mut [Complex64]) {
-        for (c, w) in w.iter_mut().enumerate() {
-            *w = self.forces.minus_reference(u, c, i);
-        }
-    }
-
-    /// Harmonics of the response degree of freedom at the point last evaluated, in the order in
-    /// which they are carried.
-    pub fn response(&self, u: &[f64], x: &mut [Complex64]) {
-        for (i, (x, table)) in x.iter_mut().zip(self.tables.current()).enumerate() {
-            let coordinates = self.condensed.coordinates();
-            let outputs = coordinates + 1;
-            *x = table.value[coordinates * outputs + coordinates];
-            for c in 0..coordinates {
-                *x -= table.value[c * outputs + coordinates] * self.forces.minus_reference(u, c, i);
-            }
-        }
-    }
-}
-
-impl Problem for Forced<'_> {
-    fn size(&self) -> usize {
-        self.condensed.coordinates() * self.condensed.set().packed_len()
-    }
-
-    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
+    /// What [`Problem::evaluate`] finds, without the Jacobian, for which `out` needs no memory.
+    ///
+    /// # Errors
+    /// As there.
+    pub fn evaluate_residual(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
         let omega = match self.parameter {
             Parameter::Omega => {
                 self.forces.ease(1.0);
@@ -195,8 +155,60 @@ impl Problem for Forced<'_> {
                 }
             }
         }
-        self.assemble(out);
         out.scale = norm(u) + linear.sqrt();
+        Ok(())
+    }
+
+    /// ∂R/∂y = I + G (∂f/∂y − κ); what no force feels that counts keeps the column of the identity.
+    fn assemble(&mut self, out: &mut Linearisation) {
+        let m = self.condensed.set().packed_len();
+        let stride = self.condensed.coordinates() + 1;
+        let n = out.residual.len();
+        self.forces.mark_active(&mut out.active);
+        for (k, column) in out.jacobian.chunks_exact_mut(n.max(1)).enumerate() {
+            column.fill(0.0);
+            column[k] = 1.0;
+            if !out.active[k] {
+                continue;
+            }
+            let tables = self.tables.current();
+            let flexibility = (|i: usize| &tables[i].value[..], stride);
+            let at = (k / m, k % m);
+            self.forces
+                .couple(0..tables.len(), at, flexibility, &mut self.sum, column);
+        }
+    }
+
+    /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
+    /// evaluated.
+    pub fn contact_force(&self, u: &[f64], i: usize, w: &mut [Complex64]) {
+        for (c, w) in w.iter_mut().enumerate() {
+            *w = self.forces.minus_reference(u, c, i);
+        }
+    }
+
+    /// Harmonics of the response degree of freedom at the point last evaluated, in the order in
+    /// which they are carried.
+    pub fn response(&self, u: &[f64], x: &mut [Complex64]) {
+        for (i, (x, table)) in x.iter_mut().zip(self.tables.current()).enumerate() {
+            let coordinates = self.condensed.coordinates();
+            let outputs = coordinates + 1;
+            *x = table.value[coordinates * outputs + coordinates];
+            for c in 0..coordinates {
+                *x -= table.value[c * outputs + coordinates] * self.forces.minus_reference(u, c, i);
+            }
+        }
+    }
+}
+
+impl Problem for Forced<'_> {
+    fn size(&self) -> usize {
+        self.condensed.coordinates() * self.condensed.set().packed_len()
+    }
+
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
+        self.evaluate_residual(u, p, out)?;
+        self.assemble(out);
         Ok(())
     }
 

@@ -32,8 +32,19 @@ impl Linearisation {
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
         Ok(Self {
-            residual: try_vec(n, 0.0, "the residual")?,
             jacobian: try_vec(n.saturating_mul(n), 0.0, "the Jacobian")?,
+            ..Self::without_jacobian(n)?
+        })
+    }
+
+    /// Memory for the same without ∂R/∂u.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn without_jacobian(n: usize) -> Result<Self> {
+        Ok(Self {
+            residual: try_vec(n, 0.0, "the residual")?,
+            jacobian: Vec::new(),
             d_parameter: try_vec(n, 0.0, "the residual")?,
             active: try_vec(n, true, "the residual")?,
             scale: 0.0,

@@ -114,6 +114,19 @@ impl<'a> Mode<'a> {
         )
     }
 
+    /// Sets the unknowns that stand for frequency and damping ratio.
+    pub fn set_frequency_and_damping(linear: &LinearMode, (omega, damping): (f64, f64), u: &mut [f64]) {
+        let n = u.len();
+        u[n - 2] = (omega / linear.omega).ln() / OMEGA_UNIT;
+        u[n - 1] = (damping - linear.damping) / DAMPING_UNIT;
+    }
+
+    /// Change of the damping ratio that belongs to a change of the unknowns.
+    #[must_use]
+    pub fn damping_of_change(change: &[f64]) -> f64 {
+        DAMPING_UNIT * change.last().copied().unwrap_or(0.0)
+    }
+
     /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic,
     /// at the point last evaluated, in the solver's units.
     #[must_use]

@@ -61,7 +61,7 @@ static void solver(void)
     BAD("39", response_dof, 4, HBVIB_E_INDEX, "response_dof = 4");
     BAD("39", response_dof, -2, HBVIB_E_INDEX, "response_dof = -2");
     BAD("39", response_dof, INT64_MAX, HBVIB_E_INDEX, "response_dof");
-    BAD("68", reserved, 1, HBVIB_E_ARGUMENT, "reserved = 1");
+    BAD("68", estimate_error, 2, HBVIB_E_ARGUMENT, "estimate_error = 2");
     BAD("68", keep_even_harmonics, 2, HBVIB_E_ARGUMENT, "keep_even_harmonics = 2");
     BAD("83", num_threads, -1, HBVIB_E_ARGUMENT, "num_threads = -1");
     s = solver_options();

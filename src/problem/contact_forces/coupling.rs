@@ -1,7 +1,8 @@
 //! How the contact forces couple the relative motions: their Jacobians in Newton's matrix, and which
 //! of them leave it because they are those of the reference stiffness.
 
-use super::ContactForces;
+use super::{ContactForces, add};
+use crate::error::Result;
 use core::ops::Range;
 use num_complex::Complex64;
 
@@ -35,6 +36,14 @@ impl ContactForces<'_> {
         }
     }
 
+    /// Whether some force that does not drop out depends on the motion of a coordinate.
+    #[must_use]
+    pub fn is_felt(&self, coordinate: usize) -> bool {
+        self.jacobians
+            .of_motion(coordinate)
+            .any(|(force, _)| !self.drops_out(force))
+    }
+
     /// Change of w in the i-th carried harmonic along a change of the motion.
     #[must_use]
     pub fn along(&self, direction: &[f64], coordinate: usize, i: usize) -> Complex64 {
@@ -48,6 +57,43 @@ impl ContactForces<'_> {
             }
         }
         dw
+    }
+
+    /// Change of w in all carried harmonics of a coordinate along a change of the motion, with all forces that
+    /// drop out or not.
+    pub fn change(&self, direction: &[f64], coordinate: usize, dw: &mut [f64]) {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        dw.fill(0.0);
+        for (by, block) in self.jacobians.of_force(coordinate) {
+            for (column, d) in block.chunks_exact(m).zip(&direction[by * m..]) {
+                add(dw, column, *d);
+            }
+        }
+        let own = &direction[coordinate * m..(coordinate + 1) * m];
+        for i in 0..set.numbers().len() {
+            let z = set.get(dw, i) - self.condensed.kappa(coordinate, i) * set.get(own, i);
+            set.set(dw, i, z);
+        }
+    }
+
+    /// What is added to the diagonal of a mean in Newton's matrix.
+    #[must_use]
+    pub fn mean_floor(&self, coordinate: usize) -> f64 {
+        if self.drops_out(coordinate) { 0.0 } else { MEAN_FLOOR }
+    }
+
+    /// Copies the Jacobians of all laws at the motion evaluated last.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn copy_jacobians(&self, values: &mut Vec<f64>) -> Result<()> {
+        self.jacobians.copy(values)
+    }
+
+    /// Exchanges the Jacobians of all laws for those of another motion.
+    pub fn swap_jacobians(&mut self, values: &mut Vec<f64>) {
+        self.jacobians.swap(values);
     }
 
     /// Adds G (∂f/∂y − κ) in a range of carried harmonics to the column of a Jacobian that belongs to number

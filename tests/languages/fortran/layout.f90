@@ -147,7 +147,7 @@ contains
       call field('max_points', c_loc(s), c_loc(s%max_points), c_sizeof(s%max_points))
       call field('response_dof', c_loc(s), c_loc(s%response_dof), c_sizeof(s%response_dof))
       call field('keep_even_harmonics', c_loc(s), c_loc(s%keep_even_harmonics), c_sizeof(s%keep_even_harmonics))
-      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('estimate_error', c_loc(s), c_loc(s%estimate_error), c_sizeof(s%estimate_error))
    end subroutine solver_options
 
    subroutine forced_options()

@@ -19,7 +19,7 @@ for field in hbvib.Field:
     except hbvib.ArgumentError:
         check(
             f"{field.name} is missing from a forced response only if it is of modes",
-            field in (2, 3, 4, 10, 11, 12, 13),
+            field in (2, 3, 4, 10, 11, 12, 13, 15),
             field,
         )
         continue

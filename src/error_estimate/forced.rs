@@ -1,0 +1,199 @@
+//! The error of a point of a forced response.
+
+use super::lift::lift;
+use super::reach::{self, Reach};
+use super::system::{Core, System};
+use super::{
+    Corrected, Estimate, MOST_LIFTED, MOST_UNKNOWNS, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown,
+    tail,
+};
+use crate::condense::Condensed;
+use crate::error::{Result, try_vec};
+use crate::harmonics::HarmonicSet;
+use crate::linalg::norm;
+use crate::model::Model;
+use crate::options::SolverOptions;
+use crate::problem::Problem;
+use crate::problem::forced::Forced;
+use num_complex::Complex64;
+
+/// Default share s of the change that the next step may have: 0.1 costs about one step more than 0.3.
+pub const SHARE: f64 = 0.1;
+
+/// How many more harmonics than needed a lifted model may have to be used again.
+const SPARE: f64 = 1.25;
+
+/// Estimates the errors of points of one model, one after the other.
+pub struct ForcedEstimator<'a> {
+    model: &'a Model,
+    options: SolverOptions,
+    response: usize,
+    reach: Option<Reach>,
+    /// The model lifted last.
+    lifted: Option<Condensed>,
+}
+
+impl<'a> ForcedEstimator<'a> {
+    /// For solutions of `model` with these options, observing degree of freedom `response`.
+    #[must_use]
+    pub fn new(model: &'a Model, options: &SolverOptions, response: usize) -> Self {
+        Self {
+            model,
+            options: *options,
+            response,
+            reach: None,
+            lifted: None,
+        }
+    }
+
+    /// The estimate at a solved point; not certified where it could not be made.
+    ///
+    /// # Errors
+    /// Those of callbacks that give up.
+    pub fn at(&mut self, solved: &Solved<'_>) -> Result<Estimate> {
+        if solved.is_linear()? {
+            return solved.exact(0.0);
+        }
+        let found = self.lift(solved);
+        or_unknown(found, solved, 0.0)
+    }
+
+    /// How far to lift; none where the problem would be too large.
+    fn extent(&mut self, solved: &Solved<'_>) -> Result<Option<Extent>> {
+        let set = solved.condensed.set();
+        let own = set.numbers().last().copied().unwrap_or(0);
+        let most = reach::affordable(solved.condensed, MOST_UNKNOWNS);
+        let least = reach::carried_from(set, 2 * own + 1);
+        if own > most || least > reach::affordable(solved.condensed, MOST_LIFTED) {
+            return Ok(None);
+        }
+        if self.reach.is_none() {
+            let waves = least.max(reach::all_waves(solved.condensed));
+            let options = lifted_options(&self.options, waves);
+            let condensed = Condensed::new(self.model, &options, solved.omega)?;
+            self.reach = Some(Reach::new(condensed)?);
+        }
+        let Some(reach) = &mut self.reach else { return Ok(None) };
+        let core = reach.at(solved.omega, own, most)?.max(own);
+        Ok(Some(Extent {
+            core,
+            highest: core.max(least),
+            short: core >= most,
+        }))
+    }
+
+    fn lift(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
+        let Some(extent) = self.extent(solved)? else {
+            return Ok(None);
+        };
+        let highest = extent.highest;
+        let spare = (highest as f64 * SPARE) as usize;
+        let carries = |c: &Condensed| c.set().numbers().last().is_some_and(|h| (highest..=spare).contains(h));
+        if !self.lifted.as_ref().is_some_and(carries) {
+            self.lifted = None;
+        }
+        let condensed = match self.lifted.take() {
+            Some(condensed) => condensed,
+            None => Condensed::new(self.model, &lifted_options(&self.options, highest), solved.omega)?,
+        };
+        let found = self.on(&condensed, solved, extent);
+        self.lifted = Some(condensed);
+        found
+    }
+
+    fn on(&self, condensed: &Condensed, solved: &Solved<'_>, extent: Extent) -> Result<Option<Estimate>> {
+        let (omega, set) = (solved.omega, condensed.set());
+        if set.numbers().len() == solved.condensed.set().numbers().len() {
+            // Constant forces alone: nothing vibrates.
+            return solved.exact(0.0).map(Some);
+        }
+        let samples = lifted_options(&self.options, set.numbers().last().copied().unwrap_or(0)).samples;
+        let mut problem = Forced::new(condensed, self.response, (omega, omega), samples, None)?;
+        let n = problem.size();
+        let start = solved.lifted(condensed, n, 1.0)?;
+        let core = set.numbers().partition_point(|&h| h <= extent.core);
+        let mut system = Core::new(&mut problem, omega, core)?;
+        if !system.evaluate(&start)? {
+            return Ok(None);
+        }
+        if samples == 0 && above(set, solved.condensed.set(), &system.at.residual) <= ROUNDING * system.at.scale {
+            return solved.exact(0.0).map(Some);
+        }
+        let enough = |change: &[f64], next: &[f64]| {
+            let next = norm(next);
+            next <= SHARE * norm(change) || next <= ROUNDING * norm(&start)
+        };
+        let Some(lifted) = lift(&mut system, &start, enough)? else {
+            return Ok(None);
+        };
+        let mut z = lifted.corrected()?;
+        let size = norm(&z);
+        let mut change = try_vec(n, 0.0, WHAT)?;
+        for ((c, z), s) in change.iter_mut().zip(&z).zip(&start) {
+            *c = z - s;
+        }
+        let change = norm(&change) / size;
+        let mut direction = try_vec(n + 1, 0.0, WHAT)?;
+        direction[..n].copy_from_slice(&lifted.next);
+        let (x, dx) = problem.observe(&lifted.at, &direction);
+        let length = condensed.length();
+        let (response, next) = ((x + dx) * length, dx.norm() * length);
+        let tail = tail(set, solved.condensed.set(), &z)?;
+        let certified = lifted.certified && (!extent.short || has_faded(&tail, change));
+        let known = |x: f64| if certified { x } else { f64::NAN };
+        for z in &mut z {
+            *z *= length;
+        }
+        Ok(Some(Estimate {
+            certified,
+            motion: known(change + norm(&lifted.next) / size),
+            response: known(relative((response - solved.response).norm() + next, response)),
+            frequency: known(0.0),
+            damping: known(0.0),
+            harmonics: set.numbers().last().copied().unwrap_or(0),
+            steps: lifted.steps,
+            change,
+            tail,
+            corrected: Corrected {
+                set: set.try_clone()?,
+                motion: z,
+                response,
+                omega,
+                damping: 0.0,
+            },
+        }))
+    }
+}
+
+/// How far a point is lifted.
+#[derive(Clone, Copy)]
+struct Extent {
+    /// Highest harmonic of the core, in which the structure gives.
+    core: usize,
+    /// Highest harmonic of all.
+    highest: usize,
+    /// Whether the structure may give beyond the core, which would be too large.
+    short: bool,
+}
+
+/// A difference relative to a number; 0 where there is none.
+pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
+    if difference == 0.0 {
+        0.0
+    } else {
+        difference / number.norm()
+    }
+}
+
+/// Norm of what packed signals of `set` hold above the harmonics of `below`.
+pub(super) fn above(set: &HarmonicSet, below: &HarmonicSet, packed: &[f64]) -> f64 {
+    let highest = below.numbers().last().copied().unwrap_or(0);
+    let first = set.numbers().partition_point(|&h| h <= highest);
+    let from = if first < set.numbers().len() {
+        set.offset(first)
+    } else {
+        set.packed_len()
+    };
+    let signals = packed.chunks_exact(set.packed_len());
+    signals.map(|y| norm(&y[from..])).fold(0.0, f64::hypot)
+}

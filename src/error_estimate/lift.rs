@@ -1,0 +1,99 @@
+//! The damped Newton method on the lifted problem, stopped by its own next step.
+
+use super::WHAT;
+use super::system::System;
+use crate::error::{Result, try_copy, try_vec};
+use crate::linalg::norm;
+
+/// Most Newton steps of a lift.
+const MOST_STEPS: usize = 24;
+
+/// Damping factor below which a step is taken as it is.
+const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
+
+/// Where a lift ended.
+pub(super) struct Lifted {
+    /// Z, at which the problem was evaluated last.
+    pub at: Vec<f64>,
+    /// δ, the simplified Newton step from there.
+    pub next: Vec<f64>,
+    /// Whether δ is small enough.
+    pub certified: bool,
+    /// Newton steps taken, each with a factorisation.
+    pub steps: usize,
+}
+
+impl Lifted {
+    /// Z* = Z + δ
+    pub fn corrected(&self) -> Result<Vec<f64>> {
+        sum(&self.at, &self.next)
+    }
+}
+
+fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
+    let mut sum = try_copy(a, WHAT)?;
+    for (s, b) in sum.iter_mut().zip(b) {
+        *s += b;
+    }
+    Ok(sum)
+}
+
+/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough` says that δ, given after the
+/// change Z + δ − start, is small. `None` where some evaluation or matrix fails.
+///
+/// # Errors
+/// What the system reports, but for singular matrices and what another motion may not meet.
+pub(super) fn lift(
+    system: &mut dyn System,
+    start: &[f64],
+    enough: impl Fn(&[f64], &[f64]) -> bool,
+) -> Result<Option<Lifted>> {
+    let n = start.len();
+    let mut z = try_copy(start, WHAT)?;
+    let mut step = try_vec(n, 0.0, WHAT)?;
+    let mut next = try_vec(n, 0.0, WHAT)?;
+    let mut change = try_vec(n, 0.0, WHAT)?;
+    let mut trial = try_vec(n, 0.0, WHAT)?;
+    let mut damping = 1.0_f64;
+    for steps in 1..=MOST_STEPS {
+        if !system.factor()? || !system.step(&mut step)? {
+            return Ok(None);
+        }
+        let size = norm(&step);
+        damping = (4.0 * damping).min(1.0);
+        loop {
+            for ((t, z), d) in trial.iter_mut().zip(&z).zip(&step) {
+                *t = z + damping * d;
+            }
+            let last = damping <= SMALLEST_DAMPING;
+            if system.evaluate(&trial)? {
+                if !system.step(&mut next)? {
+                    return Ok(None);
+                }
+                if last || norm(&next) <= (1.0 - 0.25 * damping) * size {
+                    break;
+                }
+            } else if last {
+                return Ok(None);
+            }
+            damping *= 0.5;
+        }
+        z.copy_from_slice(&trial);
+        for (((c, z), d), s) in change.iter_mut().zip(&z).zip(&next).zip(start) {
+            *c = z + d - s;
+        }
+        if !change.iter().all(|x| x.is_finite()) {
+            return Ok(None);
+        }
+        let certified = enough(&change, &next);
+        if certified || steps == MOST_STEPS {
+            return Ok(Some(Lifted {
+                at: z,
+                next,
+                certified,
+                steps,
+            }));
+        }
+    }
+    Ok(None)
+}

@@ -1,0 +1,182 @@
+//! The error of a point of a nonlinear mode: of its frequency and damping ratio as well.
+
+use super::forced::{SHARE, above, relative};
+use super::lift::lift;
+use super::reach::{self, Reach};
+use super::system::{System, Whole};
+use super::{Corrected, Estimate, MOST_UNKNOWNS, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown, tail};
+use crate::condense::Condensed;
+use crate::error::{Result, try_vec};
+use crate::linalg::norm;
+use crate::model::Model;
+use crate::options::{DampingForm, SolverOptions};
+use crate::problem::Problem;
+use crate::problem::mode::{Gauge, LinearMode, Mode};
+
+/// How many more harmonics than needed a lifted model may have to be used again.
+const SPARE: f64 = 1.25;
+
+/// Error of the damping ratio, over that ratio, below which its last change need not be small against all of
+/// its change: along a backbone the latter passes through zero.
+const NEGLIGIBLE: f64 = 1e-3;
+
+/// Estimates the errors of points of one nonlinear mode, one after the other.
+pub struct ModeEstimator<'a> {
+    model: &'a Model,
+    options: SolverOptions,
+    form: DampingForm,
+    linear: &'a LinearMode,
+    gauge: &'a Gauge,
+    response: usize,
+    reach: Option<Reach>,
+    /// The model lifted last.
+    lifted: Option<Condensed>,
+}
+
+impl<'a> ModeEstimator<'a> {
+    /// For points of the mode that starts from `linear`, on the wave of the model's engine order, observing
+    /// degree of freedom `response`.
+    #[must_use]
+    pub fn new(
+        model: &'a Model,
+        options: &SolverOptions,
+        form: DampingForm,
+        (linear, gauge): (&'a LinearMode, &'a Gauge),
+        response: usize,
+    ) -> Self {
+        Self {
+            model,
+            options: *options,
+            form,
+            linear,
+            gauge,
+            response,
+            reach: None,
+            lifted: None,
+        }
+    }
+
+    /// The estimate at a solved point of this log₁₀ amplitude and damping ratio; not certified where it could
+    /// not be made.
+    ///
+    /// # Errors
+    /// Those of callbacks that give up.
+    pub fn at(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Estimate> {
+        if solved.is_linear()? {
+            return solved.exact(damping);
+        }
+        let found = self.lift(solved, log10_amplitude, damping);
+        or_unknown(found, solved, damping)
+    }
+
+    fn condensed(&self, highest: usize) -> Result<Condensed> {
+        let options = lifted_options(&self.options, highest);
+        Ok(Condensed::for_mode(self.model, &options, self.form, &self.linear.shape)?.0)
+    }
+
+    fn lift(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Option<Estimate>> {
+        let set = solved.condensed.set();
+        let own = set.numbers().last().copied().unwrap_or(0);
+        let most = reach::affordable(solved.condensed, MOST_UNKNOWNS);
+        let least = reach::carried_from(set, 2 * own + 1);
+        if least > most {
+            return Ok(None);
+        }
+        if self.reach.is_none() {
+            let waves = least.max(reach::all_waves(solved.condensed));
+            self.reach = Some(Reach::new(self.condensed(waves)?)?);
+        }
+        let Some(reach) = &mut self.reach else { return Ok(None) };
+        let highest = reach.at(solved.omega, least, most)?;
+        let spare = (highest as f64 * SPARE) as usize;
+        let carries = |c: &Condensed| c.set().numbers().last().is_some_and(|h| (highest..=spare).contains(h));
+        if !self.lifted.as_ref().is_some_and(carries) {
+            self.lifted = None;
+        }
+        let condensed = match self.lifted.take() {
+            Some(condensed) => condensed,
+            None => self.condensed(highest)?,
+        };
+        let found = self.on(&condensed, solved, (log10_amplitude, damping), highest >= most);
+        self.lifted = Some(condensed);
+        found
+    }
+
+    fn on(
+        &self,
+        condensed: &Condensed,
+        solved: &Solved<'_>,
+        (p, damping): (f64, f64),
+        short: bool,
+    ) -> Result<Option<Estimate>> {
+        let set = condensed.set();
+        let highest = set.numbers().last().copied().unwrap_or(0);
+        let samples = lifted_options(&self.options, highest).samples;
+        let mut problem = Mode::new(condensed, self.gauge, self.linear, samples)?;
+        let n = problem.size();
+        let mut system = Whole::new(&mut problem, p)?;
+        let a = 10f64.powf(p);
+        let mut start = solved.lifted(condensed, n, 1.0 / a)?;
+        Mode::set_frequency_and_damping(self.linear, (solved.omega, damping), &mut start);
+        if !system.evaluate(&start)? {
+            return Ok(None);
+        }
+        let residual = &system.at.residual[..n - 2];
+        if samples == 0 && above(set, solved.condensed.set(), residual) <= ROUNDING * system.at.scale {
+            return solved.exact(damping).map(Some);
+        }
+        let of_damping = |u: &[f64]| Mode::damping_of_change(u).abs();
+        let enough = |change: &[f64], next: &[f64]| {
+            let (moved, last) = (norm(&change[..n - 2]), norm(&next[..n - 2]));
+            let (changed, left) = (of_damping(change), of_damping(next));
+            (last <= SHARE * moved || last <= ROUNDING * norm(&start))
+                && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs())
+        };
+        let Some(lifted) = lift(&mut system, &start, enough)? else {
+            return Ok(None);
+        };
+        let z = lifted.corrected()?;
+        let (omega2, damping2) = Mode::frequency_and_damping(self.linear, &z);
+        let (omega1, damping1) = Mode::frequency_and_damping(self.linear, &lifted.at);
+        let unit = a * condensed.length();
+        let i = set.fundamental() * condensed.ndof() + self.response;
+        let before = system.problem.shape()[i] * unit;
+        if !system.evaluate(&z)? {
+            return Ok(None);
+        }
+        let response = system.problem.shape()[i] * unit;
+        let motion = &z[..n - 2];
+        let size = norm(motion);
+        let mut change = try_vec(n - 2, 0.0, WHAT)?;
+        for ((c, z), s) in change.iter_mut().zip(motion).zip(&start) {
+            *c = z - s;
+        }
+        let change = norm(&change) / size;
+        let tail = tail(set, solved.condensed.set(), motion)?;
+        let certified = lifted.certified && (!short || has_faded(&tail, change));
+        let known = |x: f64| if certified { x } else { f64::NAN };
+        let next = (response - before).norm();
+        let mut packed = try_vec(n - 2, 0.0, WHAT)?;
+        for (to, y) in packed.iter_mut().zip(motion) {
+            *to = y * unit;
+        }
+        Ok(Some(Estimate {
+            certified,
+            motion: known(change + norm(&lifted.next[..n - 2]) / size),
+            response: known(relative((response - solved.response).norm() + next, response)),
+            frequency: known(((omega2 - solved.omega).abs() + (omega2 - omega1).abs()) / omega2),
+            damping: known((damping2 - damping).abs() + (damping2 - damping1).abs()),
+            harmonics: highest,
+            steps: lifted.steps,
+            change,
+            tail,
+            corrected: Corrected {
+                set: set.try_clone()?,
+                motion: packed,
+                response,
+                omega: omega2,
+                damping: damping2,
+            },
+        }))
+    }
+}
