@@ -14,7 +14,7 @@
 use super::Evaluation;
 use super::periodic::{ReturnMap, largest};
 use super::sensitivity::{Sensitivity, Signals};
-use crate::contact::marched::{March, Marched};
+use crate::contact::marched::{March, Marched, Rest};
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::harmonics::HarmonicSet;
 
@@ -23,6 +23,9 @@ const NEWTON_MARCHES: usize = 100;
 
 /// Marches in all; the others only march on.
 const MARCHES: usize = 300;
+
+/// Marches from a start at rest, which returns but for rounding.
+const REST_MARCHES: usize = 4;
 
 /// Tables and memory for marching one law over motions of one harmonic set.
 pub struct MarchedWay {
@@ -36,6 +39,9 @@ pub struct MarchedWay {
     load_u: Vec<f64>,
     load_v: Vec<f64>,
     march: March,
+    rest: Rest,
+    /// Whether the last start was at rest.
+    rests: bool,
     map: ReturnMap,
     sensitivity: Sensitivity,
     /// States that each march began with.
@@ -72,6 +78,8 @@ impl MarchedWay {
             load_u: memory(2 * d)?,
             load_v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
             march: March::new(d, s, samples)?,
+            rest: Rest::new(d, s, samples)?,
+            rests: false,
             map: ReturnMap::new(s)?,
             sensitivity: Sensitivity::new(d, s, set.packed_len())?,
             starts: memory(s.saturating_mul(MARCHES))?,
@@ -194,11 +202,20 @@ impl MarchedWay {
     /// on it, the slip of the marches before has decided, and Newton's method has only guessed. Then
     /// the law is marched from the load on, as long as that takes no more than [`MARCHES`].
     fn find_period(&mut self, law: &dyn Marched, omega: f64) -> Result<bool> {
+        let Signals { samples, u, .. } = &self.signals;
+        self.rests = law.rest(*samples, u, &mut self.rest);
+        if self.rests {
+            self.starts[..self.states].copy_from_slice(&self.rest.z);
+            self.rests = self.search(law, omega, 0, REST_MARCHES)? == 0.0;
+            if self.rests {
+                return Ok(self.rest.virgin);
+            }
+        }
         let virgin = self.load(law, omega)?;
-        let mut defect = self.search(law, omega, NEWTON_MARCHES)?;
+        let mut defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
         let guessed = self.by_newton[..self.marches - 1].contains(&true);
-        if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0)? > 0.0 {
-            defect = self.search(law, omega, NEWTON_MARCHES)?;
+        if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0, MARCHES)? > 0.0 {
+            defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
         }
         if defect > 0.0 {
             return Err(Error::new(
@@ -214,11 +231,11 @@ impl MarchedWay {
 
     /// Marches from the first start until the states return to within rounding, with Newton's method
     /// up to the march `newton_until`. What is left of their difference at the last march, 0 if they return.
-    fn search(&mut self, law: &dyn Marched, omega: f64, newton_until: usize) -> Result<f64> {
+    fn search(&mut self, law: &dyn Marched, omega: f64, newton_until: usize, most: usize) -> Result<f64> {
         let (s, n) = (self.states, self.signals.samples);
         let tolerance = f64::EPSILON * (64.0 + 4.0 * (n as f64).sqrt());
         let mut before = f64::INFINITY;
-        for k in 0..MARCHES {
+        for k in 0..most {
             self.march_from(law, omega, k)?;
             let end = &self.march.z[(n - 1) * s..n * s];
             for ((step, end), start) in self.step.iter_mut().zip(end).zip(&self.starts[k * s..]) {
@@ -234,7 +251,7 @@ impl MarchedWay {
                 self.map.form(&self.march, n);
                 return Ok(0.0);
             }
-            if k + 1 == MARCHES {
+            if k + 1 == most {
                 return Ok(defect);
             }
             // Two marches show whether slip goes on at all; a defect that grew asks for a plain march.
@@ -264,6 +281,10 @@ impl MarchedWay {
     /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part
     /// remembers the marches that led to it; their derivatives are then followed from the load on.
     fn differentiate_start(&mut self, law: &dyn Marched, omega: f64) -> Result<()> {
+        if self.rests {
+            self.sensitivity.rest(&self.rest, &self.signals, omega);
+            return Ok(());
+        }
         let last = self.marches - 1;
         if self.map.has_kept && last > 0 {
             for k in 0..last {

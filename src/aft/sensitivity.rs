@@ -3,7 +3,7 @@
 
 use super::Evaluation;
 use super::periodic::ReturnMap;
-use crate::contact::marched::March;
+use crate::contact::marched::{March, Rest};
 use crate::error::{Result, try_vec};
 use crate::harmonics::HarmonicSet;
 use std::f64::consts::TAU;
@@ -152,6 +152,18 @@ impl Sensitivity {
             let block = a * d..(a + 1) * d;
             signals.add(last, omega, &march.dz_du[block.clone()], &march.dz_dv[block], row);
             row[self.width - 1] += march.dz_domega[a];
+        }
+    }
+
+    /// The start at rest.
+    pub fn rest(&mut self, rest: &Rest, signals: &Signals, omega: f64) {
+        self.start.fill(0.0);
+        let d = signals.directions;
+        for j in 0..signals.samples {
+            for (a, row) in self.start.chunks_exact_mut(self.width).enumerate() {
+                let by_u = &rest.dz_du[(j * self.states + a) * d..][..d];
+                signals.add(j, omega, by_u, &[], row);
+            }
         }
     }
 

@@ -23,6 +23,14 @@ pub trait Marched: Law {
         false
     }
 
+    /// Whether the law may stick through the period of the motion `u`, samples × d row-major, so that its
+    /// periodic states are not unique: the one that counts is then in `out`, every entry of whose first
+    /// `samples` blocks is written. It must not jump as the motion changes.
+    fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> bool {
+        let _ = (samples, u, out);
+        false
+    }
+
     /// Samples per period for motions up to the reduced harmonic `highest`, where the host asked for
     /// `asked`, or with 0 for what suits the law.
     fn samples(&self, highest: usize, asked: usize) -> usize;
@@ -37,6 +45,32 @@ pub trait Marched: Law {
     /// # Errors
     /// Those of the law.
     fn march(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()>;
+}
+
+/// The state of a law that sticks through the period, before sample 0.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// States, s.
+    pub z: Vec<f64>,
+    /// Their derivatives by the motion at each sample, s × d per sample.
+    pub dz_du: Vec<f64>,
+    /// Whether nothing has ever slipped.
+    pub virgin: bool,
+}
+
+impl Rest {
+    /// Memory for `samples` samples of a law with d directions and s states.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(directions: usize, states: usize, samples: usize) -> Result<Self> {
+        let block = directions.saturating_mul(states);
+        Ok(Self {
+            z: try_vec(states, 0.0, "a march over samples")?,
+            dz_du: try_vec(block.saturating_mul(samples), 0.0, "a march over samples")?,
+            virgin: false,
+        })
+    }
 }
 
 /// What a march gives at each sample j: force, states, and the derivatives of the step that led to
