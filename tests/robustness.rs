@@ -16,6 +16,8 @@ mod problem;
 mod random;
 #[path = "robustness/residual.rs"]
 mod residual;
+#[path = "common/rest.rs"]
+mod rest;
 
 use common::{all_harmonics, harmonics, relative_gap};
 use hbvib::analysis::{forced_response, time_response};
