@@ -6,7 +6,7 @@
 //! the set (the common divisor of the carried harmonics) the signal has the period 2π/(gω); the
 //! reduced time τ = gωt and the reduced numbers p = h/g describe it over one turn.
 
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, fail, try_copy, try_push};
 use num_complex::Complex64;
 
 /// The carried harmonics of a periodic solution.
@@ -63,6 +63,17 @@ impl HarmonicSet {
     /// `OutOfMemory`.
     pub fn all(highest: usize) -> Result<Self> {
         Self::excited(&[], highest, true, false, true)
+    }
+
+    /// A copy whose memory is asked for fallibly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        Ok(Self {
+            numbers: try_copy(&self.numbers, "the list of harmonics")?,
+            ..*self
+        })
     }
 
     /// The carried harmonic numbers, ascending.

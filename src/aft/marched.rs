@@ -12,6 +12,7 @@
 //! and derivative are those of the sampled law: as good as the samples, but exact as a pair.
 
 use super::Evaluation;
+use super::normal::Normal;
 use super::periodic::{ReturnMap, largest};
 use super::sensitivity::{Sensitivity, Signals};
 use crate::contact::marched::{March, Marched, Rest};
@@ -44,6 +45,7 @@ pub struct MarchedWay {
     rests: bool,
     map: ReturnMap,
     sensitivity: Sensitivity,
+    normal: Option<Normal>,
     /// States that each march began with.
     starts: Vec<f64>,
     /// Whether the start after each march came from Newton's method.
@@ -81,7 +83,8 @@ impl MarchedWay {
             rest: Rest::new(d, s, samples)?,
             rests: false,
             map: ReturnMap::new(s)?,
-            sensitivity: Sensitivity::new(d, s, set.packed_len())?,
+            sensitivity: Sensitivity::new(d, s, d - usize::from(law.normal().is_some()), set.packed_len())?,
+            normal: law.normal().map(|_| Normal::new(set)).transpose()?,
             starts: memory(s.saturating_mul(MARCHES))?,
             by_newton: try_vec(MARCHES, false, "a march over samples")?,
             step: memory(s)?,
@@ -95,6 +98,7 @@ impl MarchedWay {
         self.signals.directions == law.directions()
             && self.states == law.states()
             && self.load_v.is_empty() != law.uses_velocity()
+            && self.normal.is_some() == law.normal().is_some()
             && self.signals.samples == samples
     }
 
@@ -127,6 +131,9 @@ impl MarchedWay {
         self.sensitivity
             .pass(&self.march, &self.signals, omega, Some(&mut *out));
         self.finish(motion, out);
+        if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
+            normal.evaluate(&law, motion, out);
+        }
         let n = self.signals.samples as f64;
         out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
         out.open_fraction = self.march.open.iter().sum::<f64>() / n;

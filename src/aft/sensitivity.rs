@@ -115,6 +115,8 @@ fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
 /// Derivatives of states and forces by (X, ω), in rows of d·m + 1.
 pub(super) struct Sensitivity {
     states: usize,
+    /// Directions whose forces are followed: the first ones.
+    forces: usize,
     width: usize,
     /// Of the states at the start of the period.
     start: Vec<f64>,
@@ -129,11 +131,12 @@ pub(super) struct Sensitivity {
 }
 
 impl Sensitivity {
-    pub fn new(directions: usize, states: usize, length: usize) -> Result<Self> {
+    pub fn new(directions: usize, states: usize, forces: usize, length: usize) -> Result<Self> {
         let width = directions.saturating_mul(length).saturating_add(1);
         let rows = |n: usize| try_vec(n.saturating_mul(width), 0.0, "a march over samples");
         Ok(Self {
             states,
+            forces,
             width,
             start: rows(states)?,
             before: rows(states)?,
@@ -220,7 +223,7 @@ impl Sensitivity {
     fn force_at(&mut self, march: &March, signals: &Signals, omega: f64, j: usize) {
         let (d, s) = (signals.directions, self.states);
         let slot = j % BATCH;
-        for i in 0..d {
+        for i in 0..self.forces {
             let row = &mut self.force[(slot * d + i) * self.width..(slot * d + i + 1) * self.width];
             row.fill(0.0);
             let by_state = &march.df_dz[(j * d + i) * s..(j * d + i + 1) * s];
@@ -248,7 +251,7 @@ impl Sensitivity {
             }
         };
         let used = |slot: usize, value: f64| if slot < batch.len() { value } else { 0.0 };
-        for i in 0..d {
+        for i in 0..self.forces {
             let part = i * m..(i + 1) * m;
             let factor = |slot: usize| used(slot, march.f[(first + slot.min(batch.len() - 1)) * d + i]);
             add(std::array::from_fn(factor), &mut out.force[part.clone()]);

@@ -12,6 +12,7 @@
 //! derivative is that of the discrete force. Where it sticks through the period, the slider rests
 //! where friction_rest.rs says.
 
+use super::friction::Friction;
 use super::friction_rest::{Disc, rest};
 use super::friction_step::{NO_LOAD, step};
 use super::law::{Form, Law, Range};
@@ -90,6 +91,16 @@ impl Marched for FrictionPlane {
 
     fn sticks(&self) -> bool {
         self.kt > 0.0 && self.mu > 0.0
+    }
+
+    fn normal(&self) -> Option<Friction> {
+        // Without tangential stiffness: the normal force alone.
+        self.has_normal.then_some(Friction {
+            kt: 0.0,
+            kn: self.kn,
+            mu: self.mu,
+            load: self.load,
+        })
     }
 
     fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> bool {

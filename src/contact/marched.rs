@@ -5,6 +5,7 @@
 //! of every step. What the states are at the start of the period, how they make it periodic and
 //! what that means for harmonics is the matter of [`crate::aft::marched`].
 
+use super::friction::Friction;
 use super::law::Law;
 use super::state::State;
 use crate::error::{Result, try_vec};
@@ -29,6 +30,12 @@ pub trait Marched: Law {
     fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> bool {
         let _ = (samples, u, out);
         false
+    }
+
+    /// Whether the force along the last motion, a normal one, depends on that motion alone as that of this
+    /// friction in one direction does: then its harmonics are exact, from located closings and openings.
+    fn normal(&self) -> Option<Friction> {
+        None
     }
 
     /// Samples per period for motions up to the reduced harmonic `highest`, where the host asked for
