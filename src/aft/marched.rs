@@ -15,7 +15,7 @@ use super::Evaluation;
 use super::normal::Normal;
 use super::periodic::{ReturnMap, largest};
 use super::sensitivity::{Sensitivity, Signals};
-use crate::contact::marched::{March, Marched, Rest};
+use crate::contact::marched::{March, Marched, Rest, Resting};
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::harmonics::HarmonicSet;
 
@@ -210,17 +210,25 @@ impl MarchedWay {
     /// the law is marched from the load on, as long as that takes no more than [`MARCHES`].
     fn find_period(&mut self, law: &dyn Marched, omega: f64) -> Result<bool> {
         let Signals { samples, u, .. } = &self.signals;
-        self.rests = law.rest(*samples, u, &mut self.rest);
-        if self.rests {
+        let rests = law.rest(*samples, u, &mut self.rest);
+        self.rests = rests == Resting::Here;
+        if self.rests || rests == Resting::Nearly {
             self.starts[..self.states].copy_from_slice(&self.rest.z);
-            self.rests = self.search(law, omega, 0, REST_MARCHES)? == 0.0;
-            if self.rests {
-                return Ok(self.rest.virgin);
+            self.sensitivity.rest(&self.rest, &self.signals, omega);
+            let defect = if self.rests {
+                self.search(law, omega, 0, REST_MARCHES)?
+            } else {
+                self.search(law, omega, NEWTON_MARCHES, NEWTON_MARCHES)?
+            };
+            if defect == 0.0 {
+                return Ok(self.rests && self.rest.virgin);
             }
+            self.rests = false;
         }
         let virgin = self.load(law, omega)?;
         let mut defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
-        let guessed = self.by_newton[..self.marches - 1].contains(&true);
+        // A law that rests nowhere slips and forgets: whatever finds its one periodic state.
+        let guessed = rests == Resting::Unknown && self.by_newton[..self.marches - 1].contains(&true);
         if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0, MARCHES)? > 0.0 {
             defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
         }
@@ -289,7 +297,6 @@ impl MarchedWay {
     /// remembers the marches that led to it; their derivatives are then followed from the load on.
     fn differentiate_start(&mut self, law: &dyn Marched, omega: f64) -> Result<()> {
         if self.rests {
-            self.sensitivity.rest(&self.rest, &self.signals, omega);
             return Ok(());
         }
         let last = self.marches - 1;

@@ -16,7 +16,7 @@ use super::friction::Friction;
 use super::friction_rest::{Disc, rest};
 use super::friction_step::{NO_LOAD, step};
 use super::law::{Form, Law, Range};
-use super::marched::{March, Marched, Rest};
+use super::marched::{March, Marched, Rest, Resting};
 use super::pointwise::automatic_samples;
 use super::state::State;
 use crate::error::Result;
@@ -103,11 +103,11 @@ impl Marched for FrictionPlane {
         })
     }
 
-    fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> bool {
+    fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> Resting {
         let d = self.directions();
         let motion = |j: usize| &u[j * d..(j + 1) * d];
         if !self.sticks() {
-            return false;
+            return Resting::Nowhere;
         }
         let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
         for motion in u[..samples * d].chunks_exact(d) {
@@ -115,7 +115,7 @@ impl Marched for FrictionPlane {
             (least, most) = (least.min(load), most.max(load));
         }
         if least <= NO_LOAD * most.min(f64::MAX) {
-            return false;
+            return Resting::Nowhere;
         }
         // ρ = μN/kt
         let disc = |j: usize| Disc {
@@ -123,7 +123,7 @@ impl Marched for FrictionPlane {
             radius: self.mu * self.pressure(motion(j)) / self.kt,
         };
         let Some(found) = rest(samples, disc) else {
-            return false;
+            return Resting::Nowhere;
         };
         let last = (samples - 1) * d;
         out.dz_du[..samples * 2 * d].fill(0.0);
@@ -143,7 +143,11 @@ impl Marched for FrictionPlane {
             }
         }
         out.virgin = found.holding[0].is_none();
-        true
+        if found.is_common {
+            Resting::Here
+        } else {
+            Resting::Nearly
+        }
     }
 
     fn march(&self, _omega: f64, samples: usize, u: &[f64], _v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {

@@ -41,6 +41,8 @@ pub(super) struct Rest {
     pub at: [f64; 2],
     /// None where the slider is virgin, one disc or two.
     pub holding: [Option<Holding>; 2],
+    /// Whether the discs have the point in common. If not, it lies midway between two that are apart.
+    pub is_common: bool,
 }
 
 /// Violations below this, in units of the lengths at hand, are rounding.
@@ -83,7 +85,11 @@ impl Disc {
     }
 }
 
-/// The point nearest to 0 that `count` discs have in common; `None` if there is none.
+/// The point nearest to 0 that `count` discs have in common. If there is none, the point midway between two
+/// that are apart, where they are found, else nothing.
+///
+/// Shortly before slip ends, two discs are hardly apart. A little slip at both takes the slider to that point, but
+/// the slower the nearer it is, so that it is good to begin there.
 pub(super) fn rest(count: usize, disc: impl Fn(usize) -> Disc) -> Option<Rest> {
     let mut at = [0.0; 2];
     let mut held: [Option<usize>; 2] = [None; 2];
@@ -98,7 +104,10 @@ pub(super) fn rest(count: usize, disc: impl Fn(usize) -> Disc) -> Option<Rest> {
         let Some(new) = worst.1 else {
             return written(at, held, disc);
         };
-        (at, held) = among(new, held, &disc)?;
+        match among(new, held, &disc) {
+            Some(next) => (at, held) = next,
+            None => return held.iter().flatten().find_map(|&other| midway(new, other, &disc)),
+        }
     }
     None
 }
@@ -126,6 +135,33 @@ fn among(
         }
     }
     best.map(|(w, other)| (w, [Some(new), Some(other)]))
+}
+
+/// The point midway between two discs that are apart. With the unit vector u from centre a to centre b at the
+/// distance c, and n across, w = xₐ + λ(x_b − xₐ) with λ = (c + ρₐ − ρ_b)/2c, so that
+/// u·δw = u·(δxₐ + δx_b)/2 + (δρₐ − δρ_b)/2, n·δw = n·((1 − λ)δxₐ + λδx_b).
+fn midway(a: usize, b: usize, disc: &impl Fn(usize) -> Disc) -> Option<Rest> {
+    let (first, second) = (disc(a), disc(b));
+    let across: [f64; 2] = std::array::from_fn(|i| second.centre[i] - first.centre[i]);
+    let distance = across[0].hypot(across[1]);
+    if distance.is_nan() || distance <= first.radius + second.radius {
+        return None;
+    }
+    let u = across.map(|x| x / distance);
+    let share = 0.5 * (1.0 + (first.radius - second.radius) / distance);
+    let of = |disc: usize, share: f64, sign: f64| {
+        let unit = |i: usize, k: usize| if i == k { share } else { 0.0 };
+        Some(Holding {
+            disc,
+            by_centre: std::array::from_fn(|i| std::array::from_fn(|k| unit(i, k) + (0.5 - share) * u[i] * u[k])),
+            by_radius: u.map(|u| 0.5 * sign * u),
+        })
+    };
+    Some(Rest {
+        at: std::array::from_fn(|i| first.centre[i] + share * across[i]),
+        holding: [of(a, 1.0 - share, 1.0), of(b, share, -1.0)],
+        is_common: false,
+    })
 }
 
 /// With its derivatives. On one circle w = x − ρe, e = x/|x|; at a corner nₐ·δw = nₐ·δxₐ − δρₐ for both
@@ -169,5 +205,9 @@ fn written(at: [f64; 2], held: [Option<usize>; 2], disc: impl Fn(usize) -> Disc)
         }
         _ => [None; 2],
     };
-    Some(Rest { at, holding })
+    Some(Rest {
+        at,
+        holding,
+        is_common: true,
+    })
 }

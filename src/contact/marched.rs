@@ -24,12 +24,13 @@ pub trait Marched: Law {
         false
     }
 
-    /// Whether the law may stick through the period of the motion `u`, samples × d row-major, so that its
-    /// periodic states are not unique: the one that counts is then in `out`, every entry of whose first
-    /// `samples` blocks is written. It must not jump as the motion changes.
-    fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> bool {
+    /// Whether the law can stick through the period of the motion `u`, samples × d row-major. Where
+    /// it can, any of many states may be periodic: the one that counts is then in `out`, and does not jump as the
+    /// motion changes. A start that is nearly periodic is in `out` likewise; all of its first `samples`
+    /// blocks are written.
+    fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> Resting {
         let _ = (samples, u, out);
-        false
+        Resting::Unknown
     }
 
     /// Whether the force along the last motion, a normal one, depends on that motion alone as that of this
@@ -52,6 +53,19 @@ pub trait Marched: Law {
     /// # Errors
     /// Those of the law.
     fn march(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()>;
+}
+
+/// Whether a law sticks through the period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Resting {
+    /// The law does not know; what a march from rest leads to counts.
+    Unknown,
+    /// It does.
+    Here,
+    /// It slips, which makes it forget, so that it has one periodic state; not far from a known one.
+    Nearly,
+    /// Likewise, and nothing is known of the state.
+    Nowhere,
 }
 
 /// The state of a law that sticks through the period, before sample 0.

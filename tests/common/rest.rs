@@ -42,7 +42,10 @@ pub fn nearest_of_many(discs: &[Disc], tolerance: f64) -> Option<[f64; 2]> {
     let mut few: Vec<Disc> = Vec::new();
     loop {
         let w = nearest(&few, tolerance)?;
-        let worst = discs.iter().copied().max_by(|a, b| outside(w, *a).total_cmp(&outside(w, *b)))?;
+        let worst = discs
+            .iter()
+            .copied()
+            .max_by(|a, b| outside(w, *a).total_cmp(&outside(w, *b)))?;
         if outside(w, worst) <= tolerance {
             return Some(w);
         }
