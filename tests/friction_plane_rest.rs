@@ -6,9 +6,7 @@ mod plane;
 #[path = "common/rest.rs"]
 mod rest;
 
-use hbvib::aft::coupled::Coupled;
-use hbvib::aft::{Evaluation, marched::MarchedWay};
-use hbvib::contact::friction::Friction;
+use hbvib::aft::marched::MarchedWay;
 use hbvib::contact::friction_plane::FrictionPlane;
 use hbvib::contact::law::Law;
 use hbvib::harmonics::HarmonicSet;
@@ -79,7 +77,7 @@ fn what_rests_does_not_depend_on_where_the_period_begins() {
     let n = 64;
     let mut random = Random(8);
     let (mut worst, mut dragged) = (0.0_f64, 0);
-    for _ in 0..300 {
+    for _ in 0..600 {
         let law = law(1.0 + 0.3 * random.next(), true);
         let motion = random.motion(&set, 3, 0.7);
         let (out, _) = evaluate(&law, &set, n, &motion);
@@ -141,32 +139,39 @@ fn the_force_is_continuous_where_slip_begins() {
 }
 
 #[test]
-fn the_normal_force_has_the_exact_harmonics_of_friction_in_one_direction() {
+fn the_normal_force_has_exact_harmonics_however_few_the_samples() {
+    // Against those of max(n₀ − kn·y, 0) at very many times.
     let set = HarmonicSet::all(5).unwrap();
     let m = set.packed_len();
     let mut random = Random(4);
-    let mut coupled = Coupled::new(&set).unwrap();
-    let mut found = Evaluation::new(&set, 2).unwrap();
-    let mut opened = 0;
-    for _ in 0..50 {
+    let (mut opened, mut worst) = (0, 0.0_f64);
+    let many = 1 << 14;
+    let mut row = vec![0.0; m];
+    for _ in 0..20 {
         let law = law(0.5 + 0.6 * random.next(), true);
         let motion = random.motion(&set, 3, 4.0);
-        let (out, _) = evaluate(&law, &set, 48, &motion);
+        let (out, _) = evaluate(&law, &set, 24, &motion);
         opened += usize::from(out.open_fraction > 0.0);
-        let one = Friction {
-            kt: law.kt,
-            kn: law.kn,
-            mu: law.mu,
-            load: law.load,
-        };
-        coupled.evaluate(&one, &set, &motion[m..], &mut found);
-        assert!(gap(&out.force[2 * m..], &found.force[m..]) < 1e-14 * largest(&found.force));
+        let (mut force, mut tangent) = (vec![0.0; m], vec![0.0; m * m]);
+        for j in 0..many {
+            set.basis(TAU * f64::from(j) / f64::from(many), &mut row);
+            let y: f64 = row.iter().zip(&motion[2 * m..]).map(|(b, y)| b * y).sum();
+            let load = law.load - law.kn * y;
+            for r in 0..m {
+                let weight = if r == 0 { 1.0 } else { 2.0 } / f64::from(many) * row[r];
+                force[r] -= weight * load.max(0.0);
+                for c in 0..m {
+                    tangent[c * m + r] += if load > 0.0 { weight * law.kn * row[c] } else { 0.0 };
+                }
+            }
+        }
+        worst = worst.max(gap(&out.force[2 * m..], &force));
         for k in 0..m {
-            let column = &out.jacobian[(2 * m + k) * 3 * m..][2 * m..3 * m];
-            assert!(gap(column, &found.jacobian[(m + k) * 2 * m..][m..2 * m]) < 1e-14);
-            // By the tangential motions it has no derivative.
-            assert!(largest(&out.jacobian[k * 3 * m..][2 * m..3 * m]) == 0.0);
+            let column = |c: usize| &out.jacobian[c * 3 * m..][2 * m..3 * m];
+            assert!(gap(column(2 * m + k), &tangent[k * m..][..m]) < 1e-3);
+            assert!(largest(column(k)) == 0.0 && largest(column(m + k)) == 0.0);
         }
     }
-    assert!(opened > 20);
+    println!("{opened} with separation, largest gap {worst:.1e}");
+    assert!(opened > 5 && worst < 1e-6);
 }

@@ -1,9 +1,11 @@
 //! Harmonics of a law with states that is marched over samples: periodic states, force, and the exact
 //! derivative of the discrete force.
 //!
-//! The states at the start of the period are those that return after it. They are sought by Newton's
-//! method from the virgin state, loaded from rest straight to the motion of the last sample, so that
-//! the result depends on the motion alone; where slip comes to an end the marched state is kept. With the
+//! The states at the start of the period are those that return after it. A law that can stick through the
+//! period knows which of many it is. Others are sought by Newton's method, from a state that the law knows to
+//! be near or from the virgin one, loaded from rest straight to the motion of the last sample, so that the
+//! result depends on the motion alone; where slip of a law that knows nothing comes to an end the marched
+//! state is kept. With the
 //! basis bⱼ at sample j the derivatives of the states follow from those of the steps,
 //!
 //! > Sⱼ = Aⱼ Sⱼ₋₁ + Bⱼ⁻ bⱼ₋₁ + Bⱼ bⱼ,  ∂F/∂X = Σ w ⊗ bⱼ ⊗ (∂f/∂z Sⱼ + ∂f/∂u bⱼ)
@@ -205,9 +207,10 @@ impl MarchedWay {
 
     /// Finds states that return. Whether the law is as it was loaded.
     ///
-    /// A state that is kept although slip led to it lies on the border of those that need no slip; where
-    /// on it, the slip of the marches before has decided, and Newton's method has only guessed. Then
-    /// the law is marched from the load on, as long as that takes no more than [`MARCHES`].
+    /// Where the law does not know when it can stick: a state that is kept although slip led to it lies on the
+    /// border of those that need no slip; where on it, the slip of the marches before has decided, and
+    /// Newton's method has only guessed. Then the law is marched from the load on, as long as that takes no
+    /// more than [`MARCHES`].
     fn find_period(&mut self, law: &dyn Marched, omega: f64) -> Result<bool> {
         let Signals { samples, u, .. } = &self.signals;
         let rests = law.rest(*samples, u, &mut self.rest);
