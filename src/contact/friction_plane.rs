@@ -134,8 +134,8 @@ impl Marched for FrictionPlane {
         for held in found.holding.iter().flatten() {
             for i in 0..2 {
                 let row = &mut out.dz_du[(2 * held.disc + i) * d..][..d];
-                for k in 0..2 {
-                    row[k] -= self.kt * held.by_centre[i][k];
+                for (entry, by_centre) in row.iter_mut().zip(held.by_centre[i]) {
+                    *entry -= self.kt * by_centre;
                 }
                 if self.has_normal {
                     row[2] += self.mu * self.kn * held.by_radius[i];
