@@ -10,7 +10,7 @@
 //! it). The motion between two samples is taken as linear and followed exactly, see
 //! friction_step.rs, so that the force is of second order in the distance of samples and its
 //! derivative is that of the discrete force. Where it sticks through the period, the slider rests
-//! where friction_rest.rs says.
+//! where friction_rest.rs says. The normal force, which remembers nothing, has exact harmonics.
 
 use super::friction::Friction;
 use super::friction_rest::{Disc, rest};
