@@ -65,7 +65,7 @@ impl HarmonicSet {
         Self::excited(&[], highest, true, false, true)
     }
 
-    /// A copy.
+    /// A copy whose memory is asked for fallibly.
     ///
     /// # Errors
     /// `OutOfMemory`.

@@ -180,18 +180,17 @@ fn the_jacobian_is_the_derivative_of_the_sampled_force() {
 }
 
 #[test]
-fn slip_that_dies_away_leaves_the_force_at_the_limit_with_its_derivative() {
-    // A straight vibration within the limit, loaded across far beyond it. Either one drag ends all slip,
-    // or slip dies away until the force is on the limit at both ends of the motion, where
-    // f₂ = √(μ²N² − kt²A²).
+fn a_slider_dragged_across_rests_with_the_force_at_the_limit_and_its_derivative() {
+    // A straight vibration within the limit, loaded across far beyond it: the slider rests where the force is on
+    // the limit at both ends of the motion, f₂ = √(μ²N² − kt²A²).
     let set = HarmonicSet::all(1).unwrap();
     let law = law(1.0, false);
     let limit = law.mu * law.load;
-    for (stretch, dies_away) in [(0.4, false), (0.8, false), (0.97, true), (0.98, true)] {
+    for stretch in [0.4, 0.8, 0.97, 0.98, 0.9999] {
         let pull = stretch * limit;
         let motion = [0.0, pull / law.kt, 0.0, 2.0, 0.0, 0.0];
         let (out, mut way) = evaluate(&law, &set, 64, &motion);
-        let marches = way.marches();
+        assert!(way.marches() <= 2);
         let most = way
             .march()
             .f
@@ -200,7 +199,7 @@ fn slip_that_dies_away_leaves_the_force_at_the_limit_with_its_derivative() {
             .fold(0.0, f64::max);
         assert!((most - limit).abs() < 1e-14 && out.slip_fraction < 1e-11 && !out.stuck);
         let mut other = Evaluation::new(&set, 2).unwrap();
-        let h = 1e-6;
+        let h = 1e-6 * (1.0 - stretch);
         let mut at = |t: f64| {
             let mut x = motion;
             x[1] += t;
@@ -208,13 +207,9 @@ fn slip_that_dies_away_leaves_the_force_at_the_limit_with_its_derivative() {
             other.force[3]
         };
         let (central, exact) = ((at(h) - at(-h)) / (2.0 * h), out.jacobian[6 + 3]);
-        println!("pull {stretch}: {marches} marches, derivative {exact:.9}, differences {central:.9}");
-        assert!((central - exact).abs() < 1e-6);
-        assert_eq!(marches > 10, dies_away);
-        if dies_away {
-            let rest = (limit * limit - pull * pull).sqrt();
-            assert!((out.force[3] - rest).abs() < 1e-12 && out.force[0].abs() < 1e-12);
-            assert!((exact + law.kt * pull / rest).abs() < 1e-8);
-        }
+        println!("pull {stretch}: derivative {exact:.9}, differences {central:.9}");
+        let rest = (limit * limit - pull * pull).sqrt();
+        assert!((out.force[3] - rest).abs() < 1e-12 && out.force[0].abs() < 1e-12);
+        assert!((exact + law.kt * pull / rest).abs() < 1e-8 && (central / exact - 1.0).abs() < 1e-4);
     }
 }

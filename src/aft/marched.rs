@@ -1,9 +1,11 @@
 //! Harmonics of a law with states that is marched over samples: periodic states, force, and the exact
 //! derivative of the discrete force.
 //!
-//! The states at the start of the period are those that return after it. They are sought by Newton's
-//! method from the virgin state, loaded from rest straight to the motion of the last sample, so that
-//! the result depends on the motion alone; where slip comes to an end the marched state is kept. With the
+//! The states at the start of the period are those that return after it. A law that can stick through the
+//! period knows which of many it is. Others are sought by Newton's method, from a state that the law knows to
+//! be near or from the virgin one, loaded from rest straight to the motion of the last sample, so that the
+//! result depends on the motion alone; where slip of a law that knows nothing comes to an end the marched
+//! state is kept. With the
 //! basis bⱼ at sample j the derivatives of the states follow from those of the steps,
 //!
 //! > Sⱼ = Aⱼ Sⱼ₋₁ + Bⱼ⁻ bⱼ₋₁ + Bⱼ bⱼ,  ∂F/∂X = Σ w ⊗ bⱼ ⊗ (∂f/∂z Sⱼ + ∂f/∂u bⱼ)
@@ -12,9 +14,10 @@
 //! and derivative are those of the sampled law: as good as the samples, but exact as a pair.
 
 use super::Evaluation;
+use super::normal::Normal;
 use super::periodic::{ReturnMap, largest};
 use super::sensitivity::{Sensitivity, Signals};
-use crate::contact::marched::{March, Marched};
+use crate::contact::marched::{March, Marched, Rest, Resting};
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::harmonics::HarmonicSet;
 
@@ -23,6 +26,9 @@ const NEWTON_MARCHES: usize = 100;
 
 /// Marches in all; the others only march on.
 const MARCHES: usize = 300;
+
+/// Marches from a start at rest, which returns but for rounding.
+const REST_MARCHES: usize = 4;
 
 /// Tables and memory for marching one law over motions of one harmonic set.
 pub struct MarchedWay {
@@ -36,8 +42,12 @@ pub struct MarchedWay {
     load_u: Vec<f64>,
     load_v: Vec<f64>,
     march: March,
+    rest: Rest,
+    /// Whether the last start was at rest.
+    rests: bool,
     map: ReturnMap,
     sensitivity: Sensitivity,
+    normal: Option<Normal>,
     /// States that each march began with.
     starts: Vec<f64>,
     /// Whether the start after each march came from Newton's method.
@@ -72,8 +82,11 @@ impl MarchedWay {
             load_u: memory(2 * d)?,
             load_v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
             march: March::new(d, s, samples)?,
+            rest: Rest::new(d, s, samples)?,
+            rests: false,
             map: ReturnMap::new(s)?,
-            sensitivity: Sensitivity::new(d, s, set.packed_len())?,
+            sensitivity: Sensitivity::new(d, s, d - usize::from(law.normal().is_some()), set.packed_len())?,
+            normal: law.normal().map(|_| Normal::new(set)).transpose()?,
             starts: memory(s.saturating_mul(MARCHES))?,
             by_newton: try_vec(MARCHES, false, "a march over samples")?,
             step: memory(s)?,
@@ -87,6 +100,7 @@ impl MarchedWay {
         self.signals.directions == law.directions()
             && self.states == law.states()
             && self.load_v.is_empty() != law.uses_velocity()
+            && self.normal.is_some() == law.normal().is_some()
             && self.signals.samples == samples
     }
 
@@ -119,6 +133,9 @@ impl MarchedWay {
         self.sensitivity
             .pass(&self.march, &self.signals, omega, Some(&mut *out));
         self.finish(motion, out);
+        if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
+            normal.evaluate(&law, motion, out);
+        }
         let n = self.signals.samples as f64;
         out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
         out.open_fraction = self.march.open.iter().sum::<f64>() / n;
@@ -190,15 +207,33 @@ impl MarchedWay {
 
     /// Finds states that return. Whether the law is as it was loaded.
     ///
-    /// A state that is kept although slip led to it lies on the border of those that need no slip; where
-    /// on it, the slip of the marches before has decided, and Newton's method has only guessed. Then
-    /// the law is marched from the load on, as long as that takes no more than [`MARCHES`].
+    /// Where the law does not know when it can stick: a state that is kept although slip led to it lies on the
+    /// border of those that need no slip; where on it, the slip of the marches before has decided, and
+    /// Newton's method has only guessed. Then the law is marched from the load on, as long as that takes no
+    /// more than [`MARCHES`].
     fn find_period(&mut self, law: &dyn Marched, omega: f64) -> Result<bool> {
+        let Signals { samples, u, .. } = &self.signals;
+        let rests = law.rest(*samples, u, &mut self.rest);
+        self.rests = rests == Resting::Here;
+        if self.rests || rests == Resting::Nearly {
+            self.starts[..self.states].copy_from_slice(&self.rest.z);
+            self.sensitivity.rest(&self.rest, &self.signals, omega);
+            let defect = if self.rests {
+                self.search(law, omega, 0, REST_MARCHES)?
+            } else {
+                self.search(law, omega, NEWTON_MARCHES, NEWTON_MARCHES)?
+            };
+            if defect == 0.0 {
+                return Ok(self.rests && self.rest.virgin);
+            }
+            self.rests = false;
+        }
         let virgin = self.load(law, omega)?;
-        let mut defect = self.search(law, omega, NEWTON_MARCHES)?;
-        let guessed = self.by_newton[..self.marches - 1].contains(&true);
-        if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0)? > 0.0 {
-            defect = self.search(law, omega, NEWTON_MARCHES)?;
+        let mut defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
+        // A law that rests nowhere slips and forgets: whatever finds its one periodic state.
+        let guessed = rests == Resting::Unknown && self.by_newton[..self.marches - 1].contains(&true);
+        if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0, MARCHES)? > 0.0 {
+            defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
         }
         if defect > 0.0 {
             return Err(Error::new(
@@ -214,11 +249,11 @@ impl MarchedWay {
 
     /// Marches from the first start until the states return to within rounding, with Newton's method
     /// up to the march `newton_until`. What is left of their difference at the last march, 0 if they return.
-    fn search(&mut self, law: &dyn Marched, omega: f64, newton_until: usize) -> Result<f64> {
+    fn search(&mut self, law: &dyn Marched, omega: f64, newton_until: usize, most: usize) -> Result<f64> {
         let (s, n) = (self.states, self.signals.samples);
         let tolerance = f64::EPSILON * (64.0 + 4.0 * (n as f64).sqrt());
         let mut before = f64::INFINITY;
-        for k in 0..MARCHES {
+        for k in 0..most {
             self.march_from(law, omega, k)?;
             let end = &self.march.z[(n - 1) * s..n * s];
             for ((step, end), start) in self.step.iter_mut().zip(end).zip(&self.starts[k * s..]) {
@@ -234,7 +269,7 @@ impl MarchedWay {
                 self.map.form(&self.march, n);
                 return Ok(0.0);
             }
-            if k + 1 == MARCHES {
+            if k + 1 == most {
                 return Ok(defect);
             }
             // Two marches show whether slip goes on at all; a defect that grew asks for a plain march.
@@ -264,6 +299,9 @@ impl MarchedWay {
     /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part
     /// remembers the marches that led to it; their derivatives are then followed from the load on.
     fn differentiate_start(&mut self, law: &dyn Marched, omega: f64) -> Result<()> {
+        if self.rests {
+            return Ok(());
+        }
         let last = self.marches - 1;
         if self.map.has_kept && last > 0 {
             for k in 0..last {

@@ -16,6 +16,7 @@ mod block;
 pub mod coupled;
 pub mod exact;
 pub mod marched;
+mod normal;
 mod periodic;
 pub mod pointwise;
 pub mod sampled;

@@ -3,7 +3,7 @@
 
 use super::Evaluation;
 use super::periodic::ReturnMap;
-use crate::contact::marched::March;
+use crate::contact::marched::{March, Rest};
 use crate::error::{Result, try_vec};
 use crate::harmonics::HarmonicSet;
 use std::f64::consts::TAU;
@@ -115,6 +115,8 @@ fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
 /// Derivatives of states and forces by (X, ω), in rows of d·m + 1.
 pub(super) struct Sensitivity {
     states: usize,
+    /// Directions whose forces are followed: the first ones.
+    forces: usize,
     width: usize,
     /// Of the states at the start of the period.
     start: Vec<f64>,
@@ -129,11 +131,12 @@ pub(super) struct Sensitivity {
 }
 
 impl Sensitivity {
-    pub fn new(directions: usize, states: usize, length: usize) -> Result<Self> {
+    pub fn new(directions: usize, states: usize, forces: usize, length: usize) -> Result<Self> {
         let width = directions.saturating_mul(length).saturating_add(1);
         let rows = |n: usize| try_vec(n.saturating_mul(width), 0.0, "a march over samples");
         Ok(Self {
             states,
+            forces,
             width,
             start: rows(states)?,
             before: rows(states)?,
@@ -152,6 +155,18 @@ impl Sensitivity {
             let block = a * d..(a + 1) * d;
             signals.add(last, omega, &march.dz_du[block.clone()], &march.dz_dv[block], row);
             row[self.width - 1] += march.dz_domega[a];
+        }
+    }
+
+    /// The start at rest.
+    pub fn rest(&mut self, rest: &Rest, signals: &Signals, omega: f64) {
+        self.start.fill(0.0);
+        let d = signals.directions;
+        for j in 0..signals.samples {
+            for (a, row) in self.start.chunks_exact_mut(self.width).enumerate() {
+                let by_u = &rest.dz_du[(j * self.states + a) * d..][..d];
+                signals.add(j, omega, by_u, &[], row);
+            }
         }
     }
 
@@ -208,7 +223,7 @@ impl Sensitivity {
     fn force_at(&mut self, march: &March, signals: &Signals, omega: f64, j: usize) {
         let (d, s) = (signals.directions, self.states);
         let slot = j % BATCH;
-        for i in 0..d {
+        for i in 0..self.forces {
             let row = &mut self.force[(slot * d + i) * self.width..(slot * d + i + 1) * self.width];
             row.fill(0.0);
             let by_state = &march.df_dz[(j * d + i) * s..(j * d + i + 1) * s];
@@ -236,7 +251,7 @@ impl Sensitivity {
             }
         };
         let used = |slot: usize, value: f64| if slot < batch.len() { value } else { 0.0 };
-        for i in 0..d {
+        for i in 0..self.forces {
             let part = i * m..(i + 1) * m;
             let factor = |slot: usize| used(slot, march.f[(first + slot.min(batch.len() - 1)) * d + i]);
             add(std::array::from_fn(factor), &mut out.force[part.clone()]);

@@ -9,11 +9,14 @@
 //! Slip goes along the force (the circle |f| = μN is the limit, and the slip velocity γ e is normal to
 //! it). The motion between two samples is taken as linear and followed exactly, see
 //! friction_step.rs, so that the force is of second order in the distance of samples and its
-//! derivative is that of the discrete force.
+//! derivative is that of the discrete force. Where it sticks through the period, the slider rests
+//! where friction_rest.rs says. The normal force, which remembers nothing, has exact harmonics.
 
-use super::friction_step::step;
+use super::friction::Friction;
+use super::friction_rest::{Disc, rest};
+use super::friction_step::{NO_LOAD, step};
 use super::law::{Form, Law, Range};
-use super::marched::{March, Marched};
+use super::marched::{March, Marched, Rest, Resting};
 use super::pointwise::automatic_samples;
 use super::state::State;
 use crate::error::Result;
@@ -88,6 +91,63 @@ impl Marched for FrictionPlane {
 
     fn sticks(&self) -> bool {
         self.kt > 0.0 && self.mu > 0.0
+    }
+
+    fn normal(&self) -> Option<Friction> {
+        // Without tangential stiffness: the normal force alone.
+        self.has_normal.then_some(Friction {
+            kt: 0.0,
+            kn: self.kn,
+            mu: self.mu,
+            load: self.load,
+        })
+    }
+
+    fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> Resting {
+        let d = self.directions();
+        let motion = |j: usize| &u[j * d..(j + 1) * d];
+        if !self.sticks() {
+            return Resting::Nowhere;
+        }
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for motion in u[..samples * d].chunks_exact(d) {
+            let load = self.pressure(motion);
+            (least, most) = (least.min(load), most.max(load));
+        }
+        if least <= NO_LOAD * most.min(f64::MAX) {
+            return Resting::Nowhere;
+        }
+        // ρ = μN/kt
+        let disc = |j: usize| Disc {
+            centre: [motion(j)[0], motion(j)[1]],
+            radius: self.mu * self.pressure(motion(j)) / self.kt,
+        };
+        let Some(found) = rest(samples, disc) else {
+            return Resting::Nowhere;
+        };
+        let last = (samples - 1) * d;
+        out.dz_du[..samples * 2 * d].fill(0.0);
+        for i in 0..2 {
+            out.z[i] = self.kt * (u[last + i] - found.at[i]);
+            out.dz_du[2 * last + i * d + i] = self.kt;
+        }
+        for held in found.holding.iter().flatten() {
+            for i in 0..2 {
+                let row = &mut out.dz_du[(2 * held.disc + i) * d..][..d];
+                for (entry, by_centre) in row.iter_mut().zip(held.by_centre[i]) {
+                    *entry -= self.kt * by_centre;
+                }
+                if self.has_normal {
+                    row[2] += self.mu * self.kn * held.by_radius[i];
+                }
+            }
+        }
+        out.virgin = found.holding[0].is_none();
+        if found.is_common {
+            Resting::Here
+        } else {
+            Resting::Nearly
+        }
     }
 
     fn march(&self, _omega: f64, samples: usize, u: &[f64], _v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {

@@ -15,7 +15,7 @@
 //! the force starts from zero, and its rate times the moving time s_c is what it adds.
 
 /// Loads whose ratio is below count as no load: the force is then as small against the other end's.
-const NO_LOAD: f64 = 1e-14;
+pub(super) const NO_LOAD: f64 = 1e-14;
 
 /// A force this close to the limit, relatively, is at the limit.
 const AT_LIMIT: f64 = 1e-14;

@@ -5,6 +5,7 @@
 //! of every step. What the states are at the start of the period, how they make it periodic and
 //! what that means for harmonics is the matter of [`crate::aft::marched`].
 
+use super::friction::Friction;
 use super::law::Law;
 use super::state::State;
 use crate::error::{Result, try_vec};
@@ -23,6 +24,21 @@ pub trait Marched: Law {
         false
     }
 
+    /// Whether the law can stick through the period of the motion `u`, samples × d row-major. Where
+    /// it can, any of many states may be periodic: the one that counts is then in `out`, and does not jump as the
+    /// motion changes. A start that is nearly periodic is in `out` likewise; all of its first `samples`
+    /// blocks are written.
+    fn rest(&self, samples: usize, u: &[f64], out: &mut Rest) -> Resting {
+        let _ = (samples, u, out);
+        Resting::Unknown
+    }
+
+    /// Whether the force along the last motion, a normal one, depends on that motion alone as that of this
+    /// friction in one direction does: then its harmonics are exact, from located closings and openings.
+    fn normal(&self) -> Option<Friction> {
+        None
+    }
+
     /// Samples per period for motions up to the reduced harmonic `highest`, where the host asked for
     /// `asked`, or with 0 for what suits the law.
     fn samples(&self, highest: usize, asked: usize) -> usize;
@@ -37,6 +53,45 @@ pub trait Marched: Law {
     /// # Errors
     /// Those of the law.
     fn march(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()>;
+}
+
+/// Whether a law sticks through the period.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Resting {
+    /// The law does not know; what a march from rest leads to counts.
+    Unknown,
+    /// It does.
+    Here,
+    /// It slips, which makes it forget, so that it has one periodic state; not far from a known one.
+    Nearly,
+    /// Likewise, and nothing is known of the state.
+    Nowhere,
+}
+
+/// The state of a law that sticks through the period, before sample 0.
+#[derive(Clone, Debug)]
+pub struct Rest {
+    /// States, s.
+    pub z: Vec<f64>,
+    /// Their derivatives by the motion at each sample, s × d per sample.
+    pub dz_du: Vec<f64>,
+    /// Whether nothing has ever slipped.
+    pub virgin: bool,
+}
+
+impl Rest {
+    /// Memory for `samples` samples of a law with d directions and s states.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(directions: usize, states: usize, samples: usize) -> Result<Self> {
+        let block = directions.saturating_mul(states);
+        Ok(Self {
+            z: try_vec(states, 0.0, "a march over samples")?,
+            dz_du: try_vec(block.saturating_mul(samples), 0.0, "a march over samples")?,
+            virgin: false,
+        })
+    }
 }
 
 /// What a march gives at each sample j: force, states, and the derivatives of the step that led to

@@ -9,6 +9,7 @@ mod constructors;
 pub mod cubic;
 pub mod friction;
 pub mod friction_plane;
+mod friction_rest;
 mod friction_step;
 pub mod iwan;
 pub mod jenkins;

@@ -2,6 +2,7 @@
 //! by a march of the tests' own, which shares nothing with the library.
 
 use super::random::Random;
+use super::rest::{Disc, nearest_of_many};
 use hbvib::contact::polynomial::Polynomial;
 use hbvib::contact::table::Table;
 use hbvib::contact::{Contact, ContactKind};
@@ -235,9 +236,12 @@ impl Law {
         }
     }
 
-    /// Forces of friction in a plane that neither slips nor opens: the motion tells them but for a constant,
-    /// a memory, whose value `memory` is taken if friction can hold it; if not, nothing is done.
-    pub fn stick(&self, u: &[f64], memory: [f64; 2], f: &mut [f64]) -> bool {
+    /// Samples of the library for friction in a plane with the harmonics used here.
+    const SAMPLES: usize = 512;
+
+    /// Where the slider of friction in a plane rests if it can stick at the samples of the library: at the point
+    /// nearest to where it was before it was loaded.
+    fn rest(&self, u: &[f64]) -> Option<Slider> {
         let Self::Plane {
             kt,
             kn,
@@ -246,37 +250,22 @@ impl Law {
             normal,
         } = *self
         else {
-            return false;
+            return None;
         };
+        let pressure = |u: &[f64]| if normal { load - kn * u[2] } else { load };
         let d = self.directions();
-        let times = u.len() / d;
-        let mean = |i: usize| u.iter().skip(i).step_by(d).sum::<f64>() / times as f64;
-        let mean = [mean(0), mean(1)];
-        let largest = u
+        let discs: Vec<Disc> = u
             .chunks_exact(d)
-            .map(|u| (u[0] - mean[0]).hypot(u[1] - mean[1]))
-            .fold(0.0, f64::max);
-        let rounding = 1e-6 * (kt * largest + memory[0].hypot(memory[1]));
-        for (u, f) in u.chunks_exact(d).zip(f.chunks_exact_mut(d)) {
-            let pressure = if normal { load - kn * u[2] } else { load };
-            for i in 0..2 {
-                f[i] = kt * (u[i] - mean[i]) + memory[i];
-            }
-            if pressure < 0.0 || f[0].hypot(f[1]) > mu * pressure + rounding {
-                return false;
-            }
-            if normal {
-                f[2] = -pressure;
-            }
-        }
-        true
+            .step_by(u.len() / d / Self::SAMPLES)
+            .map(|u| ([u[0], u[1]], mu * pressure(u) / kt))
+            .collect();
+        let closed = discs.iter().all(|(_, radius)| *radius > 0.0);
+        let at = closed.then(|| nearest_of_many(&discs, 1e-12))??;
+        Some(Slider { at })
     }
 
     /// Most periods that a march may take to become periodic.
     const PERIODS: usize = 200;
-
-    /// Samples of the library for friction in a plane with the harmonics used here.
-    const SAMPLES: usize = 512;
 
     /// Forces at equidistant times from motions and velocities, time after time, of one period that repeats,
     /// reached from a slider at rest at zero.
@@ -285,13 +274,13 @@ impl Law {
         let times = u.len() / d;
         let mut slider = Slider::default();
         let end = (times - 1) * d..times * d;
-        // What friction in a plane remembers without slip depends on its past: it is loaded straight from
-        // rest to the motion at the last sample of the library.
-        if let Self::Plane { .. } = self {
-            for j in times - times / Self::SAMPLES..times {
-                let at = j * d..(j + 1) * d;
-                self.force(&mut slider, [&u[at.clone()]; 2], &v[at], &mut [0.0; 3]);
+        if let Some(slider) = self.rest(u) {
+            for (u, f) in u.chunks_exact(d).zip(f.chunks_exact_mut(d)) {
+                let mut force = [0.0; 3];
+                self.force(&mut slider.clone(), [u; 2], &[], &mut force);
+                f.copy_from_slice(&force[..d]);
             }
+            return;
         }
         let mut last = [f64::NAN; 2];
         for _ in 0..Self::PERIODS {

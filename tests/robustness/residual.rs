@@ -1,9 +1,6 @@
-//! The residual of harmonic balance by sampling in time, nothing of it by the library but the constant that
-//! friction in a plane remembers where it sticks; that constant is checked against what friction can hold.
+//! The residual of harmonic balance by sampling in time, nothing of it by the library.
 
-use super::law::Law;
-use super::problem::{Case, Placed};
-use hbvib::analysis::contact_evaluate;
+use super::problem::Case;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -91,10 +88,7 @@ fn sampled(case: &Case, x: &[Complex64], samples: usize) -> (Vec<Complex64>, f64
                 }
             }
         }
-        let stuck = memory(placed, x, n, case.omega);
-        if !stuck.is_some_and(|memory| placed.law.stick(&u, memory, &mut f)) {
-            placed.law.march(&u, &v, &mut f);
-        }
+        placed.law.march(&u, &v, &mut f);
         for (k, [a, b]) in placed.sides.iter().enumerate() {
             for h in 0..count {
                 let mut sum = Complex64::ZERO;
@@ -118,15 +112,4 @@ fn sampled(case: &Case, x: &[Complex64], samples: usize) -> (Vec<Complex64>, f64
 fn relative(x: &[Complex64], n: usize, [a, b]: [Option<usize>; 2]) -> Vec<Complex64> {
     let part = |side: Option<usize>, x: &[Complex64]| side.map_or(Complex64::ZERO, |dof| x[dof]);
     x.chunks_exact(n).map(|x| part(a, x) - part(b, x)).collect()
-}
-
-/// The mean force along the surface that the library has for friction in a plane.
-fn memory(placed: &Placed, x: &[Complex64], n: usize, omega: f64) -> Option<[f64; 2]> {
-    let Law::Plane { .. } = placed.law else { return None };
-    let motion: Vec<Complex64> = placed.sides.iter().flat_map(|sides| relative(x, n, *sides)).collect();
-    let count = x.len() / n;
-    let mut force = vec![Complex64::ZERO; motion.len()];
-    let contact = placed.law.contact(&placed.sides);
-    contact_evaluate(&contact, count - 1, 0, omega, &motion, &mut force, None).unwrap();
-    Some([force[0].re, force[count].re])
 }
