@@ -93,6 +93,15 @@ fn holds_with_more_samples(case: &Case, x: &[Complex64]) -> bool {
     })
 }
 
+/// Which laws a case has.
+fn laws_of(case: &Case) -> [bool; LAWS.len()] {
+    let mut has = [false; LAWS.len()];
+    for placed in &case.contacts {
+        has[placed.law.number()] = true;
+    }
+    has
+}
+
 #[test]
 fn cold_starts_converge_to_solutions() {
     let began = Instant::now();
@@ -110,17 +119,10 @@ fn cold_starts_converge_to_solutions() {
         let (found, way) = cold_start(&case, &harmonics(H));
         let took = clock.elapsed().as_secs_f64();
         solving += took;
-        plane += if case.contacts.iter().any(|p| p.law.number() == PLANE) {
-            took
-        } else {
-            0.0
-        };
+        let has = laws_of(&case);
+        plane += if has[PLANE] { took } else { 0.0 };
         let is_bounded = case.known != Known::AboveCapacity;
         bounded += usize::from(is_bounded);
-        let mut has = [false; LAWS.len()];
-        for placed in &case.contacts {
-            has[placed.law.number()] = true;
-        }
         for (law, count) in per_law.iter_mut().enumerate() {
             if has[law] && is_bounded {
                 count[0] += 1;
