@@ -71,6 +71,15 @@ enum Outside {
     Cancelled,
 }
 
+/// Stores a point of the curve; `false` where Newton's last correction, which is not evaluated, led to where there
+/// is no solution.
+fn kept(keeper: &mut dyn Keeper, point: &Point) -> Result<bool> {
+    match keeper.keep(point) {
+        Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => Ok(false),
+        stored => stored.map(|()| true),
+    }
+}
+
 /// Whether two solutions at one parameter value are one.
 fn same(a: &[f64], b: &[f64]) -> bool {
     let difference = a.iter().zip(b).fold(0.0_f64, |d, (a, b)| d.hypot(a - b));
@@ -111,12 +120,8 @@ impl Task<'_> {
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
                 Advance::Stopped(status) => return Ok(status),
             };
-            match keeper.keep(&point) {
-                // Newton's last correction, which is not evaluated, led to where there is no solution.
-                Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => {
-                    return Ok(Status::StoppedStepTooSmall);
-                }
-                kept => kept?,
+            if !kept(keeper, &point)? {
+                return Ok(Status::StoppedStepTooSmall);
             }
             let stop = self.report(keeper, hooks, &point);
             if let Some(before) = continuation.previous() {
@@ -130,7 +135,9 @@ impl Task<'_> {
                 Some(Status::StoppedLeftRange) => match self.outside(keeper, point, &begin, hooks)? {
                     Outside::Back(back) => {
                         hooks.log(LogLevel::Info, "the branch left at its start and came back");
-                        keeper.keep(&back)?;
+                        if !kept(keeper, &back)? {
+                            return Ok(Status::StoppedStepTooSmall);
+                        }
                         if self.report(keeper, hooks, &back) {
                             return Ok(Status::StoppedByCaller);
                         }
@@ -156,14 +163,16 @@ impl Task<'_> {
         };
         let mut continuation = Continuation::new(settings, exit)?;
         for _ in keeper.branch().points()..self.max_points {
-            match continuation.advance(keeper.problem(), hooks.cancelled)? {
-                Advance::Accepted { last: false, .. } => {}
+            match continuation.advance(keeper.problem(), hooks.cancelled) {
+                Ok(Advance::Accepted { last: false, .. }) => {}
                 // A closed curve would be walked for ever.
-                Advance::LeftAtStart { point } if !same(point.unknowns(), begin.unknowns()) => {
+                Ok(Advance::LeftAtStart { point }) if !same(point.unknowns(), begin.unknowns()) => {
                     return Ok(Outside::Back(point));
                 }
-                Advance::Stopped(Status::StoppedByCaller) => return Ok(Outside::Cancelled),
-                _ => break,
+                Ok(Advance::Stopped(Status::StoppedByCaller)) => return Ok(Outside::Cancelled),
+                Err(e) if e.status == Status::Callback => return Err(e),
+                // What fails outside the range costs none of the points within.
+                Ok(_) | Err(_) => break,
             }
         }
         Ok(Outside::Gone)
