@@ -64,6 +64,7 @@ impl Request {
         let (rows, across) = (count("--rows", 1, 20)?, count("--across", 2, 10)?);
         let solver = SolverOptions {
             harmonics: count("--harmonics", 1, 5)?,
+            tolerance: 0.0,
             ..SolverOptions::default()
         };
         solver.check().map_err(|e| e.to_string())?;

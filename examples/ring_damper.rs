@@ -37,7 +37,7 @@ mod response;
 mod single;
 
 /// The flags that a response and a mode have in common.
-const COMMON: [Flag; 8] = [
+const COMMON: [Flag; 10] = [
     Flag::new("--ring-mass", "kg", "mass of the ring per sector (0.03)"),
     Flag::new(
         "--rpm",
@@ -51,6 +51,16 @@ const COMMON: [Flag; 8] = [
         "damping C = beta K, without the contact (1.5e-6; 0 with --mode)",
     ),
     Flag::new("--harmonics", "H", "highest harmonic number (9)"),
+    Flag::new(
+        "--tolerance",
+        "e",
+        "choose the harmonics of each point so that the relative error stays below e",
+    ),
+    Flag::new(
+        "--max-harmonics",
+        "H",
+        "highest harmonic number that --tolerance may choose (511)",
+    ),
     Flag::new(
         "--samples",
         "N",

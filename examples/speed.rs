@@ -45,6 +45,7 @@ fn sweep(force: f64, harmonics: usize, samples: usize) -> Result<(Branch, f64), 
         harmonics,
         samples,
         response_dof: Some(model::B2),
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = ForcedOptions {

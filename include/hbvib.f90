@@ -124,7 +124,7 @@ module hbvib
    !> Options that every analysis shares.
    type, bind(c) :: hbvib_solver_options
       integer(c_int32_t) :: struct_size = 104, num_threads = 0
-      real(c_double) :: tolerance = 0
+      real(c_double) :: tolerance = 1e-3_c_double
       integer(c_int64_t) :: harmonics = 9, max_harmonics = 511, samples = 0
       real(c_double) :: step = 0, step_min = 0, step_max = 0, tol_residual = 1e-10_c_double
       integer(c_int64_t) :: max_newton = 25, max_points = 20000, response_dof = -1

@@ -56,7 +56,8 @@ typedef enum {
   HBVIB_STOPPED_STEP_TOO_SMALL = 2,
   /// max_points was reached.
   HBVIB_STOPPED_MAX_POINTS = 3,
-  /// More harmonics were needed than max_harmonics.
+  /// Points need more harmonics for the tolerance than max_harmonics or than can be afforded, or their error is
+  /// unknown: HBVIB_ERROR_ESTIMATE tells which. The whole range was covered; all points are there.
   HBVIB_STOPPED_MAX_HARMONICS = 4,
   /// Round-off stopped the residual above tol_residual.
   HBVIB_STOPPED_STALLED = 5,
@@ -512,13 +513,17 @@ typedef struct {
   uint32_t struct_size;
   /// Threads that may be used; 0 = default = 1, which starts none. Results do not depend on it.
   int32_t num_threads;
-  /// Relative error wanted in the response; 0 (default): exactly `harmonics`.
+  /// Relative error wanted, from which the harmonics of each point are chosen (default 1e-3): of the complex
+  /// fundamental of the response degree of freedom; in a nonlinear mode of the frequency and of the damping
+  /// ratio, the latter over the largest met so far. 0: exactly `harmonics`, whatever the error.
   double tolerance;
-  /// Highest harmonic number H.
+  /// Highest harmonic number H. Where the tolerance decides: the H to begin with.
   int64_t harmonics;
-  /// Cap on H where the tolerance decides.
+  /// Cap on H where the tolerance decides, at least the highest harmonic that is forced. Points that would
+  /// need more are kept, and the status is HBVIB_STOPPED_MAX_HARMONICS.
   int64_t max_harmonics;
-  /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
+  /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1; where the
+  /// tolerance decides, at least 8H are taken.
   /// HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact either way; HBVIB_FRICTION_3D and
   /// HBVIB_REGULARISED have samples always, 0: a number by H.
   int64_t samples;
@@ -541,7 +546,7 @@ typedef struct {
   /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
   int32_t keep_even_harmonics;
   /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution with
-  /// more harmonics at each of them; 0 (default): do not.
+  /// more harmonics at each of them; 0 (default): do so only where the tolerance decides.
   int32_t estimate_error;
 } hbvib_solver_options;
 
@@ -675,11 +680,12 @@ typedef struct {
   int64_t never_slipping;
   /// Contacts without force (no stiffness, or no slip limit).
   int64_t inert;
-  /// Highest harmonic number H asked for.
+  /// Highest harmonic number H of which the points tell: that asked for or, where the tolerance decided, the
+  /// highest that one of them carries.
   int64_t harmonics_asked;
-  /// Number of harmonics carried.
+  /// Number of harmonics carried, where most are.
   int64_t harmonics_carried;
-  /// Real unknowns of the nonlinear problem.
+  /// Real unknowns of the nonlinear problem, where there are most.
   int64_t unknowns;
   /// The degree of freedom whose amplitude was followed.
   int64_t response_dof;
@@ -1401,12 +1407,14 @@ hbvib_status hbvib_model_add_patch(hbvib_model *model,
                                    const double *gap,
                                    int64_t *first_id);
 
-/// Fills solver options with their defaults: harmonics = 9, exact events, automatic steps.
+/// Fills solver options with their defaults: tolerance = 1e-3, from which the harmonics follow, exact events,
+/// automatic steps. For exactly so many harmonics set tolerance = 0 and harmonics.
 ///
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-hbvib_status hbvib_solver_options_init(hbvib_solver_options *o, size_t size_of_o);
+hbvib_status hbvib_solver_options_init(hbvib_solver_options *o,
+                                       size_t size_of_o);
 
 /// Fills the options of a forced response with zeros: the frequencies must be set.
 ///
@@ -1529,7 +1537,7 @@ hbvib_status hbvib_branch_field(const hbvib_branch *branch,
                                 hbvib_view *out);
 
 /// Recovers harmonics 0 .. H of a range of degrees of freedom at a stored point, in the caller's
-/// unit of length. Harmonics that are not carried are zero.
+/// unit of length. H is harmonics_asked of hbvib_branch_reduction; harmonics that are not carried are zero.
 ///
 /// point      number of a point of the curve, or of a peak, fold or solution wanted.
 /// first_dof  first degree of freedom of the range, from 0.

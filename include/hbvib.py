@@ -988,6 +988,8 @@ class Model(_Owner):
         return Modes(omega, shapes)
 
     def _solve(self, name: str, solver: dict, options: Any, hooks: tuple) -> Branch:
+        if "harmonics" in solver:
+            solver.setdefault("tolerance", 0.0)  # so many and no other, unless a tolerance is named as well
         settings = _options(name[6:], "hbvib_solver_options", solver)
         handle, kept = ctypes.c_void_p(), self._kept
         with _Guard() as guard:
@@ -1014,8 +1016,8 @@ class Model(_Owner):
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points.
         log       log(LogLevel, text), lines up to log_level.
         cancel    a CancelFlag.
-        Others are the solver options of hbvib.h: harmonics, samples, response_dof, step, step_min, step_max,
-        tol_residual, max_newton, max_points, keep_even_harmonics, estimate_error, num_threads, tolerance, max_harmonics."""
+        Others are the solver options of hbvib.h: tolerance, or harmonics for exactly so many, samples, response_dof, step, step_min, step_max,
+        tol_residual, max_newton, max_points, keep_even_harmonics, estimate_error, num_threads, max_harmonics."""
         start, stop = (omega, omega) if np.ndim(omega) == 0 else omega
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))

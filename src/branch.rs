@@ -1,18 +1,19 @@
 //! The result of an analysis: points along a branch, its peaks and folds, solutions asked for, and
 //! what was removed from the problem.
 
-use crate::condense::{Condensed, Reduction};
+use crate::condense::Reduction;
 use crate::error::{Error, Result, Status, fail, try_extend, try_push, try_vec};
 use num_complex::Complex64;
-use std::sync::Arc;
 
 mod energy;
 mod errors;
+mod level;
 mod loops;
 pub mod mode;
 mod recovery;
 
 pub use energy::Energy;
+pub use level::Level;
 pub use loops::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};
 pub(crate) use recovery::Recovery;
 
@@ -33,10 +34,12 @@ pub struct Special {
 /// folds and the solutions asked for have the numbers after that.
 #[derive(Debug)]
 pub struct Branch {
-    condensed: Arc<Condensed>,
+    levels: Vec<Level>,
+    /// Where each stored point lies.
+    places: Vec<Place>,
     reduction: Reduction,
-    samples: usize,
     harmonics: usize,
+    estimates: usize,
     response_dof: usize,
     status: Status,
     reason: Option<Error>,
@@ -58,9 +61,19 @@ pub struct Branch {
     mode: Option<mode::ModeData>,
 }
 
+/// Where a stored point lies: its level, and the begin of its motion and of its response.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    level: usize,
+    motion: usize,
+    response: usize,
+}
+
 /// Numbers that belong to one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
+    /// The harmonics that it was solved with.
+    pub level: &'a Level,
     /// Angular frequency.
     pub omega: f64,
     /// Packed relative motions, in the solver's units.
@@ -83,20 +96,20 @@ pub struct Record<'a> {
 }
 
 impl Branch {
-    /// An empty branch of a condensed model.
-    #[must_use]
-    pub fn new(
-        condensed: Arc<Condensed>,
-        reduction: Reduction,
-        samples: usize,
-        harmonics: usize,
-        response_dof: usize,
-    ) -> Self {
-        Self {
-            condensed,
+    /// An empty branch of a condensed model, whose points tell of the harmonics up to `harmonics`, or up to the
+    /// highest that one of them carries.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(level: &Level, reduction: Reduction, harmonics: usize, response_dof: usize) -> Result<Self> {
+        let mut levels = Vec::new();
+        try_push(&mut levels, level.clone(), "the branch")?;
+        Ok(Self {
+            levels,
+            places: Vec::new(),
             reduction,
-            samples,
             harmonics,
+            estimates: 0,
             response_dof,
             status: Status::Ok,
             reason: None,
@@ -116,7 +129,7 @@ impl Branch {
             folds: Vec::new(),
             at: Vec::new(),
             mode: None,
-        }
+        })
     }
 
     pub(crate) fn set_mode(&mut self, data: mode::ModeData) {
@@ -129,7 +142,14 @@ impl Branch {
     /// `OutOfMemory`; the branch then ends before this point.
     pub fn push(&mut self, record: &Record<'_>) -> Result<usize> {
         const WHAT: &str = "the points of the branch";
-        let contacts = self.condensed.contacts();
+        let contacts = self.contacts();
+        let level = self.level_of(record.level)?;
+        let place = Place {
+            level,
+            motion: self.motion.len(),
+            response: self.response.len(),
+        };
+        self.places.try_reserve(1).map_err(|_| Error::out_of_memory(WHAT))?;
         self.slip_fraction
             .try_reserve(contacts)
             .map_err(|_| Error::out_of_memory(WHAT))?;
@@ -150,19 +170,22 @@ impl Branch {
         try_extend(&mut self.motion, record.motion, WHAT)?;
         // The frequency goes last: it counts the points.
         try_push(&mut self.omega, record.omega, WHAT)?;
-        self.amplitude.push(record.amplitude.norm() * self.condensed.length());
-        let length = self.condensed.length();
+        self.places.push(place);
+        let condensed = &*record.level.condensed;
+        let length = condensed.length();
+        self.amplitude.push(record.amplitude.norm() * length);
         self.response.extend(record.response.iter().map(|x| x * length));
         self.residual.push(record.residual);
         self.sampling_error.push(record.sampling_error);
         self.error_estimate.push(record.errors.0);
         self.damping_error_estimate.push(record.errors.1);
         self.iterations.push(record.iterations as f64);
-        let highest = self.condensed.set().numbers().last().copied().unwrap_or(0);
+        let highest = condensed.set().numbers().last().copied().unwrap_or(0);
+        self.harmonics = self.harmonics.max(highest);
         self.harmonics_used.push(highest as f64);
         let at = self.slip_fraction.len();
         self.slip_fraction.resize(at + contacts, 0.0);
-        for (placed, &share) in self.condensed.laws().iter().zip(record.slip_fractions) {
+        for (placed, &share) in condensed.laws().iter().zip(record.slip_fractions) {
             self.slip_fraction[at + placed.contact] = share;
         }
         Ok(self.omega.len() - 1)
@@ -193,6 +216,13 @@ impl Branch {
             }
         };
         try_push(list, special, "the special points")
+    }
+
+    pub(crate) fn set_reduction(&mut self, reduction: Reduction) {
+        self.reduction = Reduction {
+            harmonics_asked: self.harmonics,
+            ..reduction
+        };
     }
 
     /// `stalled` says whether round-off stopped some point above the tolerance.
@@ -268,13 +298,13 @@ impl Branch {
     /// unilateral ones among them, laws without states and contacts without force report.
     #[must_use]
     pub fn slip_fraction(&self) -> &[f64] {
-        &self.slip_fraction[..self.curve * self.condensed.contacts()]
+        &self.slip_fraction[..self.curve * self.contacts()]
     }
 
     /// Slip shares of one stored point, the special ones included.
     #[must_use]
     pub fn slip_fraction_at(&self, point: usize) -> Option<&[f64]> {
-        let contacts = self.condensed.contacts();
+        let contacts = self.contacts();
         (point < self.stored()).then(|| &self.slip_fraction[point * contacts..(point + 1) * contacts])
     }
 
@@ -299,25 +329,26 @@ impl Branch {
     /// Number of contacts in the model.
     #[must_use]
     pub fn contacts(&self) -> usize {
-        self.condensed.contacts()
+        self.levels[0].condensed.contacts()
     }
 
     /// Degrees of freedom (of one sector).
     #[must_use]
     pub fn ndof(&self) -> usize {
-        self.condensed.ndof()
+        self.levels[0].condensed.ndof()
     }
 
-    /// Highest harmonic number H that was asked for.
+    /// Highest harmonic number H of which the points tell: the one that was asked for, or, where a tolerance
+    /// decided, the highest that a stored point carries.
     #[must_use]
     pub fn harmonics(&self) -> usize {
         self.harmonics
     }
 
-    /// Harmonic numbers that are carried; all others are zero.
+    /// Harmonic numbers that are carried at a stored point; all others are zero.
     #[must_use]
-    pub fn carried(&self) -> &[usize] {
-        self.condensed.set().numbers()
+    pub fn carried_at(&self, point: usize) -> Option<&[usize]> {
+        Some(self.condensed_at(point)?.set().numbers())
     }
 
     /// The degree of freedom whose amplitude was followed.
@@ -333,11 +364,12 @@ impl Branch {
     }
 
     /// Harmonics of the response degree of freedom at a stored point, one per number in
-    /// [`Self::carried`]; they are at hand without recovering the whole structure.
+    /// [`Self::carried_at`]; they are at hand without recovering the whole structure.
     #[must_use]
     pub fn response_at(&self, point: usize) -> Option<&[Complex64]> {
-        let carried = self.carried().len();
-        self.response.get(point * carried..(point + 1) * carried)
+        let place = self.places.get(point)?;
+        let carried = self.carried_at(point)?.len();
+        self.response.get(place.response..place.response + carried)
     }
 
     /// Harmonics 0 ..= H of all degrees of freedom at a stored point: (H + 1) × ndof, harmonic by
@@ -346,13 +378,7 @@ impl Branch {
     /// # Errors
     /// `Index` for an unknown point, `Dimension` for a buffer of another length, `OutOfMemory`.
     pub fn harmonics_at(&self, point: usize, x: &mut [Complex64]) -> Result<()> {
-        if point >= self.stored() {
-            return fail!(
-                Index,
-                "point = {point}, needs 0 .. {} (points and special points)",
-                self.stored()
-            );
-        }
+        let carried = self.carried_of(point)?;
         let n = self.ndof();
         let needed = (self.harmonics + 1) * n;
         if x.len() != needed {
@@ -363,9 +389,8 @@ impl Branch {
             );
         }
         let mut found = try_vec(needed, Complex64::ZERO, "the harmonics")?;
-        let mut recovery = Recovery::new(self)?;
-        recovery.go_to(point)?;
-        for (i, &h) in self.carried().iter().enumerate() {
+        let mut recovery = Recovery::at(self, point)?;
+        for (i, &h) in carried.iter().enumerate() {
             recovery.harmonic(i, &mut found[h * n..(h + 1) * n])?;
         }
         x.copy_from_slice(&found);

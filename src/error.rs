@@ -18,7 +18,8 @@ pub enum Status {
     StoppedStepTooSmall = 2,
     /// The limit on the number of points was reached; the points found so far are kept.
     StoppedMaxPoints = 3,
-    /// More harmonics were needed than allowed; the points found so far are kept.
+    /// The whole range was covered, but some points miss the tolerance: they need more harmonics than allowed, or
+    /// than can be afforded, or their error is unknown. All points are kept.
     StoppedMaxHarmonics = 4,
     /// The residual stopped falling above the wanted tolerance (round-off); all points are kept.
     StoppedStalled = 5,
@@ -108,7 +109,7 @@ impl Status {
             }
             Self::StoppedMaxPoints => "max_points was reached; the points found so far are kept; raise max_points",
             Self::StoppedMaxHarmonics => {
-                "max_harmonics was reached above the tolerance; the points found so far are kept; raise max_harmonics"
+                "some points miss the tolerance with max_harmonics, or their error is unknown; all points are kept; raise max_harmonics"
             }
             Self::StoppedStalled => {
                 "round-off stopped the residual above tol_residual; all points are kept; raise tol_residual"

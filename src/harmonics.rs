@@ -169,6 +169,20 @@ impl HarmonicSet {
         }
     }
 
+    /// Copies packed signals of the harmonics `from`, times a factor; harmonics that only one of both has are
+    /// zero, or left out.
+    pub fn carry(&self, from: &Self, signals: &[f64], factor: f64, into: &mut [f64]) {
+        into.fill(0.0);
+        let (m, m2) = (from.packed_len().max(1), self.packed_len().max(1));
+        for (y, y2) in signals.chunks_exact(m).zip(into.chunks_exact_mut(m2)) {
+            for (i, h) in from.numbers.iter().enumerate() {
+                if let Ok(i2) = self.numbers.binary_search(h) {
+                    self.set(y2, i2, factor * from.get(y, i));
+                }
+            }
+        }
+    }
+
     /// A bound of the velocity of a packed signal at an angular frequency.
     #[must_use]
     pub fn speed(&self, packed: &[f64], omega: f64) -> f64 {
@@ -194,7 +208,7 @@ impl HarmonicSet {
 }
 
 /// Greatest common divisor, with gcd(0, h) = h.
-fn gcd(a: usize, b: usize) -> usize {
+pub(crate) fn gcd(a: usize, b: usize) -> usize {
     if b == 0 { a } else { gcd(b, a % b) }
 }
 

@@ -10,14 +10,17 @@ use num_complex::Complex64;
 /// Options that every analysis shares.
 #[derive(Clone, Copy, Debug)]
 pub struct SolverOptions {
-    /// Relative error wanted in the response. `0` (the default): exactly [`Self::harmonics`].
+    /// Relative error wanted, from which the harmonics of each point are chosen: of the complex fundamental of the
+    /// response degree of freedom; in a nonlinear mode of the frequency and of the damping ratio, the latter over
+    /// the largest met so far. `0`: exactly [`Self::harmonics`], whatever the error.
     pub tolerance: f64,
-    /// Highest harmonic number H.
+    /// Highest harmonic number H. Where the tolerance decides: the H to begin with.
     pub harmonics: usize,
-    /// Cap on H where the tolerance decides.
+    /// Cap on H where the tolerance decides, at least the highest harmonic that is forced. Points that would need
+    /// more are kept, and the branch tells so by its status.
     pub max_harmonics: usize,
     /// `0`: exact stick-slip events. Otherwise every law is sampled at so many equidistant times
-    /// per period, at least 2H + 1. Laws without events, and friction in one direction under
+    /// per period, at least 2H + 1; where the tolerance decides, at least 8H are taken. Laws without events, and friction in one direction under
     /// a load that varies, are exact either way.
     pub samples: usize,
     /// First arc-length step in scaled unknowns; `0` chooses.
@@ -41,7 +44,7 @@ pub struct SolverOptions {
     /// Carry the mean and the even harmonics even where symmetry makes them zero.
     pub keep_even_harmonics: bool,
     /// Estimate the error of every stored point, see [`crate::error_estimate`]: the time of a solution with
-    /// more harmonics at each of them.
+    /// more harmonics at each of them. Where the tolerance decides it is estimated in any case.
     pub estimate_error: bool,
     /// Threads that may be used; `1` starts none. Results do not depend on it.
     pub num_threads: usize,
@@ -50,7 +53,7 @@ pub struct SolverOptions {
 impl Default for SolverOptions {
     fn default() -> Self {
         Self {
-            tolerance: 0.0,
+            tolerance: 1e-3,
             harmonics: 9,
             max_harmonics: 511,
             samples: 0,
@@ -75,24 +78,33 @@ pub const MAX_HARMONIC: usize = 100_000;
 pub const MAX_SAMPLES: usize = 1 << 24;
 
 impl SolverOptions {
+    /// The same with exactly the harmonics given, whatever the error.
+    #[must_use]
+    pub fn fixed(&self) -> Self {
+        Self {
+            tolerance: 0.0,
+            ..*self
+        }
+    }
+
     /// Checks every field.
     ///
     /// # Errors
     /// [`Status::Argument`](crate::error::Status::Argument) naming the field, its value and its
-    /// range; `Unsupported` for a tolerance above zero.
+    /// range.
     pub fn check(&self) -> Result<()> {
         if !(self.tolerance >= 0.0 && self.tolerance < 1.0) {
             return fail!(Argument, "tolerance = {}, needs 0 <= tolerance < 1", self.tolerance);
         }
-        if self.tolerance > 0.0 {
-            return fail!(
-                Unsupported,
-                "tolerance = {}: choosing the harmonics from a tolerance is not provided yet; set tolerance = 0 and harmonics",
-                self.tolerance
-            );
-        }
         if self.harmonics > MAX_HARMONIC {
             return fail!(Argument, "harmonics = {}, needs 0 .. {MAX_HARMONIC}", self.harmonics);
+        }
+        if self.max_harmonics > MAX_HARMONIC {
+            return fail!(
+                Argument,
+                "max_harmonics = {}, needs 0 .. {MAX_HARMONIC}",
+                self.max_harmonics
+            );
         }
         if self.samples > MAX_SAMPLES || (self.samples > 0 && self.samples < 2 * self.harmonics + 1) {
             return fail!(

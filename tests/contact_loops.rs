@@ -174,7 +174,7 @@ fn contacts_of_one_motion_have_a_loop_each() {
         }
         let omega = if forces[0].0 == 3 { 0.75 } else { 2.1 };
         let branch = solve_at(&model, &solver, omega);
-        println!("{:?}", branch.carried());
+        println!("{:?}", branch.carried_at(0).unwrap());
         check_all(&branch, &model, 0);
     }
 }

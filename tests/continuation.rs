@@ -159,7 +159,7 @@ fn a_linear_problem_is_followed_through_its_resonances() {
     let (from, to) = (TAU * 150.0, TAU * 750.0);
     let branch = sweep(&model, &harmonics(9), from, to, &[]);
     assert_covers(&branch, from, to, "linear");
-    assert_eq!(branch.carried(), [1]);
+    assert_eq!(branch.carried_at(0).unwrap(), [1]);
     // Three families of nodal diameter 2 lie within; the truth is in the natural frequencies.
     let natural = model
         .linear_modes(2, hbvib::model::linear_modes::ContactState::Free)

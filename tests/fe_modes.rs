@@ -34,6 +34,7 @@ fn mode(model: &Model, tip: usize) -> Branch {
     let solver = SolverOptions {
         harmonics: 1,
         response_dof: Some(tip),
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = ModeOptions {
@@ -91,6 +92,7 @@ fn sixty_contacts_are_followed_from_stuck_to_sliding_and_balance_their_work() {
     };
     let solver = SolverOptions {
         harmonics: 1,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let computed = Response::follow(&model, &solver, &range, &[tip], |_| {}).unwrap().peak;

@@ -34,6 +34,7 @@ fn follow(beam: &Beam, model: &Model, harmonics: usize, from: f64, to: f64) -> B
     let solver = SolverOptions {
         harmonics,
         response_dof: Some(beam.tips()[0] + Z),
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = ForcedOptions {
@@ -169,6 +170,7 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
     let omega = TAU * 300.0;
     let solver = SolverOptions {
         harmonics: 3,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let condensed = Condensed::new(&model, &solver, omega).unwrap();

@@ -68,6 +68,7 @@ fn a_bladed_disk_is_swept_whole_at_every_force_harmonic_and_sampling() {
                     harmonics: highest,
                     samples,
                     response_dof: Some(0),
+                    tolerance: 0.0,
                     ..SolverOptions::default()
                 };
                 let (from, to) = RANGE;

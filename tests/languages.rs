@@ -272,6 +272,7 @@ fn table() -> Vec<[f64; 3]> {
     let solver = SolverOptions {
         harmonics: 63,
         response_dof: Some(common::B2),
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = ForcedOptions {

@@ -23,7 +23,7 @@ fn quadratic(a: &DMatrix<Complex64>, x: &DVector<Complex64>) -> f64 {
 /// Returns the largest error relative to the largest D.
 fn balance(branch: &Branch, form: DampingForm, wave: impl Fn(usize) -> WaveMatrices) -> f64 {
     let most = damping(branch).iter().fold(0.0_f64, |m, d| m.max(d.abs()));
-    let waves: Vec<(usize, WaveMatrices)> = branch.carried().iter().map(|&h| (h, wave(h))).collect();
+    let waves: Vec<(usize, WaveMatrices)> = branch.carried_at(0).unwrap().iter().map(|&h| (h, wave(h))).collect();
     let mut worst = 0.0_f64;
     for i in 0..branch.points() {
         let point = branch.mode_at(i).unwrap();

@@ -42,7 +42,7 @@ fn balancing(
         };
         (h, f)
     };
-    branch.carried().iter().map(force).collect()
+    branch.carried_at(0).unwrap().iter().map(force).collect()
 }
 
 /// Largest relative difference between points of the mode and the answers to their forces.

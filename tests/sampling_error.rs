@@ -47,6 +47,7 @@ fn check(contact: &Contact, samples: usize, truth: usize) -> (f64, f64) {
         harmonics: HARMONICS,
         samples,
         keep_even_harmonics: true,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let branch = solve_at(&model, &solver, OMEGA);

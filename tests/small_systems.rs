@@ -34,6 +34,7 @@ fn solve(model: &Model, omega: f64, harmonics: usize, keep_even_harmonics: bool)
     let options = SolverOptions {
         harmonics,
         keep_even_harmonics,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = ForcedOptions {

@@ -89,6 +89,7 @@ fn model(force: Arc<Frail>) -> Model {
 fn respond(force: &Arc<Frail>) -> Result<Branch> {
     let solver = SolverOptions {
         harmonics: 3,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = ForcedOptions {
@@ -102,6 +103,7 @@ fn respond(force: &Arc<Frail>) -> Result<Branch> {
 fn mode(force: &Arc<Frail>) -> Result<Branch> {
     let solver = SolverOptions {
         harmonics: 3,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = ModeOptions {

@@ -123,7 +123,7 @@ fn polynomial() -> Contact {
 
 #[test]
 fn a_callback_that_is_a_polynomial_has_its_branch_and_its_mode() {
-    let solver = SolverOptions::default();
+    let solver = SolverOptions::default().fixed();
     let (own, library) = (model(&over(curved(RIGHT, true)), 0.0), model(&polynomial(), 0.0));
     let (a, b) = (respond(&own, &solver).unwrap(), respond(&library, &solver).unwrap());
     println!("{} and {} points, apart {:.1e}", a.points(), b.points(), apart(&a, &b));
@@ -148,6 +148,7 @@ fn a_callback_that_is_a_polynomial_has_its_branch_and_its_mode() {
 fn a_mode_does_not_depend_on_the_unit_of_its_amplitude() {
     let solver = SolverOptions {
         harmonics: 5,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let frequencies = |log10: f64| {
@@ -224,6 +225,7 @@ fn a_slider_with_a_state_responds_like_the_librarys_own() {
     let library = model(&Contact::jenkins(1, None, 1.0, 0.05, 1.0), 0.0);
     let solver = SolverOptions {
         harmonics: 5,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let exact = respond(&library, &solver).unwrap();
@@ -245,7 +247,7 @@ fn a_slider_with_a_state_responds_like_the_librarys_own() {
 
 #[test]
 fn a_force_at_rest_is_a_constant_load() {
-    let solver = SolverOptions::default();
+    let solver = SolverOptions::default().fixed();
     let loaded = Curved { at_rest: 0.7, ..RIGHT };
     let a = respond(&model(&over(curved(loaded, false)), 0.0), &solver).unwrap();
     let b = respond(&model(&over(curved(RIGHT, false)), -0.7), &solver).unwrap();
@@ -284,6 +286,7 @@ fn a_force_at_rest_is_a_constant_load() {
 fn wrong_tangents_never_give_a_wrong_result() {
     let solver = SolverOptions {
         max_points: 400,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let right = respond(&model(&over(curved(RIGHT, true)), 0.0), &solver).unwrap();

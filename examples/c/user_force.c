@@ -125,6 +125,7 @@ int main(void)
     }
 
     CHECK(hbvib_solver_options_init(&solver, sizeof solver));
+    solver.tolerance = 0; /* exactly so many harmonics */
     solver.harmonics = HARMONICS;
     CHECK(hbvib_forced_options_init(&range, sizeof range));
     range.omega_start = 0.5;

@@ -54,6 +54,7 @@ pub fn show(screen: &mut impl Write, read: Duration, model: &Model, response: &R
     )?;
     let solver = SolverOptions {
         harmonics: reduction.harmonics_asked,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let direct = factorisation(model, &solver, response.peak.frequency * TAU)?.as_secs_f64();

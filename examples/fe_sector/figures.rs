@@ -118,6 +118,7 @@ fn responses(sector: &Sector, read: Duration, folder: &Path, screen: &mut impl W
             let solver = SolverOptions {
                 harmonics,
                 step_max: SMOOTH,
+                tolerance: 0.0,
                 ..SolverOptions::default()
             };
             let mut bar = Bar::new(format!("response to {force} N, H = {harmonics}"), 100);

@@ -72,6 +72,7 @@ impl Request {
         };
         let mut solver = SolverOptions {
             harmonics: 3,
+            tolerance: 0.0,
             ..SolverOptions::default()
         };
         if let Some(highest) = flags.value("--harmonics", "an integer of at least 1", |h: &usize| *h >= 1)? {

@@ -147,6 +147,7 @@ pub fn solver() -> SolverOptions {
     SolverOptions {
         harmonics: HARMONICS,
         step_max: SMOOTH,
+        tolerance: 0.0,
         ..SolverOptions::default()
     }
 }
@@ -169,6 +170,7 @@ fn linear(beam: &Beam, sticks: bool) -> Result<Vec<[f64; 3]>, Box<dyn Error>> {
     let model = beam.linear(sticks, 1.0, LIFT)?;
     let solver = SolverOptions {
         harmonics: 1,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let step = (RANGE.1 - RANGE.0) / LINEAR_POINTS as f64;

@@ -12,7 +12,7 @@ use serde_json::{Map, Value};
 
 use crate::json::number;
 use crate::model::{CONTACT, DOFS, Parameters, SECTORS, WANTED};
-use crate::response::{Harmonics, harmonics, harmonics_to_json};
+use crate::response::{Harmonics, error_to_json, harmonics, harmonics_to_json, highest};
 
 /// A mode that is wanted over a range of slip: the peak of the fundamental of the relative motion of
 /// disk and ring, over the motion at which the contact begins to slip.
@@ -89,6 +89,8 @@ pub struct Point {
     pub dissipation: f64,
     /// Motion of all degrees of freedom.
     pub harmonics: Harmonics,
+    /// Estimated relative error of the frequency, and error of the damping ratio; not finite where unknown.
+    pub errors: (f64, f64),
 }
 
 impl Point {
@@ -102,10 +104,15 @@ impl Point {
             energy: mode.energy,
             dissipation: mode.friction_loss,
             harmonics: harmonics(branch, number, &WANTED)?,
+            errors: branch
+                .error_estimate_at(number)
+                .zip(branch.damping_error_estimate_at(number))
+                .unwrap_or((f64::NAN, f64::NAN)),
         })
     }
 
-    fn to_json(&self) -> Result<Value, Box<dyn Error>> {
+    /// With errors where a largest damping ratio is given, over which that of the damping ratio is told.
+    fn to_json(&self, largest: Option<f64>) -> Result<Value, Box<dyn Error>> {
         let mut object = Map::new();
         for (name, value) in [
             ("slip", self.slip),
@@ -118,8 +125,22 @@ impl Point {
             object.insert(name.into(), number(value)?);
         }
         object.insert("harmonics".into(), harmonics_to_json(&self.harmonics, &DOFS)?);
+        if let Some(largest) = largest {
+            let (frequency, damping) = self.errors;
+            let damping = if damping == 0.0 { 0.0 } else { damping / largest };
+            object.insert("error_estimate_frequency".into(), error_to_json(frequency));
+            object.insert("error_estimate_damping".into(), error_to_json(damping));
+            object.insert("harmonics_used".into(), highest(&self.harmonics).into());
+        }
         Ok(object.into())
     }
+}
+
+fn is_complete(status: Status) -> bool {
+    matches!(
+        status,
+        Status::Ok | Status::StoppedStalled | Status::StoppedMaxHarmonics
+    )
 }
 
 /// A mode over the whole of a range of slip.
@@ -133,6 +154,10 @@ pub struct Backbone {
     pub max_damping: Option<Point>,
     /// Whether rounding kept the residual of a point above the solver's tolerance.
     pub stalled: bool,
+    /// Whether some point misses the tolerance.
+    pub missed: bool,
+    /// Whether a tolerance chose the harmonics.
+    automatic: bool,
     /// All that the library returned.
     pub branch: Branch,
 }
@@ -165,7 +190,7 @@ impl Backbone {
             .map(|(i, &omega)| Point::new(wanted, &branch, i, omega))
             .collect::<Result<_, _>>()?;
         let end = points.last().map_or(f64::NAN, |p| p.slip);
-        if end.to_bits() != wanted.to.to_bits() || !matches!(branch.status(), Status::Ok | Status::StoppedStalled) {
+        if end.to_bits() != wanted.to.to_bits() || !is_complete(branch.status()) {
             let reason = branch.status().name().to_string_lossy();
             return Err(format!("the mode ends at slip {end} ({reason}), before {}", wanted.to).into());
         }
@@ -193,6 +218,8 @@ impl Backbone {
             at,
             max_damping,
             stalled: branch.status() == Status::StoppedStalled,
+            missed: branch.status() == Status::StoppedMaxHarmonics,
+            automatic: solver.tolerance > 0.0,
             branch,
         })
     }
@@ -203,8 +230,11 @@ impl Backbone {
     ///
     /// If a number is not finite.
     pub fn to_json(&self) -> Result<Value, Box<dyn Error>> {
-        let list = |points: &[Point]| points.iter().map(Point::to_json).collect::<Result<Vec<_>, _>>();
-        let largest = self.max_damping.as_ref().map(Point::to_json).transpose()?;
+        let all = self.points.iter().chain(&self.at).chain(&self.max_damping);
+        let maximum = all.map(|p| p.damping_ratio.abs()).fold(0.0, f64::max);
+        let maximum = self.automatic.then_some(maximum);
+        let list = |points: &[Point]| points.iter().map(|p| p.to_json(maximum)).collect::<Result<Vec<_>, _>>();
+        let largest = self.max_damping.as_ref().map(|p| p.to_json(maximum)).transpose()?;
         let mut object = Map::new();
         object.insert("backbone".into(), list(&self.points)?.into());
         object.insert("at".into(), list(&self.at)?.into());

@@ -148,6 +148,7 @@ impl Study {
     fn run(&self, folder: &Path) -> Result<(), Box<dyn Error>> {
         let solver = SolverOptions {
             step_max: SMOOTH,
+            tolerance: 0.0,
             ..SolverOptions::default()
         };
         let range = Range {

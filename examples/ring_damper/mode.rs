@@ -124,6 +124,11 @@ impl Request {
         if mode.max_damping.is_none() {
             write_stderr("note: the damping ratio has no maximum inside the range, max_damping is null\n");
         }
+        if mode.missed {
+            write_stderr(
+                "note: some points miss the tolerance, or their error is unknown: their error_estimate tells\n",
+            );
+        }
         if let Some(path) = &self.json {
             write_json(path, &mode.to_json()?)?;
         }

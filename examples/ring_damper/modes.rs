@@ -53,6 +53,7 @@ fn wanted(beta: f64, (from, to): (f64, f64)) -> Wanted {
 pub fn against_energy(folder: &Path) -> Result<(), Box<dyn Error>> {
     let solver = SolverOptions {
         step_max: SMOOTH,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let mut bar = Bar::new("Figures 8 and 9, percent", 100);
@@ -264,6 +265,7 @@ impl Overlay {
 pub fn with_many_harmonics(screen: &mut impl Write) -> Result<(), Box<dyn Error>> {
     let solver = SolverOptions {
         harmonics: MANY_HARMONICS,
+        tolerance: 0.0,
         ..SolverOptions::default()
     };
     let range = Range {

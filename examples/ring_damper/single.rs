@@ -93,6 +93,11 @@ impl Request {
         if response.stalled {
             write_stderr("note: rounding kept the residual of some points above the solver's tolerance\n");
         }
+        if response.missed {
+            write_stderr(
+                "note: some points miss the tolerance, or their error is unknown: their error_estimate tells\n",
+            );
+        }
         if let Some(path) = &self.json {
             write_json(path, &response.to_json("amplitude_b2_m", &DOFS)?)?;
         }
@@ -121,14 +126,29 @@ fn show(screen: &mut impl Write, what: &str, point: &Point) -> std::io::Result<(
 ///
 /// A sentence naming the flag whose value cannot be used.
 pub fn solver_options(flags: &Flags) -> Result<SolverOptions, String> {
-    let mut solver = SolverOptions::default();
+    // Without a tolerance exactly so many harmonics, so that one H can be compared with another.
+    let mut solver = SolverOptions::default().fixed();
+    let above = |t: &f64| *t > 0.0 && *t < 1.0;
+    let tolerance = flags.value("--tolerance", "a number above 0 and below 1", above)?;
     if let Some(highest) = flags.value("--harmonics", "an integer of at least 1", |h: &usize| *h >= 1)? {
+        if tolerance.is_some() {
+            return Err("--tolerance chooses the harmonics: give --max-harmonics instead of --harmonics".into());
+        }
         solver.harmonics = highest;
+    }
+    solver.tolerance = tolerance.unwrap_or(0.0);
+    if let Some(most) = flags.value("--max-harmonics", "an integer of at least 1", |h: &usize| *h >= 1)? {
+        if solver.tolerance == 0.0 {
+            return Err("--max-harmonics belongs to a tolerance: give --tolerance as well".into());
+        }
+        solver.max_harmonics = most;
     }
     if let Some(samples) = flags.value("--samples", "an integer of at least 1", |n: &usize| *n >= 1)? {
         solver.samples = samples;
     }
-    solver.check().map_err(|e| format!("--harmonics, --samples: {e}"))?;
+    solver
+        .check()
+        .map_err(|e| format!("--harmonics, --max-harmonics, --tolerance, --samples: {e}"))?;
     Ok(solver)
 }
 

@@ -39,6 +39,9 @@ pub struct Point {
     pub frequency: f64,
     /// Its motion.
     pub harmonics: Harmonics,
+    /// Estimated relative error of `X_1` of the first degree of freedom wanted, where a tolerance chose the
+    /// harmonics; not finite where it is unknown.
+    pub error: Option<f64>,
 }
 
 impl Point {
@@ -65,6 +68,8 @@ pub struct Response {
     pub at: Vec<Point>,
     /// Whether rounding kept the residual of a point above the solver's tolerance.
     pub stalled: bool,
+    /// Whether some point misses the tolerance.
+    pub missed: bool,
     /// All that the library returned.
     pub branch: Branch,
     /// Where the time went.
@@ -131,6 +136,9 @@ impl Response {
         }
         let solved = begin.elapsed();
         let mut response = Self::collect(branch, range, wanted)?;
+        if solver.tolerance == 0.0 {
+            response.forget_errors();
+        }
         let first_point = first.unwrap_or(solved);
         response.times = Times {
             first_point,
@@ -172,9 +180,17 @@ impl Response {
             peak,
             at,
             stalled: branch.status() == Status::StoppedStalled,
+            missed: branch.status() == Status::StoppedMaxHarmonics,
             branch,
             times: Times::default(),
         })
+    }
+
+    fn forget_errors(&mut self) {
+        let points = self.points.iter_mut().chain(&mut self.at);
+        for point in points.chain(core::iter::once(&mut self.peak)) {
+            point.error = None;
+        }
     }
 
     /// Newton iterations of the points on the curve, those of peaks and frequencies asked for not
@@ -200,7 +216,7 @@ impl Response {
 }
 
 fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Result<Point, Box<dyn Error>> {
-    let carried = branch.carried().iter().copied();
+    let carried = branch.carried_at(number).unwrap_or(&[]).iter().copied();
     let harmonics = match branch.response_at(number) {
         // The response degree of freedom is at hand; others are recovered with the whole structure.
         Some(response) if wanted == [branch.response_dof()] => carried.zip(response.iter().map(|&x| vec![x])).collect(),
@@ -210,6 +226,7 @@ fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Re
         number,
         frequency,
         harmonics,
+        error: branch.error_estimate_at(number),
     })
 }
 
@@ -223,7 +240,12 @@ pub fn harmonics(branch: &Branch, number: usize, wanted: &[usize]) -> Result<Har
     let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
     branch.harmonics_at(number, &mut all)?;
     let of = |p: usize| wanted.iter().map(|dof| all[p * n + dof]).collect();
-    Ok(branch.carried().iter().map(|&p| (p, of(p))).collect())
+    Ok(branch
+        .carried_at(number)
+        .unwrap_or(&[])
+        .iter()
+        .map(|&p| (p, of(p)))
+        .collect())
 }
 
 fn point_to_json(point: &Point, amplitude: &str, names: &[&str]) -> Result<Value, Box<dyn Error>> {
@@ -231,7 +253,21 @@ fn point_to_json(point: &Point, amplitude: &str, names: &[&str]) -> Result<Value
     object.insert("frequency_hz".into(), number(point.frequency)?);
     object.insert(amplitude.into(), number(point.amplitude())?);
     object.insert("harmonics".into(), harmonics_to_json(&point.harmonics, names)?);
+    if let Some(error) = point.error {
+        object.insert("error_estimate".into(), error_to_json(error));
+        object.insert("harmonics_used".into(), highest(&point.harmonics).into());
+    }
     Ok(object.into())
+}
+
+/// The highest harmonic number that is carried.
+pub fn highest(harmonics: &Harmonics) -> usize {
+    harmonics.last().map_or(0, |h| h.0)
+}
+
+/// An error, null where it is unknown.
+pub fn error_to_json(error: f64) -> Value {
+    serde_json::Number::from_f64(error).map_or(Value::Null, Value::Number)
 }
 
 /// Real and imaginary part of each harmonic of each degree of freedom, by their names.

@@ -39,17 +39,18 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
             model.contacts().len()
         );
     }
-    if solver.harmonics != branch.harmonics() || solver.samples != branch.samples() {
+    let samples = branch.samples_at(point);
+    if solver.tolerance == 0.0 && (solver.harmonics != branch.harmonics() || solver.samples != samples) {
         return fail!(
             Argument,
-            "the branch has harmonics = {} and samples = {}, the options {} and {}",
+            "the branch has harmonics = {} and samples = {samples}, the options {} and {}",
             branch.harmonics(),
-            branch.samples(),
             solver.harmonics,
             solver.samples
         );
     }
-    let condensed = branch.condensed();
+    let solver = &SolverOptions { samples, ..*solver };
+    let condensed = branch.level_at(point);
     let solved = Solved {
         condensed,
         motion,

@@ -1,10 +1,13 @@
 //! Follows a branch from its first point to the end of the range: points, folds, peaks, solutions
 //! wanted at given parameter values. The same for every analysis.
 
+use super::adapt::{Assessment, Choice, refine, settle};
+use super::levels::Ladder;
 use crate::branch::{Branch, SpecialKind};
 use crate::continuation::events::{Event, Locator};
 use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Error, Result, Status};
+use crate::error_estimate::Estimate;
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::linalg::norm;
 use crate::problem::Problem;
@@ -18,11 +21,40 @@ pub(super) trait Keeper {
     /// Stores a point of the curve.
     fn keep(&mut self, point: &Point) -> Result<()>;
 
-    /// Stores a point beside the curve.
-    fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<()>;
+    /// Stores a point beside the curve; `false` where it asks for more harmonics, to which the keeper has gone.
+    fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<bool>;
 
     /// What was stored so far.
     fn branch(&self) -> &Branch;
+
+    /// The harmonics that there are to choose from.
+    fn ladder(&self) -> &Ladder<'_>;
+
+    /// The rung of it that the problem has.
+    fn rung(&self) -> usize;
+
+    /// Goes to another rung.
+    fn go_to(&mut self, rung: usize) -> Result<()>;
+
+    /// How a rung is chosen.
+    fn choice(&mut self) -> &mut Choice;
+
+    /// Estimates the error of a point; none where nobody asked for it.
+    fn assess(&mut self, point: &Point) -> Result<Option<Assessment>>;
+
+    /// A point of another rung in the harmonics at hand.
+    fn carry(&self, point: &Point, from: usize) -> Result<Point>;
+
+    /// The corrected solution of a point of another rung in the harmonics at hand.
+    fn corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point>;
+
+    /// Solves near a point with the harmonics at hand, see [`crate::continuation::again`].
+    fn solve_again(
+        &mut self,
+        near: &Point,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>>;
 }
 
 /// How a run ended.
@@ -64,6 +96,9 @@ pub(super) struct Task<'a> {
     pub before: Option<f64>,
 }
 
+/// A point with the rung of its harmonics.
+type End<'p> = (&'p Point, usize);
+
 /// What became of a branch that left its range.
 enum Outside {
     Back(Point),
@@ -71,12 +106,13 @@ enum Outside {
     Cancelled,
 }
 
-/// Stores a point of the curve; `false` where Newton's last correction, which is not evaluated, led to where there
-/// is no solution.
-fn kept(keeper: &mut dyn Keeper, point: &Point) -> Result<bool> {
-    match keeper.keep(point) {
-        Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => Ok(false),
-        stored => stored.map(|()| true),
+/// Refines a point of the curve, which may change the rung, and stores it; `None` where Newton's last correction, which
+/// is not evaluated, led to where there is no solution.
+fn stored(keeper: &mut dyn Keeper, point: Point, fixed: bool, hooks: &Hooks<'_>) -> Result<Option<Point>> {
+    let refined = refine(keeper, point, fixed, hooks.cancelled);
+    match refined.and_then(|point| keeper.keep(&point).map(|()| point)) {
+        Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => Ok(None),
+        stored => stored.map(Some),
     }
 }
 
@@ -89,6 +125,7 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 impl Task<'_> {
     /// Stores the first point of the curve, or the only one, and follows the branch from there.
     pub fn run(&self, keeper: &mut dyn Keeper, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
+        let first = refine(keeper, first, true, hooks.cancelled)?;
         keeper.keep(&first)?;
         if self.report(keeper, hooks, &first) {
             return Ok(Status::StoppedByCaller);
@@ -102,42 +139,56 @@ impl Task<'_> {
         if start.to_bits() == end.to_bits() {
             for (i, p) in self.at.iter().enumerate() {
                 if p.to_bits() == end.to_bits() {
-                    keeper.keep_special(SpecialKind::At(i), first.try_clone()?)?;
+                    let rung = keeper.rung();
+                    let mut point = first.try_clone()?;
+                    while !keeper.keep_special(SpecialKind::At(i), point)? {
+                        point = keeper.carry(&first, rung)?;
+                    }
                 }
             }
             return Ok(Status::Ok);
         }
-        let n = first.unknowns().len();
-        let begin = first.try_clone()?;
-        let mut locator = Locator::new(n, self.settings)?;
+        let (begin, began) = (first.try_clone()?, keeper.rung());
         let mut continuation = Continuation::new(self.settings, first)?;
         loop {
             if keeper.branch().points() >= self.max_points {
                 return Ok(Status::StoppedMaxPoints);
             }
+            let before = keeper.rung();
             let (point, end) = match continuation.advance(keeper.problem(), hooks.cancelled)? {
                 Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
                 Advance::Stopped(status) => return Ok(status),
             };
-            if !kept(keeper, &point)? {
+            let Some(point) = stored(keeper, point, end.is_some(), hooks)? else {
                 return Ok(Status::StoppedStepTooSmall);
-            }
+            };
+            let rung = keeper.rung();
             let stop = self.report(keeper, hooks, &point);
-            if let Some(before) = continuation.previous() {
-                self.events(keeper, &mut locator, before, &point, end.is_some())?;
+            if let Some(previous) = continuation.previous() {
+                self.events(keeper, (previous, before), (&point, rung), end.is_some())?;
+                keeper.go_to(rung)?;
             }
             if stop {
                 return Ok(Status::StoppedByCaller);
             }
             match end {
-                None => {}
-                Some(Status::StoppedLeftRange) => match self.outside(keeper, point, &begin, hooks)? {
+                None => {
+                    let current = settle(keeper, point, hooks.cancelled)?;
+                    if rung != before || keeper.rung() != before {
+                        let previous = match continuation.previous() {
+                            Some(previous) => Some(keeper.carry(previous, before)?),
+                            None => None,
+                        };
+                        continuation.go_on_from(previous, current)?;
+                    }
+                }
+                Some(Status::StoppedLeftRange) => match self.outside(keeper, point, (&begin, began), hooks)? {
                     Outside::Back(back) => {
                         hooks.log(LogLevel::Info, "the branch left at its start and came back");
-                        if !kept(keeper, &back)? {
+                        let Some(back) = stored(keeper, back, true, hooks)? else {
                             return Ok(Status::StoppedStepTooSmall);
-                        }
+                        };
                         if self.report(keeper, hooks, &back) {
                             return Ok(Status::StoppedByCaller);
                         }
@@ -153,10 +204,17 @@ impl Task<'_> {
 
     /// Follows the branch from where it left at the start of the range to where it comes back, which folds
     /// on both sides of the start make it do. What lies outside is not kept.
-    fn outside(&self, keeper: &mut dyn Keeper, exit: Point, begin: &Point, hooks: &mut Hooks<'_>) -> Result<Outside> {
+    fn outside(
+        &self,
+        keeper: &mut dyn Keeper,
+        exit: Point,
+        (begin, began): (&Point, usize),
+        hooks: &mut Hooks<'_>,
+    ) -> Result<Outside> {
         let Some(before) = self.before else {
             return Ok(Outside::Gone);
         };
+        let begin = keeper.carry(begin, began)?;
         let settings = Settings {
             end: before,
             ..self.settings
@@ -197,38 +255,64 @@ impl Task<'_> {
         })
     }
 
-    /// Looks for folds, peaks and wanted parameter values between two neighbours.
-    fn events(&self, keeper: &mut dyn Keeper, locator: &mut Locator, a: &Point, b: &Point, last: bool) -> Result<()> {
-        if Event::Peak.between(a, b)
-            && let Some(peak) = locator.locate(keeper.problem(), Event::Peak, a, b)?
-        {
-            keeper.keep_special(SpecialKind::Peak, peak)?;
+    /// Looks for folds, peaks and wanted parameter values between two neighbours, each given with its rung.
+    fn events(&self, keeper: &mut dyn Keeper, a: End<'_>, b: End<'_>, last: bool) -> Result<()> {
+        keeper.go_to(a.1.max(b.1))?;
+        if Event::Peak.between(a.0, b.0) {
+            self.find(keeper, SpecialKind::Peak, a, b, |locator, problem, a, b| {
+                locator.locate(problem, Event::Peak, a, b)
+            })?;
         }
-        let fold = if Event::Fold.between(a, b) {
-            locator.locate(keeper.problem(), Event::Fold, a, b)?
+        let fold = if Event::Fold.between(a.0, b.0) {
+            self.find(keeper, SpecialKind::Fold, a, b, |locator, problem, a, b| {
+                locator.locate(problem, Event::Fold, a, b)
+            })?
         } else {
             None
         };
-        if let Some(fold) = &fold {
-            keeper.keep_special(SpecialKind::Fold, fold.try_clone()?)?;
-            self.wanted(keeper, locator, a, fold, false)?;
-            self.wanted(keeper, locator, fold, b, last)
+        if let Some((fold, rung)) = &fold {
+            self.wanted(keeper, a, (fold, *rung), false)?;
+            self.wanted(keeper, (fold, *rung), b, last)
         } else {
-            self.wanted(keeper, locator, a, b, last)
+            self.wanted(keeper, a, b, last)
         }
     }
 
     /// Solves at the wanted parameter values on the arc from `a` (included) to `b` (with the last
     /// point of the branch included), which has no fold inside.
-    fn wanted(&self, keeper: &mut dyn Keeper, locator: &mut Locator, a: &Point, b: &Point, last: bool) -> Result<()> {
+    fn wanted(&self, keeper: &mut dyn Keeper, a: End<'_>, b: End<'_>, last: bool) -> Result<()> {
         for (i, &p) in self.at.iter().enumerate() {
-            let (pa, pb) = (a.parameter(), b.parameter());
+            let (pa, pb) = (a.0.parameter(), b.0.parameter());
             let inside = (pa <= p && p < pb) || (pb < p && p <= pa);
             let inside = inside || (last && p.to_bits() == pb.to_bits());
-            if inside && let Some(point) = locator.at_parameter(keeper.problem(), a, b, p)? {
-                keeper.keep_special(SpecialKind::At(i), point)?;
+            if inside {
+                self.find(keeper, SpecialKind::At(i), a, b, |locator, problem, a, b| {
+                    locator.at_parameter(problem, a, b, p)
+                })?;
             }
         }
         Ok(())
+    }
+
+    /// Searches between two neighbours and stores what is found, with as many harmonics as it asks for.
+    fn find(
+        &self,
+        keeper: &mut dyn Keeper,
+        kind: SpecialKind,
+        a: End<'_>,
+        b: End<'_>,
+        search: impl Fn(&mut Locator, &mut dyn Problem, &Point, &Point) -> Result<Option<Point>>,
+    ) -> Result<Option<(Point, usize)>> {
+        loop {
+            let rung = keeper.rung();
+            let (a, b) = (keeper.carry(a.0, a.1)?, keeper.carry(b.0, b.1)?);
+            let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
+            let Some(point) = search(&mut locator, keeper.problem(), &a, &b)? else {
+                return Ok(None);
+            };
+            if keeper.keep_special(kind, point.try_clone()?)? {
+                return Ok(Some((point, rung)));
+            }
+        }
     }
 }

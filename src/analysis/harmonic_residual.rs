@@ -30,7 +30,7 @@ pub fn forced_residual(
     mut jacobian: Option<&mut [f64]>,
     mut d_omega: Option<&mut [Complex64]>,
 ) -> Result<()> {
-    solver.check()?;
+    solver.fixed().check()?;
     if !omega.is_finite() || omega < 0.0 {
         return fail!(Argument, "omega = {omega}, needs a finite angular frequency >= 0");
     }
@@ -315,6 +315,7 @@ pub fn contact_evaluate(
     SolverOptions {
         harmonics,
         samples,
+        tolerance: 0.0,
         ..SolverOptions::default()
     }
     .check()?;

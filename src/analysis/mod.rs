@@ -1,10 +1,13 @@
 //! The crate's public face: each analysis puts the layers together.
 
+mod adapt;
 pub mod check_jacobian;
 pub mod estimate;
 mod follow;
+mod forced_points;
 pub mod forced_response;
 pub mod harmonic_residual;
+mod levels;
 mod mode_points;
 pub mod nonlinear_mode;
 pub mod synthesis;

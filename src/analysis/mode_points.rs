@@ -1,33 +1,80 @@
 //! The points of a nonlinear mode: what is measured and stored of each.
 
+use super::adapt::{Assessment, Choice, suffices};
 use super::follow::{Ending, Keeper};
-use crate::branch::mode::ModePoint;
-use crate::branch::{Branch, Record, SpecialKind};
-use crate::condense::Condensed;
-use crate::continuation::Point;
-use crate::error::{Result, try_copy, try_push, try_vec};
-use crate::error_estimate::Solved;
+use super::levels::{Ladder, carried_point};
+use crate::branch::mode::{ModeData, ModePoint};
+use crate::branch::{Branch, Level, Record, SpecialKind};
+use crate::condense::Reduction;
+use crate::continuation::again::solve_again;
+use crate::continuation::corrector::Corrector;
+use crate::continuation::{Point, Settings};
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::error_estimate::mode::ModeEstimator;
+use crate::error_estimate::{Estimate, Solved};
 use crate::linalg::{inner, norm};
+use crate::model::Model;
+use crate::options::SolverOptions;
 use crate::postprocess::energy::{self, Balance};
-use crate::problem::mode::{LinearMode, Mode};
+use crate::problem::mode::{Gauge, LinearMode, Mode};
 use crate::problem::{Linearisation, Problem};
 use num_complex::Complex64;
 
 const WHAT: &str = "the nonlinear mode";
 
-/// Collects the points of one run.
-pub(super) struct ModePoints<'a> {
-    condensed: &'a Condensed,
-    linear: &'a LinearMode,
-    branch: Branch,
+/// The equations with the harmonics of one rung.
+struct Rung<'a> {
+    level: &'a Level,
     problem: Mode<'a>,
+    corrector: Corrector,
     at: Linearisation,
-    specials: Vec<Kept>,
-    estimator: Option<ModeEstimator<'a>>,
     motion: Vec<f64>,
     forces: Vec<f64>,
     response: Vec<Complex64>,
+}
+
+impl<'a> Rung<'a> {
+    fn new(level: &'a Level, data: &Start<'a>, settings: &Settings) -> Result<Self> {
+        let problem = Mode::new(&level.condensed, data.gauge, data.linear, level.samples)?;
+        let unknowns = problem.size();
+        Ok(Self {
+            corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,
+            at: Linearisation::new(unknowns)?,
+            motion: try_vec(unknowns - 2, 0.0, WHAT)?,
+            forces: try_vec(unknowns - 2, 0.0, WHAT)?,
+            response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, WHAT)?,
+            problem,
+            level,
+        })
+    }
+}
+
+/// What a mode starts from.
+#[derive(Clone, Copy)]
+pub(super) struct Start<'a> {
+    pub linear: &'a LinearMode,
+    pub gauge: &'a Gauge,
+}
+
+/// Collects the points of one run.
+pub(super) struct ModePoints<'a> {
+    start: Start<'a>,
+    settings: Settings,
+    ladder: &'a Ladder<'a>,
+    here: Rung<'a>,
+    /// The rungs that were used, but for the one at hand.
+    others: Vec<Option<Rung<'a>>>,
+    rung: usize,
+    /// The rung with the most harmonics among the points kept.
+    highest: usize,
+    choice: Choice,
+    branch: Branch,
+    specials: Vec<Kept<'a>>,
+    estimator: Option<ModeEstimator<'a>>,
+    /// Errors of the point assessed last, until it is kept.
+    assessed: Option<(f64, f64)>,
+    /// Largest damping ratio met, in size.
+    damping: f64,
     /// Fundamental of the point of the curve before.
     before: Vec<Complex64>,
     weighted: Vec<Complex64>,
@@ -35,8 +82,9 @@ pub(super) struct ModePoints<'a> {
 }
 
 /// A special point until the curve is complete.
-struct Kept {
+struct Kept<'a> {
     kind: SpecialKind,
+    level: &'a Level,
     point: Point,
     motion: Vec<f64>,
     response: Vec<Complex64>,
@@ -49,49 +97,67 @@ struct Kept {
 type Numbers = (Complex64, f64, (f64, f64));
 
 impl<'a> ModePoints<'a> {
-    /// An empty collection.
+    /// An empty collection on a rung.
     pub fn new(
-        condensed: &'a Condensed,
-        linear: &'a LinearMode,
-        problem: Mode<'a>,
+        start: Start<'a>,
+        solver: &SolverOptions,
+        settings: Settings,
+        (ladder, rung): (&'a Ladder<'a>, usize),
         branch: Branch,
         estimator: Option<ModeEstimator<'a>>,
     ) -> Result<Self> {
-        let unknowns = problem.size();
-        let carried = condensed.blocks().len();
+        let level = ladder.level(rung)?;
+        let mut others = Vec::new();
+        for _ in 0..ladder.len() {
+            try_push(&mut others, None, WHAT)?;
+        }
         Ok(Self {
-            at: Linearisation::new(unknowns)?,
+            here: Rung::new(level, &start, &settings)?,
+            start,
+            settings,
+            ladder,
+            others,
+            rung,
+            highest: rung,
+            choice: Choice::new(solver.tolerance),
             specials: Vec::new(),
             estimator,
-            motion: try_vec(unknowns - 2, 0.0, WHAT)?,
-            forces: try_vec(unknowns - 2, 0.0, WHAT)?,
-            response: try_vec(carried, Complex64::ZERO, WHAT)?,
+            assessed: None,
+            damping: start.linear.damping.abs(),
             before: Vec::new(),
-            weighted: try_vec(condensed.ndof(), Complex64::ZERO, WHAT)?,
+            weighted: try_vec(level.condensed.ndof(), Complex64::ZERO, WHAT)?,
             stalled: false,
-            condensed,
-            linear,
             branch,
-            problem,
         })
+    }
+
+    /// Tells the branch of its mode.
+    pub fn set_mode(&mut self, data: ModeData) {
+        self.branch.set_mode(data);
+    }
+
+    /// log₁₀ of the amplitudes up to which the mode is linear, see [`Mode::linear_up_to`].
+    pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
+        self.here.problem.linear_up_to(first)
     }
 
     /// The linear mode as a point of the branch.
     pub fn linear_point(&mut self, p: f64) -> Result<Point> {
-        let n = self.problem.size();
+        let Rung { problem, at, .. } = &mut self.here;
+        let n = problem.size();
         let mut v = try_vec(n + 1, 0.0, WHAT)?;
-        self.problem.linear_start(&mut v[..n]);
+        problem.linear_start(&mut v[..n]);
         v[n] = p;
         let mut tangent = try_vec(n + 1, 0.0, WHAT)?;
         tangent[n] = 1.0;
-        self.problem.evaluate(&v[..n], p, &mut self.at)?;
-        let (amplitude, slope) = self.problem.observe(&v[..n], &tangent);
+        problem.evaluate(&v[..n], p, at)?;
+        let (amplitude, slope) = problem.observe(&v[..n], &tangent);
         Ok(Point {
             v,
             tangent,
             amplitude,
             slope,
-            residual: norm(&self.at.residual) / self.at.scale,
+            residual: norm(&at.residual) / at.scale,
             iterations: 0,
             step: 0.0,
             stalled: false,
@@ -99,37 +165,47 @@ impl<'a> ModePoints<'a> {
         })
     }
 
-    /// Evaluates the problem at a point, and what is stored of it.
-    fn measure(&mut self, point: &Point) -> Result<ModePoint> {
-        let n = point.unknowns().len();
+    /// Evaluates the problem at a point.
+    fn evaluate(&mut self, point: &Point) -> Result<()> {
+        let here = &mut self.here;
         let (u, p) = (point.unknowns(), point.parameter());
-        self.problem.evaluate(u, p, &mut self.at)?;
-        let (omega, damping_ratio) = Mode::frequency_and_damping(self.linear, u);
+        here.problem.evaluate(u, p, &mut here.at)?;
         let a = 10f64.powf(p);
-        for (m, u) in self.motion.iter_mut().zip(u) {
+        for (m, u) in here.motion.iter_mut().zip(u) {
             *m = a * u;
         }
-        let dofs = self.condensed.ndof();
+        let dofs = here.level.condensed.ndof();
         let dof = self.branch.response_dof();
-        let x = self.problem.shape();
-        for (r, x) in self.response.iter_mut().zip(x.chunks_exact(dofs)) {
+        for (r, x) in here.response.iter_mut().zip(here.problem.shape().chunks_exact(dofs)) {
             *r = a * x[dof];
         }
-        self.forces.copy_from_slice(self.problem.forces().forces());
-        let unit = a * self.condensed.length();
-        let balance: Balance = energy::balance(self.condensed, omega, x, &self.forces, &u[..n - 2]);
-        let i = self.condensed.set().fundamental();
+        Ok(())
+    }
+
+    /// What is stored of the point evaluated last.
+    fn measure(&mut self, point: &Point) -> ModePoint {
+        let here = &mut self.here;
+        let condensed = &*here.level.condensed;
+        let n = point.unknowns().len();
+        let (u, p) = (point.unknowns(), point.parameter());
+        let (omega, damping_ratio) = Mode::frequency_and_damping(self.start.linear, u);
+        let dofs = condensed.ndof();
+        let x = here.problem.shape();
+        here.forces.copy_from_slice(here.problem.forces().forces());
+        let unit = 10f64.powf(p) * condensed.length();
+        let balance: Balance = energy::balance(condensed, omega, x, &here.forces, &u[..n - 2]);
+        let i = condensed.set().fundamental();
         let first = &x[i * dofs..(i + 1) * dofs];
-        self.condensed.blocks()[i].multiply_mass(first, &mut self.weighted);
+        condensed.blocks()[i].multiply_mass(first, &mut self.weighted);
         let size = inner(first, &self.weighted).re;
         let assurance = if self.before.is_empty() {
             1.0
         } else {
             let overlap = inner(&self.before, &self.weighted).norm_sqr();
-            self.condensed.blocks()[i].multiply_mass(&self.before, &mut self.weighted);
+            condensed.blocks()[i].multiply_mass(&self.before, &mut self.weighted);
             overlap / (size * inner(&self.before, &self.weighted).re)
         };
-        Ok(ModePoint {
+        ModePoint {
             log10_amplitude: p,
             modal_amplitude: unit * size.sqrt(),
             damping_ratio,
@@ -138,32 +214,51 @@ impl<'a> ModePoints<'a> {
             friction_loss: balance.friction_loss * unit * unit,
             structural_loss: balance.structural_loss * unit * unit,
             assurance,
-        })
+        }
     }
 
-    /// Fundamental of the response and the errors of the point measured last.
-    fn numbers(&mut self, point: &Point, mode: &ModePoint) -> Result<Numbers> {
-        let omega = Mode::frequency_and_damping(self.linear, point.unknowns()).0;
-        let amplitude = self.response[self.condensed.set().fundamental()];
-        let sampling_error = self.problem.sampling_error(&self.motion, omega)?;
+    /// Estimate of the point evaluated last.
+    fn estimate(&mut self, point: &Point) -> Result<Option<Estimate>> {
         let Some(estimator) = &mut self.estimator else {
-            return Ok((amplitude, sampling_error, (f64::NAN, f64::NAN)));
+            return Ok(None);
         };
+        let here = &self.here;
+        let condensed = &here.level.condensed;
+        let (omega, damping) = Mode::frequency_and_damping(self.start.linear, point.unknowns());
         let solved = Solved {
-            condensed: self.condensed,
-            motion: &self.motion,
+            condensed,
+            motion: &here.motion,
             omega,
-            response: amplitude * self.condensed.length(),
+            response: here.response[condensed.set().fundamental()] * condensed.length(),
         };
-        let errors = estimator.at(&solved, mode.log10_amplitude, mode.damping_ratio)?;
-        Ok((amplitude, sampling_error, (errors.frequency, errors.damping)))
+        estimator.at(&solved, point.parameter(), damping).map(Some)
+    }
+
+    /// Fundamental of the response and the errors of the point evaluated last.
+    fn numbers(&mut self, point: &Point) -> Result<Numbers> {
+        let omega = Mode::frequency_and_damping(self.start.linear, point.unknowns()).0;
+        let here = &mut self.here;
+        let amplitude = here.response[here.level.condensed.set().fundamental()];
+        let sampling_error = here.problem.sampling_error(&here.motion, omega)?;
+        let errors = match self.assessed.take() {
+            Some(errors) => errors,
+            None => self
+                .estimate(point)?
+                .map_or((f64::NAN, f64::NAN), |e| (e.frequency, e.damping)),
+        };
+        Ok((amplitude, sampling_error, errors))
+    }
+
+    /// What was removed from the problem that has the most harmonics.
+    pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
+        self.ladder.level(self.highest)?.condensed.reduction(model, solver)
     }
 
     /// Numbers the special points after the curve.
-    pub fn finish(mut self, ending: &Ending) -> Result<Branch> {
+    pub fn finish(mut self, ending: &Ending, reduction: Reduction) -> Result<Branch> {
         for kept in &self.specials {
             let record = record(
-                self.linear,
+                (self.start.linear, kept.level),
                 &kept.point,
                 &kept.motion,
                 &kept.response,
@@ -175,14 +270,22 @@ impl<'a> ModePoints<'a> {
                 data.push(kept.mode)?;
             }
         }
-        self.branch.set_ending(ending.status, ending.reason, self.stalled);
+        let missed = self.choice.missed && ending.status == Status::Ok;
+        let status = if missed {
+            Status::StoppedMaxHarmonics
+        } else {
+            ending.status
+        };
+        self.branch.set_reduction(reduction);
+        self.branch.set_estimates(self.choice.estimates);
+        self.branch.set_ending(status, ending.reason, self.stalled);
         Ok(self.branch)
     }
 }
 
 impl Keeper for ModePoints<'_> {
     fn problem(&mut self) -> &mut dyn Problem {
-        &mut self.problem
+        &mut self.here.problem
     }
 
     fn branch(&self) -> &Branch {
@@ -190,40 +293,132 @@ impl Keeper for ModePoints<'_> {
     }
 
     fn keep(&mut self, point: &Point) -> Result<()> {
-        let mode = self.measure(point)?;
+        self.evaluate(point)?;
+        let mode = self.measure(point);
         // All that may fail comes before anything is kept.
-        let numbers = self.numbers(point, &mode)?;
+        let numbers = self.numbers(point)?;
         self.stalled |= point.stalled;
+        self.damping = self.damping.max(mode.damping_ratio.abs());
         if let Some(data) = self.branch.mode_data_mut() {
             data.push_state(&point.v, &point.tangent)?;
             data.push(mode)?;
         }
-        let slip = self.problem.forces().slip_fractions();
-        let i = self.condensed.set().fundamental();
-        let record = record(self.linear, point, &self.motion, &self.response, slip, numbers);
+        let here = &self.here;
+        let slip = here.problem.forces().slip_fractions();
+        let i = here.level.condensed.set().fundamental();
+        let of = (self.start.linear, here.level);
+        let record = record(of, point, &here.motion, &here.response, slip, numbers);
         self.branch.push_curve(&record)?;
-        let dofs = self.condensed.ndof();
-        self.before = try_copy(&self.problem.shape()[i * dofs..(i + 1) * dofs], WHAT)?;
+        let dofs = here.level.condensed.ndof();
+        self.before = try_copy(&here.problem.shape()[i * dofs..(i + 1) * dofs], WHAT)?;
+        self.highest = self.highest.max(self.rung);
         Ok(())
     }
 
-    fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<()> {
-        let mode = self.measure(&point)?;
+    fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<bool> {
+        self.evaluate(&point)?;
+        if !suffices(self, &point)? {
+            return Ok(false);
+        }
+        let mode = self.measure(&point);
+        let numbers = self.numbers(&point)?;
+        let here = &self.here;
         let kept = Kept {
-            numbers: self.numbers(&point, &mode)?,
+            numbers,
             kind,
-            motion: try_copy(&self.motion, "the special points")?,
-            response: try_copy(&self.response, "the special points")?,
-            slip_fractions: try_copy(self.problem.forces().slip_fractions(), "the special points")?,
+            level: here.level,
+            motion: try_copy(&here.motion, "the special points")?,
+            response: try_copy(&here.response, "the special points")?,
+            slip_fractions: try_copy(here.problem.forces().slip_fractions(), "the special points")?,
             mode,
             point,
         };
-        try_push(&mut self.specials, kept, "the special points")
+        try_push(&mut self.specials, kept, "the special points")?;
+        self.highest = self.highest.max(self.rung);
+        Ok(true)
+    }
+
+    fn ladder(&self) -> &Ladder<'_> {
+        self.ladder
+    }
+
+    fn rung(&self) -> usize {
+        self.rung
+    }
+
+    fn go_to(&mut self, rung: usize) -> Result<()> {
+        if rung == self.rung {
+            return Ok(());
+        }
+        let there = match self.others[rung].take() {
+            Some(there) => there,
+            None => Rung::new(self.ladder.level(rung)?, &self.start, &self.settings)?,
+        };
+        self.others[self.rung] = Some(core::mem::replace(&mut self.here, there));
+        self.rung = rung;
+        Ok(())
+    }
+
+    fn choice(&mut self) -> &mut Choice {
+        &mut self.choice
+    }
+
+    /// The error is that of the frequency, relative, or of the damping ratio, over the largest one so far.
+    fn assess(&mut self, point: &Point) -> Result<Option<Assessment>> {
+        self.assessed = None;
+        self.evaluate(point)?;
+        let Some(estimate) = self.estimate(point)? else {
+            return Ok(None);
+        };
+        self.assessed = Some((estimate.frequency, estimate.damping));
+        let damping = Mode::frequency_and_damping(self.start.linear, point.unknowns()).1;
+        let largest = self.damping.max(damping.abs());
+        let of_damping = if estimate.damping == 0.0 {
+            0.0
+        } else {
+            estimate.damping / largest
+        };
+        // NaN stays NaN.
+        let error = if of_damping > estimate.frequency {
+            of_damping
+        } else {
+            estimate.frequency
+        };
+        Ok(Some(Assessment { error, estimate }))
+    }
+
+    fn carry(&self, point: &Point, from: usize) -> Result<Point> {
+        let (from, to) = (self.ladder.level(from)?, self.ladder.level(self.rung)?);
+        carried_point(point, &from.condensed, &to.condensed, 3, false)
+    }
+
+    fn corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
+        let to = &self.ladder.level(self.rung)?.condensed;
+        let mut start = self.carry(point, from)?;
+        let n = to.unknowns();
+        let corrected = &estimate.corrected;
+        let unit = 10f64.powf(point.parameter()) * to.length();
+        to.set()
+            .carry(&corrected.set, &corrected.motion, 1.0 / unit, &mut start.v[..n]);
+        let both = (corrected.omega, corrected.damping);
+        Mode::set_frequency_and_damping(self.start.linear, both, &mut start.v[..n + 2]);
+        Ok(start)
+    }
+
+    fn solve_again(
+        &mut self,
+        near: &Point,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>> {
+        let here = &mut self.here;
+        let (problem, corrector) = (&mut here.problem, &mut here.corrector);
+        solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)
     }
 }
 
 fn record<'a>(
-    linear: &LinearMode,
+    (linear, level): (&LinearMode, &'a Level),
     point: &'a Point,
     motion: &'a [f64],
     response: &'a [Complex64],
@@ -231,6 +426,7 @@ fn record<'a>(
     (amplitude, sampling_error, errors): Numbers,
 ) -> Record<'a> {
     Record {
+        level,
         omega: Mode::frequency_and_damping(linear, point.unknowns()).0,
         motion,
         amplitude,

@@ -2,7 +2,8 @@
 //! contacts that slide.
 
 use super::follow::{Ending, Keeper, Task};
-use super::mode_points::ModePoints;
+use super::levels::Ladder;
+use super::mode_points::{ModePoints, Start};
 use crate::branch::mode::{ModeData, ModeInfo};
 use crate::branch::{Branch, SpecialKind};
 use crate::condense::Condensed;
@@ -18,9 +19,8 @@ use crate::model::spring::{along, relative_row};
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::at_rest::force_at_rest;
-use crate::problem::mode::{Gauge, LinearMode, Mode};
+use crate::problem::mode::{Gauge, LinearMode};
 use num_complex::Complex64;
-use std::sync::Arc;
 
 /// Motion that counts as none, relative to the largest of the mode.
 const NODE: f64 = 1e-9;
@@ -94,8 +94,19 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         shape: damped.shape,
     };
     let gauge = gauge(model, range, &mut linear)?;
-    let (condensed, motion) = Condensed::for_mode(model, solver, range.damping_form, &linear.shape)?;
-    let condensed = Arc::new(condensed);
+    let ladder = Ladder::new(model, solver, &[1], |harmonics| {
+        let options = SolverOptions { harmonics, ..*solver };
+        Ok(Condensed::for_mode(model, &options, range.damping_form, &linear.shape)?.0)
+    })?;
+    let rung = ladder.first(solver.harmonics);
+    let level = ladder.level(rung)?;
+    let condensed = &level.condensed;
+    let i = condensed.set().fundamental();
+    let moved = condensed.blocks()[i]
+        .rows
+        .iter()
+        .map(|row| along(row, &linear.shape).norm());
+    let motion = moved.fold(0.0, f64::max);
     let largest = linear.shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
     if condensed.coordinates() == 0 || motion <= NODE * largest {
         return fail!(
@@ -105,44 +116,52 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
             chosen.omega
         );
     }
-    if let Some(id) = force_at_rest(&condensed, linear.omega, solver.samples)? {
+    if let Some(id) = force_at_rest(condensed, linear.omega, level.samples)? {
         return fail!(
             Unsupported,
             "contact {id} has a force at rest; nonlinear modes under constant forces are not provided yet"
         );
     }
-    let mut problem = Mode::new(&condensed, &gauge, &linear, solver.samples)?;
-    let (linear_up_to, nearly) = problem.linear_up_to(range.log10_start)?;
-    let info = ModeInfo {
-        index: chosen.index,
-        omega: chosen.omega,
-        multiplicity: chosen.multiplicity,
-        multiple: chosen.multiple,
-        reference_dof: gauge.reference_dof,
-        engine_order: model.structure().engine_order(),
-        amplitude: range.amplitude,
-        linear_up_to,
-        stuck: chosen.stuck,
-        free: chosen.free,
-    };
     let response = solver.response_dof.unwrap_or(gauge.reference_dof);
-    let mut branch = Branch::new(
-        Arc::clone(&condensed),
-        condensed.reduction(model, solver)?,
-        solver.samples,
-        solver.harmonics,
-        response,
-    );
-    let ends = (range.log10_start, range.log10_stop);
-    branch.set_mode(ModeData::new(info, linear.clone(), gauge.clone(), ends, problem.size()));
+    let told = if ladder.is_automatic() { 0 } else { solver.harmonics };
+    let branch = Branch::new(level, condensed.reduction(model, solver)?, told, response)?;
     let start = (&linear, &gauge);
-    let estimator = solver
-        .estimate_error
-        .then(|| ModeEstimator::new(model, solver, range.damping_form, start, response));
-    let mut points = ModePoints::new(&condensed, &linear, problem, branch, estimator)?;
-    let outcome = run(&mut points, solver, range, (linear_up_to, nearly), hooks);
+    let estimates = solver.estimate_error || ladder.is_automatic();
+    let estimator = estimates.then(|| ModeEstimator::new(model, solver, range.damping_form, start, response));
+    let settings = Settings {
+        start: range.log10_start,
+        end: range.log10_stop,
+        tolerance: solver.tol_residual,
+        max_iterations: solver.max_newton,
+        steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
+    };
+    let begin = Start {
+        linear: &linear,
+        gauge: &gauge,
+    };
+    let mut points = ModePoints::new(begin, solver, settings, (&ladder, rung), branch, estimator)?;
+    let (linear_up_to, nearly) = points.linear_up_to(range.log10_start)?;
+    points.set_mode(ModeData::new(
+        ModeInfo {
+            index: chosen.index,
+            omega: chosen.omega,
+            multiplicity: chosen.multiplicity,
+            multiple: chosen.multiple,
+            reference_dof: gauge.reference_dof,
+            engine_order: model.structure().engine_order(),
+            amplitude: range.amplitude,
+            linear_up_to,
+            stuck: chosen.stuck,
+            free: chosen.free,
+        },
+        linear.clone(),
+        gauge.clone(),
+        (range.log10_start, range.log10_stop),
+    ));
+    let outcome = run(&mut points, solver, (range, settings), (linear_up_to, nearly), hooks);
     let ending = Ending::of(outcome, points.branch())?;
-    points.finish(&ending)
+    let reduction = points.reduction(model, solver)?;
+    points.finish(&ending, reduction)
 }
 
 /// Chooses the phase's degree of freedom and gives the linear mode amplitude 1.
@@ -189,7 +208,7 @@ fn gauge(model: &Model, range: &ModeOptions<'_>, linear: &mut LinearMode) -> Res
 fn run(
     points: &mut ModePoints<'_>,
     solver: &SolverOptions,
-    range: &ModeOptions<'_>,
+    (range, settings): (&ModeOptions<'_>, Settings),
     (linear_up_to, nearly): (f64, f64),
     hooks: &mut Hooks<'_>,
 ) -> Result<Status> {
@@ -201,10 +220,7 @@ fn run(
     };
     let settings = Settings {
         start: from,
-        end,
-        tolerance: solver.tol_residual,
-        max_iterations: solver.max_newton,
-        steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
+        ..settings
     };
     // The branch may come back to amplitudes below the onset, slipping.
     let followed = if from < end { start } else { from };
@@ -218,7 +234,12 @@ fn run(
         max_points: solver.max_points,
         before: None,
     };
+    let rung = points.rung();
     if start <= linear_up_to {
+        // Nothing moves there but the fundamental.
+        if points.ladder().is_automatic() {
+            points.go_to(0)?;
+        }
         if let Some(status) = linear_range(points, &task, linear_up_to.min(end), hooks)? {
             return Ok(status);
         }
@@ -227,10 +248,18 @@ fn run(
                 let point = points.linear_point(p)?;
                 points.keep_special(SpecialKind::At(i), point)?;
             } else if p < from {
+                points.go_to(rung)?;
                 let at_it = Settings { start: p, ..settings };
-                match start::solve(points.problem(), &at_it, hooks.cancelled)? {
-                    First::Found(point, _) => points.keep_special(SpecialKind::At(i), point)?,
-                    First::Cancelled => return Ok(Status::StoppedByCaller),
+                loop {
+                    match start::solve(points.problem(), &at_it, hooks.cancelled)? {
+                        // Else it asks for more harmonics.
+                        First::Found(point, _) => {
+                            if points.keep_special(SpecialKind::At(i), point)? {
+                                break;
+                            }
+                        }
+                        First::Cancelled => return Ok(Status::StoppedByCaller),
+                    }
                 }
             }
         }
@@ -241,6 +270,7 @@ fn run(
             return Ok(Status::StoppedMaxPoints);
         }
     }
+    points.go_to(rung)?;
     let onset = if linear_up_to.is_finite() {
         Some(points.linear_point(linear_up_to)?)
     } else {

@@ -130,12 +130,11 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
         response_dof: branch.response_dof(),
     };
     let mut states = Vec::new();
-    let mut recovery = Recovery::new(branch)?;
-    let fundamental = branch.condensed().set().fundamental();
+    let mut recovery = Recovery::at(branch, 0)?;
     let mut x = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
     for point in 0..branch.points() {
         recovery.go_to(point)?;
-        recovery.harmonic(fundamental, &mut x)?;
+        recovery.harmonic(branch.level_at(point).set().fundamental(), &mut x)?;
         let Some(numbers) = data.point(point) else {
             return fail!(Internal, "point {point} of the mode has no numbers");
         };

@@ -1,7 +1,7 @@
 //! Energies and losses of a stored point.
 
 use super::{Branch, Recovery};
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, try_vec};
 use crate::postprocess::energy::{balance, peaks};
 use num_complex::Complex64;
 
@@ -41,19 +41,11 @@ impl Branch {
     /// `Index` for an unknown point, `OutOfMemory`.
     pub fn energy_at(&self, point: usize) -> Result<Energy> {
         const WHAT: &str = "the energies";
-        let Some(&omega) = self.omega.get(point) else {
-            return fail!(
-                Index,
-                "point = {point}, needs 0 .. {} (points and special points)",
-                self.stored()
-            );
-        };
-        let n = self.ndof();
-        let length = self.condensed.length();
-        let carried = self.carried().len();
+        let carried = self.carried_of(point)?.len();
+        let condensed = self.level_at(point);
+        let (n, length, omega) = (condensed.ndof(), condensed.length(), self.omega[point]);
         let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, WHAT)?;
-        let mut recovery = Recovery::new(self)?;
-        recovery.go_to(point)?;
+        let mut recovery = Recovery::at(self, point)?;
         for (i, x) in x.chunks_exact_mut(n).enumerate() {
             recovery.harmonic(i, x)?;
             // In the solver's units: a scale that is a power of two costs no digit.
@@ -61,12 +53,11 @@ impl Branch {
                 *z /= length;
             }
         }
-        let size = self.condensed.coordinates() * self.condensed.set().packed_len();
-        let motion = &self.motion[point * size..(point + 1) * size];
-        let balance = balance(&self.condensed, omega, &x, recovery.forces(), motion);
-        let peaks = peaks(&self.condensed, omega, &x)?;
+        let motion = self.motion_at(point).unwrap_or(&[]);
+        let balance = balance(condensed, omega, &x, recovery.forces(), motion);
+        let peaks = peaks(condensed, omega, &x)?;
         let unit = |energy: f64| energy * length * length;
-        let wheel = |energy: f64| unit(energy) * self.condensed.sectors() as f64;
+        let wheel = |energy: f64| unit(energy) * condensed.sectors() as f64;
         Ok(Energy {
             twice_mean_kinetic: unit(balance.twice_mean_kinetic),
             kinetic_mean: unit(0.5 * balance.twice_mean_kinetic),

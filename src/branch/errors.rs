@@ -3,6 +3,17 @@
 use super::Branch;
 
 impl Branch {
+    pub(crate) fn set_estimates(&mut self, estimates: usize) {
+        self.estimates = estimates;
+    }
+
+    /// Error estimates that were made to choose the harmonics of all points, those of contacts that stick not counted;
+    /// 0 where no tolerance chose.
+    #[must_use]
+    pub fn estimates(&self) -> usize {
+        self.estimates
+    }
+
     /// Aliasing check of laws that are sampled, at each point: the relative change of their forces with
     /// half the samples (twice as many, where half are too few). 0 where all laws are exact,
     /// NaN where a law did not answer to it. It tells the size of the error by sampling and is no bound of it.

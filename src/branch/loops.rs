@@ -144,24 +144,17 @@ impl Branch {
     /// Number of relative motions of a contact, of which [`Self::contact_loop`] tells.
     #[must_use]
     pub fn contact_directions(&self, contact: usize) -> Option<usize> {
-        let kept = self.condensed.roster().contacts().get(contact)?;
+        let kept = self.levels[0].condensed.roster().contacts().get(contact)?;
         Some(kept.directions())
     }
 
     fn check_point(&self, point: usize) -> Result<()> {
-        if point < self.stored() {
-            return Ok(());
-        }
-        fail!(
-            Index,
-            "point = {point}, needs 0 .. {} (points and special points)",
-            self.stored()
-        )
+        self.carried_of(point).map(|_| ())
     }
 
     fn check_contact(&self, point: usize, contact: usize) -> Result<&Contact> {
         self.check_point(point)?;
-        match self.condensed.roster().contacts().get(contact) {
+        match self.levels[0].condensed.roster().contacts().get(contact) {
             Some(kept) => Ok(kept),
             None => fail!(Index, "contact = {contact}, needs 0 .. {}", self.contacts()),
         }
@@ -174,7 +167,7 @@ impl Branch {
         contact: usize,
         use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
     ) -> Result<T> {
-        let condensed = &self.condensed;
+        let condensed = self.level_at(point);
         let roster = condensed.roster();
         if let Some(at) = roster.linear(contact) {
             let kept = &roster.contacts()[contact];
@@ -192,10 +185,10 @@ impl Branch {
         let m = set.packed_len();
         let mut motion = Vec::new();
         for c in &placed.coordinates {
-            let begin = (point * condensed.coordinates() + c) * m;
-            try_extend(&mut motion, &self.motion[begin..begin + m], "the motion of a contact")?;
+            let all = self.motion_at(point).unwrap_or(&[]);
+            try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
         }
-        let orbit = Orbit::new(set, &motion, &*placed.law, self.omega[point], self.samples);
+        let orbit = Orbit::new(set, &motion, &*placed.law, self.omega[point], self.samples_at(point));
         use_it(&orbit, condensed.length())
     }
 
@@ -209,14 +202,14 @@ impl Branch {
         of: impl Fn(usize, usize, &[Complex64]) -> Complex64,
     ) -> Result<(HarmonicSet, Vec<f64>)> {
         const WHAT: &str = "the harmonics";
-        let highest = self.carried().last().copied().unwrap_or(0);
+        let carried = self.carried_of(point)?;
+        let highest = carried.last().copied().unwrap_or(0);
         let set = HarmonicSet::all(highest)?;
         let m = set.packed_len();
         let mut packed = try_vec(signals.saturating_mul(m), 0.0, WHAT)?;
         let mut x = try_vec(self.ndof(), Complex64::ZERO, WHAT)?;
-        let mut recovery = Recovery::new(self)?;
-        recovery.go_to(point)?;
-        for (i, &h) in self.carried().iter().enumerate() {
+        let mut recovery = Recovery::at(self, point)?;
+        for (i, &h) in carried.iter().enumerate() {
             recovery.harmonic(i, &mut x)?;
             for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
                 set.set(signal, h, of(i, k, &x));

@@ -1,8 +1,7 @@
 //! What a nonlinear mode holds beside the points that every branch has.
 
 use super::Branch;
-use crate::condense::Condensed;
-use crate::error::{Error, Result, try_extend};
+use crate::error::{Error, Result, try_extend, try_push};
 use crate::model::repeated::Multiple;
 use crate::options::Amplitude;
 use crate::problem::mode::{Gauge, LinearMode};
@@ -75,14 +74,15 @@ pub(crate) struct ModeData {
     fields: [Vec<f64>; FIELDS],
     /// Unknowns and parameter of each point of the curve, then its tangent.
     states: Vec<f64>,
-    state_len: usize,
+    /// Where the state of each point begins.
+    begins: Vec<usize>,
 }
 
 /// Numbers of a [`ModePoint`].
 const FIELDS: usize = 8;
 
 impl ModeData {
-    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: (f64, f64), unknowns: usize) -> Self {
+    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: (f64, f64)) -> Self {
         Self {
             info,
             linear,
@@ -90,7 +90,7 @@ impl ModeData {
             range,
             fields: Default::default(),
             states: Vec::new(),
-            state_len: unknowns + 1,
+            begins: Vec::new(),
         }
     }
 
@@ -118,15 +118,17 @@ impl ModeData {
 
     /// Keeps the state of a point of the curve.
     pub fn push_state(&mut self, v: &[f64], tangent: &[f64]) -> Result<()> {
+        try_push(&mut self.begins, self.states.len(), "the points of the mode")?;
         try_extend(&mut self.states, v, "the points of the mode")?;
         try_extend(&mut self.states, tangent, "the points of the mode")
     }
 
     /// Unknowns with parameter, and tangent, of a point of the curve.
     pub fn state(&self, point: usize) -> Option<(&[f64], &[f64])> {
-        let len = 2 * self.state_len;
-        let both = self.states.get(point * len..(point + 1) * len)?;
-        Some(both.split_at(self.state_len))
+        let begin = *self.begins.get(point)?;
+        let end = self.begins.get(point + 1).copied().unwrap_or(self.states.len());
+        let both = self.states.get(begin..end)?;
+        Some(both.split_at(both.len() / 2))
     }
 
     pub fn point(&self, point: usize) -> Option<ModePoint> {
@@ -187,20 +189,6 @@ impl Branch {
     /// Damping ratio at a stored point; 0 for a forced response.
     pub(super) fn damping_at(&self, point: usize) -> f64 {
         self.mode_at(point).map_or(0.0, |p| p.damping_ratio)
-    }
-
-    pub(crate) fn condensed(&self) -> &Condensed {
-        &self.condensed
-    }
-
-    /// Packed relative motions of a stored point, in the solver's units.
-    pub(crate) fn motion_at(&self, point: usize) -> Option<&[f64]> {
-        let size = self.condensed.coordinates() * self.condensed.set().packed_len();
-        self.motion.get(point * size..(point + 1) * size)
-    }
-
-    pub(crate) fn samples(&self) -> usize {
-        self.samples
     }
 
     pub(crate) fn mode_data(&self) -> Option<&ModeData> {

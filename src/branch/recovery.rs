@@ -1,6 +1,7 @@
 //! The motion of all degrees of freedom at a stored point, from the relative motions of the contacts.
 
-use super::Branch;
+use super::{Branch, Level};
+use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_vec};
 use crate::problem::contact_forces::ContactForces;
@@ -9,6 +10,8 @@ use num_complex::Complex64;
 /// Recovers one point after the other.
 pub(crate) struct Recovery<'a> {
     branch: &'a Branch,
+    level: usize,
+    condensed: &'a Condensed,
     workspace: Workspace,
     point: usize,
     forces: ContactForces<'a>,
@@ -18,31 +21,40 @@ pub(crate) struct Recovery<'a> {
 const WHAT: &str = "the harmonics";
 
 impl<'a> Recovery<'a> {
-    /// Memory for the points of a branch.
+    /// Memory for the points of a branch, gone to a stored one; see [`Self::go_to`].
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(branch: &'a Branch) -> Result<Self> {
-        let condensed = &branch.condensed;
-        Ok(Self {
+    /// `Index` for an unknown point, `OutOfMemory`; those of callbacks.
+    pub fn at(branch: &'a Branch, point: usize) -> Result<Self> {
+        branch.carried_of(point)?;
+        let level = branch.places[point].level;
+        let Level { condensed, samples } = &branch.levels[level];
+        let mut recovery = Self {
             branch,
+            level,
+            condensed,
             workspace: Workspace::new(condensed, None)?,
-            point: 0,
-            forces: ContactForces::unchecked(condensed, branch.samples)?,
+            point,
+            forces: ContactForces::unchecked(condensed, *samples)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, WHAT)?,
-        })
+        };
+        recovery.go_to(point)?;
+        Ok(recovery)
     }
 
     fn motion(&self) -> &'a [f64] {
-        let size = self.forces.forces().len();
-        &self.branch.motion[self.point * size..(self.point + 1) * size]
+        self.branch.motion_at(self.point).unwrap_or(&[])
     }
 
     /// Evaluates the contact forces at a stored point.
     ///
     /// # Errors
-    /// Those of callbacks.
+    /// `OutOfMemory`; those of callbacks.
     pub fn go_to(&mut self, point: usize) -> Result<()> {
+        if self.branch.places[point].level != self.level {
+            *self = Self::at(self.branch, point)?;
+            return Ok(());
+        }
         self.point = point;
         self.workspace.set_damping(self.branch.damping_at(point));
         let motion = self.motion();
@@ -59,7 +71,7 @@ impl<'a> Recovery<'a> {
     /// # Errors
     /// `Singular` at an undamped resonance that no contact feels.
     pub fn harmonic(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
-        let condensed = &self.branch.condensed;
+        let condensed = self.condensed;
         let set = condensed.set();
         let motion = self.motion();
         for (c, w) in self.w.iter_mut().enumerate() {

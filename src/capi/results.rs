@@ -32,11 +32,12 @@ pub struct hbvib_reduction {
     pub never_slipping: i64,
     /// Contacts without force (no stiffness, or no slip limit).
     pub inert: i64,
-    /// Highest harmonic number H asked for.
+    /// Highest harmonic number H of which the points tell: that asked for or, where the tolerance decided, the
+    /// highest that one of them carries.
     pub harmonics_asked: i64,
-    /// Number of harmonics carried.
+    /// Number of harmonics carried, where most are.
     pub harmonics_carried: i64,
-    /// Real unknowns of the nonlinear problem.
+    /// Real unknowns of the nonlinear problem, where there are most.
     pub unknowns: i64,
     /// The degree of freedom whose amplitude was followed.
     pub response_dof: i64,
@@ -224,7 +225,7 @@ fn mode_field(field: i32) -> Option<ModeField> {
 }
 
 /// Recovers harmonics 0 .. H of a range of degrees of freedom at a stored point, in the caller's
-/// unit of length. Harmonics that are not carried are zero.
+/// unit of length. H is harmonics_asked of hbvib_branch_reduction; harmonics that are not carried are zero.
 ///
 /// point      number of a point of the curve, or of a peak, fold or solution wanted.
 /// first_dof  first degree of freedom of the range, from 0.

@@ -78,7 +78,8 @@ unsafe impl Described for hbvib_hooks {
     }
 }
 
-/// Fills solver options with their defaults: harmonics = 9, exact events, automatic steps.
+/// Fills solver options with their defaults: tolerance = 1e-3, from which the harmonics follow, exact events,
+/// automatic steps. For exactly so many harmonics set tolerance = 0 and harmonics.
 ///
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
@@ -122,8 +123,10 @@ pub(super) fn harmonics_and_samples(harmonics: i64, samples: i64, arguments: (i3
         SolverOptions {
             harmonics,
             samples,
+            tolerance: 0.0,
             ..SolverOptions::default()
         }
+        .fixed()
         .check()
     };
     let harmonics = number(harmonics, "harmonics").blame(arguments.0)?;

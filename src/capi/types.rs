@@ -23,7 +23,8 @@ pub enum hbvib_status_code {
     HBVIB_STOPPED_STEP_TOO_SMALL = 2,
     /// max_points was reached.
     HBVIB_STOPPED_MAX_POINTS = 3,
-    /// More harmonics were needed than max_harmonics.
+    /// Points need more harmonics for the tolerance than max_harmonics or than can be afforded, or their error is
+    /// unknown: HBVIB_ERROR_ESTIMATE tells which. The whole range was covered; all points are there.
     HBVIB_STOPPED_MAX_HARMONICS = 4,
     /// Round-off stopped the residual above tol_residual.
     HBVIB_STOPPED_STALLED = 5,
@@ -230,13 +231,17 @@ pub struct hbvib_solver_options {
     pub struct_size: u32,
     /// Threads that may be used; 0 = default = 1, which starts none. Results do not depend on it.
     pub num_threads: i32,
-    /// Relative error wanted in the response; 0 (default): exactly `harmonics`.
+    /// Relative error wanted, from which the harmonics of each point are chosen (default 1e-3): of the complex
+    /// fundamental of the response degree of freedom; in a nonlinear mode of the frequency and of the damping
+    /// ratio, the latter over the largest met so far. 0: exactly `harmonics`, whatever the error.
     pub tolerance: f64,
-    /// Highest harmonic number H.
+    /// Highest harmonic number H. Where the tolerance decides: the H to begin with.
     pub harmonics: i64,
-    /// Cap on H where the tolerance decides.
+    /// Cap on H where the tolerance decides, at least the highest harmonic that is forced. Points that would
+    /// need more are kept, and the status is HBVIB_STOPPED_MAX_HARMONICS.
     pub max_harmonics: i64,
-    /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1.
+    /// 0: events of contacts are located exactly; else samples per period, at least 2H + 1; where the
+    /// tolerance decides, at least 8H are taken.
     /// HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact either way; HBVIB_FRICTION_3D and
     /// HBVIB_REGULARISED have samples always, 0: a number by H.
     pub samples: i64,
@@ -259,7 +264,7 @@ pub struct hbvib_solver_options {
     /// 1: carry the mean and even harmonics even where symmetry makes them zero; 0: do not.
     pub keep_even_harmonics: i32,
     /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution with
-    /// more harmonics at each of them; 0 (default): do not.
+    /// more harmonics at each of them; 0 (default): do so only where the tolerance decides.
     pub estimate_error: i32,
 }
 

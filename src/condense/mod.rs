@@ -109,15 +109,16 @@ pub struct Reduction {
     pub never_slipping: usize,
     /// Contacts without force (no stiffness, or no slip limit).
     pub inert: usize,
-    /// Highest harmonic number asked for.
+    /// Highest harmonic number of which the points tell: that asked for or, where a tolerance decided, the highest
+    /// that one of them carries.
     pub harmonics_asked: usize,
-    /// Harmonics carried.
+    /// Harmonics carried, where most are.
     pub harmonics_carried: usize,
     /// Whether the mean is carried.
     pub mean_carried: bool,
     /// Whether the even harmonics were left out because law and forcing are odd.
     pub even_removed: bool,
-    /// Real unknowns of the nonlinear problem.
+    /// Real unknowns of the nonlinear problem, where there are most.
     pub unknowns: usize,
     /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
     pub held_by_contacts: usize,
@@ -327,6 +328,12 @@ impl Condensed {
         self.stiffness.len()
     }
 
+    /// Packed relative motions that are solved for.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.coordinates() * self.set.packed_len()
+    }
+
     /// Number of contacts in the model, the removed ones included.
     #[must_use]
     pub fn contacts(&self) -> usize {
@@ -405,7 +412,7 @@ impl Condensed {
             harmonics_carried: self.set.numbers().len(),
             mean_carried: self.set.has_mean(),
             even_removed: self.set.is_odd(),
-            unknowns: self.coordinates() * self.set.packed_len(),
+            unknowns: self.unknowns(),
             held_by_contacts,
         })
     }

@@ -58,7 +58,7 @@ impl Metric {
     }
 
     /// Turns a direction in unscaled numbers into a scaled vector of length 1.
-    pub(super) fn unit(self, direction: &[f64], row: &mut [f64]) {
+    pub fn unit(self, direction: &[f64], row: &mut [f64]) {
         let n = row.len() - 1;
         let length = self.norm(direction);
         for i in 0..n {

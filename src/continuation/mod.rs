@@ -6,6 +6,7 @@
 //! Introduction to Numerical Continuation Methods, 2003, doi:10.1137/1.9780898719154), and is
 //! accepted when the prediction was close and the direction kept.
 
+pub mod again;
 pub mod anchored;
 pub mod corrector;
 pub mod events;
@@ -114,6 +115,25 @@ impl Continuation {
             row: try_vec(n + 1, 0.0, WHAT)?,
             scratch: try_vec(n + 1, 0.0, WHAT)?,
         })
+    }
+
+    /// Goes on from a point in place of the one accepted last, and from `previous` in place of that before, both in
+    /// the unknowns of a problem that may have more or fewer of them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn go_on_from(&mut self, previous: Option<Point>, current: Point) -> Result<()> {
+        let n = current.v.len() - 1;
+        if n + 1 != self.row.len() {
+            self.corrector = Corrector::new(n, self.settings.tolerance, self.settings.max_iterations)?;
+            self.row = try_vec(n + 1, 0.0, WHAT)?;
+            self.scratch = try_vec(n + 1, 0.0, WHAT)?;
+        }
+        self.largest.0 = self.largest.0.max(norm(current.unknowns()));
+        self.largest.1 = self.largest.1.max(current.amplitude.norm());
+        self.previous = previous;
+        self.current = current;
+        Ok(())
     }
 
     /// The point that was accepted last.

@@ -68,7 +68,8 @@ impl Point {
         &self.v[..self.v.len() - 1]
     }
 
-    pub(super) fn reverse(&mut self) {
+    /// The same point, followed in the other sense.
+    pub fn reverse(&mut self) {
         for t in &mut self.tangent {
             *t = -*t;
         }

@@ -84,7 +84,7 @@ impl<'a> ForcedEstimator<'a> {
 
     fn lift(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
         let Some(extent) = self.extent(solved)? else {
-            return Ok(None);
+            return solved.unknown(0.0, true).map(Some);
         };
         let highest = extent.highest;
         let spare = (highest as f64 * SPARE) as usize;
@@ -146,6 +146,7 @@ impl<'a> ForcedEstimator<'a> {
         }
         Ok(Some(Estimate {
             certified,
+            too_large: !certified && extent.short,
             motion: known(change + norm(&lifted.next) / size),
             response: known(relative((response - solved.response).norm() + next, response)),
             frequency: known(0.0),

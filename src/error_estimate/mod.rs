@@ -19,6 +19,7 @@ pub mod forced;
 mod lift;
 pub mod mode;
 mod reach;
+pub(crate) use reach::affordable;
 mod system;
 
 use crate::condense::Condensed;
@@ -49,6 +50,9 @@ const ROUNDING: f64 = 1e-12;
 pub struct Estimate {
     /// Whether the estimate may be relied on. Where it is not certified, all errors are NaN: unknown.
     pub certified: bool,
+    /// Whether it is not because the lifted problem would be larger than can be afforded, so that more harmonics
+    /// would not help.
+    pub too_large: bool,
     /// Relative error of the relative motions at the contacts, in norm.
     pub motion: f64,
     /// Relative error of the complex fundamental of the response degree of freedom.
@@ -121,6 +125,7 @@ impl Solved<'_> {
         }
         Ok(Estimate {
             certified: true,
+            too_large: false,
             motion: 0.0,
             response: 0.0,
             frequency: 0.0,
@@ -140,9 +145,10 @@ impl Solved<'_> {
     }
 
     /// The estimate of a point of which nothing is known.
-    fn unknown(&self, damping: f64) -> Result<Estimate> {
+    fn unknown(&self, damping: f64, too_large: bool) -> Result<Estimate> {
         Ok(Estimate {
             certified: false,
+            too_large,
             motion: f64::NAN,
             response: f64::NAN,
             frequency: f64::NAN,
@@ -154,17 +160,11 @@ impl Solved<'_> {
 
     /// The packed motions in the harmonics of a lifted model, zero above those of the point.
     fn lifted(&self, to: &Condensed, unknowns: usize, factor: f64) -> Result<Vec<f64>> {
-        let (from, into) = (self.condensed.set(), to.set());
-        let (m, m2) = (from.packed_len(), into.packed_len());
         let factor = factor * self.condensed.length() / to.length();
         let mut lifted = try_vec(unknowns, 0.0, WHAT)?;
-        for (y, y2) in self.motion.chunks_exact(m).zip(lifted.chunks_exact_mut(m2)) {
-            for (i, h) in from.numbers().iter().enumerate() {
-                if let Ok(i2) = into.numbers().binary_search(h) {
-                    into.set(y2, i2, factor * from.get(y, i));
-                }
-            }
-        }
+        let motions = to.coordinates() * to.set().packed_len();
+        to.set()
+            .carry(self.condensed.set(), self.motion, factor, &mut lifted[..motions]);
         Ok(lifted)
     }
 }
@@ -207,9 +207,9 @@ fn lifted_options(options: &SolverOptions, highest: usize) -> SolverOptions {
 fn or_unknown(found: Result<Option<Estimate>>, solved: &Solved<'_>, damping: f64) -> Result<Estimate> {
     match found {
         Ok(Some(estimate)) => Ok(estimate),
-        Ok(None) => solved.unknown(damping),
+        Ok(None) => solved.unknown(damping, false),
         Err(e) if e.recoverable || matches!(e.status, Status::Singular | Status::OutOfMemory) => {
-            solved.unknown(damping)
+            solved.unknown(damping, e.status == Status::OutOfMemory)
         }
         Err(e) => Err(e),
     }

@@ -80,7 +80,7 @@ impl<'a> ModeEstimator<'a> {
         let most = reach::affordable(solved.condensed, MOST_UNKNOWNS);
         let least = reach::carried_from(set, 2 * own + 1);
         if least > most {
-            return Ok(None);
+            return solved.unknown(damping, true).map(Some);
         }
         if self.reach.is_none() {
             let waves = least.max(reach::all_waves(solved.condensed));
@@ -162,6 +162,7 @@ impl<'a> ModeEstimator<'a> {
         }
         Ok(Some(Estimate {
             certified,
+            too_large: !certified && short,
             motion: known(change + norm(&lifted.next[..n - 2]) / size),
             response: known(relative((response - solved.response).norm() + next, response)),
             frequency: known(((omega2 - solved.omega).abs() + (omega2 - omega1).abs()) / omega2),

@@ -36,7 +36,7 @@ const NEAR: f64 = 0.01;
 const NORM_ITERATIONS: usize = 8;
 
 /// Highest harmonic up to which a model has no more than so many unknowns.
-pub(super) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
+pub(crate) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
     let set = condensed.set();
     let each = unknowns / condensed.coordinates().max(1);
     let pairs = each.saturating_sub(usize::from(set.has_mean())) / 2;

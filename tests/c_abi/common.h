@@ -102,6 +102,7 @@ static inline hbvib_solver_options solver_options(void)
 {
     hbvib_solver_options s;
     if (hbvib_solver_options_init(&s, sizeof s) != HBVIB_OK) abort();
+    s.tolerance = 0;
     s.response_dof = 0;
     return s;
 }

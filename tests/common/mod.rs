@@ -267,6 +267,7 @@ pub fn phase(harmonic: usize, engine_order: i64, s: usize, sectors: usize) -> Co
 pub fn harmonics(highest: usize) -> SolverOptions {
     SolverOptions {
         harmonics: highest,
+        tolerance: 0.0,
         ..SolverOptions::default()
     }
 }

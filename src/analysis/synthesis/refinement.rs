@@ -1,8 +1,10 @@
 //! The resonance between two points of a mode's branch, solved on the mode's equations.
 
+use super::super::levels::carried;
 use super::oscillator::{Load, State};
 use crate::branch::Branch;
 use crate::branch::mode::{ModeData, ModePoint};
+use crate::condense::Condensed;
 use crate::continuation::events::Locator;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
@@ -26,15 +28,23 @@ pub(super) struct Refinement<'a> {
     branch: &'a Branch,
     data: &'a ModeData,
     load: &'a Load,
-    problem: Mode<'a>,
-    locator: Locator,
-    at: Linearisation,
+    solver: Solver<'a>,
     x: Vec<Complex64>,
 }
 
-impl<'a> Refinement<'a> {
-    pub fn new(branch: &'a Branch, data: &'a ModeData, load: &'a Load) -> Result<Self> {
-        let problem = Mode::new(branch.condensed(), &data.gauge, &data.linear, branch.samples())?;
+/// The mode's equations with the harmonics of one stored point.
+struct Solver<'a> {
+    level: usize,
+    condensed: &'a Condensed,
+    problem: Mode<'a>,
+    locator: Locator,
+    at: Linearisation,
+}
+
+impl<'a> Solver<'a> {
+    fn new(branch: &'a Branch, data: &'a ModeData, point: usize) -> Result<Self> {
+        let condensed = branch.level_at(point);
+        let problem = Mode::new(condensed, &data.gauge, &data.linear, branch.samples_at(point))?;
         let n = problem.size();
         let settings = Settings {
             start: data.range.0,
@@ -44,19 +54,34 @@ impl<'a> Refinement<'a> {
             steps: StepControl::new(0.0, 0.0, 0.0),
         };
         Ok(Self {
+            level: branch.level_number(point),
+            condensed,
+            at: Linearisation::new(n)?,
+            locator: Locator::new(n, settings)?,
+            problem,
+        })
+    }
+}
+
+impl<'a> Refinement<'a> {
+    pub fn new(branch: &'a Branch, data: &'a ModeData, load: &'a Load) -> Result<Self> {
+        Ok(Self {
             branch,
             data,
             load,
-            at: Linearisation::new(n)?,
-            locator: Locator::new(n, settings)?,
+            solver: Solver::new(branch, data, 0)?,
             x: try_vec(branch.ndof(), Complex64::ZERO, WHAT)?,
-            problem,
         })
     }
 
     /// The state without excess between points k and k + 1, whose excesses are given, by the
     /// Illinois variant of regula falsi in log₁₀ a.
     pub fn between(&mut self, k: usize, first: f64, last: f64) -> Result<Option<State>> {
+        let carried = |point: usize| self.branch.level_at(point).set().numbers().len();
+        let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
+        if self.branch.level_number(richer) != self.solver.level {
+            self.solver = Solver::new(self.branch, self.data, richer)?;
+        }
         let (Some(a), Some(b)) = (self.point(k)?, self.point(k + 1)?) else {
             return Ok(None);
         };
@@ -89,14 +114,17 @@ impl<'a> Refinement<'a> {
         Ok(found)
     }
 
-    /// A point of the curve as the continuation left it.
+    /// A point of the curve as the continuation left it, in the harmonics at hand.
     fn point(&self, k: usize) -> Result<Option<Point>> {
         let Some((v, tangent)) = self.data.state(k) else {
             return Ok(None);
         };
+        let to = self.solver.condensed;
+        let from = self.branch.level_at(k);
+        let carry = |v: &[f64]| carried(from, to, v, v.len() - from.unknowns(), 1.0);
         Ok(Some(Point {
-            v: try_copy(v, WHAT)?,
-            tangent: try_copy(tangent, WHAT)?,
+            v: carry(v)?,
+            tangent: carry(tangent)?,
             amplitude: Complex64::ZERO,
             slope: Complex64::ZERO,
             residual: 0.0,
@@ -108,24 +136,31 @@ impl<'a> Refinement<'a> {
     }
 
     fn solve(&mut self, a: &Point, b: &Point, p: f64) -> Result<Option<State>> {
-        let n = self.problem.size();
+        let Solver {
+            condensed,
+            problem,
+            locator,
+            at,
+            ..
+        } = &mut self.solver;
+        let n = problem.size();
         let mut v = try_copy(&a.v, WHAT)?;
         if p <= self.data.info.linear_up_to {
             v[n] = p;
-        } else if let Some(point) = self.locator.at_parameter(&mut self.problem, a, b, p)? {
+        } else if let Some(point) = locator.at_parameter(problem, a, b, p)? {
             v = point.v;
         } else {
             return Ok(None);
         }
-        self.problem.evaluate(&v[..n], p, &mut self.at)?;
+        problem.evaluate(&v[..n], p, at)?;
         let (omega, damping_ratio) = Mode::frequency_and_damping(&self.data.linear, &v[..n]);
-        let unit = 10f64.powf(p) * self.branch.condensed().length();
+        let unit = 10f64.powf(p) * condensed.length();
         let dofs = self.branch.ndof();
-        let i = self.branch.condensed().set().fundamental();
-        let shape = &self.problem.shape()[i * dofs..(i + 1) * dofs];
-        self.branch.condensed().blocks()[i].multiply_mass(shape, &mut self.x);
+        let i = condensed.set().fundamental();
+        let shape = &problem.shape()[i * dofs..(i + 1) * dofs];
+        condensed.blocks()[i].multiply_mass(shape, &mut self.x);
         let size = inner(shape, &self.x).re;
-        let energy = balance(self.branch.condensed(), omega, self.problem.shape(), &[], &[]).twice_mean_kinetic;
+        let energy = balance(condensed, omega, problem.shape(), &[], &[]).twice_mean_kinetic;
         let point = ModePoint {
             log10_amplitude: p,
             modal_amplitude: unit * size.sqrt(),

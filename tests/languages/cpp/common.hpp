@@ -72,7 +72,7 @@ inline Model ring_damper() {
 
 inline SolverOptions options(Index harmonics = 9) {
   SolverOptions s;
-  s.harmonics = harmonics;
+  s.tolerance = 0, s.harmonics = harmonics;
   s.response_dof = B2;
   return s;
 }

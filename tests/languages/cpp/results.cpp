@@ -57,7 +57,7 @@ void friction() {
   auto model = oscillator(1, 0.02, 1, load);
   model.add_contact(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload));
   SolverOptions solver;
-  solver.harmonics = 31;
+  solver.tolerance = 0, solver.harmonics = 31;
   const auto branch = model.forced_response(solver, {0.8, 1.6});
   const auto peak = branch.highest_peak();
   const auto x = branch.harmonics(peak.point);
@@ -187,7 +187,7 @@ void nonlinear_mode() {
   const std::vector<double> at = {-1, 0, 0.2};
   hbvib::ModeOptions range(-1.5, 0.3);
   SolverOptions solver;
-  solver.harmonics = 15;
+  solver.tolerance = 0, solver.harmonics = 15;
   const auto mode = model.nonlinear_mode(solver, range.wanted(at));
   claim(mode.complete(), "the mode is whole");
   for (Index i = 0; i < 3; i++) {

@@ -90,6 +90,7 @@ contains
       type(hbvib_solver_options) :: solver
       real(dp), pointer :: view(:)
       integer, allocatable :: peak(:)
+      solver%tolerance = 0
       solver%response_dof = b2
       status = model%forced_response(branch, 2*pi*207, 2*pi*211, solver)
       if (status /= HBVIB_OK) return

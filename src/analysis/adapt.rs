@@ -1,0 +1,252 @@
+//! As many harmonics as the error wanted asks for: more where a point misses it, fewer where they carry little.
+//!
+//! A solution W whose error η is too large is solved again from its corrected solution Z*, see
+//! [`crate::error_estimate`], with the lowest harmonics H′ beyond which that has faded:
+//!
+//! > 3/2 A t(H′) ≤ ½ tolerance,  t(h) = ‖Z*_{>h}‖/‖Z*‖,  A = η/t(H)
+//!
+//! and the branch goes on with H′. The factor 3/2 allows for the error of the estimate. Harmonics fall only where the
+//! error is far below the tolerance, so that they do not flutter.
+
+use super::follow::Keeper;
+use crate::continuation::Point;
+use crate::error::Result;
+use crate::error_estimate::Estimate;
+use crate::harmonics::HarmonicSet;
+
+/// How far the error may be above its estimate.
+const MARGIN: f64 = 1.5;
+
+/// Share of the tolerance that is aimed at.
+const AIM: f64 = 0.5;
+
+/// Share of the tolerance above which the next point gets more harmonics before it misses.
+const RAISE: f64 = 0.7;
+
+/// Share of the tolerance below which the next point gets fewer.
+const DROP: f64 = 0.15;
+
+/// Least size of a harmonic that carries something.
+const NOTHING: f64 = 1e-13;
+
+/// Most rungs that one point may climb.
+const MOST_CLIMBS: usize = 12;
+
+/// An estimate with the error that the tolerance bounds; NaN where it is unknown.
+pub(super) struct Assessment {
+    pub error: f64,
+    pub estimate: Estimate,
+}
+
+/// How harmonics are chosen.
+pub(super) struct Choice {
+    tolerance: f64,
+    /// Whether some point kept misses the tolerance.
+    pub missed: bool,
+    /// Estimates made that were more than a look at contacts that stick.
+    pub estimates: usize,
+    /// Error and harmonics wanted of the last point.
+    last: Option<(f64, usize)>,
+}
+
+impl Choice {
+    /// For an error wanted.
+    pub fn new(tolerance: f64) -> Self {
+        Self {
+            tolerance,
+            missed: false,
+            estimates: 0,
+            last: None,
+        }
+    }
+
+    fn accepts(&self, error: f64) -> bool {
+        MARGIN * error <= self.tolerance
+    }
+
+    /// Counts an estimate.
+    fn count(&mut self, found: &Assessment) {
+        self.estimates += usize::from(!found.estimate.certified || found.estimate.steps > 0);
+    }
+
+    /// Highest harmonic that a solution with the harmonics `own` should have.
+    fn wanted(&self, found: &Assessment, own: &HarmonicSet) -> usize {
+        let corrected = &found.estimate.corrected;
+        let set = &corrected.set;
+        let size_of = |i: usize| {
+            let signals = corrected.motion.chunks_exact(set.packed_len().max(1));
+            signals.map(|y| set.get(y, i).norm()).fold(0.0, f64::hypot)
+        };
+        let numbers = set.numbers();
+        let all = (0..numbers.len()).map(size_of).fold(0.0, f64::hypot);
+        let highest = own.numbers().last().copied().unwrap_or(0);
+        let above = (0..numbers.len()).filter(|&i| numbers[i] > highest);
+        let left_out = above.map(size_of).fold(0.0, f64::hypot) / all;
+        // Of a solution that misses nothing all is kept that is not rounding.
+        let bound = if found.error > 0.0 && left_out > 0.0 {
+            AIM * self.tolerance * left_out / (MARGIN * found.error)
+        } else {
+            NOTHING
+        };
+        let mut tail = 0.0_f64;
+        for i in (0..numbers.len()).rev() {
+            tail = tail.hypot(size_of(i));
+            if tail > bound * all {
+                return numbers[i];
+            }
+        }
+        0
+    }
+}
+
+/// The point with as many harmonics as its error asks for; the keeper is then on its rung. A point that misses the
+/// tolerance for all that could be done is returned all the same.
+pub(super) fn refine(
+    keeper: &mut dyn Keeper,
+    mut point: Point,
+    keep_parameter: bool,
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Point> {
+    if !keeper.ladder().is_automatic() {
+        return Ok(point);
+    }
+    for climbs in 0..=MOST_CLIMBS {
+        let rung = keeper.rung();
+        let Some(found) = keeper.assess(&point)? else {
+            return Ok(point);
+        };
+        let own = keeper.ladder().level(rung)?.condensed.set().try_clone()?;
+        let choice = keeper.choice();
+        choice.count(&found);
+        let accepted = choice.accepts(found.error);
+        let wanted = if found.estimate.certified {
+            choice.wanted(&found, &own)
+        } else {
+            0
+        };
+        choice.last = accepted.then_some((found.error, wanted));
+        let next = if accepted {
+            // What carries nothing is not carried.
+            if found.error > 0.0 {
+                return Ok(point);
+            }
+            keeper.ladder().rung_with(wanted)
+        } else {
+            keeper.ladder().rung_with(wanted).max(rung + 1)
+        };
+        let last = keeper.ladder().last();
+        let next = next.min(last);
+        let raised = if accepted && next < rung {
+            go(keeper, &point, next, keep_parameter, cancelled)?
+        } else if accepted || next <= rung || found.estimate.too_large || climbs == MOST_CLIMBS {
+            None
+        } else {
+            climb(keeper, &point, &found.estimate, next, keep_parameter, cancelled)?
+        };
+        let Some(better) = raised else {
+            keeper.choice().missed |= !accepted;
+            return Ok(point);
+        };
+        point = better;
+    }
+    Ok(point)
+}
+
+/// Whether a point beside the curve may be kept; if not, the keeper has climbed, and it is to be found again.
+pub(super) fn suffices(keeper: &mut dyn Keeper, point: &Point) -> Result<bool> {
+    if !keeper.ladder().is_automatic() {
+        return Ok(true);
+    }
+    let rung = keeper.rung();
+    let Some(found) = keeper.assess(point)? else {
+        return Ok(true);
+    };
+    keeper.choice().count(&found);
+    if keeper.choice().accepts(found.error) {
+        return Ok(true);
+    }
+    let own = keeper.ladder().level(rung)?.condensed.set().try_clone()?;
+    let wanted = if found.estimate.certified {
+        keeper.choice().wanted(&found, &own)
+    } else {
+        0
+    };
+    let last = keeper.ladder().last();
+    let next = keeper.ladder().rung_with(wanted).max(rung + 1).min(last);
+    if next <= rung || found.estimate.too_large {
+        keeper.choice().missed = true;
+        return Ok(true);
+    }
+    keeper.go_to(next)?;
+    Ok(false)
+}
+
+/// The point stored last with the harmonics with which the branch goes on: where they change, solved once more.
+pub(super) fn settle(keeper: &mut dyn Keeper, point: Point, cancelled: Option<&dyn Fn() -> bool>) -> Result<Point> {
+    let rung = keeper.rung();
+    let choice = keeper.choice();
+    let Some((error, wanted)) = choice.last else {
+        return Ok(point);
+    };
+    let share = MARGIN * error / choice.tolerance;
+    let next = keeper.ladder().rung_with(wanted);
+    if (share > RAISE && next > rung) || (share < DROP && next < rung) {
+        return Ok(go(keeper, &point, next, false, cancelled)?.unwrap_or(point));
+    }
+    Ok(point)
+}
+
+/// Solves with the harmonics of another rung; the keeper stays where it is if that fails.
+fn go(
+    keeper: &mut dyn Keeper,
+    point: &Point,
+    to: usize,
+    keep_parameter: bool,
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Option<Point>> {
+    let from = keeper.rung();
+    keeper.go_to(to)?;
+    let start = keeper.carry(point, from)?;
+    let found = keeper.solve_again(&start, keep_parameter, cancelled)?;
+    if found.is_none() {
+        keeper.go_to(from)?;
+    }
+    Ok(found)
+}
+
+/// Solves with the harmonics of a higher rung, from the corrected solution or rung by rung; the keeper stays where
+/// it is if both fail.
+fn climb(
+    keeper: &mut dyn Keeper,
+    point: &Point,
+    estimate: &Estimate,
+    to: usize,
+    keep_parameter: bool,
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Option<Point>> {
+    let from = keeper.rung();
+    keeper.go_to(to)?;
+    if estimate.certified {
+        let start = keeper.corrected(point, from, estimate)?;
+        if let Some(found) = keeper.solve_again(&start, keep_parameter, cancelled)? {
+            return Ok(Some(found));
+        }
+    }
+    let mut reached = point.try_clone()?;
+    for rung in from + 1..=to {
+        keeper.go_to(rung)?;
+        let start = keeper.carry(&reached, rung - 1)?;
+        match keeper.solve_again(&start, keep_parameter, cancelled)? {
+            Some(found) => reached = found,
+            None if rung == from + 1 => {
+                keeper.go_to(from)?;
+                return Ok(None);
+            }
+            None => {
+                keeper.go_to(rung - 1)?;
+                break;
+            }
+        }
+    }
+    Ok(Some(reached))
+}

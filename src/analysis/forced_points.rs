@@ -1,0 +1,331 @@
+//! The points of a forced response: what is measured and stored of each, and the harmonics that they are solved with.
+
+use super::adapt::{Assessment, Choice, suffices};
+use super::estimate::observed;
+use super::follow::{Ending, Keeper};
+use super::levels::{Ladder, carried_point};
+use crate::branch::{Branch, Level, Record, SpecialKind};
+use crate::condense::Reduction;
+use crate::continuation::again::solve_again;
+use crate::continuation::corrector::Corrector;
+use crate::continuation::{Point, Settings};
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::error_estimate::forced::ForcedEstimator;
+use crate::error_estimate::{Estimate, Solved};
+use crate::model::Model;
+use crate::model::spring::along;
+use crate::options::SolverOptions;
+use crate::problem::Problem;
+use crate::problem::forced::Forced;
+use num_complex::Complex64;
+
+/// The problem with the harmonics of one rung.
+struct Rung<'a> {
+    level: &'a Level,
+    problem: Forced<'a>,
+    corrector: Corrector,
+    response: Vec<Complex64>,
+}
+
+impl<'a> Rung<'a> {
+    fn new(level: &'a Level, settings: &Settings, response: usize, given: Option<Vec<f64>>) -> Result<Self> {
+        let range = (settings.start, settings.end);
+        let problem = Forced::new(&level.condensed, response, range, level.samples, given)?;
+        Ok(Self {
+            corrector: Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?,
+            response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, "the response")?,
+            problem,
+            level,
+        })
+    }
+}
+
+/// Collects the points of one run.
+pub(super) struct ForcedPoints<'a> {
+    branch: Branch,
+    settings: Settings,
+    ladder: &'a Ladder<'a>,
+    here: Rung<'a>,
+    /// The rungs that were used, but for the one at hand.
+    others: Vec<Option<Rung<'a>>>,
+    rung: usize,
+    /// The rung with the most harmonics among the points kept.
+    highest: usize,
+    choice: Choice,
+    estimator: Option<ForcedEstimator<'a>>,
+    /// Error of the point assessed last, until it is kept.
+    assessed: Option<f64>,
+    specials: Vec<Kept<'a>>,
+    stalled: bool,
+}
+
+/// A special point until the curve is complete.
+struct Kept<'a> {
+    kind: SpecialKind,
+    level: &'a Level,
+    point: Point,
+    response: Vec<Complex64>,
+    slip_fractions: Vec<f64>,
+    sampling_error: f64,
+    error: f64,
+}
+
+impl<'a> ForcedPoints<'a> {
+    /// An empty collection, on a rung whose problem may be given a start.
+    pub fn new(
+        model: &'a Model,
+        solver: &SolverOptions,
+        settings: Settings,
+        ladder: &'a Ladder<'a>,
+        (rung, given): (usize, Option<Vec<f64>>),
+        response: usize,
+    ) -> Result<Self> {
+        let level = ladder.level(rung)?;
+        let told = if ladder.is_automatic() { 0 } else { solver.harmonics };
+        let branch = Branch::new(level, level.condensed.reduction(model, solver)?, told, response)?;
+        let mut others = Vec::new();
+        for _ in 0..ladder.len() {
+            try_push(&mut others, None, "the harmonics")?;
+        }
+        let estimates = solver.estimate_error || ladder.is_automatic();
+        Ok(Self {
+            branch,
+            here: Rung::new(level, &settings, response, given)?,
+            settings,
+            ladder,
+            others,
+            rung,
+            highest: rung,
+            choice: Choice::new(solver.tolerance),
+            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response)),
+            assessed: None,
+            specials: Vec::new(),
+            stalled: false,
+        })
+    }
+
+    /// What was removed from the problem that has the most harmonics.
+    pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
+        self.ladder.level(self.highest)?.condensed.reduction(model, solver)
+    }
+
+    /// Estimate of a point that was evaluated last.
+    fn estimate(&mut self, point: &Point) -> Result<Option<Estimate>> {
+        let Some(estimator) = &mut self.estimator else {
+            return Ok(None);
+        };
+        let here = &mut self.here;
+        let condensed = &here.level.condensed;
+        here.problem.response(point.unknowns(), &mut here.response);
+        let solved = Solved {
+            condensed,
+            motion: point.unknowns(),
+            omega: point.parameter(),
+            response: here.response[observed(condensed)] * condensed.length(),
+        };
+        estimator.at(&solved).map(Some)
+    }
+
+    /// Estimated relative error of the response amplitude; NaN where it is unknown or not asked for.
+    fn error(&mut self, point: &Point) -> Result<f64> {
+        match self.assessed.take() {
+            Some(error) => Ok(error),
+            None => Ok(self.estimate(point)?.map_or(f64::NAN, |e| e.response)),
+        }
+    }
+
+    /// Numbers the special points after the curve.
+    pub fn finish(mut self, ending: &Ending, reduction: Reduction) -> Result<Branch> {
+        for kept in &self.specials {
+            let errors = (kept.sampling_error, kept.error);
+            let record = record(kept.level, &kept.point, &kept.response, &kept.slip_fractions, errors);
+            self.branch.push_special(kept.kind, &record)?;
+        }
+        let missed = self.choice.missed && ending.status == Status::Ok;
+        let status = if missed {
+            Status::StoppedMaxHarmonics
+        } else {
+            ending.status
+        };
+        self.branch.set_reduction(reduction);
+        self.branch.set_estimates(self.choice.estimates);
+        self.branch.set_ending(status, ending.reason, self.stalled);
+        Ok(self.branch)
+    }
+}
+
+impl Keeper for ForcedPoints<'_> {
+    fn problem(&mut self) -> &mut dyn Problem {
+        &mut self.here.problem
+    }
+
+    fn branch(&self) -> &Branch {
+        &self.branch
+    }
+
+    fn keep(&mut self, point: &Point) -> Result<()> {
+        self.stalled |= point.stalled;
+        let error = self.error(point)?;
+        let here = &mut self.here;
+        here.problem.response(point.unknowns(), &mut here.response);
+        let sampling_error = here.problem.sampling_error(point.unknowns(), point.parameter())?;
+        let slips = here.problem.slip_fractions();
+        let record = record(here.level, point, &here.response, slips, (sampling_error, error));
+        self.branch.push_curve(&record)?;
+        self.highest = self.highest.max(self.rung);
+        Ok(())
+    }
+
+    /// The point is solved once more at its frequency with the flexibility factorised there: along
+    /// the sweep it may have been interpolated.
+    fn keep_special(&mut self, kind: SpecialKind, mut point: Point) -> Result<bool> {
+        let here = &mut self.here;
+        // At a fold the solution at a fixed frequency is not isolated.
+        let mut found = None;
+        if !matches!(kind, SpecialKind::Fold) {
+            here.problem.set_pointwise(true);
+            let again = solve_again(
+                &mut here.problem,
+                &mut here.corrector,
+                &self.settings,
+                &point,
+                true,
+                None,
+            );
+            here.problem.set_pointwise(false);
+            found = again?;
+        }
+        if let Some(found) = found {
+            point.v = found.v;
+            point.amplitude = found.amplitude;
+            point.residual = found.residual;
+        } else {
+            here.corrector.evaluate(&mut here.problem, &point.v)?;
+        }
+        if !suffices(self, &point)? {
+            return Ok(false);
+        }
+        let error = self.error(&point)?;
+        let here = &mut self.here;
+        here.problem.response(point.unknowns(), &mut here.response);
+        let kept = Kept {
+            kind,
+            level: here.level,
+            sampling_error: here.problem.sampling_error(point.unknowns(), point.parameter())?,
+            error,
+            response: try_copy(&here.response, "the special points")?,
+            slip_fractions: try_copy(here.problem.slip_fractions(), "the special points")?,
+            point,
+        };
+        try_push(&mut self.specials, kept, "the special points")?;
+        self.highest = self.highest.max(self.rung);
+        Ok(true)
+    }
+
+    fn ladder(&self) -> &Ladder<'_> {
+        self.ladder
+    }
+
+    fn rung(&self) -> usize {
+        self.rung
+    }
+
+    fn go_to(&mut self, rung: usize) -> Result<()> {
+        if rung == self.rung {
+            return Ok(());
+        }
+        let there = match self.others[rung].take() {
+            Some(there) => there,
+            None => Rung::new(
+                self.ladder.level(rung)?,
+                &self.settings,
+                self.branch.response_dof(),
+                None,
+            )?,
+        };
+        self.others[self.rung] = Some(core::mem::replace(&mut self.here, there));
+        self.rung = rung;
+        Ok(())
+    }
+
+    fn choice(&mut self) -> &mut Choice {
+        &mut self.choice
+    }
+
+    fn assess(&mut self, point: &Point) -> Result<Option<Assessment>> {
+        self.assessed = None;
+        let Some(estimate) = self.estimate(point)? else {
+            return Ok(None);
+        };
+        self.assessed = Some(estimate.response);
+        Ok(Some(Assessment {
+            error: estimate.response,
+            estimate,
+        }))
+    }
+
+    fn carry(&self, point: &Point, from: usize) -> Result<Point> {
+        let (from, to) = (self.ladder.level(from)?, self.ladder.level(self.rung)?);
+        carried_point(point, &from.condensed, &to.condensed, 1, true)
+    }
+
+    fn corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
+        let to = &self.ladder.level(self.rung)?.condensed;
+        let mut start = self.carry(point, from)?;
+        let n = to.unknowns();
+        let corrected = &estimate.corrected;
+        to.set()
+            .carry(&corrected.set, &corrected.motion, 1.0 / to.length(), &mut start.v[..n]);
+        Ok(start)
+    }
+
+    fn solve_again(
+        &mut self,
+        near: &Point,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>> {
+        let here = &mut self.here;
+        let (problem, corrector) = (&mut here.problem, &mut here.corrector);
+        solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)
+    }
+}
+
+fn record<'a>(
+    level: &'a Level,
+    point: &'a Point,
+    response: &'a [Complex64],
+    slip_fractions: &'a [f64],
+    (sampling_error, error): (f64, f64),
+) -> Record<'a> {
+    Record {
+        level,
+        omega: point.parameter(),
+        motion: point.unknowns(),
+        amplitude: point.amplitude,
+        response,
+        residual: point.residual,
+        iterations: point.iterations,
+        slip_fractions,
+        sampling_error,
+        errors: (error, f64::NAN),
+    }
+}
+
+/// Packed relative motions of a guess given for all degrees of freedom.
+pub(super) fn relative_motion(level: &Level, ndof: usize, guess: &[Complex64]) -> Result<Vec<f64>> {
+    let condensed = &level.condensed;
+    let set = condensed.set();
+    let m = set.packed_len();
+    let mut packed = try_vec(condensed.unknowns(), 0.0, "the guess")?;
+    for (i, block) in condensed.blocks().iter().enumerate() {
+        let Some(x) = guess.chunks_exact(ndof).nth(block.number) else {
+            continue;
+        };
+        for (c, row) in block.rows.iter().enumerate() {
+            let y = along(row, x);
+            set.set(&mut packed[c * m..(c + 1) * m], i, y / condensed.length());
+        }
+    }
+    Ok(packed)
+}

@@ -1,0 +1,188 @@
+//! Numbers of harmonics that a run may solve with: one, or a ladder of them between which a tolerance chooses.
+
+use crate::branch::Level;
+use crate::condense::Condensed;
+use crate::continuation::Point;
+use crate::error::{Result, fail, try_push, try_vec};
+use crate::error_estimate::affordable;
+use crate::harmonics::gcd;
+use crate::model::Model;
+use crate::options::{MAX_SAMPLES, SolverOptions};
+use num_complex::Complex64;
+use std::cell::OnceCell;
+use std::sync::Arc;
+
+const WHAT: &str = "the harmonics";
+
+/// Ratio of neighbouring rungs.
+const RATIO: f64 = 1.25;
+
+/// The same for structures so large that each rung costs many factorisations.
+const RATIO_LARGE: f64 = 2.0;
+
+/// Degrees of freedom above which a structure is large.
+const LARGE: usize = 32;
+
+/// Unknowns above which no rung is climbed: Newton's method factors dense matrices.
+const MOST_UNKNOWNS: usize = 3000;
+
+/// Samples per harmonic where laws are sampled and the tolerance decides.
+const SAMPLES_PER_HARMONIC: usize = 8;
+
+/// Condenses the model to harmonics up to the one given.
+type Condense<'m> = dyn Fn(usize) -> Result<Condensed> + 'm;
+
+/// The rungs, of which each is made when it is first asked for.
+pub(super) struct Ladder<'m> {
+    numbers: Vec<usize>,
+    levels: Vec<OnceCell<Level>>,
+    samples: usize,
+    automatic: bool,
+    condense: Box<Condense<'m>>,
+}
+
+impl<'m> Ladder<'m> {
+    /// The rungs that the options ask for. `forced` are the harmonics in which forces act.
+    ///
+    /// # Errors
+    /// `Argument` for a force above `max_harmonics`, `OutOfMemory`.
+    pub fn new(
+        model: &Model,
+        options: &SolverOptions,
+        forced: &[usize],
+        condense: impl Fn(usize) -> Result<Condensed> + 'm,
+    ) -> Result<Self> {
+        let automatic = options.tolerance > 0.0;
+        let mut ladder = Self {
+            numbers: Vec::new(),
+            levels: Vec::new(),
+            samples: options.samples,
+            automatic,
+            condense: Box::new(condense),
+        };
+        if !automatic {
+            ladder.add(options.harmonics)?;
+            return Ok(ladder);
+        }
+        let most = options.max_harmonics;
+        if let Some(h) = forced.iter().find(|&&h| h > most) {
+            return fail!(
+                Argument,
+                "a force acts in harmonic {h}, but max_harmonics = {most}; raise max_harmonics to {h}"
+            );
+        }
+        let ratio = if model.ndof() > LARGE { RATIO_LARGE } else { RATIO };
+        let base = if options.keep_even_harmonics {
+            1
+        } else {
+            forced.iter().fold(0, |g, &h| gcd(g, h)).max(1)
+        };
+        let least = forced.iter().copied().max().unwrap_or(0).max(1);
+        // Reduced numbers are odd, so that each rung has more than the one below where even ones are left out.
+        let mut reduced = least.div_ceil(base);
+        ladder.add(least)?;
+        loop {
+            reduced = (reduced + 2).max(((reduced as f64 * ratio) as usize) | 1);
+            if reduced * base > most {
+                break;
+            }
+            ladder.add(reduced * base)?;
+        }
+        let top = most / base * base;
+        if ladder.numbers.last().is_some_and(|&h| h + base < top) {
+            ladder.add(top)?;
+        }
+        Ok(ladder)
+    }
+
+    fn add(&mut self, highest: usize) -> Result<()> {
+        try_push(&mut self.numbers, highest, WHAT)?;
+        try_push(&mut self.levels, OnceCell::new(), WHAT)
+    }
+
+    /// Whether a tolerance chooses the rung.
+    pub fn is_automatic(&self) -> bool {
+        self.automatic
+    }
+
+    /// Number of rungs.
+    pub fn len(&self) -> usize {
+        self.numbers.len()
+    }
+
+    /// The rung to begin with: as many harmonics as `harmonics` says, fewer where the ladder ends before.
+    pub fn first(&self, harmonics: usize) -> usize {
+        self.numbers.iter().rposition(|&h| h <= harmonics).unwrap_or(0)
+    }
+
+    /// The lowest rung with all harmonics up to h, the last that is affordable where there is none.
+    pub fn rung_with(&self, h: usize) -> usize {
+        let last = self.last();
+        self.numbers[..last].partition_point(|&n| n < h)
+    }
+
+    /// The highest rung that is affordable.
+    pub fn last(&self) -> usize {
+        let known = self.levels.iter().find_map(OnceCell::get);
+        let most = known.map_or(usize::MAX, |level| affordable(&level.condensed, MOST_UNKNOWNS));
+        let below = self.numbers.partition_point(|&n| n <= most);
+        below.max(1) - 1
+    }
+
+    /// A rung.
+    ///
+    /// # Errors
+    /// Those of condensing the model.
+    pub fn level(&self, rung: usize) -> Result<&Level> {
+        let cell = &self.levels[rung];
+        if let Some(level) = cell.get() {
+            return Ok(level);
+        }
+        let highest = self.numbers[rung];
+        let samples = match self.samples {
+            n if n > 0 && self.automatic => n.max(SAMPLES_PER_HARMONIC * highest).min(MAX_SAMPLES),
+            n => n,
+        };
+        let level = Level {
+            condensed: Arc::new((self.condense)(highest)?),
+            samples,
+        };
+        Ok(cell.get_or_init(|| level))
+    }
+}
+
+/// Unknowns, and the `others` numbers after the motions, in other harmonics; motions times a factor.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn carried(from: &Condensed, to: &Condensed, v: &[f64], others: usize, factor: f64) -> Result<Vec<f64>> {
+    let motions = to.unknowns();
+    let mut found = try_vec(motions + others, 0.0, WHAT)?;
+    let (motion, rest) = v.split_at(v.len() - others);
+    to.set().carry(from.set(), motion, factor, &mut found[..motions]);
+    found[motions..].copy_from_slice(rest);
+    Ok(found)
+}
+
+/// A point in other harmonics, of which it need not be a solution. `others` of its unknowns are no motions; the
+/// parameter counts among them. `scaled` says whether the amplitude observed is a length.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn carried_point(
+    point: &Point,
+    from: &Condensed,
+    to: &Condensed,
+    others: usize,
+    scaled: bool,
+) -> Result<Point> {
+    let factor = from.length() / to.length();
+    let of_amplitude: Complex64 = if scaled { factor } else { 1.0 }.into();
+    Ok(Point {
+        v: carried(from, to, &point.v, others, factor)?,
+        tangent: carried(from, to, &point.tangent, others, factor)?,
+        amplitude: point.amplitude * of_amplitude,
+        slope: point.slope * of_amplitude,
+        ..*point
+    })
+}
