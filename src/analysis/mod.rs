@@ -10,6 +10,7 @@ pub mod nonlinear_mode;
 pub mod synthesis;
 pub mod time_response;
 mod unbounded;
+pub mod verify;
 
 pub use check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use estimate::estimate_at;
@@ -18,3 +19,4 @@ pub use harmonic_residual::{contact_evaluate, forced_residual};
 pub use nonlinear_mode::nonlinear_mode;
 pub use synthesis::synthesise;
 pub use time_response::time_response;
+pub use verify::verify;
