@@ -19,4 +19,4 @@ pub use harmonic_residual::{contact_evaluate, forced_residual};
 pub use nonlinear_mode::nonlinear_mode;
 pub use synthesis::synthesise;
 pub use time_response::time_response;
-pub use verify::verify;
+pub use verify::{Verification, verify};
