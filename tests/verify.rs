@@ -4,15 +4,15 @@
 mod common;
 
 use common::{B2, BASE, Blisk, Wheel, all_harmonics, complex, data, number, phase, relative_gap, sweep};
-use hbvib::analysis::{Verification, estimate_at, nonlinear_mode, time_response, verify};
+use hbvib::analysis::{Verification, estimate_at, time_response, verify};
 use hbvib::branch::Branch;
 use hbvib::contact::Contact;
-use hbvib::error::{Error, Status};
+use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, SolverOptions, SteadyMethod, TimeOptions, VerifyOptions};
+use hbvib::options::{SolverOptions, SteadyMethod, TimeOptions, VerifyOptions};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -377,116 +377,26 @@ fn a_sector_in_its_wave_has_the_errors_of_the_whole_wheel() {
     assert!(relative_gap(&all.harmonics, &wave) < 1e-9);
 }
 
-fn refusal(model: &Model, branch: &Branch, point: usize, options: VerifyOptions) -> Error {
-    verify(model, branch, point, &options, &mut Hooks::default()).unwrap_err()
-}
-
 #[test]
-fn what_cannot_be_checked_is_refused_with_the_reason() {
-    let model = BASE.sector();
-    let defaults = VerifyOptions::default();
-    let branch = at(&model, 3, reference_omega());
-    let says = |e: Error, status: Status, words: &str| {
-        assert!(e.status == status && e.message().contains(words), "{e:?}");
-    };
-    says(refusal(&model, &branch, 1, defaults), Status::Index, "point = 1");
-    for other in [
-        duffing(),
-        BASE.sector_without_contact(),
-        Blisk {
-            ring_mass: None,
-            ..BASE
-        }
-        .sector(),
-    ] {
-        says(refusal(&other, &branch, 0, defaults), Status::Argument, "another one");
-    }
-    let mode = ModeOptions {
-        log10_start: -8.0,
-        log10_stop: -7.0,
-        ..ModeOptions::default()
-    };
-    let mode = nonlinear_mode(&model, &options(1), &mode, &mut Hooks::default()).unwrap();
-    says(
-        refusal(&model, &mode, 0, defaults),
-        Status::Unsupported,
-        "no force drives it",
-    );
-    for (bad, status, words) in [
-        (
-            VerifyOptions {
-                tolerance: 0.0,
-                ..defaults
-            },
-            Status::Argument,
-            "tolerance = 0",
-        ),
-        (
-            VerifyOptions {
-                max_periods: 0,
-                ..defaults
-            },
-            Status::Argument,
-            "max_periods = 0",
-        ),
-        (
-            VerifyOptions {
-                same_within: 0.0,
-                ..defaults
-            },
-            Status::Argument,
-            "same_within = 0",
-        ),
-        (
-            VerifyOptions {
-                same_within: f64::NAN,
-                ..defaults
-            },
-            Status::NotFinite,
-            "same_within",
-        ),
-    ] {
-        says(refusal(&model, &branch, 0, bad), status, words);
-    }
-    let few = VerifyOptions {
-        max_periods: 1,
-        method: SteadyMethod::Marching,
-        ..defaults
-    };
-    says(
-        refusal(&model, &branch, 0, few),
-        Status::NoConvergence,
-        "max_periods = 1",
-    );
-}
-
-#[test]
-fn what_the_integration_does_not_know_is_refused_by_it() {
+fn a_contact_that_sticks_under_a_constant_load_beside_one_that_slips_keeps_its_place() {
     let mut model = Model::new(2).unwrap();
     for (which, a) in [
-        (MatrixKind::Mass, [1.0, 0.0, 0.0, 0.0]),
+        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
         (MatrixKind::Damping, [0.1, 0.0, 0.0, 0.1]),
-        (MatrixKind::Stiffness, [2.0, -1.0, -1.0, 2.0]),
+        (MatrixKind::Stiffness, [3.0, -1.0, -1.0, 3.0]),
     ] {
         model.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
     }
-    model.add_contact(&Contact::jenkins(1, None, 1.0, 1.0, 0.1)).unwrap();
-    model.add_force(0, 1, 0.3.into()).unwrap();
-    let branch = at(&model, 3, 1.0);
-    let e = refusal(&model, &branch, 0, VerifyOptions::default());
-    assert!(e.status == Status::Unsupported && e.message().contains("freedom 1 has no mass"));
-}
-
-#[test]
-fn a_caller_may_stop_the_check() {
-    let model = BASE.sector();
-    let branch = at(&model, 3, reference_omega());
-    let mut stop = |_: &_| true;
-    let mut hooks = Hooks {
-        progress: Some(&mut stop),
-        ..Hooks::default()
-    };
-    let v = verify(&model, &branch, 0, &VerifyOptions::default(), &mut hooks).unwrap();
-    assert_eq!((v.status, v.periods), (Status::StoppedByCaller, 1));
-    assert!(v.residual > 1e-6 && v.harmonics.len() == 16);
+    model.add_contact(&Contact::jenkins(0, None, 1.0, 1.0, 0.1)).unwrap();
+    model.add_contact(&Contact::jenkins(1, None, 1.0, 1.0, 2.0)).unwrap();
+    for (dof, harmonic, force) in [(0, 1, 0.6), (0, 0, 0.2), (1, 0, 0.5)] {
+        model.add_force(dof, harmonic, force.into()).unwrap();
+    }
+    let [coarse, fine] = [3, 63].map(|h| {
+        let branch = at(&model, h, 1.3);
+        let shares = branch.slip_fraction_at(0).unwrap();
+        assert!(shares[0] > 0.1 && shares[1] == 0.0);
+        checked(&model, &branch, 0)
+    });
+    assert!(fine.distance < 1e-3 * coarse.distance && coarse.events == 4);
 }
