@@ -171,13 +171,10 @@ fn the_distance_is_that_of_the_two_motions_time_by_time() {
             peak_of_point = peak_of_point.max(x.abs());
         }
         let close = |a: f64, b: f64| (a - b).abs() < 1e-6 * b;
-        assert!(close(v.distance, (gap / whole).sqrt()));
-        assert!(close(v.above, (above / whole).sqrt()));
+        assert!(close(v.distance, (gap / whole).sqrt()) && close(v.above, (above / whole).sqrt()));
         assert!(close(v.motion_error.hypot(v.above), v.distance));
-        assert!(close(
-            v.harmonic_errors.iter().map(|e| e * e).sum::<f64>().sqrt(),
-            v.motion_error
-        ));
+        let sum: f64 = v.harmonic_errors.iter().map(|e| e * e).sum();
+        assert!(close(sum.sqrt(), v.motion_error));
         assert!((v.peak - peak).abs() < 1e-7 * peak);
         assert!((v.peak_error - (peak_of_point - peak).abs() / peak).abs() < 1e-7);
     }
