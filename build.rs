@@ -28,6 +28,7 @@ const SOURCES: &[&str] = &[
     "synthesis",
     "residual",
     "time",
+    "verify",
 ];
 
 fn main() {

@@ -239,6 +239,23 @@ module hbvib
       integer(c_int64_t) :: periods = 0, events = 0
    end type hbvib_time_info
 
+   !> Options of hbvib_verify.
+   type, bind(c) :: hbvib_verify_options
+      integer(c_int32_t) :: struct_size = 32, method = 0
+      real(c_double) :: tolerance = 1e-11_c_double
+      integer(c_int64_t) :: max_periods = 10000
+      real(c_double) :: same_within = 0.1_c_double
+   end type hbvib_verify_options
+
+   !> How far a point is from the periodic motion that integration in time finds from it.
+   type, bind(c) :: hbvib_verification
+      integer(c_int32_t) :: struct_size = 112, same_solution = 0, marched = 0, reserved = 0
+      integer(c_int64_t) :: harmonic = 0
+      complex(c_double_complex) :: response = 0
+      real(c_double) :: response_error = 0, motion_error = 0, above = 0, distance = 0, peak = 0, peak_error = 0, residual = 0
+      integer(c_int64_t) :: periods = 0, events = 0
+   end type hbvib_verification
+
    !> A structure with its contacts and forces. Calls that change it need it alone; any number of threads may solve it at once.
    type :: hbvib_model
       type(c_ptr) :: handle = c_null_ptr
@@ -274,6 +291,7 @@ module hbvib
       procedure :: forced_response => model_forced_response
       procedure :: nonlinear_mode => model_nonlinear_mode
       procedure :: time_response => model_time_response
+      procedure :: verify => model_verify
       procedure :: forced_residual => model_forced_residual
    end type hbvib_model
 
@@ -966,6 +984,35 @@ module hbvib
          type(hbvib_time_info), intent(inout), optional :: info
          integer(c_int32_t) :: status
       end function hbvib_time_response
+
+      function hbvib_verify_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_verify_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_verify_options_init
+
+      function hbvib_verification_init(v, size_of_v) bind(c) result(status)
+         import
+         type(hbvib_verification), intent(inout) :: v
+         integer(c_size_t), value :: size_of_v
+         integer(c_int32_t) :: status
+      end function hbvib_verification_init
+
+      function hbvib_verify(model, branch, point, options, hooks, harmonics, harmonics_len, errors, errors_len, &
+         out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(hbvib_verify_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         complex(c_double_complex), intent(inout), optional :: harmonics(*)
+         integer(c_int64_t), value :: harmonics_len
+         real(c_double), intent(inout), optional :: errors(*)
+         integer(c_int64_t), value :: errors_len
+         type(hbvib_verification), intent(inout), optional :: out
+         integer(c_int32_t) :: status
+      end function hbvib_verify
    end interface
 
    interface
@@ -989,7 +1036,7 @@ module hbvib
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
-   private :: branch_synthesis_peaks
+   private :: branch_synthesis_peaks, model_verify
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -1954,6 +2001,32 @@ contains
       if (status == HBVIB_OK) &
          status = hbvib_time_response(self%handle, o, hooks, harmonics, n_harmonics, samples, n_samples, info)
    end function model_time_response
+
+   !> How far a point of a forced response of this model is from the motion that integration in time finds from it.
+   !> harmonics(ndof, 0:H) receives those in time, errors(0:H) what each of them adds to info%motion_error, by squares.
+   function model_verify(self, branch, point, info, options, hooks, harmonics, errors) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point
+      type(hbvib_verification), intent(out), optional :: info
+      type(hbvib_verify_options), intent(in), optional :: options
+      type(hbvib_hooks), intent(in), optional :: hooks
+      complex(dp), intent(inout), contiguous, optional :: harmonics(:, :)
+      real(dp), intent(inout), contiguous, optional :: errors(:)
+      integer(i32) :: status
+      integer(i64) :: p, n_harmonics, n_errors
+      status = HBVIB_OK
+      n_harmonics = 0
+      n_errors = 0
+      call point_to_zero(branch, status, point, p)
+      if (present(harmonics)) then
+         call same_length(status, 'harmonics(:, 0)', size(harmonics, 1, i64), hbvib_model_dofs(self%handle))
+         n_harmonics = size(harmonics)
+      end if
+      if (present(errors)) n_errors = size(errors)
+      if (status == HBVIB_OK) &
+         status = hbvib_verify(self%handle, branch%handle, p, options, hooks, harmonics, n_harmonics, errors, n_errors, info)
+   end function model_verify
 
    !> Residual r(ndof, 0:H) of harmonic balance at x(ndof, 0:H), derivatives jac (2 (H + 1) ndof square) and d_omega (as r).
    function model_forced_residual(self, omega, x, r, jac, d_omega, solver) result(status)

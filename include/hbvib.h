@@ -875,6 +875,63 @@ typedef struct {
   int64_t events;
 } hbvib_time_info;
 
+/// Options of hbvib_verify. Fill it by hbvib_verify_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_SHOOTING, which finds the point's own solution where it is unstable, too, or
+  /// HBVIB_MARCHING.
+  int32_t method;
+  /// As in hbvib_time_options.
+  double tolerance;
+  /// Cap on the periods that are integrated.
+  int64_t max_periods;
+  /// Largest distance from the motion found in time, relative to that motion, at which the point
+  /// counts as the same solution.
+  double same_within;
+} hbvib_verify_options;
+
+/// How far a point is from the periodic motion that integration in time finds from it. Norms are
+/// root mean squares over the period and all degrees of freedom. Fill it by
+/// hbvib_verification_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// 1 if the distance is at most same_within, else 0: the integration went to another solution, or
+  /// the point has too few harmonics. A point with more of them tells which.
+  int32_t same_solution;
+  /// 1 if Newton's method did not converge from the point and periods were marched, which leaves an
+  /// unstable solution, else 0; always 1 with HBVIB_MARCHING.
+  int32_t marched;
+  /// 0.
+  int32_t reserved;
+  /// The harmonic h in which the response is compared: the lowest above the mean in which the point
+  /// moves.
+  int64_t harmonic;
+  /// X_h of the response degree of freedom in time, (re, im).
+  double response[2];
+  /// |X_h of the point - X_h in time| / |X_h in time|: what HBVIB_ERROR_ESTIMATE estimates.
+  double response_error;
+  /// Distance of the harmonics 0 .. H of all degrees of freedom over the motion in time.
+  double motion_error;
+  /// Share of the motion in time above H.
+  double above;
+  /// Distance of the whole motions over the motion in time; its square is that of motion_error and
+  /// that of above together.
+  double distance;
+  /// Largest displacement of the response degree of freedom over the period in time.
+  double peak;
+  /// Difference of the point's largest displacement from it, relative to it.
+  double peak_error;
+  /// Largest change over a period of the motion in time, relative to its largest displacement and
+  /// velocity: errors of this size are those of the integration.
+  double residual;
+  /// Periods that were integrated.
+  int64_t periods;
+  /// Changes of the contacts in one period, as in hbvib_time_info.
+  int64_t events;
+} hbvib_verification;
+
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
@@ -1870,6 +1927,55 @@ hbvib_status hbvib_time_response(const hbvib_model *model,
                                  double *samples,
                                  int64_t samples_len,
                                  hbvib_time_info *info);
+
+/// Fills the options of a check in time with their defaults: shooting, tolerance = 1e-11,
+/// same_within = 0.1.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_verify_options_init(hbvib_verify_options *o, size_t size_of_o);
+
+/// Fills what a check in time tells with zeros.
+///
+/// v          the struct; untouched on error.
+/// size_of_v  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_verification_init(hbvib_verification *v, size_t size_of_v);
+
+/// Checks a stored point of a forced response against the library's own integration in time, which
+/// starts from the motion of the point, looks for its own periodic motion at the point's frequency
+/// (see hbvib_time_response) and so tells what the point leaves out. The branch is not changed.
+/// Where several solutions coexist the integration may end in another one: same_solution, distance
+/// and marched tell.
+///
+/// model          the model that the branch was computed with.
+/// point          number of a point of the curve, or of a peak, fold or solution wanted.
+/// options        NULL: the defaults.
+/// hooks          progress, log and cancellation as in hbvib_time_response; NULL: none.
+/// harmonics      receives the harmonics in time, (H + 1) x ndof complex numbers as
+///                hbvib_branch_harmonics gives those of the point; or NULL.
+/// harmonics_len  complex numbers in it; 0 with NULL.
+/// errors         receives what each harmonic 0 .. H adds to motion_error, by squares; or NULL.
+/// errors_len     doubles in it; 0 with NULL.
+/// out            receives how far the point is; fill it by hbvib_verification_init before; or NULL.
+/// HBVIB_STOPPED_BY_CALLER: the results compare with the last period, which is not steady.
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_UNSUPPORTED (branch is a nonlinear mode; what
+/// hbvib_time_response does not integrate), HBVIB_E_ARGUMENT (another model, options, overlapping
+/// arrays), HBVIB_E_NOT_FINITE (options), HBVIB_E_DIMENSION (a length, with the one needed),
+/// HBVIB_E_NO_CONVERGENCE (no steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows
+/// without end), HBVIB_E_CALLBACK (a force callback refused), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+hbvib_status hbvib_verify(const hbvib_model *model,
+                          const hbvib_branch *branch,
+                          int64_t point,
+                          const hbvib_verify_options *options,
+                          const hbvib_hooks *hooks,
+                          double *harmonics,
+                          int64_t harmonics_len,
+                          double *errors,
+                          int64_t errors_len,
+                          hbvib_verification *out);
 
 #ifdef __cplusplus
 }  // extern "C"

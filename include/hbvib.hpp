@@ -347,6 +347,8 @@ using ContactSummary = Filled<hbvib_contact_summary, hbvib_contact_summary_init>
 using ModePoint = Filled<hbvib_mode_point, hbvib_mode_point_init>;
 using ModeInfo = Filled<hbvib_mode_info, hbvib_mode_info_init>;
 using TimeInfo = Filled<hbvib_time_info, hbvib_time_info_init>;
+using VerifyOptions = Filled<hbvib_verify_options, hbvib_verify_options_init>;
+using VerificationInfo = Filled<hbvib_verification, hbvib_verification_init>;
 using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
 
 /// Range of a forced response, rad per time unit. Arrays handed in are borrowed until it was solved.
@@ -652,6 +654,17 @@ struct TimeResponse {
   View<const double> samples;
   TimeInfo info;
 };
+/// A point against the motion in time: the harmonics of that motion, (H + 1) x ndof, and what each harmonic adds to
+/// info.motion_error, by squares.
+struct Verification {
+  hbvib_status status;
+  View<const Complex> harmonics;
+  std::vector<double> errors;
+  VerificationInfo info;
+
+  /// Fundamental of the response degree of freedom in time.
+  Complex response() const { return {info.response[0], info.response[1]}; }
+};
 /// Residual of n complex rows; jacobian is 2 n x 2 n over the pairs (re, im). Both derivatives are empty
 /// unless asked for.
 struct Residual {
@@ -932,6 +945,20 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
                      samples.data(), samples.length(), &out.info);
     out.harmonics = x.view({rows, n});
     out.samples = samples.view({options.samples, n});
+    return out;
+  }
+  /// How far a point of a forced response is from the motion that integration in time finds from it. hooks.partial
+  /// plays no part.
+  Verification verify(const Branch& branch, Index point, const VerifyOptions& options = VerifyOptions(), const Hooks& hooks = {}) const {
+    const auto keep = branch.core_;
+    const Index rows = branch.reduction().harmonics_asked + 1, n = dofs();
+    const detail::Array<Complex> x(detail::extent(rows, n));
+    const detail::BoundHooks bound(hooks);
+    Verification out{};
+    out.errors.resize(detail::extent(rows));
+    out.status = use(hbvib_verify, branch.get(), point, &options, &bound, detail::flat(x.data()), x.length(), out.errors.data(), rows,
+                     &out.info);
+    out.harmonics = x.view({rows, n});
     return out;
   }
 

@@ -114,6 +114,9 @@ synthesis_options: uint32 struct_size; int32 model_damping; double force_factor 
 time_options: uint32 struct_size; int32 method; double omega; int64 harmonics samples; double tolerance;
     int64 max_periods; pointer start; int64 start_len
 time_info: uint32 struct_size; int32 reserved; double period residual; int64 periods events
+verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
+verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
+    response_error motion_error above distance peak peak_error residual; int64 periods events
 """
 
 # Functions that return a status; the _init functions follow from the structs. Letters of the arguments: i int32,
@@ -132,7 +135,8 @@ branch_reduction h reduction; branch_peaks hlpppp; branch_folds hlpppp; branch_a
 branch_time_history hlllp; branch_contact_loop hllllppp; branch_contact_summary hll contact_summary;
 branch_mode_point hl mode_point; branch_mode_info h mode_info; branch_synthesis hh synthesis_options lpppp;
 branch_synthesis_peaks hh synthesis_options lppppppp; forced_residual h solver_options dplplplpl;
-time_response h time_options hooks plpl time_info; index_from_one pllp
+time_response h time_options hooks plpl time_info; verify hhl verify_options hooks plpl verification;
+index_from_one pllp
 """
 
 _TYPES: dict = dict(
@@ -469,6 +473,8 @@ ModeInfo = _record("ModeInfo", "hbvib_mode_info", multiple=ModeMultiple)
 Reduction = _record("Reduction", "hbvib_reduction", mean_carried=bool, even_removed=bool)
 JacobianGap = _record("JacobianGap", "hbvib_jacobian_gap", tangent=Tangent)
 TimeInfo = _record("TimeInfo", "hbvib_time_info")
+VerificationInfo = _record("VerificationInfo", "hbvib_verification", same_solution=bool, marched=bool,
+                           response=lambda pair: complex(*pair))
 
 
 class Progress(NamedTuple):
@@ -492,6 +498,7 @@ SynthesisPeaks = namedtuple("SynthesisPeaks", "omega amplitude log10_amplitude d
 Residual = namedtuple("Residual", "residual jacobian d_omega")
 ContactForce = namedtuple("ContactForce", "force jacobian")
 TimeResponse = namedtuple("TimeResponse", "harmonics samples info status")
+Verification = namedtuple("Verification", "harmonics errors info status")
 
 # ------------------------------------------------------------------------------------------ calls
 
@@ -1066,6 +1073,26 @@ class Model(_Owner):
                            times if times.size else None, times.size, info, guard=guard)
         return TimeResponse(x, times, TimeInfo.of(info), Status(status))
 
+    def verify(self, branch: Branch, point: int, *, method: Any = SteadyMethod.SHOOTING,
+               progress: Optional[Callable[[Progress], Any]] = None,
+               log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+               cancel: Optional[CancelFlag] = None, **options: Any) -> Verification:
+        """How far a point of a forced response of this model is from the motion that integration in time finds from it.
+
+        method     "shooting" or "marching".    tolerance, max_periods, same_within   see hbvib.h.
+        progress   after each period; the rest as in forced_response.
+        Returns harmonics (H + 1, ndof) complex in time, errors (H + 1), info, whose response_error is that of the
+        response and whose same_solution is False where the integration ended far from the point, and status:
+        STOPPED_BY_CALLER where all of it compares with the last period, not steady."""
+        settings = _options("verify", "hbvib_verify_options", options, method=_member(SteadyMethod, method))
+        rows = branch.reduction.harmonics_asked + 1
+        x, errors, info = np.empty((rows, self.ndof), complex), np.empty(rows), _new("hbvib_verification")
+        with _Guard() as guard:
+            hooks = _hooks(guard, progress, log, log_level, cancel)
+            status = _call("hbvib_verify", self.handle, branch.handle, point, settings, hooks, x, x.size, errors,
+                           errors.size, info, guard=guard)
+        return Verification(x, errors, VerificationInfo.of(info), Status(status))
+
     def forced_residual(self, omega: float, x: ArrayLike, *, jacobian: bool = False, d_omega: bool = False,
                         samples: int = 0) -> Residual:
         """Residual of harmonic balance at x, (H + 1, ndof) complex: an array like x; with jacobian the real matrix
@@ -1083,6 +1110,7 @@ class Model(_Owner):
 forced_response = Model.forced_response
 nonlinear_mode = Model.nonlinear_mode
 time_response = Model.time_response
+verify = Model.verify
 
 
 def evaluate_contact(kind: Any, motion: ArrayLike, *, omega: float = 1, samples: int = 0, jacobian: bool = False,

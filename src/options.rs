@@ -2,7 +2,7 @@
 
 mod time;
 
-pub use time::{SteadyMethod, TimeOptions};
+pub use time::{SteadyMethod, TimeOptions, VerifyOptions};
 
 use crate::error::{Result, fail};
 use num_complex::Complex64;

@@ -126,6 +126,17 @@ fn responses_in_time_are_the_truth_of_the_reference() {
 }
 
 #[test]
+fn points_checked_in_time_have_the_errors_of_the_reference() {
+    let point = data("point_F5_208p85.json");
+    let tip = &point["td"]["X"]["1"][0];
+    let error = &point["hbm"]["hbm_exactN"]["9"]["rel_err_b2_vs_td"];
+    let numbers = [&point["td"]["f_Hz"], &tip[0], &tip[1], error];
+    silent("verify", |_| {
+        numbers.iter().map(|v| number(v).to_string().into()).collect()
+    });
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
 }

@@ -19,6 +19,7 @@ use hbvib::capi::types::{
     hbvib_forced_options, hbvib_hooks, hbvib_matrix, hbvib_progress, hbvib_solver_options, hbvib_view,
 };
 use hbvib::capi::user_force::{hbvib_force_call, hbvib_user_force};
+use hbvib::capi::verify::{hbvib_verification, hbvib_verify_options};
 use programs::{library, printed, python, root, run, soname};
 use std::fmt::Write as _;
 use std::fs;
@@ -67,6 +68,8 @@ fn in_rust() -> String {
         hbvib_synthesis_options { struct_size, model_damping, force_factor, damping_ratio }
         hbvib_time_options { struct_size, method, omega, harmonics, samples, tolerance, max_periods, start, start_len }
         hbvib_time_info { struct_size, reserved, period, residual, periods, events }
+        hbvib_verify_options { struct_size, method, tolerance, max_periods, same_within }
+        hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events }
     }
 }
 

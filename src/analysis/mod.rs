@@ -13,6 +13,7 @@ pub mod nonlinear_mode;
 pub mod synthesis;
 pub mod time_response;
 mod unbounded;
+pub mod verify;
 
 pub use check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use estimate::estimate_at;
@@ -21,3 +22,4 @@ pub use harmonic_residual::{contact_evaluate, forced_residual};
 pub use nonlinear_mode::nonlinear_mode;
 pub use synthesis::synthesise;
 pub use time_response::time_response;
+pub use verify::{Verification, verify};

@@ -36,3 +36,4 @@ pub mod time;
 mod told;
 pub mod types;
 pub mod user_force;
+pub mod verify;

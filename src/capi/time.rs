@@ -129,17 +129,19 @@ pub unsafe extern "C" fn hbvib_time_info_init(i: *mut hbvib_time_info, size_of_i
     call(|| unsafe { init(i, size_of_i) })
 }
 
+/// The method of a number.
+pub(super) fn steady_method(method: i32) -> Result<SteadyMethod> {
+    match method {
+        0 => Ok(SteadyMethod::Shooting),
+        1 => Ok(SteadyMethod::Marching),
+        other => fail!(
+            Argument,
+            "method = {other}, needs HBVIB_SHOOTING = 0 or HBVIB_MARCHING = 1"
+        ),
+    }
+}
+
 unsafe fn time_options<'a>(o: &hbvib_time_options, ndof: usize) -> Result<TimeOptions<'a>> {
-    let method = match o.method {
-        0 => SteadyMethod::Shooting,
-        1 => SteadyMethod::Marching,
-        other => {
-            return fail!(
-                Argument,
-                "method = {other}, needs HBVIB_SHOOTING = 0 or HBVIB_MARCHING = 1"
-            );
-        }
-    };
     let start = if o.start.is_null() && o.start_len == 0 {
         None
     } else {
@@ -148,7 +150,7 @@ unsafe fn time_options<'a>(o: &hbvib_time_options, ndof: usize) -> Result<TimeOp
     };
     let options = TimeOptions {
         omega: o.omega,
-        method,
+        method: steady_method(o.method)?,
         harmonics: number(o.harmonics, "harmonics")?,
         samples: number(o.samples, "samples")?,
         tolerance: o.tolerance,
@@ -237,7 +239,7 @@ pub unsafe extern "C" fn hbvib_time_response(
 }
 
 /// The length of an output array that may be left out, given as the argument after the array's.
-fn wanted(p: *mut f64, len: i64, needed: usize, argument: i32, name: &str) -> Result<usize> {
+pub(super) fn wanted(p: *mut f64, len: i64, needed: usize, argument: i32, name: &str) -> Result<usize> {
     if p.is_null() && len == 0 {
         return Ok(0);
     }

@@ -73,12 +73,7 @@ impl TimeOptions<'_> {
         if self.samples > MAX_SAMPLES {
             return fail!(Argument, "samples = {}, needs 0 .. {MAX_SAMPLES}", self.samples);
         }
-        if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
-            return fail!(Argument, "tolerance = {}, needs 0 < tolerance < 1", self.tolerance);
-        }
-        if self.max_periods == 0 {
-            return fail!(Argument, "max_periods = 0, needs at least 1");
-        }
+        check_search(self.tolerance, self.max_periods)?;
         if let Some(start) = self.start {
             if start.is_empty() || start.len() % ndof != 0 || start.len() / ndof > MAX_HARMONIC + 1 {
                 return fail!(
@@ -90,6 +85,63 @@ impl TimeOptions<'_> {
             if let Some(i) = start.iter().position(|z| !z.is_finite()) {
                 return fail!(NotFinite, "start[{i}] is not finite");
             }
+        }
+        Ok(())
+    }
+}
+
+fn check_search(tolerance: f64, max_periods: usize) -> Result<()> {
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        return fail!(Argument, "tolerance = {tolerance}, needs 0 < tolerance < 1");
+    }
+    if max_periods == 0 {
+        return fail!(Argument, "max_periods = 0, needs at least 1");
+    }
+    Ok(())
+}
+
+/// Options of the check of a point by integration in time.
+#[derive(Clone, Copy, Debug)]
+pub struct VerifyOptions {
+    /// How the steady state is sought. Shooting finds the point's own solution where it is unstable, too.
+    pub method: SteadyMethod,
+    /// See [`TimeOptions::tolerance`].
+    pub tolerance: f64,
+    /// Cap on the periods that are integrated.
+    pub max_periods: usize,
+    /// Largest distance from the motion found in time, relative to that motion, at which the point counts as
+    /// the same solution.
+    pub same_within: f64,
+}
+
+impl Default for VerifyOptions {
+    fn default() -> Self {
+        let time = TimeOptions::default();
+        Self {
+            method: time.method,
+            tolerance: time.tolerance,
+            max_periods: time.max_periods,
+            same_within: 0.1,
+        }
+    }
+}
+
+impl VerifyOptions {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// `Argument` or `NotFinite`, naming the field, its value and its range.
+    pub fn check(&self) -> Result<()> {
+        check_search(self.tolerance, self.max_periods)?;
+        if !self.same_within.is_finite() {
+            return fail!(
+                NotFinite,
+                "same_within = {}, needs a finite distance > 0",
+                self.same_within
+            );
+        }
+        if self.same_within <= 0.0 {
+            return fail!(Argument, "same_within = {}, needs a distance > 0", self.same_within);
         }
         Ok(())
     }

@@ -44,6 +44,9 @@ pub struct TimeResponse {
     pub residual: f64,
     /// Periods that were integrated, rounded up.
     pub periods: usize,
+    /// Whether periods were marched: with shooting, where Newton's method did not converge from the start.
+    /// Marching leaves an unstable solution.
+    pub marched: bool,
     /// Changes of a contact between stick, slip, open and closed, or between the lines of a table, in one
     /// period, all contacts of one sector together.
     pub events: usize,
@@ -78,6 +81,7 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
         period: TAU / options.omega,
         residual: steady.residual,
         periods: steady.periods,
+        marched: steady.marched,
         // All sectors during a lapse do what one of them does in a period.
         events: travel.events,
         ndof: system.ndof,

@@ -35,6 +35,8 @@ pub(super) struct Steady {
     pub periods: usize,
     /// `Ok` or `StoppedByCaller`.
     pub status: Status,
+    /// Whether periods were marched.
+    pub marched: bool,
 }
 
 enum Outcome {
@@ -86,6 +88,7 @@ impl<'a, 'h> Search<'a, 'h> {
     /// Looks for the steady state.
     pub fn run(mut self) -> Result<Steady> {
         let mut march = FIRST_MARCH;
+        let mut marched = false;
         loop {
             let mut outcome = Outcome::Failed;
             if self.options.method == SteadyMethod::Shooting {
@@ -96,6 +99,7 @@ impl<'a, 'h> Search<'a, 'h> {
                 }
             }
             if matches!(outcome, Outcome::Failed) {
+                marched = true;
                 outcome = self.march(march.saturating_mul(self.system.sectors))?;
                 march *= 2;
             }
@@ -109,6 +113,7 @@ impl<'a, 'h> Search<'a, 'h> {
                 state: self.state,
                 residual: self.residual,
                 status,
+                marched,
             });
         }
     }

@@ -64,6 +64,7 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     hbvib_mode_point point;
     hbvib_mode_info info;
     hbvib_contact_summary summary;
+    hbvib_verification verification;
     double numbers[80];
     int64_t count = -1;
     WORKS(row, hbvib_view_init(&view, sizeof view));
@@ -89,6 +90,8 @@ static void no_branch(const char *row, hbvib_branch *b, const char *words)
     REFUSED(row, hbvib_branch_time_history(b, 0, 0, 8, numbers), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_contact_loop(b, 0, 0, 0, 8, numbers, NULL, NULL), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_branch_contact_summary(b, 0, 0, &summary), HBVIB_E_HANDLE, 1, words);
+    WORKS(row, hbvib_verification_init(&verification, sizeof verification));
+    REFUSED(row, hbvib_verify(the_model, b, 0, NULL, NULL, NULL, 0, NULL, 0, &verification), HBVIB_E_HANDLE, 2, words);
     EXPECT(row, count == -1);
 }
 

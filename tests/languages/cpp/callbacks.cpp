@@ -138,6 +138,8 @@ void nested() {
   outer.progress = [&](const hbvib_progress&) { model.linear_modes(-1, HBVIB_CONTACTS_STUCK, 1); };
   refused("an Error that a callback lets go", HBVIB_E_ARGUMENT, 2, "diameter", [&] { model.forced_response(options(), range(), outer); });
 
+  const auto solved = model.forced_response(options(), range());
+  throws_own(1, place, "an exception out of a check in time", [&] { model.verify(solved, 0, hbvib::VerifyOptions(), throwing); });
   throws_own(1, place, "an exception out of the integration in time", [&] { model.time_response(hbvib::TimeOptions(2 * PI * 208), throwing); });
   throwing.partial = &partial;
   throws_own(1, place, "an exception out of a nonlinear mode", [&] { model.nonlinear_mode(options(), {-5, -3}, throwing); });

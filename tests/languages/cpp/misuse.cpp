@@ -83,6 +83,10 @@ void test() {
   refused("more degrees of freedom than there are", HBVIB_E_DIMENSION, 4, "n_dof = 5", [&] { solved.harmonics(0, 0, 5); });
   std::vector<Complex> little(3);
   refused("an array that is too short", HBVIB_E_DIMENSION, 6, "40", [&] { solved.harmonics(0, 0, NDOF, little); });
+  refused("a check of a point out of range", HBVIB_E_INDEX, 3, "point = 100000", [&] { model.verify(solved, 100000); });
+  hbvib::VerifyOptions check;
+  check.same_within = 0;
+  refused("a check of no distance", HBVIB_E_ARGUMENT, 4, "same_within = 0", [&] { model.verify(solved, 0, check); });
   refused("no times", HBVIB_E_DIMENSION, 4, "n = 0", [&] { solved.time_history(0, 0, 0); });
   refused("times below 0", HBVIB_E_DIMENSION, 5, "n = -3", [&] { solved.contact_loop(0, 0, 0, -3); });
   refused("a field of modes of a forced response", HBVIB_E_ARGUMENT, 2, "", [&] { solved.field(HBVIB_DAMPING_RATIO); });
@@ -116,6 +120,7 @@ void test() {
   refused("a field of a moved-from branch", HBVIB_E_HANDLE, 1, "branch", [&] { a.field(HBVIB_OMEGA); });
   refused("harmonics of a moved-from branch", HBVIB_E_HANDLE, 1, "branch", [&] { a.harmonics(0); });
   refused("peaks of a moved-from branch", HBVIB_E_HANDLE, 1, "branch", [&] { a.peaks(); });
+  refused("a check of a moved-from branch", HBVIB_E_HANDLE, 1, "branch", [&] { model.verify(a, 0); });
   refused("the status of a branch that never was", HBVIB_E_HANDLE, 1, "branch", [&] { Branch().status(); });
   claim(bits(b) == before, "a branch that was moved has the same bits");
   const hbvib_branch* const raw = b.get();

@@ -106,6 +106,14 @@ void friction() {
   const auto again = model.time_response(o.start_from(start));
   near(std::abs(again.harmonics(1, 0)), std::abs(truth.harmonics(1, 0)), 1e-9, "from the point it is the same");
   claim(again.info.periods <= truth.info.periods, "and no later");
+  const auto checked = model.verify(branch, peak.point);
+  claim(checked.status == HBVIB_OK && checked.info.same_solution == 1 && checked.harmonics.shape(0) == 32, "the point is checked in time");
+  near(std::abs(checked.response() - truth.harmonics(1, 0)) + 1, 1, 1e-9, "the check finds the motion in time");
+  const double off = std::abs(x(1, 0) - truth.harmonics(1, 0)) / std::abs(truth.harmonics(1, 0));
+  near(checked.info.response_error, off, 1e-3, "its error is the distance of both");
+  double squares = 0;
+  for (const double e : checked.errors) squares += e * e;
+  near(std::sqrt(squares), checked.info.motion_error, 1e-12, "the harmonics make up the error");
 
   // The law alone, on the motion of the point.
   std::vector<Complex> motion(x.data(), x.data() + x.size());

@@ -24,6 +24,8 @@ program layout
    call synthesis_options()
    call time_options()
    call time_info()
+   call verify_options()
+   call verification()
 
 contains
 
@@ -337,5 +339,35 @@ contains
       call field('periods', c_loc(s), c_loc(s%periods), c_sizeof(s%periods))
       call field('events', c_loc(s), c_loc(s%events), c_sizeof(s%events))
    end subroutine time_info
+
+   subroutine verify_options()
+      type(hbvib_verify_options), target :: s
+      call whole('hbvib_verify_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('method', c_loc(s), c_loc(s%method), c_sizeof(s%method))
+      call field('tolerance', c_loc(s), c_loc(s%tolerance), c_sizeof(s%tolerance))
+      call field('max_periods', c_loc(s), c_loc(s%max_periods), c_sizeof(s%max_periods))
+      call field('same_within', c_loc(s), c_loc(s%same_within), c_sizeof(s%same_within))
+   end subroutine verify_options
+
+   subroutine verification()
+      type(hbvib_verification), target :: s
+      call whole('hbvib_verification', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('same_solution', c_loc(s), c_loc(s%same_solution), c_sizeof(s%same_solution))
+      call field('marched', c_loc(s), c_loc(s%marched), c_sizeof(s%marched))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('harmonic', c_loc(s), c_loc(s%harmonic), c_sizeof(s%harmonic))
+      call field('response', c_loc(s), c_loc(s%response), c_sizeof(s%response))
+      call field('response_error', c_loc(s), c_loc(s%response_error), c_sizeof(s%response_error))
+      call field('motion_error', c_loc(s), c_loc(s%motion_error), c_sizeof(s%motion_error))
+      call field('above', c_loc(s), c_loc(s%above), c_sizeof(s%above))
+      call field('distance', c_loc(s), c_loc(s%distance), c_sizeof(s%distance))
+      call field('peak', c_loc(s), c_loc(s%peak), c_sizeof(s%peak))
+      call field('peak_error', c_loc(s), c_loc(s%peak_error), c_sizeof(s%peak_error))
+      call field('residual', c_loc(s), c_loc(s%residual), c_sizeof(s%residual))
+      call field('periods', c_loc(s), c_loc(s%periods), c_sizeof(s%periods))
+      call field('events', c_loc(s), c_loc(s%events), c_sizeof(s%events))
+   end subroutine verification
 
 end program layout

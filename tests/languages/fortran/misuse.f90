@@ -67,6 +67,7 @@ contains
       type(hbvib_mode_options) :: m, m0
       type(hbvib_time_options) :: t, t0
       type(hbvib_synthesis_options) :: y, y0
+      type(hbvib_verify_options) :: v, v0
       call works(hbvib_solver_options_init(s, c_sizeof(s)), 'init')
       call expect('solver options are ready', same_bytes(transfer(s, [0_c_int8_t]), transfer(s0, [0_c_int8_t])))
       call works(hbvib_contact_init(c, c_sizeof(c)), 'init')
@@ -75,6 +76,8 @@ contains
       call expect('time options are ready', same_bytes(transfer(t, [0_c_int8_t]), transfer(t0, [0_c_int8_t])))
       call works(hbvib_synthesis_options_init(y, c_sizeof(y)), 'init')
       call expect('synthesis options are ready', same_bytes(transfer(y, [0_c_int8_t]), transfer(y0, [0_c_int8_t])))
+      call works(hbvib_verify_options_init(v, c_sizeof(v)), 'init')
+      call expect('options of a check are ready', same_bytes(transfer(v, [0_c_int8_t]), transfer(v0, [0_c_int8_t])))
       call works(hbvib_mode_options_init(m, c_sizeof(m)), 'init')
       m%mode_index = m%mode_index + 1
       call expect('mode options are ready', same_bytes(transfer(m, [0_c_int8_t]), transfer(m0, [0_c_int8_t])))
@@ -94,6 +97,9 @@ contains
       type(hbvib_mode_point) :: p
       type(hbvib_mode_info) :: i
       type(hbvib_time_info) :: t
+      type(hbvib_verification) :: w, w0
+      call works(hbvib_verification_init(w, c_sizeof(w)), 'init')
+      call expect('what a check tells is ready', same_bytes(transfer(w, [0_c_int8_t]), transfer(w0, [0_c_int8_t])))
       call expect('every struct knows its size', all([a%struct_size, u%struct_size, j%struct_size, f%struct_size, h%struct_size, &
                   v%struct_size, q%struct_size, e%struct_size, c%struct_size, p%struct_size, i%struct_size, t%struct_size] == &
                   [c_sizeof(a), c_sizeof(u), c_sizeof(j), c_sizeof(f), c_sizeof(h), c_sizeof(v), c_sizeof(q), c_sizeof(e), &

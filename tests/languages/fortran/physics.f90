@@ -255,6 +255,9 @@ contains
       real(dp), allocatable :: amplitude(:)
       integer, allocatable :: point(:)
       type(hbvib_time_info) :: info
+      type(hbvib_verification) :: check
+      complex(dp) :: truth(1, 0:63)
+      real(dp) :: errors(0:63)
       integer :: j
       exact = load/cmplx(k - omega**2, c*omega, dp)
       call oscillator(k, c, load)
@@ -270,6 +273,14 @@ contains
       call works(model%time_response(omega, x, start=start, info=info), 'the point in time')
       call expect('harmonic balance is what time integration finds', abs(x(1, 1)/start(1, 1) - 1) < 1e-5_dp)
       call expect('friction had events', info%events > 0)
+      call works(model%verify(branch, point(1), check, harmonics=truth, errors=errors), 'the point checked in time')
+      call expect('the check finds the motion in time', abs(truth(1, 1)/x(1, 1) - 1) < 1e-9_dp .and. &
+                  abs(check%response - truth(1, 1)) < 1e-15_dp)
+      call expect('its error is the distance of both', &
+                  close(check%response_error, abs(start(1, 1) - x(1, 1))/abs(x(1, 1)), 1e-3_dp) .and. check%same_solution == 1)
+      call expect('the harmonics make up the error', close(sqrt(sum(errors**2)), check%motion_error, 1e-12_dp))
+      call refused(model%verify(branch, 0), HBVIB_E_INDEX, 'point = 0, needs 1', 'a check of point 0')
+      call refused(model%verify(branch, point(1), errors=errors(1:)), HBVIB_E_DIMENSION, 'harmonics + 1 = 64', 'too few errors')
       call refused(model%time_response(omega, x, start=reshape(start, [2, 32])), HBVIB_E_DIMENSION, 'start', &
                    'a start of two degrees of freedom')
    end subroutine in_time

@@ -119,6 +119,12 @@ raises("in a nonlinear mode", Mine, model.nonlinear_mode, (-6, -3), progress=thr
 check("and the model solves to the same bits", bits(solve(model)) == reference)
 stopped = model.time_response(HZ * 208, progress=lambda state: False)
 check("time integration stops likewise", stopped.status is hbvib.Status.STOPPED_BY_CALLER)
+whole = solve(model)
+raises("an exception in a check", Mine, model.verify, whole, 0, progress=throw)
+check(
+    "a check stops likewise",
+    model.verify(whole, 0, progress=lambda state: False).status is hbvib.Status.STOPPED_BY_CALLER,
+)
 
 # Calls within calls have their own failures.
 inner = []

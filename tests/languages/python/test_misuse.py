@@ -45,6 +45,7 @@ refused(
 refused("struct_size is no option", TypeError, solve, model, struct_size=3)
 refused("an unknown option of a mode", TypeError, model.nonlinear_mode, (-6, -5), reserve=3, words="nonlinear_mode()")
 refused("an unknown option in time", TypeError, model.time_response, 1300.0, harmonix=3, words="time_response()")
+refused("an unknown option of a check", TypeError, model.verify, branch, 0, near=1, words="verify()")
 refused("a length that the array tells", TypeError, model.time_response, 1300.0, start_len=3)
 refused("an unknown constant", TypeError, model.add_contact, "jenkins", 0, dof_a=1, words="add_contact()")
 refused("an unknown law", ValueError, model.add_contact, "coulomb", 0, words="friction_2d")

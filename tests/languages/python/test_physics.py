@@ -140,6 +140,12 @@ for harmonics in (3, 9, 31):
     point = rubbing.forced_response(1.3, harmonics=harmonics)
     errors.append(abs(point.harmonics(0)[1, 0] - truth[1, 0]) / abs(truth[1, 0]))
 check("harmonic balance tends to the response in time", errors[0] > errors[1] > errors[2] and errors[2] < 1e-4, errors)
+checked = rubbing.verify(point, 0)
+check("the check of a point finds the same solution", checked.info.same_solution and not checked.info.marched)
+close("and the motion in time", checked.harmonics[1, 0], truth[1, 0], 1e-9)
+close("its error is the distance of both", checked.info.response_error, errors[2], 1e-3)
+close("the harmonics make up the error", np.sqrt(np.sum(checked.errors**2)), checked.info.motion_error, 1e-12)
+check("the response in time is a complex number", checked.info.response == checked.harmonics[1, 0])
 started = rubbing.time_response(1.3, harmonics=3, start=point.harmonics(0), method="marching")
 close("marching from a point of a branch finds the same", started.harmonics, truth, 1e-6)
 

@@ -1,0 +1,284 @@
+//! Any point of a forced response against the library's own integration in time.
+//!
+//! The integration starts from the motion of the point and looks for its own steady state, so that what is
+//! left between the two is what harmonic balance leaves out: harmonics above H, and contact forces in them.
+//! All norms are root mean squares over the period and the degrees of freedom, ‖x‖² = |X₀|² + ½ Σₕ |Xₕ|², so
+//! that parts of a distance add up by their squares.
+
+use super::time_response::{TimeResponse, time_response};
+use crate::branch::Branch;
+use crate::error::{Result, Status, fail, try_vec};
+use crate::hooks::{Hooks, LogLevel};
+use crate::model::Model;
+use crate::options::{TimeOptions, VerifyOptions};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// How far a point is from the periodic motion that integration in time finds from it.
+#[derive(Clone, Debug)]
+pub struct Verification {
+    /// `Ok`, or `StoppedByCaller`: then all numbers compare with the last period, which is not steady.
+    pub status: Status,
+    /// Whether the point counts as the same solution: [`Self::distance`] is at most
+    /// [`VerifyOptions::same_within`]. Where it is not, the integration went to another solution, or the point
+    /// has too few harmonics; a point with more of them tells which.
+    pub same: bool,
+    /// Whether Newton's method did not converge from the point and periods were marched, which leaves an
+    /// unstable solution; always with [`crate::options::SteadyMethod::Marching`].
+    pub marched: bool,
+    /// The harmonic h in which the response is compared: the lowest above the mean in which the point moves.
+    pub harmonic: usize,
+    /// Coefficient X_h of the response degree of freedom in time.
+    pub response: Complex64,
+    /// |X_h of the point − X_h in time| / |X_h in time|, the error that the estimate of a point estimates.
+    pub response_error: f64,
+    /// Distance of the harmonics 0 ..= H of all degrees of freedom over the motion in time.
+    pub motion_error: f64,
+    /// Share of the motion in time that lies above H, as a root mean square.
+    pub above: f64,
+    /// Distance of the whole motions over the motion in time: distance² = `motion_error`² + above².
+    pub distance: f64,
+    /// What each harmonic 0 ..= H adds to `motion_error`, by squares.
+    pub harmonic_errors: Vec<f64>,
+    /// Largest displacement of the response degree of freedom over the period in time.
+    pub peak: f64,
+    /// Difference of the point's largest displacement from it, relative to it.
+    pub peak_error: f64,
+    /// Largest change over a period of the motion in time, relative to its largest displacement and velocity:
+    /// errors of this size are those of the integration.
+    pub residual: f64,
+    /// Periods that were integrated.
+    pub periods: usize,
+    /// Changes of the contacts between stick, slip, open and closed in one period.
+    pub events: usize,
+    /// Degrees of freedom of one sector.
+    pub ndof: usize,
+    /// Coefficients 0 ..= H of all degrees of freedom in time, harmonic by harmonic.
+    pub harmonics: Vec<Complex64>,
+}
+
+/// Compares a stored point of a forced response with the periodic motion that [`time_response`] finds from
+/// it, at the point's frequency. `model` is the one that the branch was computed with. The point is not changed.
+///
+/// Where several motions coexist the integration may end in another one than the point's: then `same` is
+/// false, `distance` says how far it is and `marched` whether Newton's method had failed.
+///
+/// # Errors
+/// `Index` for an unknown point, `Argument` for another model than that of the branch, `Unsupported` for a point of a
+/// nonlinear mode; bad options (see [`VerifyOptions::check`]), and the errors of [`time_response`].
+pub fn verify(
+    model: &Model,
+    branch: &Branch,
+    point: usize,
+    options: &VerifyOptions,
+    hooks: &mut Hooks<'_>,
+) -> Result<Verification> {
+    options.check()?;
+    if branch.mode().is_some() {
+        return fail!(
+            Unsupported,
+            "the branch is a nonlinear mode: no force drives it, so that there is no forced motion in time to compare with; take a point of a forced response"
+        );
+    }
+    check_model(model, branch)?;
+    let Some(omega) = branch.omega_at(point) else {
+        return fail!(
+            Index,
+            "point = {point}, needs 0 .. {} (points and special points)",
+            branch.stored()
+        );
+    };
+    let (highest, ndof) = (branch.harmonics(), branch.ndof());
+    let len = (highest + 1).saturating_mul(ndof);
+    let mut x = try_vec(len, Complex64::ZERO, "the harmonics of the point")?;
+    branch.harmonics_at(point, &mut x)?;
+    let time = time_response(
+        model,
+        &TimeOptions {
+            omega,
+            method: options.method,
+            harmonics: highest,
+            samples: times(highest),
+            tolerance: options.tolerance,
+            max_periods: options.max_periods,
+            start: Some(&x),
+        },
+        hooks,
+    )?;
+    let found = compare(&x, time, branch.response_dof(), options.same_within)?;
+    if !found.same && found.status == Status::Ok {
+        hooks.log(
+            LogLevel::Warn,
+            "the motion found in time is far from the point: another solution, or too few harmonics",
+        );
+    }
+    Ok(found)
+}
+
+/// Refuses a model that the branch cannot come from.
+fn check_model(model: &Model, branch: &Branch) -> Result<()> {
+    let (ours, theirs) = (model.structure().sectors(), branch.reduction().sectors);
+    if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() || ours != theirs {
+        return fail!(
+            Argument,
+            "the branch has {} degrees of freedom, {theirs} sectors and {} contacts, the model {}, {ours} and {}: it is another one",
+            branch.ndof(),
+            branch.contacts(),
+            model.ndof(),
+            model.contacts().len()
+        );
+    }
+    Ok(())
+}
+
+/// Fewest times of a period at which motions are compared.
+const FEWEST_TIMES: usize = 1024;
+
+/// Times per period of the highest harmonic.
+const TIMES_PER_WAVE: usize = 16;
+
+/// Number of times at which motions with H harmonics are compared.
+fn times(highest: usize) -> usize {
+    (TIMES_PER_WAVE * (highest + 1)).next_power_of_two().max(FEWEST_TIMES)
+}
+
+fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) -> Result<Verification> {
+    const WHAT: &str = "the comparison with the motion in time";
+    let (ndof, count) = (time.ndof, time.harmonics.len() / time.ndof);
+    let mut errors = try_vec(count, 0.0, WHAT)?;
+    let (mut square, mut gap) = (0.0, 0.0);
+    let rows = x.chunks_exact(ndof).zip(time.harmonics.chunks_exact(ndof));
+    for (h, (error, (x, y))) in errors.iter_mut().zip(rows).enumerate() {
+        let weight = if h == 0 { 1.0 } else { 0.5 };
+        let own: f64 = x.iter().zip(y).map(|(x, y)| (x - y).norm_sqr()).sum();
+        *error = (weight * own).sqrt();
+        gap += weight * own;
+        square += weight * y.iter().map(Complex64::norm_sqr).sum::<f64>();
+    }
+    let series = Series::new(time.samples.len() / ndof)?;
+    let rest = series.rest(&time);
+    let whole = (square + rest * rest).sqrt();
+    for error in &mut errors {
+        *error = over(*error, whole);
+    }
+    let moves = |h: &usize| x[h * ndof..(h + 1) * ndof].iter().any(|z| *z != Complex64::ZERO);
+    let harmonic = (1..count).find(moves).unwrap_or(1.min(count - 1));
+    let at = harmonic * ndof + dof;
+    let response = time.harmonics[at];
+    let [own, peak] = series.peaks(x, &time, dof);
+    let distance = over((gap + rest * rest).sqrt(), whole);
+    Ok(Verification {
+        status: time.status,
+        same: distance <= same_within,
+        marched: time.marched,
+        harmonic,
+        response,
+        response_error: over((x[at] - response).norm(), response.norm()),
+        motion_error: over(gap.sqrt(), whole),
+        above: over(rest, whole),
+        distance,
+        harmonic_errors: errors,
+        peak,
+        peak_error: over((own - peak).abs(), peak),
+        residual: time.residual,
+        periods: time.periods,
+        events: time.events,
+        ndof,
+        harmonics: time.harmonics,
+    })
+}
+
+/// A distance over a size: 0 where both vanish.
+fn over(distance: f64, size: f64) -> f64 {
+    if distance == 0.0 { 0.0 } else { distance / size }
+}
+
+/// Values of Fourier series at equidistant times.
+struct Series {
+    /// e^{iτ} at the times.
+    turns: Vec<Complex64>,
+}
+
+impl Series {
+    fn new(times: usize) -> Result<Self> {
+        let mut turns = try_vec(times, Complex64::ONE, "the times of a period")?;
+        for (i, turn) in turns.iter_mut().enumerate() {
+            *turn = Complex64::cis(TAU * i as f64 / times as f64);
+        }
+        Ok(Self { turns })
+    }
+
+    /// Re Σ X_h e^{ihτ} of one degree of freedom at the i-th time.
+    fn at(&self, x: &[Complex64], ndof: usize, dof: usize, i: usize) -> f64 {
+        let coefficients = x.iter().skip(dof).step_by(ndof);
+        let sum = coefficients.enumerate().map(|(h, x)| {
+            // h·i stays far below 2⁶³: both are bounded by the options.
+            let turn = self.turns[(h * i) % self.turns.len()];
+            x.re * turn.re - x.im * turn.im
+        });
+        sum.sum()
+    }
+
+    /// Root mean square of what the motion in time has above H. It is taken from the differences themselves, not as
+    /// a difference of squares, which would lose half the digits.
+    fn rest(&self, time: &TimeResponse) -> f64 {
+        let mut square = 0.0;
+        for (i, samples) in time.samples.chunks_exact(time.ndof).enumerate() {
+            for (dof, x) in samples.iter().enumerate() {
+                square += (x - self.at(&time.harmonics, time.ndof, dof, i)).powi(2);
+            }
+        }
+        (square / self.turns.len() as f64).sqrt()
+    }
+
+    /// Largest displacements of a degree of freedom over the period, of the point and in time.
+    fn peaks(&self, x: &[Complex64], time: &TimeResponse, dof: usize) -> [f64; 2] {
+        let times = self.turns.len();
+        [
+            peak(times, |i| self.at(x, time.ndof, dof, i)),
+            peak(times, |i| time.samples[i * time.ndof + dof]),
+        ]
+    }
+}
+
+/// Largest modulus over a period of equidistant values, on the parabola through the largest and its neighbours.
+fn peak(times: usize, value: impl Fn(usize) -> f64) -> f64 {
+    let (mut best, mut top) = (0, 0.0);
+    for i in 0..times {
+        let x = value(i).abs();
+        if x > top {
+            (best, top) = (i, x);
+        }
+    }
+    let sign = value(best).signum();
+    let beside = |i: usize| sign * value(i % times);
+    let (before, after) = (beside(best + times - 1), beside(best + 1));
+    let bend = before - 2.0 * top + after;
+    if bend < 0.0 {
+        top -= (after - before).powi(2) / (8.0 * bend);
+    }
+    top
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_peak_of_a_wave_between_two_times_is_its_amplitude() {
+        let step = TAU / 1024.0;
+        for shift in [0.0, 0.3, 0.5, 0.9] {
+            let wave = |i: usize| -2.0 * ((i as f64 + shift) * step).cos();
+            // A distance of s steps from the nearest time leaves s²(1 − s²)·step⁴/8, largest for s = ½.
+            let bound = 3.0 / 128.0 * step.powi(4);
+            assert!((peak(1024, wave) / 2.0 - 1.0).abs() < 1.01 * bound, "{shift}");
+        }
+        assert!(peak(8, |_| 0.0).abs() < f64::MIN_POSITIVE);
+    }
+
+    #[test]
+    fn nothing_is_no_distance_from_nothing() {
+        assert!(over(0.0, 0.0).abs() < f64::MIN_POSITIVE);
+        assert!(over(1.0, 0.0).is_infinite());
+    }
+}

@@ -1,0 +1,250 @@
+//! Points of forced responses against the motion in time.
+
+use super::boundary::{Blame, Range, call, disjoint, index, output};
+use super::handles::{KeptBranch, read};
+use super::sized::{Described, check_out, fill_out, init, load};
+use super::solve::{load_hooks, number, with_hooks};
+use super::time::{hbvib_steady_method, steady_method, wanted};
+use super::types::{hbvib_branch, hbvib_hooks, hbvib_model, hbvib_status};
+use crate::analysis;
+use crate::error::{Result, Status};
+use crate::model::Model;
+use crate::options::VerifyOptions;
+use num_complex::Complex64;
+
+/// Options of hbvib_verify. Fill it by hbvib_verify_options_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct hbvib_verify_options {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// HBVIB_SHOOTING, which finds the point's own solution where it is unstable, too, or
+    /// HBVIB_MARCHING.
+    pub method: i32,
+    /// As in hbvib_time_options.
+    pub tolerance: f64,
+    /// Cap on the periods that are integrated.
+    pub max_periods: i64,
+    /// Largest distance from the motion found in time, relative to that motion, at which the point
+    /// counts as the same solution.
+    pub same_within: f64,
+}
+
+/// How far a point is from the periodic motion that integration in time finds from it. Norms are
+/// root mean squares over the period and all degrees of freedom. Fill it by
+/// hbvib_verification_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+#[allow(non_camel_case_types)]
+pub struct hbvib_verification {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// 1 if the distance is at most same_within, else 0: the integration went to another solution, or
+    /// the point has too few harmonics. A point with more of them tells which.
+    pub same_solution: i32,
+    /// 1 if Newton's method did not converge from the point and periods were marched, which leaves an
+    /// unstable solution, else 0; always 1 with HBVIB_MARCHING.
+    pub marched: i32,
+    /// 0.
+    pub reserved: i32,
+    /// The harmonic h in which the response is compared: the lowest above the mean in which the point
+    /// moves.
+    pub harmonic: i64,
+    /// X_h of the response degree of freedom in time, (re, im).
+    pub response: [f64; 2],
+    /// |X_h of the point - X_h in time| / |X_h in time|: what HBVIB_ERROR_ESTIMATE estimates.
+    pub response_error: f64,
+    /// Distance of the harmonics 0 .. H of all degrees of freedom over the motion in time.
+    pub motion_error: f64,
+    /// Share of the motion in time above H.
+    pub above: f64,
+    /// Distance of the whole motions over the motion in time; its square is that of motion_error and
+    /// that of above together.
+    pub distance: f64,
+    /// Largest displacement of the response degree of freedom over the period in time.
+    pub peak: f64,
+    /// Difference of the point's largest displacement from it, relative to it.
+    pub peak_error: f64,
+    /// Largest change over a period of the motion in time, relative to its largest displacement and
+    /// velocity: errors of this size are those of the integration.
+    pub residual: f64,
+    /// Periods that were integrated.
+    pub periods: i64,
+    /// Changes of the contacts in one period, as in hbvib_time_info.
+    pub events: i64,
+}
+
+unsafe impl Described for hbvib_verify_options {
+    const NAME: &'static str = "hbvib_verify_options";
+    const FIRST: usize = 32;
+
+    fn filled() -> Self {
+        let defaults = VerifyOptions::default();
+        Self {
+            struct_size: 0,
+            method: hbvib_steady_method::HBVIB_SHOOTING as i32,
+            tolerance: defaults.tolerance,
+            max_periods: defaults.max_periods as i64,
+            same_within: defaults.same_within,
+        }
+    }
+}
+
+unsafe impl Described for hbvib_verification {
+    const NAME: &'static str = "hbvib_verification";
+    const FIRST: usize = 112;
+
+    fn filled() -> Self {
+        Self {
+            struct_size: 0,
+            same_solution: 0,
+            marched: 0,
+            reserved: 0,
+            harmonic: 0,
+            response: [0.0; 2],
+            response_error: 0.0,
+            motion_error: 0.0,
+            above: 0.0,
+            distance: 0.0,
+            peak: 0.0,
+            peak_error: 0.0,
+            residual: 0.0,
+            periods: 0,
+            events: 0,
+        }
+    }
+}
+
+/// Fills the options of a check in time with their defaults: shooting, tolerance = 1e-11,
+/// same_within = 0.1.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_verify_options_init(o: *mut hbvib_verify_options, size_of_o: usize) -> hbvib_status {
+    call(|| unsafe { init(o, size_of_o) })
+}
+
+/// Fills what a check in time tells with zeros.
+///
+/// v          the struct; untouched on error.
+/// size_of_v  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_verification_init(v: *mut hbvib_verification, size_of_v: usize) -> hbvib_status {
+    call(|| unsafe { init(v, size_of_v) })
+}
+
+unsafe fn verify_options(p: *const hbvib_verify_options) -> Result<VerifyOptions> {
+    if p.is_null() {
+        return Ok(VerifyOptions::default());
+    }
+    let o = unsafe { load(p, 4) }?;
+    let chosen = || -> Result<VerifyOptions> {
+        let options = VerifyOptions {
+            method: steady_method(o.method)?,
+            tolerance: o.tolerance,
+            max_periods: number(o.max_periods, "max_periods")?,
+            same_within: o.same_within,
+        };
+        options.check()?;
+        Ok(options)
+    };
+    chosen().blame(4)
+}
+
+/// Checks a stored point of a forced response against the library's own integration in time, which
+/// starts from the motion of the point, looks for its own periodic motion at the point's frequency
+/// (see hbvib_time_response) and so tells what the point leaves out. The branch is not changed.
+/// Where several solutions coexist the integration may end in another one: same_solution, distance
+/// and marched tell.
+///
+/// model          the model that the branch was computed with.
+/// point          number of a point of the curve, or of a peak, fold or solution wanted.
+/// options        NULL: the defaults.
+/// hooks          progress, log and cancellation as in hbvib_time_response; NULL: none.
+/// harmonics      receives the harmonics in time, (H + 1) x ndof complex numbers as
+///                hbvib_branch_harmonics gives those of the point; or NULL.
+/// harmonics_len  complex numbers in it; 0 with NULL.
+/// errors         receives what each harmonic 0 .. H adds to motion_error, by squares; or NULL.
+/// errors_len     doubles in it; 0 with NULL.
+/// out            receives how far the point is; fill it by hbvib_verification_init before; or NULL.
+/// HBVIB_STOPPED_BY_CALLER: the results compare with the last period, which is not steady.
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_UNSUPPORTED (branch is a nonlinear mode; what
+/// hbvib_time_response does not integrate), HBVIB_E_ARGUMENT (another model, options, overlapping
+/// arrays), HBVIB_E_NOT_FINITE (options), HBVIB_E_DIMENSION (a length, with the one needed),
+/// HBVIB_E_NO_CONVERGENCE (no steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows
+/// without end), HBVIB_E_CALLBACK (a force callback refused), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_verify(
+    model: *const hbvib_model,
+    branch: *const hbvib_branch,
+    point: i64,
+    options: *const hbvib_verify_options,
+    hooks: *const hbvib_hooks,
+    harmonics: *mut f64,
+    harmonics_len: i64,
+    errors: *mut f64,
+    errors_len: i64,
+    out: *mut hbvib_verification,
+) -> hbvib_status {
+    call(|| {
+        let model = read::<Model>(model, 1)?;
+        let kept = read::<KeptBranch>(branch, 2)?;
+        let branch = &kept.branch;
+        let point = index(point, branch.stored(), 3, "point")?;
+        let options = unsafe { verify_options(options) }?;
+        let hooks = unsafe { load_hooks(hooks, 5) }?;
+        let rows = branch.harmonics() + 1;
+        let coefficients = rows.saturating_mul(branch.ndof());
+        let harmonics_len = wanted(harmonics, harmonics_len, coefficients, 6, "(harmonics + 1) * ndof")?;
+        let errors_len = wanted(errors, errors_len, rows, 8, "harmonics + 1")?;
+        if !out.is_null() {
+            unsafe { check_out(out, 10) }?;
+        }
+        disjoint(
+            &[],
+            &[
+                Range::new::<Complex64>(harmonics.cast(), harmonics_len, 6, "harmonics")?,
+                Range::new(errors, errors_len, 8, "errors")?,
+            ],
+        )?;
+        let found = unsafe { with_hooks(&hooks, |hooks| analysis::verify(&model, branch, point, &options, hooks)) }
+            .map_err(|e| match e.status {
+                Status::Unsupported if branch.mode().is_some() => e.in_argument(2),
+                Status::Argument => e.in_argument(1),
+                _ => e,
+            })?;
+        if harmonics_len > 0 {
+            unsafe { output::<Complex64>(harmonics.cast(), harmonics_len, 6, "harmonics") }?
+                .copy_from_slice(&found.harmonics);
+        }
+        if errors_len > 0 {
+            unsafe { output(errors, errors_len, 8, "errors") }?.copy_from_slice(&found.harmonic_errors);
+        }
+        if !out.is_null() {
+            let value = hbvib_verification {
+                same_solution: i32::from(found.same),
+                marched: i32::from(found.marched),
+                harmonic: found.harmonic as i64,
+                response: [found.response.re, found.response.im],
+                response_error: found.response_error,
+                motion_error: found.motion_error,
+                above: found.above,
+                distance: found.distance,
+                peak: found.peak,
+                peak_error: found.peak_error,
+                residual: found.residual,
+                periods: found.periods as i64,
+                events: found.events as i64,
+                ..hbvib_verification::filled()
+            };
+            unsafe { fill_out(out, value) };
+        }
+        Ok(found.status)
+    })
+}
