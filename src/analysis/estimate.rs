@@ -5,7 +5,7 @@ use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, fail};
 use crate::error_estimate::forced::ForcedEstimator;
 use crate::error_estimate::mode::ModeEstimator;
-use crate::error_estimate::{Estimate, Solved};
+use crate::error_estimate::{Estimate, Shelf, Solved};
 use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
 use num_complex::Complex64;
@@ -60,9 +60,11 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
             .and_then(|x| x.get(observed(condensed)))
             .copied()
             .unwrap_or(Complex64::ZERO),
+        sticks: None,
     };
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
-        return ForcedEstimator::new(model, solver, branch.response_dof()).at(&solved);
+        let shelf = Shelf::new()?;
+        return ForcedEstimator::new(model, solver, branch.response_dof(), &shelf).at(&solved);
     };
     let wave;
     let model = if model.structure().engine_order() == data.info.engine_order {

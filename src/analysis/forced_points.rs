@@ -11,7 +11,7 @@ use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status, try_copy, try_push, try_vec};
 use crate::error_estimate::forced::ForcedEstimator;
-use crate::error_estimate::{Estimate, Solved};
+use crate::error_estimate::{Estimate, Shelf, Solved};
 use crate::model::Model;
 use crate::model::spring::along;
 use crate::options::SolverOptions;
@@ -76,7 +76,7 @@ impl<'a> ForcedPoints<'a> {
         model: &'a Model,
         solver: &SolverOptions,
         settings: Settings,
-        ladder: &'a Ladder<'a>,
+        (ladder, shelf): (&'a Ladder<'a>, &'a Shelf),
         (rung, given): (usize, Option<Vec<f64>>),
         response: usize,
     ) -> Result<Self> {
@@ -97,7 +97,7 @@ impl<'a> ForcedPoints<'a> {
             rung,
             highest: rung,
             choice: Choice::new(solver.tolerance),
-            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response)),
+            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, shelf)),
             assessed: None,
             specials: Vec::new(),
             stalled: false,
@@ -122,6 +122,7 @@ impl<'a> ForcedPoints<'a> {
             motion: point.unknowns(),
             omega: point.parameter(),
             response: here.response[observed(condensed)] * condensed.length(),
+            sticks: Some(here.problem.forces().all_stuck()),
         };
         estimator.at(&solved).map(Some)
     }

@@ -11,6 +11,7 @@ use crate::continuation::Settings;
 use crate::continuation::start::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
+use crate::error_estimate::Shelf;
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
@@ -59,7 +60,8 @@ pub fn forced_response(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let mut points = ForcedPoints::new(model, solver, settings, &ladder, (rung, given), response)?;
+    let shelf = Shelf::new()?;
+    let mut points = ForcedPoints::new(model, solver, settings, (&ladder, &shelf), (rung, given), response)?;
     let held = points.branch().reduction().held_by_contacts;
     let first = match first(&mut points, &settings, rung, hooks) {
         Ok(First::Found(point, way)) => Some((point, way)),

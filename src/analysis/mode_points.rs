@@ -230,6 +230,7 @@ impl<'a> ModePoints<'a> {
             motion: &here.motion,
             omega,
             response: here.response[condensed.set().fundamental()] * condensed.length(),
+            sticks: Some(here.problem.forces().all_stuck()),
         };
         estimator.at(&solved, point.parameter(), damping).map(Some)
     }

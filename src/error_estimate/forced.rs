@@ -4,8 +4,8 @@ use super::lift::lift;
 use super::reach::{self, Reach};
 use super::system::{Core, System};
 use super::{
-    Corrected, Estimate, MOST_LIFTED, MOST_UNKNOWNS, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown,
-    tail,
+    Corrected, Estimate, MOST_LIFTED, MOST_UNKNOWNS, ROUNDING, SHARE, Shelf, Solved, WHAT, has_faded, lifted_options,
+    or_unknown, tail,
 };
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
@@ -17,31 +17,27 @@ use crate::problem::Problem;
 use crate::problem::forced::Forced;
 use num_complex::Complex64;
 
-/// Default share s of the change that the next step may have: 0.1 costs about one step more than 0.3.
-pub const SHARE: f64 = 0.1;
-
-/// How many more harmonics than needed a lifted model may have to be used again.
-const SPARE: f64 = 1.25;
-
 /// Estimates the errors of points of one model, one after the other.
 pub struct ForcedEstimator<'a> {
     model: &'a Model,
     options: SolverOptions,
     response: usize,
     reach: Option<Reach>,
-    /// The model lifted last.
-    lifted: Option<Condensed>,
+    shelf: &'a Shelf,
+    /// The problem lifted last, with its slot on the shelf.
+    lifted: Option<(usize, Core<'a>)>,
 }
 
 impl<'a> ForcedEstimator<'a> {
     /// For solutions of `model` with these options, observing degree of freedom `response`.
     #[must_use]
-    pub fn new(model: &'a Model, options: &SolverOptions, response: usize) -> Self {
+    pub fn new(model: &'a Model, options: &SolverOptions, response: usize, shelf: &'a Shelf) -> Self {
         Self {
             model,
             options: *options,
             response,
             reach: None,
+            shelf,
             lifted: None,
         }
     }
@@ -74,10 +70,11 @@ impl<'a> ForcedEstimator<'a> {
             self.reach = Some(Reach::new(condensed)?);
         }
         let Some(reach) = &mut self.reach else { return Ok(None) };
-        let core = reach.at(solved.omega, own, most)?.max(own);
+        let core = reach.at(solved.omega, set.base(), most)?;
         Ok(Some(Extent {
             core,
             highest: core.max(least),
+            weak: core <= own,
             short: core >= most,
         }))
     }
@@ -86,84 +83,93 @@ impl<'a> ForcedEstimator<'a> {
         let Some(extent) = self.extent(solved)? else {
             return solved.unknown(0.0, true).map(Some);
         };
-        let highest = extent.highest;
-        let spare = (highest as f64 * SPARE) as usize;
-        let carries = |c: &Condensed| c.set().numbers().last().is_some_and(|h| (highest..=spare).contains(h));
-        if !self.lifted.as_ref().is_some_and(carries) {
-            self.lifted = None;
-        }
-        let condensed = match self.lifted.take() {
-            Some(condensed) => condensed,
-            None => Condensed::new(self.model, &lifted_options(&self.options, highest), solved.omega)?,
+        let Some(slot) = self.shelf.slot(extent.highest) else {
+            return solved.unknown(0.0, true).map(Some);
         };
-        let found = self.on(&condensed, solved, extent);
-        self.lifted = Some(condensed);
+        let omega = solved.omega;
+        let condensed = self.shelf.model(slot, |highest| {
+            Condensed::new(self.model, &lifted_options(&self.options, highest), omega)
+        })?;
+        let set = condensed.set();
+        let core = set.numbers().partition_point(|&h| h <= extent.core);
+        let mut system = match self.lifted.take() {
+            Some((kept, system)) if kept == slot => system,
+            _ => {
+                let samples = lifted_options(&self.options, set.numbers().last().copied().unwrap_or(0)).samples;
+                Core::new(Forced::new(condensed, self.response, (omega, omega), samples, None)?)?
+            }
+        };
+        system.aim(omega, core)?;
+        let found = on(&mut system, condensed, solved, extent, self.options.samples > 0);
+        self.lifted = Some((slot, system));
         found
     }
+}
 
-    fn on(&self, condensed: &Condensed, solved: &Solved<'_>, extent: Extent) -> Result<Option<Estimate>> {
-        let (omega, set) = (solved.omega, condensed.set());
-        if set.numbers().len() == solved.condensed.set().numbers().len() {
-            // Constant forces alone: nothing vibrates.
-            return solved.exact(0.0).map(Some);
-        }
-        let samples = lifted_options(&self.options, set.numbers().last().copied().unwrap_or(0)).samples;
-        let mut problem = Forced::new(condensed, self.response, (omega, omega), samples, None)?;
-        let n = problem.size();
-        let start = solved.lifted(condensed, n, 1.0)?;
-        let core = set.numbers().partition_point(|&h| h <= extent.core);
-        let mut system = Core::new(&mut problem, omega, core)?;
-        if !system.evaluate(&start)? {
-            return Ok(None);
-        }
-        if samples == 0 && above(set, solved.condensed.set(), &system.at.residual) <= ROUNDING * system.at.scale {
-            return solved.exact(0.0).map(Some);
-        }
-        let enough = |change: &[f64], next: &[f64]| {
-            let next = norm(next);
-            next <= SHARE * norm(change) || next <= ROUNDING * norm(&start)
-        };
-        let Some(lifted) = lift(&mut system, &start, enough)? else {
-            return Ok(None);
-        };
-        let mut z = lifted.corrected()?;
-        let size = norm(&z);
-        let mut change = try_vec(n, 0.0, WHAT)?;
-        for ((c, z), s) in change.iter_mut().zip(&z).zip(&start) {
-            *c = z - s;
-        }
-        let change = norm(&change) / size;
-        let mut direction = try_vec(n + 1, 0.0, WHAT)?;
-        direction[..n].copy_from_slice(&lifted.next);
-        let (x, dx) = problem.observe(&lifted.at, &direction);
-        let length = condensed.length();
-        let (response, next) = ((x + dx) * length, dx.norm() * length);
-        let tail = tail(set, solved.condensed.set(), &z)?;
-        let certified = lifted.certified && (!extent.short || has_faded(&tail, change));
-        let known = |x: f64| if certified { x } else { f64::NAN };
-        for z in &mut z {
-            *z *= length;
-        }
-        Ok(Some(Estimate {
-            certified,
-            too_large: !certified && extent.short,
-            motion: known(change + norm(&lifted.next) / size),
-            response: known(relative((response - solved.response).norm() + next, response)),
-            frequency: known(0.0),
-            damping: known(0.0),
-            harmonics: set.numbers().last().copied().unwrap_or(0),
-            steps: lifted.steps,
-            change,
-            tail,
-            corrected: Corrected {
-                set: set.try_clone()?,
-                motion: z,
-                response,
-                omega,
-                damping: 0.0,
-            },
-        }))
+fn on(
+    system: &mut Core<'_>,
+    condensed: &Condensed,
+    solved: &Solved<'_>,
+    extent: Extent,
+    sampled: bool,
+) -> Result<Option<Estimate>> {
+    let (omega, set) = (solved.omega, condensed.set());
+    if set.numbers().len() == solved.condensed.set().numbers().len() {
+        // Constant forces alone: nothing vibrates.
+        return solved.exact(0.0).map(Some);
     }
+    let n = system.problem.size();
+    let start = solved.lifted(condensed, n, 1.0)?;
+    if !system.evaluate(&start)? {
+        return Ok(None);
+    }
+    if !sampled && above(set, solved.condensed.set(), &system.at.residual) <= ROUNDING * system.at.scale {
+        return solved.exact(0.0).map(Some);
+    }
+    let enough = |change: &[f64], next: &[f64]| {
+        let next = norm(next);
+        next <= SHARE * norm(change) || next <= ROUNDING * norm(&start)
+    };
+    let Some(lifted) = lift(system, &start, enough, extent.weak)? else {
+        return Ok(None);
+    };
+    let mut z = lifted.corrected()?;
+    let size = norm(&z);
+    let mut change = try_vec(n, 0.0, WHAT)?;
+    for ((c, z), s) in change.iter_mut().zip(&z).zip(&start) {
+        *c = z - s;
+    }
+    let change = norm(&change) / size;
+    let mut direction = try_vec(n + 1, 0.0, WHAT)?;
+    direction[..n].copy_from_slice(&lifted.next);
+    let (x, dx) = system.problem.observe(&lifted.at, &direction);
+    let length = condensed.length();
+    let (response, next) = ((x + dx) * length, lifted.missing * dx.norm() * length);
+    let tail = tail(set, solved.condensed.set(), &z)?;
+    let certified = lifted.certified && (!extent.short || has_faded(&tail, change));
+    let known = |x: f64| if certified { x } else { f64::NAN };
+    for z in &mut z {
+        *z *= length;
+    }
+    Ok(Some(Estimate {
+        certified,
+        too_large: !certified && extent.short,
+        motion: known(change + lifted.missing * norm(&lifted.next) / size),
+        response: known(relative((response - solved.response).norm() + next, response)),
+        frequency: known(0.0),
+        damping: known(0.0),
+        harmonics: set.numbers().last().copied().unwrap_or(0),
+        steps: lifted.steps,
+        change,
+        tail,
+        corrected: Corrected {
+            set: set.try_clone()?,
+            motion: z,
+            response,
+            omega,
+            damping: 0.0,
+        },
+    }))
 }
 
 /// How far a point is lifted.
@@ -173,6 +179,8 @@ struct Extent {
     core: usize,
     /// Highest harmonic of all.
     highest: usize,
+    /// Whether the structure gives in none of the harmonics that the point leaves out.
+    weak: bool,
     /// Whether the structure may give beyond the core, which would be too large.
     short: bool,
 }

@@ -1,12 +1,15 @@
 //! The damped Newton method on the lifted problem, stopped by its own next step.
 
-use super::WHAT;
 use super::system::System;
+use super::{SHARE, WHAT};
 use crate::error::{Result, try_copy, try_vec};
 use crate::linalg::norm;
 
 /// Most Newton steps of a lift.
 const MOST_STEPS: usize = 24;
+
+/// Relative size of a first step that is as good as the last one where the lifted harmonics are weak.
+const SHORT: f64 = 0.1;
 
 /// Damping factor below which a step is taken as it is.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
@@ -21,6 +24,8 @@ pub(super) struct Lifted {
     pub certified: bool,
     /// Newton steps taken, each with a factorisation.
     pub steps: usize,
+    /// Share of δ that may still be missing in Z*.
+    pub missing: f64,
 }
 
 impl Lifted {
@@ -41,12 +46,16 @@ fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
 /// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough` says that δ, given after the
 /// change Z + δ − start, is small. `None` where some evaluation or matrix fails.
 ///
+/// Where the lifted harmonics are known to be `weak`, kt|G_h| < 1/2, and the first step is short, it is taken for δ: the
+/// next one would be shorter by far.
+///
 /// # Errors
 /// What the system reports, but for singular matrices and what another motion may not meet.
 pub(super) fn lift(
     system: &mut dyn System,
     start: &[f64],
     enough: impl Fn(&[f64], &[f64]) -> bool,
+    weak: bool,
 ) -> Result<Option<Lifted>> {
     let n = start.len();
     let mut z = try_copy(start, WHAT)?;
@@ -60,6 +69,15 @@ pub(super) fn lift(
             return Ok(None);
         }
         let size = norm(&step);
+        if weak && steps == 1 && size <= SHORT * norm(start) {
+            return Ok(Some(Lifted {
+                at: z,
+                next: step,
+                certified: true,
+                steps,
+                missing: SHARE,
+            }));
+        }
         damping = (4.0 * damping).min(1.0);
         loop {
             for ((t, z), d) in trial.iter_mut().zip(&z).zip(&step) {
@@ -92,6 +110,7 @@ pub(super) fn lift(
                 next,
                 certified,
                 steps,
+                missing: 1.0,
             }));
         }
     }

@@ -19,7 +19,9 @@ pub mod forced;
 mod lift;
 pub mod mode;
 mod reach;
+mod shelf;
 pub(crate) use reach::affordable;
+pub use shelf::Shelf;
 mod system;
 
 use crate::condense::Condensed;
@@ -31,6 +33,9 @@ use crate::problem::contact_forces::ContactForces;
 use num_complex::Complex64;
 
 const WHAT: &str = "the error estimate";
+
+/// Share s of the change that the next step may have: 0.1 costs about one step more than 0.3.
+const SHARE: f64 = 0.1;
 
 /// Unknowns above which no dense matrix is made.
 const MOST_UNKNOWNS: usize = 3000;
@@ -99,6 +104,8 @@ pub struct Solved<'a> {
     pub omega: f64,
     /// Fundamental of the response degree of freedom, in the caller's unit of length.
     pub response: Complex64,
+    /// Whether all contacts stick, where that is known.
+    pub sticks: Option<bool>,
 }
 
 impl Solved<'_> {
@@ -106,6 +113,9 @@ impl Solved<'_> {
     fn is_linear(&self) -> Result<bool> {
         if self.condensed.coordinates() == 0 {
             return Ok(true);
+        }
+        if let Some(sticks) = self.sticks {
+            return Ok(sticks);
         }
         // The samples do not matter to a contact that sticks.
         let mut forces = ContactForces::unchecked(self.condensed, 0)?;

@@ -1,10 +1,12 @@
 //! The error of a point of a nonlinear mode: of its frequency and damping ratio as well.
 
-use super::forced::{SHARE, above, relative};
+use super::forced::{above, relative};
 use super::lift::lift;
 use super::reach::{self, Reach};
 use super::system::{System, Whole};
-use super::{Corrected, Estimate, MOST_UNKNOWNS, ROUNDING, Solved, WHAT, has_faded, lifted_options, or_unknown, tail};
+use super::{
+    Corrected, Estimate, MOST_UNKNOWNS, ROUNDING, SHARE, Solved, WHAT, has_faded, lifted_options, or_unknown, tail,
+};
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
 use crate::linalg::norm;
@@ -132,7 +134,7 @@ impl<'a> ModeEstimator<'a> {
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs())
         };
-        let Some(lifted) = lift(&mut system, &start, enough)? else {
+        let Some(lifted) = lift(&mut system, &start, enough, false)? else {
             return Ok(None);
         };
         let z = lifted.corrected()?;

@@ -22,7 +22,7 @@ pub(super) trait System {
     /// Evaluates R; `false` where that failed and may succeed elsewhere.
     fn evaluate(&mut self, z: &[f64]) -> Result<bool>;
 
-    /// Keeps Newton's matrix at the point evaluated last; `false` where it is singular.
+    /// Keeps Newton's matrix at the point evaluated last, until the next call; `false` where it is singular.
     fn factor(&mut self) -> Result<bool>;
 
     /// −J⁻¹R with the matrix kept last and R as evaluated last; `false` where none was found.
@@ -107,8 +107,8 @@ impl<P: Problem> System for Whole<'_, P> {
 
 /// A forced response with the dense matrix between its first harmonics, the core, in which the structure gives. The
 /// others are found by an iteration, which the core preconditions.
-pub(super) struct Core<'p, 'a> {
-    pub problem: &'p mut Forced<'a>,
+pub(super) struct Core<'a> {
+    pub problem: Forced<'a>,
     omega: f64,
     harmonics: usize,
     /// Numbers of one signal, in all and in the core.
@@ -118,32 +118,52 @@ pub(super) struct Core<'p, 'a> {
     matrix: Vec<f64>,
     active: Vec<bool>,
     jacobians: Vec<f64>,
+    /// Whether the contact Jacobians of the matrix that was kept are still those of the problem.
+    fresh: bool,
     change: Vec<f64>,
     product: Vec<f64>,
 }
 
-impl<'p, 'a> Core<'p, 'a> {
-    /// The problem at a frequency, with the number of carried harmonics in the core.
-    pub fn new(problem: &'p mut Forced<'a>, omega: f64, harmonics: usize) -> Result<Self> {
+impl<'a> Core<'a> {
+    /// Memory for a problem, without a core.
+    pub fn new(problem: Forced<'a>) -> Result<Self> {
         let n = problem.size();
-        let set = problem.set();
-        let all = set.numbers().len();
-        let harmonics = if n <= WHOLE_UP_TO { all } else { harmonics };
-        let lengths = (set.packed_len(), packed_up_to(set, harmonics));
-        let order = n / lengths.0 * lengths.1;
         Ok(Self {
-            omega,
-            harmonics,
-            lengths,
+            omega: 0.0,
+            harmonics: 0,
+            lengths: (problem.set().packed_len(), 0),
             at: Linearisation::without_jacobian(n)?,
-            dense: Dense::new(order)?,
-            matrix: try_vec(order.saturating_mul(order), 0.0, WHAT)?,
-            active: try_vec(order, true, WHAT)?,
+            dense: Dense::new(0)?,
+            matrix: Vec::new(),
+            active: Vec::new(),
             jacobians: Vec::new(),
+            fresh: false,
             change: try_vec(n, 0.0, WHAT)?,
             product: try_vec(n, 0.0, WHAT)?,
             problem,
         })
+    }
+
+    /// Goes to a frequency, and to a number of carried harmonics in the core.
+    pub fn aim(&mut self, omega: f64, harmonics: usize) -> Result<()> {
+        self.omega = omega;
+        let n = self.problem.size();
+        let set = self.problem.set();
+        let harmonics = if n <= WHOLE_UP_TO {
+            set.numbers().len()
+        } else {
+            harmonics
+        };
+        if harmonics == self.harmonics {
+            return Ok(());
+        }
+        self.lengths.1 = packed_up_to(set, harmonics);
+        let order = n / self.lengths.0.max(1) * self.lengths.1;
+        self.dense = Dense::new(order)?;
+        self.matrix = try_vec(order.saturating_mul(order), 0.0, WHAT)?;
+        self.active = try_vec(order, true, WHAT)?;
+        self.harmonics = harmonics;
+        Ok(())
     }
 }
 
@@ -156,13 +176,18 @@ fn precondition(dense: &mut Dense, (all, part): (usize, usize), v: &mut [f64]) {
     }
 }
 
-impl System for Core<'_, '_> {
+impl System for Core<'_> {
     fn evaluate(&mut self, z: &[f64]) -> Result<bool> {
+        if self.fresh {
+            // The matrix that was kept needs them on.
+            self.problem.forces().copy_jacobians(&mut self.jacobians)?;
+            self.fresh = false;
+        }
         evaluates(self.problem.evaluate_residual(z, self.omega, &mut self.at), &self.at)
     }
 
     fn factor(&mut self) -> Result<bool> {
-        self.problem.forces().copy_jacobians(&mut self.jacobians)?;
+        self.fresh = self.lengths.0 != self.lengths.1;
         self.problem
             .core(self.harmonics, &mut self.product, &mut self.matrix, &mut self.active);
         self.dense.factor(&self.matrix, &self.active)
@@ -179,15 +204,20 @@ impl System for Core<'_, '_> {
         let (dense, change, product) = (&mut self.dense, &mut self.change, &mut self.product);
         let lengths = self.lengths;
         // The step belongs to the matrix that was kept, not to the motion evaluated last.
-        self.problem.forces().swap_jacobians(&mut self.jacobians);
-        let problem = &*self.problem;
+        let fresh = self.fresh;
+        if !fresh {
+            self.problem.forces().swap_jacobians(&mut self.jacobians);
+        }
+        let problem = &self.problem;
         let solved = gmres(step, TOLERANCE, MOST_PRODUCTS, |v, out| {
             product.copy_from_slice(v);
             precondition(dense, lengths, product);
             problem.multiply(product, change, out);
             Ok(())
         });
-        self.problem.forces().swap_jacobians(&mut self.jacobians);
+        if !fresh {
+            self.problem.forces().swap_jacobians(&mut self.jacobians);
+        }
         if !solved? {
             return Ok(false);
         }
