@@ -196,6 +196,7 @@ fn every_point_of_small_systems_is_within_the_tolerance() {
             let used = branch.harmonics_used();
             let (least, most) = used.iter().fold((f64::MAX, 0.0_f64), |(a, b), &h| (a.min(h), b.max(h)));
             account.check(&format!("{name}, {tolerance:.0e}, H = {least} to {most}"));
+            assert_eq!(account.flagged, 0);
         }
     }
 }

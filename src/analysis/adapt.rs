@@ -13,6 +13,7 @@ use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
 use crate::harmonics::HarmonicSet;
+use core::cmp::Ordering;
 
 /// How far the error may be above its estimate.
 const MARGIN: f64 = 1.5;
@@ -29,6 +30,9 @@ const DROP: f64 = 0.15;
 /// Least size of a harmonic that carries something.
 const NOTHING: f64 = 1e-13;
 
+/// Rungs that a branch climbs where a point was stuck.
+const RETREAT: usize = 3;
+
 /// Most rungs that one point may climb.
 const MOST_CLIMBS: usize = 12;
 
@@ -41,8 +45,6 @@ pub(super) struct Assessment {
 /// How harmonics are chosen.
 pub(super) struct Choice {
     tolerance: f64,
-    /// Whether some point kept misses the tolerance.
-    pub missed: bool,
     /// Estimates made that were more than a look at contacts that stick.
     pub estimates: usize,
     /// Error and harmonics wanted of the last point.
@@ -54,10 +56,19 @@ impl Choice {
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
-            missed: false,
             estimates: 0,
             last: None,
         }
+    }
+
+    /// Whether an error that is told is above the tolerance, or unknown.
+    pub fn is_missed_by(&self, error: f64) -> bool {
+        // An unknown error is no number.
+        self.tolerance > 0.0
+            && !matches!(
+                error.partial_cmp(&self.tolerance),
+                Some(Ordering::Less | Ordering::Equal)
+            )
     }
 
     fn accepts(&self, error: f64) -> bool {
@@ -99,21 +110,29 @@ impl Choice {
     }
 }
 
-/// The point with as many harmonics as its error asks for; the keeper is then on its rung. A point that misses the
-/// tolerance for all that could be done is returned all the same.
+/// A point with as many harmonics as its error asks for, on whose rung the keeper is.
+pub(super) struct Refined {
+    pub point: Point,
+    /// Whether it misses the tolerance and was not found with more harmonics, though there are some.
+    pub stuck: bool,
+}
+
+/// The point with as many harmonics as its error asks for. One that misses the tolerance for all that could be done is
+/// returned all the same.
 pub(super) fn refine(
     keeper: &mut dyn Keeper,
     mut point: Point,
     keep_parameter: bool,
     cancelled: Option<&dyn Fn() -> bool>,
-) -> Result<Point> {
+) -> Result<Refined> {
+    let done = |point| Ok(Refined { point, stuck: false });
     if !keeper.ladder().is_automatic() {
-        return Ok(point);
+        return done(point);
     }
     for climbs in 0..=MOST_CLIMBS {
         let rung = keeper.rung();
         let Some(found) = keeper.assess(&point)? else {
-            return Ok(point);
+            return done(point);
         };
         let own = keeper.ladder().level(rung)?.condensed.set().try_clone()?;
         let choice = keeper.choice();
@@ -128,7 +147,7 @@ pub(super) fn refine(
         let next = if accepted {
             // What carries nothing is not carried.
             if found.error > 0.0 {
-                return Ok(point);
+                return done(point);
             }
             keeper.ladder().rung_with(wanted)
         } else {
@@ -136,20 +155,38 @@ pub(super) fn refine(
         };
         let last = keeper.ladder().last();
         let next = next.min(last);
+        let may_climb = !accepted && next > rung && !found.estimate.too_large && climbs < MOST_CLIMBS;
         let raised = if accepted && next < rung {
             go(keeper, &point, next, keep_parameter, cancelled)?
-        } else if accepted || next <= rung || found.estimate.too_large || climbs == MOST_CLIMBS {
-            None
-        } else {
+        } else if may_climb {
             climb(keeper, &point, &found.estimate, next, keep_parameter, cancelled)?
+        } else {
+            None
         };
         let Some(better) = raised else {
-            keeper.choice().missed |= !accepted;
-            return Ok(point);
+            let stuck = may_climb;
+            return Ok(Refined { point, stuck });
         };
         point = better;
     }
-    Ok(point)
+    done(point)
+}
+
+/// The point of a rung from which the next one was stuck, with more harmonics; none where that is not found either.
+pub(super) fn retreat(
+    keeper: &mut dyn Keeper,
+    (point, rung): (&Point, usize),
+    cancelled: Option<&dyn Fn() -> bool>,
+) -> Result<Option<Point>> {
+    let from = keeper.rung();
+    let to = (rung.max(from) + RETREAT).min(keeper.ladder().last());
+    keeper.go_to(to)?;
+    let start = keeper.carry(point, rung)?;
+    let found = keeper.solve_again(&start, false, cancelled)?;
+    if found.is_none() {
+        keeper.go_to(from)?;
+    }
+    Ok(found)
 }
 
 /// Whether a point beside the curve may be kept; if not, the keeper has climbed, and it is to be found again.
@@ -174,7 +211,6 @@ pub(super) fn suffices(keeper: &mut dyn Keeper, point: &Point) -> Result<bool> {
     let last = keeper.ladder().last();
     let next = keeper.ladder().rung_with(wanted).max(rung + 1).min(last);
     if next <= rung || found.estimate.too_large {
-        keeper.choice().missed = true;
         return Ok(true);
     }
     keeper.go_to(next)?;
@@ -227,9 +263,12 @@ fn climb(
     let from = keeper.rung();
     keeper.go_to(to)?;
     if estimate.certified {
-        let start = keeper.corrected(point, from, estimate)?;
-        if let Some(found) = keeper.solve_again(&start, keep_parameter, cancelled)? {
-            return Ok(Some(found));
+        // Where the plane across the branch has no solution near, a fixed parameter may have one.
+        for fixed in [keep_parameter, true] {
+            let start = keeper.corrected(point, from, estimate)?;
+            if let Some(found) = keeper.solve_again(&start, fixed, cancelled)? {
+                return Ok(Some(found));
+            }
         }
     }
     let mut reached = point.try_clone()?;

@@ -1,7 +1,7 @@
 //! Follows a branch from its first point to the end of the range: points, folds, peaks, solutions
 //! wanted at given parameter values. The same for every analysis.
 
-use super::adapt::{Assessment, Choice, refine, settle};
+use super::adapt::{Assessment, Choice, Refined, refine, retreat, settle};
 use super::levels::Ladder;
 use crate::branch::{Branch, SpecialKind};
 use crate::continuation::events::{Event, Locator};
@@ -96,6 +96,9 @@ pub(super) struct Task<'a> {
     pub before: Option<f64>,
 }
 
+/// How often in a row a branch goes back to its last point to come with more harmonics.
+const MOST_RETREATS: usize = 2;
+
 /// A point with the rung of its harmonics.
 type End<'p> = (&'p Point, usize);
 
@@ -106,13 +109,21 @@ enum Outside {
     Cancelled,
 }
 
-/// Refines a point of the curve, which may change the rung, and stores it; `None` where Newton's last correction, which
-/// is not evaluated, led to where there is no solution.
-fn stored(keeper: &mut dyn Keeper, point: Point, fixed: bool, hooks: &Hooks<'_>) -> Result<Option<Point>> {
-    let refined = refine(keeper, point, fixed, hooks.cancelled);
-    match refined.and_then(|point| keeper.keep(&point).map(|()| point)) {
+/// A point of the curve with the harmonics that it asks for; `None` where there is no solution.
+fn refined_point(keeper: &mut dyn Keeper, point: Point, fixed: bool, hooks: &Hooks<'_>) -> Result<Option<Refined>> {
+    some_unless_lost(refine(keeper, point, fixed, hooks.cancelled))
+}
+
+/// Stores a point of the curve; `false` where there is no solution.
+fn kept(keeper: &mut dyn Keeper, point: &Point) -> Result<bool> {
+    Ok(some_unless_lost(keeper.keep(point))?.is_some())
+}
+
+/// Newton's last correction, which is not evaluated, may have led to where there is no solution.
+fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
+    match outcome {
         Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => Ok(None),
-        stored => stored.map(Some),
+        outcome => outcome.map(Some),
     }
 }
 
@@ -125,7 +136,7 @@ fn same(a: &[f64], b: &[f64]) -> bool {
 impl Task<'_> {
     /// Stores the first point of the curve, or the only one, and follows the branch from there.
     pub fn run(&self, keeper: &mut dyn Keeper, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
-        let first = refine(keeper, first, true, hooks.cancelled)?;
+        let first = refine(keeper, first, true, hooks.cancelled)?.point;
         keeper.keep(&first)?;
         if self.report(keeper, hooks, &first) {
             return Ok(Status::StoppedByCaller);
@@ -150,6 +161,7 @@ impl Task<'_> {
         }
         let (begin, began) = (first.try_clone()?, keeper.rung());
         let mut continuation = Continuation::new(self.settings, first)?;
+        let mut retreats = 0;
         loop {
             if keeper.branch().points() >= self.max_points {
                 return Ok(Status::StoppedMaxPoints);
@@ -160,9 +172,23 @@ impl Task<'_> {
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
                 Advance::Stopped(status) => return Ok(status),
             };
-            let Some(point) = stored(keeper, point, end.is_some(), hooks)? else {
+            let Some(refined) = refined_point(keeper, point, end.is_some(), hooks)? else {
                 return Ok(Status::StoppedStepTooSmall);
             };
+            if refined.stuck
+                && retreats < MOST_RETREATS
+                && let Some(previous) = continuation.previous()
+                && let Some(point) = retreat(keeper, (previous, before), hooks.cancelled)?
+            {
+                retreats += 1;
+                continuation.go_on_from(None, point)?;
+                continue;
+            }
+            retreats = 0;
+            let point = refined.point;
+            if !kept(keeper, &point)? {
+                return Ok(Status::StoppedStepTooSmall);
+            }
             let rung = keeper.rung();
             let stop = self.report(keeper, hooks, &point);
             if let Some(previous) = continuation.previous() {
@@ -186,9 +212,12 @@ impl Task<'_> {
                 Some(Status::StoppedLeftRange) => match self.outside(keeper, point, (&begin, began), hooks)? {
                     Outside::Back(back) => {
                         hooks.log(LogLevel::Info, "the branch left at its start and came back");
-                        let Some(back) = stored(keeper, back, true, hooks)? else {
+                        let Some(Refined { point: back, .. }) = refined_point(keeper, back, true, hooks)? else {
                             return Ok(Status::StoppedStepTooSmall);
                         };
+                        if !kept(keeper, &back)? {
+                            return Ok(Status::StoppedStepTooSmall);
+                        }
                         if self.report(keeper, hooks, &back) {
                             return Ok(Status::StoppedByCaller);
                         }

@@ -56,6 +56,8 @@ pub(super) struct ForcedPoints<'a> {
     /// Error of the point assessed last, until it is kept.
     assessed: Option<f64>,
     specials: Vec<Kept<'a>>,
+    /// Whether some point misses the tolerance.
+    missed: bool,
     stalled: bool,
 }
 
@@ -100,6 +102,7 @@ impl<'a> ForcedPoints<'a> {
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, shelf)),
             assessed: None,
             specials: Vec::new(),
+            missed: false,
             stalled: false,
         })
     }
@@ -142,7 +145,7 @@ impl<'a> ForcedPoints<'a> {
             let record = record(kept.level, &kept.point, &kept.response, &kept.slip_fractions, errors);
             self.branch.push_special(kept.kind, &record)?;
         }
-        let missed = self.choice.missed && ending.status == Status::Ok;
+        let missed = self.missed && ending.status == Status::Ok;
         let status = if missed {
             Status::StoppedMaxHarmonics
         } else {
@@ -167,6 +170,7 @@ impl Keeper for ForcedPoints<'_> {
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.stalled |= point.stalled;
         let error = self.error(point)?;
+        self.missed |= self.choice.is_missed_by(error);
         let here = &mut self.here;
         here.problem.response(point.unknowns(), &mut here.response);
         let sampling_error = here.problem.sampling_error(point.unknowns(), point.parameter())?;
@@ -207,6 +211,7 @@ impl Keeper for ForcedPoints<'_> {
             return Ok(false);
         }
         let error = self.error(&point)?;
+        self.missed |= self.choice.is_missed_by(error);
         let here = &mut self.here;
         here.problem.response(point.unknowns(), &mut here.response);
         let kept = Kept {

@@ -78,6 +78,8 @@ pub(super) struct ModePoints<'a> {
     /// Fundamental of the point of the curve before.
     before: Vec<Complex64>,
     weighted: Vec<Complex64>,
+    /// Whether some point misses the tolerance.
+    missed: bool,
     stalled: bool,
 }
 
@@ -126,6 +128,7 @@ impl<'a> ModePoints<'a> {
             damping: start.linear.damping.abs(),
             before: Vec::new(),
             weighted: try_vec(level.condensed.ndof(), Complex64::ZERO, WHAT)?,
+            missed: false,
             stalled: false,
             branch,
         })
@@ -250,6 +253,20 @@ impl<'a> ModePoints<'a> {
         Ok((amplitude, sampling_error, errors))
     }
 
+    /// An error of a damping ratio over the largest one so far.
+    fn of_largest(&self, error: f64, damping: f64) -> f64 {
+        if error == 0.0 {
+            0.0
+        } else {
+            error / self.damping.max(damping.abs())
+        }
+    }
+
+    /// Whether the errors of frequency and damping ratio at a point miss the tolerance.
+    fn misses(&self, (frequency, damping): (f64, f64), ratio: f64) -> bool {
+        self.choice.is_missed_by(frequency) || self.choice.is_missed_by(self.of_largest(damping, ratio))
+    }
+
     /// What was removed from the problem that has the most harmonics.
     pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
         self.ladder.level(self.highest)?.condensed.reduction(model, solver)
@@ -271,7 +288,7 @@ impl<'a> ModePoints<'a> {
                 data.push(kept.mode)?;
             }
         }
-        let missed = self.choice.missed && ending.status == Status::Ok;
+        let missed = self.missed && ending.status == Status::Ok;
         let status = if missed {
             Status::StoppedMaxHarmonics
         } else {
@@ -298,6 +315,7 @@ impl Keeper for ModePoints<'_> {
         let mode = self.measure(point);
         // All that may fail comes before anything is kept.
         let numbers = self.numbers(point)?;
+        self.missed |= self.misses(numbers.2, mode.damping_ratio);
         self.stalled |= point.stalled;
         self.damping = self.damping.max(mode.damping_ratio.abs());
         if let Some(data) = self.branch.mode_data_mut() {
@@ -323,6 +341,7 @@ impl Keeper for ModePoints<'_> {
         }
         let mode = self.measure(&point);
         let numbers = self.numbers(&point)?;
+        self.missed |= self.misses(numbers.2, mode.damping_ratio);
         let here = &self.here;
         let kept = Kept {
             numbers,
@@ -373,17 +392,12 @@ impl Keeper for ModePoints<'_> {
         };
         self.assessed = Some((estimate.frequency, estimate.damping));
         let damping = Mode::frequency_and_damping(self.start.linear, point.unknowns()).1;
-        let largest = self.damping.max(damping.abs());
-        let of_damping = if estimate.damping == 0.0 {
-            0.0
+        let of_damping = self.of_largest(estimate.damping, damping);
+        // Both are unknown, or none.
+        let error = if estimate.certified {
+            of_damping.max(estimate.frequency)
         } else {
-            estimate.damping / largest
-        };
-        // NaN stays NaN.
-        let error = if of_damping > estimate.frequency {
-            of_damping
-        } else {
-            estimate.frequency
+            f64::NAN
         };
         Ok(Some(Assessment { error, estimate }))
     }
