@@ -1224,7 +1224,7 @@ class Branch(_Owner):
     slip_fraction = _field_property(Field.SLIP_FRACTION, "Share of the period that each contact slips.")
     sampling_error = _field_property(Field.SAMPLING_ERROR, "Relative change of forces with half the samples.")
     error_estimate = _field_property(Field.ERROR_ESTIMATE, "Relative error of the response (modes: of the frequency) by"
-                                     " harmonics left out; NaN where unknown or not asked for by estimate_error.")
+                                     " harmonics left out; NaN where unknown, or with a fixed number unless estimate_error.")
     damping_error_estimate = _field_property(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, as error_estimate.")
     damping_ratio = _field_property(Field.DAMPING_RATIO, "Modes: damping ratio D.")
     mode_energy = _field_property(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")

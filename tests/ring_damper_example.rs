@@ -133,6 +133,39 @@ fn every_flag_changes_the_response() {
 }
 
 #[test]
+fn a_tolerance_chooses_the_harmonics_of_each_point_and_tells_the_error() {
+    let flags = "--tolerance 1e-3 --from 205.5 --to 211 --at-hz 208.85 --at-hz 205.5";
+    let flags: Vec<&str> = flags.split(' ').collect();
+    let value = response(&folder("tolerance"), &flags);
+    let at = value["at"].as_array().unwrap();
+    let (mut least, mut most) = (usize::MAX, 0);
+    for point in value["points"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .chain(at)
+        .chain([&value["peak"]])
+    {
+        let error = point["error_estimate"].as_f64().unwrap();
+        let used = point["harmonics_used"].as_u64().unwrap() as usize;
+        let numbers: Vec<usize> = point["harmonics"]["b2"]
+            .as_object()
+            .unwrap()
+            .keys()
+            .map(|h| h.parse().unwrap())
+            .collect();
+        assert_eq!(numbers.iter().max(), Some(&used));
+        assert!(error < 1e-3 && (error > 0.0 || used == 1));
+        (least, most) = (least.min(used), most.max(used));
+    }
+    assert!(least == 1 && most > 9);
+    // In time it is 1.361714297e-3 m at 208.85 Hz.
+    assert!((amplitude(&at[0]) / 1.361_714_297e-3 - 1.0).abs() < 1e-3);
+    let fixed = response(&folder("fixed"), &["--from", "208", "--to", "208"]);
+    assert!(fixed["points"][0].get("error_estimate").is_none());
+}
+
+#[test]
 fn numbers_have_17_digits() {
     let folder = folder("digits");
     response(&folder, &["--from", "208", "--to", "208"]);
@@ -166,6 +199,13 @@ fn bad_flags_are_named_and_nothing_is_written() {
         ("--harmonics", "--harmonics 0"),
         ("--harmonics", "--harmonics 99999999999"),
         ("--samples", "--harmonics 9 --samples 18"),
+        ("--tolerance", "--tolerance 0"),
+        ("--tolerance", "--tolerance -1e-3"),
+        ("--tolerance", "--tolerance nan"),
+        ("--tolerance", "--tolerance 1"),
+        ("--tolerance", "--tolerance 1e-3 --harmonics 9"),
+        ("--max-harmonics", "--max-harmonics 9"),
+        ("--max-harmonics", "--tolerance 1e-3 --max-harmonics 0"),
         ("--from", "--from 0"),
         ("--from", "--from 300"),
         ("--to", "--to -1"),

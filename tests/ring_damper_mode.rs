@@ -127,6 +127,25 @@ fn frequency_damping_and_energy_agree_with_the_reference() {
 }
 
 #[test]
+fn a_tolerance_chooses_the_harmonics_of_each_point_of_a_mode_and_tells_the_errors() {
+    let value = mode(&folder("tolerance"), "--tolerance 1e-3 --at-slip 0.5 --at-slip 5");
+    let points = value["backbone"].as_array().unwrap();
+    let at = value["at"].as_array().unwrap();
+    let mut most = 0;
+    for point in points.iter().chain(at).chain([&value["max_damping"]]) {
+        let used = point["harmonics_used"].as_u64().unwrap();
+        let (f, d) = (
+            number(&point["error_estimate_frequency"]),
+            number(&point["error_estimate_damping"]),
+        );
+        assert!(f < 1e-3 && d < 1e-3);
+        assert!(number(&point["slip"]) > 1.0 || (used == 1 && f == 0.0 && d == 0.0));
+        most = most.max(used);
+    }
+    assert!(most > 9);
+}
+
+#[test]
 fn the_ends_the_stuck_range_and_repeated_slips_are_exact() {
     let folder = folder("mode_ends");
     let all = mode(

@@ -9,6 +9,7 @@ pub mod forced_response;
 pub mod harmonic_residual;
 mod levels;
 mod mode_points;
+mod mode_rung;
 pub mod nonlinear_mode;
 pub mod synthesis;
 pub mod time_response;

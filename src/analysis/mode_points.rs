@@ -3,58 +3,22 @@
 use super::adapt::{Assessment, Choice, suffices};
 use super::follow::{Ending, Keeper};
 use super::levels::{Ladder, carried_point};
+use super::mode_rung::{Rung, Start};
 use crate::branch::mode::{ModeData, ModePoint};
 use crate::branch::{Branch, Level, Record, SpecialKind};
 use crate::condense::Reduction;
 use crate::continuation::again::solve_again;
-use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
-use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::error::{Result, Status, try_copy, try_push};
 use crate::error_estimate::mode::ModeEstimator;
 use crate::error_estimate::{Estimate, Solved};
-use crate::linalg::{inner, norm};
 use crate::model::Model;
 use crate::options::SolverOptions;
-use crate::postprocess::energy::{self, Balance};
-use crate::problem::mode::{Gauge, LinearMode, Mode};
-use crate::problem::{Linearisation, Problem};
+use crate::problem::Problem;
+use crate::problem::mode::{LinearMode, Mode};
 use num_complex::Complex64;
 
 const WHAT: &str = "the nonlinear mode";
-
-/// The equations with the harmonics of one rung.
-struct Rung<'a> {
-    level: &'a Level,
-    problem: Mode<'a>,
-    corrector: Corrector,
-    at: Linearisation,
-    motion: Vec<f64>,
-    forces: Vec<f64>,
-    response: Vec<Complex64>,
-}
-
-impl<'a> Rung<'a> {
-    fn new(level: &'a Level, data: &Start<'a>, settings: &Settings) -> Result<Self> {
-        let problem = Mode::new(&level.condensed, data.gauge, data.linear, level.samples)?;
-        let unknowns = problem.size();
-        Ok(Self {
-            corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,
-            at: Linearisation::new(unknowns)?,
-            motion: try_vec(unknowns - 2, 0.0, WHAT)?,
-            forces: try_vec(unknowns - 2, 0.0, WHAT)?,
-            response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, WHAT)?,
-            problem,
-            level,
-        })
-    }
-}
-
-/// What a mode starts from.
-#[derive(Clone, Copy)]
-pub(super) struct Start<'a> {
-    pub linear: &'a LinearMode,
-    pub gauge: &'a Gauge,
-}
 
 /// Collects the points of one run.
 pub(super) struct ModePoints<'a> {
@@ -77,7 +41,6 @@ pub(super) struct ModePoints<'a> {
     damping: f64,
     /// Fundamental of the point of the curve before.
     before: Vec<Complex64>,
-    weighted: Vec<Complex64>,
     /// Whether some point misses the tolerance.
     missed: bool,
     stalled: bool,
@@ -127,7 +90,6 @@ impl<'a> ModePoints<'a> {
             assessed: None,
             damping: start.linear.damping.abs(),
             before: Vec::new(),
-            weighted: try_vec(level.condensed.ndof(), Complex64::ZERO, WHAT)?,
             missed: false,
             stalled: false,
             branch,
@@ -146,78 +108,12 @@ impl<'a> ModePoints<'a> {
 
     /// The linear mode as a point of the branch.
     pub fn linear_point(&mut self, p: f64) -> Result<Point> {
-        let Rung { problem, at, .. } = &mut self.here;
-        let n = problem.size();
-        let mut v = try_vec(n + 1, 0.0, WHAT)?;
-        problem.linear_start(&mut v[..n]);
-        v[n] = p;
-        let mut tangent = try_vec(n + 1, 0.0, WHAT)?;
-        tangent[n] = 1.0;
-        problem.evaluate(&v[..n], p, at)?;
-        let (amplitude, slope) = problem.observe(&v[..n], &tangent);
-        Ok(Point {
-            v,
-            tangent,
-            amplitude,
-            slope,
-            residual: norm(&at.residual) / at.scale,
-            iterations: 0,
-            step: 0.0,
-            stalled: false,
-            positive: true,
-        })
+        self.here.linear_point(p)
     }
 
     /// Evaluates the problem at a point.
     fn evaluate(&mut self, point: &Point) -> Result<()> {
-        let here = &mut self.here;
-        let (u, p) = (point.unknowns(), point.parameter());
-        here.problem.evaluate(u, p, &mut here.at)?;
-        let a = 10f64.powf(p);
-        for (m, u) in here.motion.iter_mut().zip(u) {
-            *m = a * u;
-        }
-        let dofs = here.level.condensed.ndof();
-        let dof = self.branch.response_dof();
-        for (r, x) in here.response.iter_mut().zip(here.problem.shape().chunks_exact(dofs)) {
-            *r = a * x[dof];
-        }
-        Ok(())
-    }
-
-    /// What is stored of the point evaluated last.
-    fn measure(&mut self, point: &Point) -> ModePoint {
-        let here = &mut self.here;
-        let condensed = &*here.level.condensed;
-        let n = point.unknowns().len();
-        let (u, p) = (point.unknowns(), point.parameter());
-        let (omega, damping_ratio) = Mode::frequency_and_damping(self.start.linear, u);
-        let dofs = condensed.ndof();
-        let x = here.problem.shape();
-        here.forces.copy_from_slice(here.problem.forces().forces());
-        let unit = 10f64.powf(p) * condensed.length();
-        let balance: Balance = energy::balance(condensed, omega, x, &here.forces, &u[..n - 2]);
-        let i = condensed.set().fundamental();
-        let first = &x[i * dofs..(i + 1) * dofs];
-        condensed.blocks()[i].multiply_mass(first, &mut self.weighted);
-        let size = inner(first, &self.weighted).re;
-        let assurance = if self.before.is_empty() {
-            1.0
-        } else {
-            let overlap = inner(&self.before, &self.weighted).norm_sqr();
-            condensed.blocks()[i].multiply_mass(&self.before, &mut self.weighted);
-            overlap / (size * inner(&self.before, &self.weighted).re)
-        };
-        ModePoint {
-            log10_amplitude: p,
-            modal_amplitude: unit * size.sqrt(),
-            damping_ratio,
-            energy: balance.twice_mean_kinetic * unit * unit,
-            fundamental_share: 0.5 * omega * omega * size / balance.twice_mean_kinetic,
-            friction_loss: balance.friction_loss * unit * unit,
-            structural_loss: balance.structural_loss * unit * unit,
-            assurance,
-        }
+        self.here.evaluate(point, self.branch.response_dof())
     }
 
     /// Estimate of the point evaluated last.
@@ -312,7 +208,7 @@ impl Keeper for ModePoints<'_> {
 
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.evaluate(point)?;
-        let mode = self.measure(point);
+        let mode = self.here.measure(point, self.start.linear, &self.before);
         // All that may fail comes before anything is kept.
         let numbers = self.numbers(point)?;
         self.missed |= self.misses(numbers.2, mode.damping_ratio);
@@ -339,7 +235,7 @@ impl Keeper for ModePoints<'_> {
         if !suffices(self, &point)? {
             return Ok(false);
         }
-        let mode = self.measure(&point);
+        let mode = self.here.measure(&point, self.start.linear, &self.before);
         let numbers = self.numbers(&point)?;
         self.missed |= self.misses(numbers.2, mode.damping_ratio);
         let here = &self.here;

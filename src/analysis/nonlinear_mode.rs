@@ -3,7 +3,8 @@
 
 use super::follow::{Ending, Keeper, Task};
 use super::levels::Ladder;
-use super::mode_points::{ModePoints, Start};
+use super::mode_points::ModePoints;
+use super::mode_rung::Start;
 use crate::branch::mode::{ModeData, ModeInfo};
 use crate::branch::{Branch, SpecialKind};
 use crate::condense::Condensed;

@@ -23,7 +23,7 @@ impl Branch {
     }
 
     /// Estimated relative error of the response amplitude (in a nonlinear mode: of the frequency) by the harmonics
-    /// left out, at each point. NaN where it is unknown, and everywhere unless
+    /// left out, at each point. NaN where it is unknown, and everywhere unless a tolerance chooses the harmonics or
     /// [`SolverOptions::estimate_error`](crate::options::SolverOptions::estimate_error) asks for it.
     #[must_use]
     pub fn error_estimate(&self) -> &[f64] {

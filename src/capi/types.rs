@@ -149,7 +149,7 @@ pub enum hbvib_field {
     HBVIB_NEWTON_ITERATIONS = 6,
     /// Estimated relative error of the complex fundamental of the response degree of freedom (in a
     /// nonlinear mode: of the frequency) by the harmonics left out. NaN where it is unknown, and
-    /// everywhere unless estimate_error asks for it.
+    /// everywhere unless a tolerance chooses the harmonics or estimate_error asks for it.
     HBVIB_ERROR_ESTIMATE = 7,
     /// Highest harmonic number carried.
     HBVIB_HARMONICS_USED = 8,
