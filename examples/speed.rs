@@ -2,7 +2,8 @@
 //!
 //! Prints per way: points, Newton iterations, time of the sweep as a ratio to the default (H = 9,
 //! exact events), and the error of the peak amplitude against H = 255. Times are minima over
-//! repeated sweeps, measured alternately in one run: read them as ratios.
+//! repeated sweeps, measured alternately in one run: read them as ratios. With the argument
+//! `iteration` it prints instead where the time of a Newton iteration goes.
 
 use hbvib::analysis::forced_response;
 use hbvib::branch::Branch;
@@ -12,12 +13,14 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
+#[path = "speed/iteration.rs"]
+mod iteration;
 #[path = "ring_damper/model.rs"]
 #[allow(dead_code, reason = "the response alone is needed here")]
 mod model;
 
 /// (highest harmonic, samples per period; 0 = exact events)
-const WAYS: [(usize, usize); 12] = [
+const WAYS: [(usize, usize); 13] = [
     (1, 0),
     (3, 0),
     (5, 0),
@@ -26,6 +29,7 @@ const WAYS: [(usize, usize); 12] = [
     (31, 0),
     (63, 0),
     (127, 0),
+    (255, 0),
     (9, 64),
     (9, 256),
     (9, 1024),
@@ -63,6 +67,9 @@ fn peak(branch: &Branch) -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
+    if std::env::args().nth(1).is_some_and(|a| a == "iteration") {
+        return iteration::run();
+    }
     for force in [1.0, 5.0, 20.0] {
         let truth = peak(&sweep(force, 255, 0)?.0);
         let mut times = [f64::INFINITY; WAYS.len()];

@@ -1,8 +1,9 @@
 //! Blocks of a Jacobian: what Fourier coefficients of a piece or of a tangent stiffness add to the
 //! derivative of one direction's force by one direction's motion.
 
-use super::toeplitz;
+use super::toeplitz::Toeplitz;
 use crate::harmonics::HarmonicSet;
+use crate::linalg::add_product;
 use num_complex::Complex64;
 
 /// A square block of a column-major matrix.
@@ -39,9 +40,9 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// Adds T(S); see [`toeplitz`].
-    pub(super) fn add_toeplitz(&mut self, set: &HarmonicSet, s: &[Complex64]) {
-        toeplitz::add(set, s, &mut self.matrix[self.first..], self.rows);
+    /// Adds T(S).
+    pub(super) fn add_toeplitz(&mut self, toeplitz: &Toeplitz) {
+        toeplitz.add(&mut self.matrix[self.first..], self.rows);
     }
 }
 
@@ -61,11 +62,7 @@ pub(super) fn pack(set: &HarmonicSet, transform: &[Complex64], g: &mut [f64]) {
 /// force = offset + jacobian · motion.
 pub(super) fn apply(jacobian: &[f64], motion: &[f64], offset: &[f64], force: &mut [f64]) {
     force.copy_from_slice(offset);
-    for (column, x) in jacobian.chunks_exact(force.len()).zip(motion) {
-        for (f, j) in force.iter_mut().zip(column) {
-            *f += j * x;
-        }
-    }
+    add_product(1.0, jacobian, motion, force);
 }
 
 /// Adds s·tₙ, the share of a piece of tangent stiffness s, to the spectrum of the stiffness.

@@ -11,6 +11,7 @@
 //! so Fₜ = ∂Fₜ/∂X · X + ∂Fₜ/∂Y · Y + Σ (o − m·y(r)) g.
 
 use super::exact::transform;
+use super::toeplitz::Toeplitz;
 use super::{Block, Evaluation, add_stiffness, apply, is_whole, pack};
 use crate::contact::Piece;
 use crate::contact::friction::{CoupledPiece, Friction, Scratch, is_closed, piece_lists};
@@ -28,6 +29,7 @@ pub struct Coupled {
     transform: Vec<Complex64>,
     /// Of ∂Fₜ/∂X, ∂Fₜ/∂Y and ∂Fₙ/∂Y.
     spectra: [Vec<Complex64>; 3],
+    toeplitz: Toeplitz,
     g: Vec<f64>,
     anchor: Vec<f64>,
 }
@@ -49,6 +51,7 @@ impl Coupled {
             tangential,
             transform: spectrum()?,
             spectra: [spectrum()?, spectrum()?, spectrum()?],
+            toeplitz: Toeplitz::new(set)?,
             g: try_vec(set.packed_len(), 0.0, "a contact force")?,
             anchor: try_vec(set.packed_len(), 0.0, "a contact force")?,
         })
@@ -77,7 +80,8 @@ impl Coupled {
         self.add_tangential(set, motion, out);
         let m = set.packed_len();
         for (spectrum, place) in self.spectra.iter().zip(BLOCKS) {
-            Block::new(&mut out.jacobian, 2, m, place).add_toeplitz(set, spectrum);
+            self.toeplitz.set(set, spectrum);
+            Block::new(&mut out.jacobian, 2, m, place).add_toeplitz(&self.toeplitz);
         }
         apply(&out.jacobian, motion, &out.offset, &mut out.force);
     }

@@ -4,7 +4,8 @@
 //! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices;
 //! the other half repeats it with opposite sign and doubles every integral that is used.
 
-use super::{Assembly, Evaluation};
+use super::Evaluation;
+use super::assembly::Assembly;
 use crate::contact::law::{Piece, Pieces};
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::{Extremum, Reversals};

@@ -12,6 +12,7 @@
 //! law gives S at once, without pieces. Friction under a varying normal load has one such sum per
 //! pair of directions; see [`coupled`].
 
+mod assembly;
 mod block;
 pub mod coupled;
 pub mod exact;
@@ -26,13 +27,13 @@ mod toeplitz;
 mod transform;
 
 use crate::contact::state::State;
-use crate::contact::{Form, Law, Piece};
+use crate::contact::{Form, Law};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::harmonics::HarmonicSet;
+use assembly::Assembly;
 use block::{Block, add_stiffness, apply, pack};
 use coupled::Coupled;
 use marched::MarchedWay;
-use num_complex::Complex64;
 use pointwise::PointwiseEvaluator;
 
 /// Ways of evaluating laws, with their tables.
@@ -130,6 +131,11 @@ impl Evaluation {
     /// Clears what the last evaluation left.
     fn clear(&mut self) {
         self.jacobian.fill(0.0);
+        self.clear_forces();
+    }
+
+    /// The same, but for the Jacobian.
+    fn clear_forces(&mut self) {
         self.offset.fill(0.0);
         self.by_omega.fill(0.0);
         self.slip_fraction = 0.0;
@@ -283,65 +289,6 @@ impl Evaluator {
             Scalar::Exact(way) => way.half_range(set),
             Scalar::Sampled(way) => way.half_range(),
         }
-    }
-}
-
-/// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
-struct Assembly {
-    /// Sₙ for n = 0 ..= 2·(highest reduced harmonic).
-    spectrum: Vec<Complex64>,
-    /// Packed g of the piece at hand.
-    g: Vec<f64>,
-    /// Packed basis c(r) at the anchor of the piece at hand.
-    anchor: Vec<f64>,
-}
-
-impl Assembly {
-    fn new(set: &HarmonicSet) -> Result<Self> {
-        let m = set.packed_len();
-        Ok(Self {
-            spectrum: try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, "a stiffness spectrum")?,
-            g: try_vec(m, 0.0, "a contact force")?,
-            anchor: try_vec(m, 0.0, "a contact force")?,
-        })
-    }
-
-    /// Clears what the last evaluation left.
-    fn start(&mut self, out: &mut Evaluation) {
-        self.spectrum.fill(Complex64::ZERO);
-        out.clear();
-    }
-
-    /// Adds a piece whose transforms tₙ = (1/2π)∫ e^{−inτ} dτ are given for the n of the
-    /// spectrum, and whose anchor lies at the time `anchor`.
-    fn add(
-        &mut self,
-        set: &HarmonicSet,
-        (piece, state): (&Piece, State),
-        transform: &[Complex64],
-        anchor: Option<f64>,
-        out: &mut Evaluation,
-    ) {
-        out.count(state, transform[0].re);
-        add_stiffness(&mut self.spectrum, piece.slope, transform);
-        if piece.offset == 0.0 && anchor.is_none() {
-            out.stuck = is_whole(transform[0].re);
-            return;
-        }
-        pack(set, transform, &mut self.g);
-        for (o, g) in out.offset.iter_mut().zip(&self.g) {
-            *o += piece.offset * g;
-        }
-        if let Some(tau) = anchor {
-            set.basis(tau, &mut self.anchor);
-            Block::new(&mut out.jacobian, 1, self.g.len(), [0, 0]).add_product(-piece.slope, &self.g, &self.anchor);
-        }
-    }
-
-    /// Adds T(S) to the Jacobian and forms the force.
-    fn finish(&self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        Block::new(&mut out.jacobian, 1, motion.len(), [0, 0]).add_toeplitz(set, &self.spectrum);
-        apply(&out.jacobian, motion, &out.offset, &mut out.force);
     }
 }
 

@@ -9,8 +9,9 @@
 //! Both are the exact derivatives of the sampled F, however few the samples, because the samples of
 //! a motion are linear in its harmonics.
 
+use super::Evaluation;
+use super::toeplitz::Toeplitz;
 use super::transform::{Half, Lane, Transform};
-use super::{Evaluation, toeplitz};
 use crate::contact::pointwise::{Pointwise, Samples};
 use crate::error::{Result, fail, try_vec};
 use crate::harmonics::HarmonicSet;
@@ -35,6 +36,7 @@ pub struct PointwiseEvaluator {
     scratch: Vec<f64>,
     /// Harmonics 0 ..= 2·highest of what is being transformed.
     spectrum: Vec<Complex64>,
+    toeplitz: Toeplitz,
     /// ih·X, d·m.
     quadrature: Vec<f64>,
     /// A packed velocity, m.
@@ -83,6 +85,7 @@ impl PointwiseEvaluator {
             df_dv: samples(feels * tangents)?,
             scratch: samples(signals.saturating_mul(2))?,
             spectrum: try_vec(2 * highest + 1, Complex64::ZERO, "a stiffness spectrum")?,
+            toeplitz: Toeplitz::new(set)?,
             quadrature: samples(feels * d * m)?,
             packed: samples(feels * m)?,
             block: try_vec(feels * m.saturating_mul(m), 0.0, "a contact Jacobian")?,
@@ -195,14 +198,16 @@ impl PointwiseEvaluator {
                 let corner = j * m * order + i * m;
                 self.transform
                     .analyse(&self.df_du, lane, Half::Repeats, &mut self.spectrum);
-                toeplitz::add(set, &self.spectrum, &mut out.jacobian[corner..], order);
+                self.toeplitz.set(set, &self.spectrum);
+                self.toeplitz.add(&mut out.jacobian[corner..], order);
                 if !self.velocity {
                     continue;
                 }
                 self.transform
                     .analyse(&self.df_dv, lane, Half::Repeats, &mut self.spectrum);
                 self.block.fill(0.0);
-                toeplitz::add(set, &self.spectrum, &mut self.block, m);
+                self.toeplitz.set(set, &self.spectrum);
+                self.toeplitz.add(&mut self.block, m);
                 let by_omega = &mut out.by_omega[i * m..(i + 1) * m];
                 let quadrature = &self.quadrature[j * m..(j + 1) * m];
                 for (column, q) in self.block.chunks_exact(m).zip(quadrature) {

@@ -2,7 +2,8 @@
 //! integrals. The force is O(N⁻²) accurate, the Jacobian O(N⁻¹); it serves for cross-checks and
 //! for laws without exact events. Smooth laws are not sampled: their harmonics are exact.
 
-use super::{Assembly, Evaluation};
+use super::Evaluation;
+use super::assembly::Assembly;
 use crate::contact::law::{Piece, Pieces};
 use crate::error::{Error, Result, try_vec};
 use crate::harmonics::HarmonicSet;

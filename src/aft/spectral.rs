@@ -8,16 +8,17 @@
 //! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
-use super::{Assembly, Evaluation};
+use super::Evaluation;
+use super::assembly::Assembly;
 use crate::contact::law::Spectral;
 use crate::harmonics::HarmonicSet;
 
 impl Assembly {
     /// Evaluates a law without events.
     pub(super) fn spectral(&mut self, law: &dyn Spectral, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        law.spectrum(set, motion, &mut self.spectrum);
         // Never stuck, even at rest: its stiffness need not be the reference's.
-        out.clear();
+        self.start(out);
+        law.spectrum(set, motion, &mut self.spectrum);
         self.finish(set, motion, out);
         // The force now holds T(S)·X.
         let (linear, degree) = (law.linear(), law.degree());

@@ -1,40 +1,174 @@
 //! The operator T(S) of a stiffness spectrum: product of a periodic stiffness s(τ) with a motion.
 //!
 //! With s = Σ Sₙ e^{inτ} the harmonics of s·x are Fₕ = Σₘ Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ), Toeplitz plus
-//! Hankel, and for the mean F₀ = S₀ X₀ + Re Σₘ conj(Sₘ) Xₘ. In packed form T is a real matrix.
+//! Hankel, and for the mean F₀ = S₀ X₀ + Re Σₘ conj(Sₘ) Xₘ. In packed form T is a real matrix. Along a
+//! column h runs while m stays, so that every column is the sum of two stretches of four lists of
+//! O(H) numbers: (Sₖ) and (i Sₖ) for the differences, (Sₖ) and (−i Sₖ) for the sums of harmonics.
 
+use crate::error::{Result, try_vec};
 use crate::harmonics::HarmonicSet;
 use num_complex::Complex64;
 
-/// Adds T(S) to a column-major block, whose columns begin `leading` numbers apart. `block` begins
-/// with the first entry of the block and may be part of a larger matrix. S is given for n from 0
-/// to twice the highest reduced harmonic.
-pub(super) fn add(set: &HarmonicSet, s: &[Complex64], block: &mut [f64], leading: usize) {
-    let mean = usize::from(set.has_mean());
-    if mean == 1 {
-        block[0] += s[0].re;
-        for k in 0..set.oscillating() {
-            let sp = s[set.reduced(k)];
-            let at = 1 + 2 * k;
-            // Row 0: F₀ = Re Σ conj(Sₘ)·Xₘ; column 0: Fₕ = 2 Sₕ X₀.
-            block[at * leading] += sp.re;
-            block[(at + 1) * leading] += sp.im;
-            block[at] += 2.0 * sp.re;
-            block[at + 1] += 2.0 * sp.im;
+/// The lists from which the columns of T(S) are read.
+pub(super) struct Toeplitz {
+    /// Number of harmonics above the mean.
+    order: usize,
+    has_mean: bool,
+    /// Sₕ₋ₘ from the most negative difference on, and the same times i.
+    differences: [Vec<f64>; 2],
+    /// Sₕ₊ₘ from the smallest sum on, and the same times −i.
+    sums: [Vec<f64>; 2],
+    /// The row of the mean.
+    row: Vec<f64>,
+    /// 2·Sₕ, the column of the mean, and what is added to it.
+    column: [Vec<f64>; 2],
+}
+
+/// A column of T(S): the entry in the row of the mean, and two stretches whose sum the others are.
+#[derive(Clone, Copy)]
+pub(super) struct Column<'a> {
+    pub(super) mean: f64,
+    pub(super) parts: [&'a [f64]; 2],
+}
+
+impl Toeplitz {
+    /// Memory for the harmonics of `set`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(super) fn new(set: &HarmonicSet) -> Result<Self> {
+        const WHAT: &str = "a contact Jacobian";
+        let order = set.oscillating();
+        let list = || try_vec((4 * order).saturating_sub(2), 0.0, WHAT);
+        let mean = if set.has_mean() { 2 * order } else { 0 };
+        Ok(Self {
+            order,
+            has_mean: set.has_mean(),
+            differences: [list()?, list()?],
+            sums: [list()?, list()?],
+            row: try_vec(set.packed_len(), 0.0, WHAT)?,
+            column: [try_vec(mean, 0.0, WHAT)?, try_vec(mean, 0.0, WHAT)?],
+        })
+    }
+
+    /// Takes S in, given for n from 0 to twice the highest reduced harmonic.
+    pub(super) fn set(&mut self, set: &HarmonicSet, s: &[Complex64]) {
+        let stride = set.stride();
+        for k in 0..(2 * self.order).saturating_sub(1) {
+            let n = stride * (k + 1).abs_diff(self.order);
+            let minus = if k + 1 < self.order { s[n].conj() } else { s[n] };
+            let plus = s[2 * set.reduced(0) + stride * k];
+            put(&mut self.differences, k, [minus, Complex64::I * minus]);
+            put(&mut self.sums, k, [plus, -Complex64::I * plus]);
+        }
+        if self.has_mean {
+            self.row[0] = s[0].re;
+            for k in 0..self.order {
+                let z = s[set.reduced(k)];
+                self.row[1 + 2 * k] = z.re;
+                self.row[2 + 2 * k] = z.im;
+                put(&mut self.column, k, [2.0 * z, Complex64::ZERO]);
+            }
         }
     }
-    for c in 0..set.oscillating() {
-        let pc = set.reduced(c);
-        let (re_column, im_column) = (mean + 2 * c, mean + 2 * c + 1);
-        for r in 0..set.oscillating() {
-            let pr = set.reduced(r);
-            let minus = if pr >= pc { s[pr - pc] } else { s[pc - pr].conj() };
-            let plus = s[pr + pc];
-            let row = mean + 2 * r;
-            block[re_column * leading + row] += minus.re + plus.re;
-            block[re_column * leading + row + 1] += minus.im + plus.im;
-            block[im_column * leading + row] += plus.im - minus.im;
-            block[im_column * leading + row + 1] += minus.re - plus.re;
+
+    /// The column of number `j` of a packed motion.
+    pub(super) fn column(&self, j: usize) -> Column<'_> {
+        let mean = if self.has_mean { self.row[j] } else { 0.0 };
+        let Some(j) = j.checked_sub(usize::from(self.has_mean)) else {
+            return Column {
+                mean,
+                parts: [&self.column[0], &self.column[1]],
+            };
+        };
+        let (c, part) = (j / 2, j % 2);
+        let length = 2 * self.order;
+        let from = 2 * (self.order - 1 - c);
+        Column {
+            mean,
+            parts: [
+                &self.differences[part][from..from + length],
+                &self.sums[part][2 * c..2 * c + length],
+            ],
+        }
+    }
+
+    /// Adds T(S) to a column-major block, whose columns begin `leading` numbers apart. `block` begins
+    /// with the first entry of the block and may be part of a larger matrix.
+    pub(super) fn add(&self, block: &mut [f64], leading: usize) {
+        let m = self.row.len();
+        for (j, to) in block.chunks_mut(leading.max(1)).take(m).enumerate() {
+            let column = self.column(j);
+            let (mean, rest) = to[..m].split_at_mut(usize::from(self.has_mean));
+            for x in mean {
+                *x += column.mean;
+            }
+            let [a, b] = column.parts;
+            for ((x, a), b) in rest.iter_mut().zip(a).zip(b) {
+                *x += a + b;
+            }
+        }
+    }
+}
+
+/// Writes complex number `k` of two lists.
+fn put(lists: &mut [Vec<f64>; 2], k: usize, values: [Complex64; 2]) {
+    for (list, z) in lists.iter_mut().zip(values) {
+        list[2 * k] = z.re;
+        list[2 * k + 1] = z.im;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn it_is_the_product_of_a_stiffness_and_a_motion() {
+        // Column by column against sums over many times, exact for such short series.
+        for (highest, odd) in [(0, false), (1, false), (4, false), (5, true), (9, true)] {
+            let set = if highest == 0 {
+                HarmonicSet::all(0).unwrap()
+            } else {
+                HarmonicSet::excited(&[1], highest, true, odd, false).unwrap()
+            };
+            let m = set.packed_len();
+            let last = 2 * set.highest_reduced();
+            let s: Vec<Complex64> = (0..=last)
+                .map(|n| match n {
+                    0 => Complex64::ONE,
+                    n if odd && n % 2 == 1 => Complex64::ZERO,
+                    n => Complex64::cis(n as f64) / n as f64,
+                })
+                .collect();
+            let mut toeplitz = Toeplitz::new(&set).unwrap();
+            toeplitz.set(&set, &s);
+            let leading = m + 3;
+            let mut found = vec![0.0; m * leading];
+            toeplitz.add(&mut found, leading);
+            let (count, mut basis) = (64, vec![0.0; m]);
+            let mut wanted = vec![0.0; m * m];
+            for t in 0..count {
+                let tau = std::f64::consts::TAU * t as f64 / count as f64;
+                set.basis(tau, &mut basis);
+                let stiffness = s[0].re
+                    + (1..=last)
+                        .map(|n| 2.0 * (s[n] * Complex64::cis(n as f64 * tau)).re)
+                        .sum::<f64>();
+                for (j, x) in basis.iter().enumerate() {
+                    for (i, c) in basis.iter().enumerate() {
+                        let weight = if set.has_mean() && i == 0 { 1.0 } else { 2.0 };
+                        wanted[j * m + i] += weight / f64::from(count) * c * stiffness * x;
+                    }
+                }
+            }
+            for j in 0..m {
+                for i in 0..m {
+                    let gap = (found[j * leading + i] - wanted[j * m + i]).abs();
+                    assert!(gap < 1e-13, "H {highest}, ({i}, {j}): {gap:e}");
+                }
+                assert!(found[j * leading + m..(j + 1) * leading].iter().all(|x| *x == 0.0));
+            }
         }
     }
 }

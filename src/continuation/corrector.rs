@@ -3,7 +3,7 @@
 
 use super::Metric;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
-use crate::linalg::bordered::Bordered;
+use crate::linalg::bordered::{Bordered, Parts};
 use crate::linalg::norm;
 use crate::problem::{Linearisation, Problem};
 use num_complex::Complex64;
@@ -38,10 +38,22 @@ pub enum Outcome {
     Cancelled,
 }
 
+/// Whose factors are kept.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Factors {
+    /// None that are of use.
+    None,
+    /// Those of the matrix of an earlier iteration.
+    Earlier,
+    /// Those of the matrix at hand.
+    Own,
+}
+
 /// Newton's method with its memory.
 pub struct Corrector {
     at: Linearisation,
     lu: Bordered,
+    factors: Factors,
     step: Vec<f64>,
     trial: Vec<f64>,
     next: Vec<f64>,
@@ -57,6 +69,11 @@ const ROUND_OFF: f64 = 1e-13;
 /// damping, a residual within the tolerance may be far from any: the last step tells.
 const NEAR: f64 = 1e-3;
 
+/// Relative errors of a Newton step and of a tangent that are found with the factors of an earlier iteration. That of
+/// a step is far below what the next iteration corrects, that of a tangent is as good as rounding.
+const STEP_ERROR: f64 = 1e-4;
+const TANGENT_ERROR: f64 = 1e-12;
+
 /// Smallest damping factor.
 const SMALLEST_DAMPING: f64 = 1.0 / 1024.0;
 
@@ -69,6 +86,7 @@ impl Corrector {
         Ok(Self {
             at: Linearisation::new(n)?,
             lu: Bordered::new(n)?,
+            factors: Factors::None,
             step: try_vec(n + 1, 0.0, "Newton's method")?,
             trial: try_vec(n + 1, 0.0, "Newton's method")?,
             next: try_vec(n + 1, 0.0, "Newton's method")?,
@@ -115,17 +133,17 @@ impl Corrector {
                 return Ok(Outcome::Cancelled);
             }
             let residual = self.relative_residual();
-            if !residual.is_finite() || !self.factor(metric, row)? {
+            // The damping test compares steps by one matrix, that of the iteration.
+            let reuse = iteration > 0 && !damped;
+            if !residual.is_finite() || !self.newton_step(metric, row, reuse)? {
                 return Ok(Outcome::Failed);
             }
-            self.newton_step();
             let size = norm(&self.step);
             let round_off = self.is_round_off(v, metric);
             let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
             if (residual <= self.tolerance && near) || round_off {
-                return Ok(Outcome::Converged(
-                    self.finish(problem, v, metric, iteration, residual)?,
-                ));
+                let found = self.finish(problem, v, (metric, row), iteration, residual)?;
+                return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
             }
             if iteration == self.max_iterations || (!damped && size > last_size) {
                 break;
@@ -178,23 +196,41 @@ impl Corrector {
     }
 
     fn factor(&mut self, metric: Metric, row: &[f64]) -> Result<bool> {
-        tolerate(self.lu.factor(
-            &self.at.jacobian,
-            &self.at.d_parameter,
-            &self.at.active,
-            (metric.u, metric.p),
-            row,
-        ))
+        let matrix = parts(&self.at, metric, row);
+        let found = self
+            .lu
+            .factor(matrix.jacobian, matrix.column, matrix.active, matrix.scales, row);
+        let factored = tolerate(found)?;
+        self.factors = if factored { Factors::Own } else { Factors::None };
+        Ok(factored)
     }
 
-    /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns.
-    fn newton_step(&mut self) {
+    /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
+    /// earlier iteration may be reused where the matrix has hardly changed.
+    fn newton_step(&mut self, metric: Metric, row: &[f64], reuse: bool) -> Result<bool> {
         let n = self.step.len() - 1;
         for (s, r) in self.step.iter_mut().zip(&self.at.residual) {
             *s = -r;
         }
         self.step[n] = 0.0;
+        self.factors = if reuse { Factors::Earlier } else { Factors::None };
+        self.solve(metric, row, STEP_ERROR)
+    }
+
+    /// Solves for `step` with the matrix at hand, by factors of an earlier one to the given error; `false` where it
+    /// is singular.
+    fn solve(&mut self, metric: Metric, row: &[f64], error: f64) -> Result<bool> {
+        if self.factors == Factors::Earlier {
+            let matrix = parts(&self.at, metric, row);
+            if self.lu.refine(&matrix, error, &mut self.step) {
+                return Ok(true);
+            }
+        }
+        if self.factors != Factors::Own && !self.factor(metric, row)? {
+            return Ok(false);
+        }
         self.lu.solve(&mut self.step);
+        Ok(true)
     }
 
     /// Tries λ = min(1, 4·last), halving; returns the λ that was taken.
@@ -231,23 +267,26 @@ impl Corrector {
     }
 
     /// The last Newton step is applied without another evaluation (its error is the square of a
-    /// residual already below the tolerance); tangent and amplitude come from the same factors.
+    /// residual already below the tolerance); tangent and amplitude come from the same matrix, which `None` tells
+    /// to be singular.
     fn finish(
         &mut self,
         problem: &dyn Problem,
         v: &mut [f64],
-        metric: Metric,
+        (metric, row): (Metric, &[f64]),
         iterations: usize,
         residual: f64,
-    ) -> Result<Corrected> {
+    ) -> Result<Option<Corrected>> {
         let n = v.len() - 1;
         let mut tangent = try_copy(&self.step, "Newton's method")?;
         metric.unscale(&mut tangent);
         let (at_residual, correction) = problem.observe(&v[..n], &tangent);
         metric.add(v, 1.0, &self.step);
-        self.tangent(metric, &mut tangent);
+        if !self.tangent(metric, row, &mut tangent)? {
+            return Ok(None);
+        }
         let (_, slope) = problem.observe(&v[..n], &tangent);
-        Ok(Corrected {
+        Ok(Some(Corrected {
             iterations,
             residual,
             stalled: residual > self.tolerance,
@@ -255,20 +294,23 @@ impl Corrector {
             slope,
             tangent,
             positive: self.lu.is_positive(),
-        })
+        }))
     }
 
-    /// Unit tangent from the factors at hand, in unscaled numbers.
-    fn tangent(&mut self, metric: Metric, tangent: &mut [f64]) {
+    /// Unit tangent of the matrix at hand, in unscaled numbers; `false` where it is singular.
+    fn tangent(&mut self, metric: Metric, row: &[f64], tangent: &mut [f64]) -> Result<bool> {
         let n = self.step.len() - 1;
         self.step.fill(0.0);
         self.step[n] = 1.0;
-        self.lu.solve(&mut self.step);
+        if !self.solve(metric, row, TANGENT_ERROR)? {
+            return Ok(false);
+        }
         let length = norm(&self.step);
         for (t, s) in tangent.iter_mut().zip(&self.step) {
             *t = s / length;
         }
         metric.unscale(tangent);
+        Ok(true)
     }
 
     /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled
@@ -285,11 +327,21 @@ impl Corrector {
         metric: Metric,
         tangent: &mut [f64],
     ) -> Result<Option<bool>> {
-        if !self.evaluates(problem, v)? || !self.factor(metric, row)? {
+        if !self.evaluates(problem, v)? || !self.factor(metric, row)? || !self.tangent(metric, row, tangent)? {
             return Ok(None);
         }
-        self.tangent(metric, tangent);
         Ok(Some(self.lu.is_positive()))
+    }
+}
+
+/// The matrix of a linearisation and a row.
+fn parts<'a>(at: &'a Linearisation, metric: Metric, row: &'a [f64]) -> Parts<'a> {
+    Parts {
+        jacobian: &at.jacobian,
+        column: &at.d_parameter,
+        active: &at.active,
+        scales: (metric.u, metric.p),
+        row,
     }
 }
 

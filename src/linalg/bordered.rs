@@ -5,8 +5,11 @@
 //! structure) are eliminated first: x_t = b_t − J_ta x_a − r_t x_p. What remains couples the others
 //! and the parameter.
 
+mod refine;
+
 use super::lu::Lu;
 use crate::error::{Result, try_vec};
+pub use refine::Parts;
 
 /// LU factors of the (n + 1) × (n + 1) matrix [J r; tᵀ].
 pub struct Bordered {
@@ -21,6 +24,10 @@ pub struct Bordered {
     border: Vec<f64>,
     u_scale: f64,
     reduced: Vec<f64>,
+    /// Right side, change and scaled unknowns of a refinement.
+    known: Vec<f64>,
+    change: Vec<f64>,
+    scaled: Vec<f64>,
 }
 
 impl Bordered {
@@ -41,6 +48,9 @@ impl Bordered {
             border: try_vec(n, 0.0, WHAT)?,
             u_scale: 1.0,
             reduced: try_vec(n + 1, 0.0, WHAT)?,
+            known: try_vec(n + 1, 0.0, WHAT)?,
+            change: try_vec(n + 1, 0.0, WHAT)?,
+            scaled: try_vec(n, 0.0, WHAT)?,
         };
         bordered.rest.clear();
         Ok(bordered)

@@ -152,7 +152,9 @@ impl<T: Scalar> Lu<T> {
 
     fn factor_blocked(&mut self) -> Result<()> {
         let n = self.n;
-        if self.a[..n * n].iter().any(|x| !x.size().is_finite()) {
+        // In stretches without a way out, which the compiler vectorises.
+        let broken = |part: &[T]| part.iter().fold(false, |found, x| found | !x.size().is_finite());
+        if self.a[..n * n].chunks(1024).any(broken) {
             return singular(n, 0, f64::NAN);
         }
         let Some(blocked) = &mut self.blocked else {

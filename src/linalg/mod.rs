@@ -12,6 +12,8 @@ pub mod matrix_view;
 pub mod quadratic;
 pub mod sparse;
 
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
 
 /// aᴴ b
@@ -41,5 +43,29 @@ pub fn power_of_two(x: f64) -> f64 {
         x.log2().floor().clamp(-1020.0, 1020.0).exp2()
     } else {
         1.0
+    }
+}
+
+/// Order up to which plain loops multiply as fast as vector instructions chosen at run time.
+const LOOPS_UP_TO: usize = 32;
+
+/// out += factor·A x for a column-major A of as many rows as `out` has numbers.
+pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
+    let rows = out.len();
+    if rows > LOOPS_UP_TO {
+        matmul(
+            MatMut::from_column_major_slice_mut(out, rows, 1),
+            Accum::Add,
+            MatRef::from_column_major_slice(a, rows, x.len()),
+            MatRef::from_column_major_slice(x, x.len(), 1),
+            factor,
+            Par::Seq,
+        );
+        return;
+    }
+    for (column, x) in a.chunks_exact(rows.max(1)).zip(x) {
+        for (out, a) in out.iter_mut().zip(column) {
+            *out += factor * a * x;
+        }
     }
 }

@@ -15,6 +15,8 @@ pub struct Blocks {
     /// symmetric, so that they begin where `first` says.
     of_motions: Vec<(usize, usize)>,
     values: Vec<f64>,
+    /// Per block whether a law has been added since the last [`Self::clear`].
+    filled: Vec<bool>,
     /// Position of the blocks of each law: force direction after force direction.
     of_laws: Vec<usize>,
 }
@@ -75,25 +77,39 @@ impl Blocks {
             motion,
             of_motions,
             values: try_vec(size, 0.0, WHAT)?,
+            filled: try_vec(pairs.len(), false, WHAT)?,
             of_laws,
         })
     }
 
-    /// Sets all blocks to zero.
+    /// Begins anew: the first law of a block replaces what is there. Every block has laws.
     pub fn clear(&mut self) {
-        self.values.fill(0.0);
+        self.filled.fill(false);
     }
 
     /// Adds the Jacobian of a law of `d` directions whose blocks begin at `from` in the list of all
-    /// laws' blocks; returns where those of the next law begin.
-    pub fn add(&mut self, from: usize, d: usize, jacobian: &[f64]) -> usize {
+    /// laws' blocks; returns where those of the next law begin. What `jacobian` holds afterwards is not told.
+    pub fn add(&mut self, from: usize, d: usize, jacobian: &mut Vec<f64>) -> usize {
         let m = self.order;
+        if self.filled == [false] && self.values.len() == jacobian.len() {
+            // One law alone: nothing need be copied.
+            core::mem::swap(&mut self.values, jacobian);
+            self.filled.fill(true);
+            return from + d * d;
+        }
         for force in 0..d {
             for motion in 0..d {
-                let at = self.of_laws[from + force * d + motion] * m * m;
+                let block = self.of_laws[from + force * d + motion];
+                let at = block * m * m;
+                let filled = core::mem::replace(&mut self.filled[block], true);
                 for (k, column) in self.values[at..at + m * m].chunks_exact_mut(m).enumerate() {
                     let begin = (motion * m + k) * d * m + force * m;
-                    for (sum, j) in column.iter_mut().zip(&jacobian[begin..begin + m]) {
+                    let added = &jacobian[begin..begin + m];
+                    if !filled {
+                        column.copy_from_slice(added);
+                        continue;
+                    }
+                    for (sum, j) in column.iter_mut().zip(added) {
                         *sum += j;
                     }
                 }

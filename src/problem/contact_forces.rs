@@ -138,7 +138,7 @@ impl<'a> ContactForces<'a> {
                 .evaluate(&*placed.law, set, y, omega, found)
                 .map_err(|e| e.at(format_args!("contact {}", placed.contact)))?;
             self.slip_fractions[k] = found.slip_fraction;
-            blocks = self.jacobians.add(blocks, at.len(), &found.jacobian);
+            blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
             for (i, &c) in at.iter().enumerate() {
                 let normal = placed.normal == Some(i);

@@ -43,6 +43,10 @@ pub struct Forced<'a> {
     loaded_at_rest: bool,
     /// One number per coordinate, for a column of the Jacobian.
     sum: Vec<Complex64>,
+    /// G as [`ContactForces::couple_all`] wants it.
+    flexibility: Vec<Complex64>,
+    /// One packed signal.
+    change: Vec<f64>,
 }
 
 impl<'a> Forced<'a> {
@@ -59,7 +63,12 @@ impl<'a> Forced<'a> {
         samples: usize,
         given: Option<Vec<f64>>,
     ) -> Result<Self> {
+        const WHAT: &str = "the forced response";
         let set = condensed.set();
+        let coordinates = condensed.coordinates();
+        let flexibility = coordinates
+            .saturating_mul(coordinates)
+            .saturating_mul(set.numbers().len());
         let loaded_at_rest = condensed.is_preloaded() || force_at_rest(condensed, range.0, samples)?.is_some();
         Ok(Self {
             condensed,
@@ -69,7 +78,9 @@ impl<'a> Forced<'a> {
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
             loaded_at_rest,
-            sum: try_vec(condensed.coordinates(), Complex64::ZERO, "the forced response")?,
+            sum: try_vec(condensed.coordinates(), Complex64::ZERO, WHAT)?,
+            flexibility: try_vec(flexibility, Complex64::ZERO, WHAT)?,
+            change: try_vec(set.packed_len(), 0.0, WHAT)?,
         })
     }
 
@@ -161,21 +172,30 @@ impl<'a> Forced<'a> {
 
     /// ∂R/∂y = I + G (∂f/∂y − κ); what no force feels that counts keeps the column of the identity.
     fn assemble(&mut self, out: &mut Linearisation) {
-        let m = self.condensed.set().packed_len();
-        let stride = self.condensed.coordinates() + 1;
+        let set = self.condensed.set();
+        let (m, harmonics) = (set.packed_len(), set.numbers().len());
+        let coordinates = self.condensed.coordinates();
         let n = out.residual.len();
         self.forces.mark_active(&mut out.active);
+        if out.active.contains(&true) {
+            for (i, table) in self.tables.current().iter().enumerate() {
+                let forces = table.value.chunks_exact(coordinates + 1).take(coordinates);
+                for (force, column) in forces.enumerate() {
+                    let first = force * coordinates * harmonics + i;
+                    let to = self.flexibility[first..].iter_mut().step_by(harmonics);
+                    for (to, g) in to.zip(&column[..coordinates]) {
+                        *to = *g;
+                    }
+                }
+            }
+        }
         for (k, column) in out.jacobian.chunks_exact_mut(n.max(1)).enumerate() {
             column.fill(0.0);
             column[k] = 1.0;
-            if !out.active[k] {
-                continue;
+            if out.active[k] {
+                self.forces
+                    .couple_all((k / m, k % m), &self.flexibility, &mut self.change, column);
             }
-            let tables = self.tables.current();
-            let flexibility = (|i: usize| &tables[i].value[..], stride);
-            let at = (k / m, k % m);
-            self.forces
-                .couple(0..tables.len(), at, flexibility, &mut self.sum, column);
         }
     }
 

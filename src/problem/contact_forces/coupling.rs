@@ -165,6 +165,42 @@ impl ContactForces<'_> {
         }
     }
 
+    /// Adds G (∂f/∂y − κ) in all carried harmonics to the column of a Jacobian that belongs to number `q` of the
+    /// packed motion of coordinate `motion`. `flexibility` holds G harmonic after harmonic for each coordinate, force
+    /// after force; `change` has the length of a packed signal.
+    ///
+    /// Where many harmonics are carried this is quicker than [`Self::couple`]: what is read and written lies in a row.
+    pub fn couple_all(
+        &self,
+        (motion, q): (usize, usize),
+        flexibility: &[Complex64],
+        change: &mut [f64],
+        column: &mut [f64],
+    ) {
+        let set = self.condensed.set();
+        let (m, harmonics) = (set.packed_len(), set.numbers().len());
+        let mean = usize::from(set.has_mean());
+        let counts = |(force, _): &(usize, &[f64])| !self.drops_out(*force);
+        for (force, block) in self.jacobians.of_motion(motion).filter(counts) {
+            change.copy_from_slice(&block[q * m..(q + 1) * m]);
+            if force == motion {
+                let i = if mean == 1 { q.div_ceil(2) } else { q / 2 };
+                let at = set.offset(i);
+                let kappa = self.condensed.kappa(force, i);
+                let z = set.get(change, i) - if q == at { kappa } else { kappa * Complex64::I };
+                set.set(change, i, z);
+                if mean == 1 && q == 0 {
+                    column[motion * m] += MEAN_FLOOR;
+                }
+            }
+            let first = force * self.condensed.coordinates() * harmonics;
+            let rows = flexibility[first..].chunks_exact(harmonics);
+            for (x, g) in column.chunks_exact_mut(m).zip(rows) {
+                add_products(mean, g, change, x);
+            }
+        }
+    }
+
     /// Adds Re(g·∂w/∂y) of the force of coordinate `force` in harmonic i to one row of a Jacobian with
     /// `n` rows.
     pub fn couple_scalar(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
@@ -181,5 +217,17 @@ impl ContactForces<'_> {
         if set.numbers()[i] != 0 {
             jacobian[(at + 1) * n + row] += gk.im;
         }
+    }
+}
+
+/// x += g z in each harmonic of packed signals x and z.
+fn add_products(mean: usize, g: &[Complex64], z: &[f64], x: &mut [f64]) {
+    if mean == 1 {
+        x[0] += g[0].re * z[0];
+    }
+    let pairs = x[mean..].chunks_exact_mut(2).zip(z[mean..].chunks_exact(2));
+    for ((x, z), g) in pairs.zip(&g[mean..]) {
+        x[0] += g.re * z[0] - g.im * z[1];
+        x[1] += g.re * z[1] + g.im * z[0];
     }
 }

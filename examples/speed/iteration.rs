@@ -1,0 +1,184 @@
+//! Where the time of a Newton iteration goes as more harmonics are carried: one contact, odd harmonics.
+//!
+//! All times are minima, of the processor's clock where other programs share it: read them as ratios.
+
+use super::model;
+use hbvib::aft::{Evaluation, Evaluator};
+use hbvib::condense::Condensed;
+use hbvib::continuation::Metric;
+use hbvib::continuation::corrector::{Corrector, Outcome};
+use hbvib::linalg::bordered::Bordered;
+use hbvib::linalg::norm;
+use hbvib::options::SolverOptions;
+use hbvib::problem::forced::Forced;
+use hbvib::problem::{Linearisation, Problem, Start};
+use std::error::Error;
+use std::f64::consts::TAU;
+use std::hint::black_box;
+use std::time::Instant;
+
+/// (highest harmonic, samples per period; 0 = exact events)
+const WAYS: [(usize, usize); 8] = [
+    (9, 0),
+    (31, 0),
+    (63, 0),
+    (127, 0),
+    (255, 0),
+    (9, 256),
+    (63, 1024),
+    (255, 4096),
+];
+
+/// Seconds that each part takes at least in all.
+const LEAST: f64 = 0.15;
+
+/// Least seconds of one call.
+fn time(mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
+    let (begin, mut least) = (Instant::now(), f64::INFINITY);
+    while begin.elapsed().as_secs_f64() < LEAST {
+        let start = Instant::now();
+        work()?;
+        least = least.min(start.elapsed().as_secs_f64());
+    }
+    Ok(least)
+}
+
+/// Microseconds of the parts of an iteration, and of a whole one.
+struct Parts {
+    unknowns: usize,
+    /// Reversals of the motion, or its samples.
+    reversals: f64,
+    /// Force of the law and its Jacobian.
+    law: f64,
+    /// Residual with the forces.
+    residual: f64,
+    /// Residual and Newton's matrix.
+    matrix: f64,
+    /// Factors of the dense bordered matrix, and one solution with them.
+    dense: f64,
+    /// A corrected point per Newton iteration, tangent included.
+    iteration: f64,
+}
+
+fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn Error>> {
+    let parameters = model::Parameters {
+        force,
+        ..model::Parameters::default()
+    };
+    let options = SolverOptions {
+        harmonics: highest,
+        samples,
+        tolerance: 0.0,
+        response_dof: Some(model::B2),
+        ..SolverOptions::default()
+    };
+    let omega = 208.85 * TAU;
+    let condensed = Condensed::new(&parameters.model()?, &options, omega)?;
+    let mut problem = Forced::new(&condensed, model::B2, (207.0 * TAU, 211.0 * TAU), samples, None)?;
+    let n = problem.size();
+    let mut v = vec![0.0; n + 1];
+    v[n] = omega;
+    problem.start(Start::Stuck, omega, &mut v[..n])?;
+    let mut row = vec![0.0; n + 1];
+    row[n] = 1.0;
+    let mut corrector = Corrector::new(n, 1e-10, 50)?;
+    let metric = Metric {
+        u: 10.0 * norm(&v[..n]),
+        p: 4.0 * TAU,
+    };
+    let Outcome::Converged(found) = corrector.correct(&mut problem, &mut v, &row, metric, true, None)? else {
+        return Err("the point that is measured at was not found".into());
+    };
+    // In the plane across the branch, as in continuation.
+    let metric = Metric {
+        u: 10.0 * norm(&v[..n]),
+        ..metric
+    };
+    for (r, t) in row.iter_mut().zip(&found.tangent) {
+        *r = t / metric.u;
+    }
+    row[n] = found.tangent[n] / metric.p;
+
+    let set = condensed.set();
+    let law = &*condensed.laws()[0].law;
+    let mut evaluator = Evaluator::new(set, samples, core::iter::once(law))?;
+    let mut out = Evaluation::new(set, 1)?;
+    let u = &v[..n];
+    let reversals = time(|| {
+        evaluator.prepare(set, black_box(u));
+        Ok(())
+    })?;
+    let law = time(|| Ok(evaluator.evaluate(law, set, black_box(u), omega, &mut out)?))?;
+    let mut at = Linearisation::new(n)?;
+    let mut turn = false;
+    // Another frequency each time, as in continuation: the flexibility is part of an iteration.
+    let mut other = || {
+        turn = !turn;
+        if turn { omega } else { omega * (1.0 + 1e-9) }
+    };
+    let residual = time(|| Ok(problem.evaluate_residual(u, other(), &mut at)?))?;
+    let matrix = time(|| Ok(problem.evaluate(u, other(), &mut at)?))?;
+    let mut bordered = Bordered::new(n)?;
+    let mut b = vec![1.0; n + 1];
+    let dense = time(|| {
+        bordered.factor(&at.jacobian, &at.d_parameter, &at.active, (metric.u, metric.p), &row)?;
+        bordered.solve(black_box(&mut b));
+        Ok(())
+    })?;
+    let mut iterations = 0;
+    let mut start = v.clone();
+    let iteration = time(|| {
+        // As far away as a prediction is.
+        for (s, v) in start.iter_mut().zip(&v[..n]) {
+            *s = v * (1.0 + 1e-4);
+        }
+        start[n] = omega;
+        match corrector.correct(&mut problem, &mut start, &row, metric, false, None)? {
+            Outcome::Converged(found) => {
+                iterations = found.iterations + 1;
+                Ok(())
+            }
+            _ => Err("a point was not corrected".into()),
+        }
+    })?;
+    let micro = 1e6;
+    Ok(Parts {
+        unknowns: n,
+        reversals: micro * reversals,
+        law: micro * law,
+        residual: micro * residual,
+        matrix: micro * matrix,
+        dense: micro * dense,
+        iteration: micro * iteration / f64::from(u32::try_from(iterations)?),
+    })
+}
+
+/// Prints the table.
+pub fn run() -> Result<(), Box<dyn Error>> {
+    println!("Microseconds at 208.85 Hz; residual holds the two columns before it, matrix the residual");
+    for force in [1.0, 5.0, 20.0] {
+        println!("\nF = {force} N");
+        println!("  H    events  unknowns  reversals     law  residual    matrix     dense  iteration  exponent");
+        let mut last: Option<(usize, f64)> = None;
+        for (highest, samples) in WAYS {
+            let p = measure(force, highest, samples)?;
+            let events = if samples == 0 {
+                "exact".into()
+            } else {
+                format!("N={samples}")
+            };
+            let exponent = match last {
+                Some((n, t)) if p.unknowns > n => {
+                    format!("{:.2}", (p.iteration / t).ln() / (p.unknowns as f64 / n as f64).ln())
+                }
+                _ => String::new(),
+            };
+            println!(
+                "{highest:3}  {events:>8}  {:8}  {:9.2}  {:6.2}  {:8.2}  {:8.2}  {:8.2}  {:9.2}  {exponent:>8}",
+                p.unknowns, p.reversals, p.law, p.residual, p.matrix, p.dense, p.iteration,
+            );
+            last = (samples == 0).then_some((p.unknowns, p.iteration));
+        }
+    }
+    Ok(())
+}
