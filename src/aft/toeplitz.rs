@@ -149,7 +149,7 @@ mod tests {
             let (count, mut basis) = (64, vec![0.0; m]);
             let mut wanted = vec![0.0; m * m];
             for t in 0..count {
-                let tau = std::f64::consts::TAU * t as f64 / count as f64;
+                let tau = std::f64::consts::TAU * f64::from(t) / f64::from(count);
                 set.basis(tau, &mut basis);
                 let stiffness = s[0].re
                     + (1..=last)

@@ -3,7 +3,7 @@
 use super::adapt::{Assessment, Choice, suffices};
 use super::estimate::observed;
 use super::follow::{Ending, Keeper};
-use super::levels::{Ladder, carried_point};
+use super::levels::{Ladder, carried_point, worth_keeping};
 use crate::branch::{Branch, Level, Record, SpecialKind};
 use crate::condense::Reduction;
 use crate::continuation::again::solve_again;
@@ -53,6 +53,8 @@ pub(super) struct ForcedPoints<'a> {
     highest: usize,
     choice: Choice,
     estimator: Option<ForcedEstimator<'a>>,
+    /// Whether the problem at hand may have been evaluated elsewhere than at the point at hand.
+    stale: bool,
     /// Error of the point assessed last, until it is kept.
     assessed: Option<f64>,
     specials: Vec<Kept<'a>>,
@@ -100,6 +102,7 @@ impl<'a> ForcedPoints<'a> {
             highest: rung,
             choice: Choice::new(solver.tolerance),
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, shelf)),
+            stale: false,
             assessed: None,
             specials: Vec::new(),
             missed: false,
@@ -110,6 +113,15 @@ impl<'a> ForcedPoints<'a> {
     /// What was removed from the problem that has the most harmonics.
     pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
         self.ladder.level(self.highest)?.condensed.reduction(model, solver)
+    }
+
+    /// Evaluates the problem at a point, unless that was the last thing done on this rung.
+    fn refresh(&mut self, point: &Point) -> Result<()> {
+        if self.stale {
+            self.here.corrector.evaluate(&mut self.here.problem, &point.v)?;
+            self.stale = false;
+        }
+        Ok(())
     }
 
     /// Estimate of a point that was evaluated last.
@@ -168,6 +180,7 @@ impl Keeper for ForcedPoints<'_> {
     }
 
     fn keep(&mut self, point: &Point) -> Result<()> {
+        self.refresh(point)?;
         self.stalled |= point.stalled;
         let error = self.error(point)?;
         self.missed |= self.choice.is_missed_by(error);
@@ -184,6 +197,7 @@ impl Keeper for ForcedPoints<'_> {
     /// The point is solved once more at its frequency with the flexibility factorised there: along
     /// the sweep it may have been interpolated.
     fn keep_special(&mut self, kind: SpecialKind, mut point: Point) -> Result<bool> {
+        self.stale = false;
         let here = &mut self.here;
         // At a fold the solution at a fixed frequency is not isolated.
         let mut found = None;
@@ -249,7 +263,9 @@ impl Keeper for ForcedPoints<'_> {
                 None,
             )?,
         };
-        self.others[self.rung] = Some(core::mem::replace(&mut self.here, there));
+        self.stale = true;
+        let left = core::mem::replace(&mut self.here, there);
+        self.others[self.rung] = worth_keeping(&left.level.condensed).then_some(left);
         self.rung = rung;
         Ok(())
     }
@@ -260,6 +276,7 @@ impl Keeper for ForcedPoints<'_> {
 
     fn assess(&mut self, point: &Point) -> Result<Option<Assessment>> {
         self.assessed = None;
+        self.refresh(point)?;
         let Some(estimate) = self.estimate(point)? else {
             return Ok(None);
         };
@@ -293,7 +310,9 @@ impl Keeper for ForcedPoints<'_> {
     ) -> Result<Option<Point>> {
         let here = &mut self.here;
         let (problem, corrector) = (&mut here.problem, &mut here.corrector);
-        solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)
+        let found = solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)?;
+        self.stale = found.is_none();
+        Ok(found)
     }
 }
 

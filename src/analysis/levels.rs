@@ -26,6 +26,9 @@ const LARGE: usize = 32;
 /// Unknowns above which no rung is climbed: Newton's method factors dense matrices.
 const MOST_UNKNOWNS: usize = 3000;
 
+/// Unknowns above which the dense matrices of a rung are not kept when it is left.
+const MOST_KEPT: usize = 600;
+
 /// Samples per harmonic where laws are sampled and the tolerance decides.
 const SAMPLES_PER_HARMONIC: usize = 8;
 
@@ -149,6 +152,11 @@ impl<'m> Ladder<'m> {
         };
         Ok(cell.get_or_init(|| level))
     }
+}
+
+/// Whether what was made for a rung is to be kept when it is left: small enough, and quick to come back to.
+pub(super) fn worth_keeping(condensed: &Condensed) -> bool {
+    condensed.unknowns() <= MOST_KEPT
 }
 
 /// Unknowns, and the `others` numbers after the motions, in other harmonics; motions times a factor.

@@ -2,7 +2,7 @@
 
 use super::adapt::{Assessment, Choice, suffices};
 use super::follow::{Ending, Keeper};
-use super::levels::{Ladder, carried_point};
+use super::levels::{Ladder, carried_point, worth_keeping};
 use super::mode_rung::{Rung, Start};
 use crate::branch::mode::{ModeData, ModePoint};
 use crate::branch::{Branch, Level, Record, SpecialKind};
@@ -270,7 +270,8 @@ impl Keeper for ModePoints<'_> {
             Some(there) => there,
             None => Rung::new(self.ladder.level(rung)?, &self.start, &self.settings)?,
         };
-        self.others[self.rung] = Some(core::mem::replace(&mut self.here, there));
+        let left = core::mem::replace(&mut self.here, there);
+        self.others[self.rung] = worth_keeping(&left.level.condensed).then_some(left);
         self.rung = rung;
         Ok(())
     }

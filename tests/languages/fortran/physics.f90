@@ -267,7 +267,8 @@ contains
                   < 1e-9_dp)
       call expect('its period is 2 pi / omega', close(info%period, 2*pi/omega, 1e-14_dp))
       call works(model%add_jenkins([1], [1._dp], [0.3_dp], [1._dp]), 'a friction contact')
-      call works(model%forced_response(branch, omega, omega, hbvib_solver_options(tolerance=0._dp, harmonics=63), at=[omega]), 'one point')
+      call works(model%forced_response(branch, omega, omega, hbvib_solver_options(tolerance=0._dp, harmonics=63), &
+                 at=[omega]), 'one point')
       call works(branch%at(1, amplitude, point), 'at')
       call works(branch%harmonics(point(1), start), 'harmonics')
       call works(model%time_response(omega, x, start=start, info=info), 'the point in time')
