@@ -25,7 +25,7 @@ const AIM: f64 = 0.5;
 const RAISE: f64 = 0.7;
 
 /// Share of the tolerance below which the next point gets fewer.
-const DROP: f64 = 0.15;
+const DROP: f64 = 0.08;
 
 /// Least size of a harmonic that carries something.
 const NOTHING: f64 = 1e-13;
