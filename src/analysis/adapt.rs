@@ -27,6 +27,9 @@ const RAISE: f64 = 0.7;
 /// Share of the tolerance below which the next point gets fewer.
 const DROP: f64 = 0.08;
 
+/// Points for which a branch does not fall to a rung on which one missed the tolerance.
+const PATIENCE: usize = 10;
+
 /// Least size of a harmonic that carries something.
 const NOTHING: f64 = 1e-13;
 
@@ -49,6 +52,9 @@ pub(super) struct Choice {
     pub estimates: usize,
     /// Error and harmonics wanted of the last point.
     last: Option<(f64, usize)>,
+    /// Lowest rung to which the branch may fall, and for how many points more: one above that where a point missed
+    /// the tolerance.
+    floor: (usize, usize),
 }
 
 impl Choice {
@@ -58,6 +64,7 @@ impl Choice {
             tolerance,
             estimates: 0,
             last: None,
+            floor: (0, 0),
         }
     }
 
@@ -144,6 +151,9 @@ pub(super) fn refine(
             0
         };
         choice.last = accepted.then_some((found.error, wanted));
+        if !accepted {
+            choice.floor = (rung + 1, PATIENCE);
+        }
         let next = if accepted {
             // What carries nothing is not carried.
             if found.error > 0.0 {
@@ -225,7 +235,14 @@ pub(super) fn settle(keeper: &mut dyn Keeper, point: Point, cancelled: Option<&d
         return Ok(point);
     };
     let share = MARGIN * error / choice.tolerance;
-    let next = keeper.ladder().rung_with(wanted);
+    choice.floor.1 = choice.floor.1.saturating_sub(1);
+    let floor = if error > 0.0 && choice.floor.1 > 0 {
+        choice.floor.0
+    } else {
+        0
+    };
+    let last = keeper.ladder().last();
+    let next = keeper.ladder().rung_with(wanted).max(floor).min(last);
     if (share > RAISE && next > rung) || (share < DROP && next < rung) {
         return Ok(go(keeper, &point, next, false, cancelled)?.unwrap_or(point));
     }
