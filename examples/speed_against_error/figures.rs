@@ -2,6 +2,8 @@
 
 use std::path::Path;
 
+use hbvib::error::Status;
+
 use crate::measure::Outcome;
 use crate::plot::{Figure, Series, Style};
 use crate::tables::{Done, Measured};
@@ -13,10 +15,12 @@ use crate::truth::ROUNDING;
 ///
 /// If a file cannot be written.
 pub fn draw(measured: &Measured, folder: &Path) -> Done {
-    let place = |o: &Outcome| (o.error().max(ROUNDING), 1e3 * o.seconds);
+    let place = |o: &Outcome| (o.error().max(o.own_error()).max(ROUNDING), 1e3 * o.seconds);
+    // Of a branch that went through the whole range, a frequency that was passed over does not tell the error.
+    let is_shown = |o: &Outcome| o.missing() == 0 || (o.way.is_automatic() && o.status == Status::Ok);
     let mut series = Vec::new();
     let mut add = |label: String, chosen: &dyn Fn(&Outcome) -> bool| {
-        let shown = measured.outcomes.iter().filter(|o| chosen(o) && o.missing() == 0);
+        let shown = measured.outcomes.iter().filter(|o| chosen(o) && is_shown(o));
         let points: Vec<_> = shown.map(place).collect();
         if !points.is_empty() {
             series.push(Series::new(label.clone(), Style::Line, points.clone()));

@@ -136,6 +136,10 @@ impl Measured {
         let (exact, sampled) = (of(false), of(true));
         writeln!(screen, "\nerror   N by itself or exact, ms  N given, ms  ratio")?;
         for error in EQUAL {
+            if error < self.floor() {
+                writeln!(screen, "{error:.0e}  the truth is not exact enough")?;
+                continue;
+            }
             let text = |time: Option<f64>| time.map_or("not reached".into(), |t| format!("{:.3}", 1e3 * t));
             let (one, other) = (exact.time(error), sampled.time(error));
             let ratio = one.zip(other).map_or(String::new(), |(a, b)| format!("{:.1}", b / a));
