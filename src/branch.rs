@@ -405,3 +405,9 @@ pub(crate) enum SpecialKind {
     Fold,
     At(usize),
 }
+
+impl SpecialKind {
+    pub fn is_fold(self) -> bool {
+        matches!(self, Self::Fold)
+    }
+}

@@ -9,6 +9,7 @@
 //! error is far below the tolerance, so that they do not flutter.
 
 use super::follow::Keeper;
+use crate::branch::SpecialKind;
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
@@ -192,16 +193,17 @@ pub(super) fn retreat(
     let to = (rung.max(from) + RETREAT).min(keeper.ladder().last());
     keeper.go_to(to)?;
     let start = keeper.carry(point, rung)?;
-    let found = keeper.solve_again(&start, false, cancelled)?;
+    let found = keeper.solve_again(&start, true, cancelled)?;
     if found.is_none() {
         keeper.go_to(from)?;
     }
     Ok(found)
 }
 
-/// Whether a point beside the curve may be kept; if not, the keeper has climbed, and it is to be found again.
-pub(super) fn suffices(keeper: &mut dyn Keeper, point: &Point) -> Result<bool> {
-    if !keeper.ladder().is_automatic() {
+/// Whether a point beside the curve may be kept; if not, the keeper has climbed, and it is to be found again. A fold
+/// always may: at its parameter no solution is isolated, and errors there are none of its own.
+pub(super) fn suffices(keeper: &mut dyn Keeper, kind: SpecialKind, point: &Point) -> Result<bool> {
+    if !keeper.ladder().is_automatic() || kind.is_fold() {
         return Ok(true);
     }
     let rung = keeper.rung();
@@ -243,10 +245,21 @@ pub(super) fn settle(keeper: &mut dyn Keeper, point: Point, cancelled: Option<&d
     };
     let last = keeper.ladder().last();
     let next = keeper.ladder().rung_with(wanted).max(floor).min(last);
-    if (share > RAISE && next > rung) || (share < DROP && next < rung) {
-        return Ok(go(keeper, &point, next, false, cancelled)?.unwrap_or(point));
+    if !((share > RAISE && next > rung) || (share < DROP && next < rung)) {
+        return Ok(point);
     }
-    Ok(point)
+    // At its parameter, so that nothing lies between the point stored and the one that the branch goes on from.
+    let Some(found) = go(keeper, &point, next, true, cancelled)? else {
+        return Ok(point);
+    };
+    let before = keeper.carry(&point, rung)?;
+    let tolerance = keeper.choice().tolerance;
+    if (found.amplitude - before.amplitude).norm() > tolerance * before.amplitude.norm() {
+        // Fewer harmonics than thought would do, as near a fold.
+        keeper.go_to(rung)?;
+        return Ok(point);
+    }
+    Ok(found)
 }
 
 /// Solves with the harmonics of another rung; the keeper stays where it is if that fails.

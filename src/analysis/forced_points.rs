@@ -201,7 +201,7 @@ impl Keeper for ForcedPoints<'_> {
         let here = &mut self.here;
         // At a fold the solution at a fixed frequency is not isolated.
         let mut found = None;
-        if !matches!(kind, SpecialKind::Fold) {
+        if !kind.is_fold() {
             here.problem.set_pointwise(true);
             let again = solve_again(
                 &mut here.problem,
@@ -221,11 +221,11 @@ impl Keeper for ForcedPoints<'_> {
         } else {
             here.corrector.evaluate(&mut here.problem, &point.v)?;
         }
-        if !suffices(self, &point)? {
+        if !suffices(self, kind, &point)? {
             return Ok(false);
         }
-        let error = self.error(&point)?;
-        self.missed |= self.choice.is_missed_by(error);
+        let error = if kind.is_fold() { f64::NAN } else { self.error(&point)? };
+        self.missed |= !kind.is_fold() && self.choice.is_missed_by(error);
         let here = &mut self.here;
         here.problem.response(point.unknowns(), &mut here.response);
         let kept = Kept {

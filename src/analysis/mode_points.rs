@@ -232,12 +232,16 @@ impl Keeper for ModePoints<'_> {
 
     fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<bool> {
         self.evaluate(&point)?;
-        if !suffices(self, &point)? {
+        if !suffices(self, kind, &point)? {
             return Ok(false);
         }
         let mode = self.here.measure(&point, self.start.linear, &self.before);
-        let numbers = self.numbers(&point)?;
-        self.missed |= self.misses(numbers.2, mode.damping_ratio);
+        let mut numbers = self.numbers(&point)?;
+        if kind.is_fold() {
+            numbers.2 = (f64::NAN, f64::NAN);
+        } else {
+            self.missed |= self.misses(numbers.2, mode.damping_ratio);
+        }
         let here = &self.here;
         let kept = Kept {
             numbers,

@@ -30,7 +30,8 @@ impl Branch {
         &self.error_estimate[..self.curve]
     }
 
-    /// The same of one stored point, the special ones included.
+    /// The same of one stored point, the special ones included; NaN at a fold, at whose frequency no solution is
+    /// isolated.
     #[must_use]
     pub fn error_estimate_at(&self, point: usize) -> Option<f64> {
         self.error_estimate.get(point).copied()

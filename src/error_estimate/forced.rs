@@ -100,7 +100,7 @@ impl<'a> ForcedEstimator<'a> {
             }
         };
         system.aim(omega, core)?;
-        let found = on(&mut system, condensed, solved, extent, self.options.samples > 0);
+        let found = on(&mut system, condensed, solved, extent, self.options.tol_residual);
         self.lifted = Some((slot, system));
         found
     }
@@ -111,7 +111,7 @@ fn on(
     condensed: &Condensed,
     solved: &Solved<'_>,
     extent: Extent,
-    sampled: bool,
+    tolerance: f64,
 ) -> Result<Option<Estimate>> {
     let (omega, set) = (solved.omega, condensed.set());
     if set.numbers().len() == solved.condensed.set().numbers().len() {
@@ -123,7 +123,8 @@ fn on(
     if !system.evaluate(&start)? {
         return Ok(None);
     }
-    if !sampled && above(set, solved.condensed.set(), &system.at.residual) <= ROUNDING * system.at.scale {
+    let residual = (&system.at.residual[..], system.at.scale);
+    if misses_nothing(residual, set, solved.condensed.set(), tolerance) {
         return solved.exact(0.0).map(Some);
     }
     let enough = |change: &[f64], next: &[f64]| {
@@ -192,6 +193,17 @@ pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
     } else {
         difference / number.norm()
     }
+}
+
+/// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the lifted problem as well:
+/// nothing acts above them, and below them more samples change nothing.
+pub(super) fn misses_nothing(
+    (residual, scale): (&[f64], f64),
+    set: &HarmonicSet,
+    below: &HarmonicSet,
+    tolerance: f64,
+) -> bool {
+    above(set, below, residual) <= ROUNDING * scale && norm(residual) <= 10.0 * tolerance * scale
 }
 
 /// Norm of what packed signals of `set` hold above the harmonics of `below`.

@@ -1,6 +1,6 @@
 //! The error of a point of a nonlinear mode: of its frequency and damping ratio as well.
 
-use super::forced::{above, relative};
+use super::forced::{misses_nothing, relative};
 use super::lift::lift;
 use super::reach::{self, Reach};
 use super::system::{System, Whole};
@@ -123,8 +123,8 @@ impl<'a> ModeEstimator<'a> {
         if !system.evaluate(&start)? {
             return Ok(None);
         }
-        let residual = &system.at.residual[..n - 2];
-        if samples == 0 && above(set, solved.condensed.set(), residual) <= ROUNDING * system.at.scale {
+        let residual = (&system.at.residual[..n - 2], system.at.scale);
+        if misses_nothing(residual, set, solved.condensed.set(), self.options.tol_residual) {
             return solved.exact(damping).map(Some);
         }
         let of_damping = |u: &[f64]| Mode::damping_of_change(u).abs();
