@@ -21,8 +21,9 @@ pub(super) trait Keeper {
     /// Stores a point of the curve.
     fn keep(&mut self, point: &Point) -> Result<()>;
 
-    /// Stores a point beside the curve; `false` where it asks for more harmonics, to which the keeper has gone.
-    fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<bool>;
+    /// Stores a point beside the curve; `false` where it asks for more harmonics, to which the keeper has gone. One
+    /// that `must` be kept is stored as it is.
+    fn keep_special(&mut self, kind: SpecialKind, point: Point, must: bool) -> Result<bool>;
 
     /// What was stored so far.
     fn branch(&self) -> &Branch;
@@ -150,17 +151,17 @@ impl Task<'_> {
         if start.to_bits() == end.to_bits() {
             for (i, p) in self.at.iter().enumerate() {
                 if p.to_bits() == end.to_bits() {
-                    let rung = keeper.rung();
-                    let mut point = first.try_clone()?;
-                    while !keeper.keep_special(SpecialKind::At(i), point)? {
-                        point = keeper.carry(&first, rung)?;
-                    }
+                    // It has the harmonics that it was found to need, or could be found with.
+                    keeper.keep_special(SpecialKind::At(i), first.try_clone()?, true)?;
                 }
             }
             return Ok(Status::Ok);
         }
         let (begin, began) = (first.try_clone()?, keeper.rung());
         let mut continuation = Continuation::new(self.settings, first)?;
+        // Where harmonics change the branch goes on from beside the point stored last: what is looked for is looked for
+        // between stored points, so that nothing is passed over or found twice.
+        let mut stored = (continuation.current().try_clone()?, began);
         let mut retreats = 0;
         loop {
             if keeper.branch().points() >= self.max_points {
@@ -191,10 +192,9 @@ impl Task<'_> {
             }
             let rung = keeper.rung();
             let stop = self.report(keeper, hooks, &point);
-            if let Some(previous) = continuation.previous() {
-                self.events(keeper, (previous, before), (&point, rung), end.is_some())?;
-                keeper.go_to(rung)?;
-            }
+            self.events(keeper, (&stored.0, stored.1), (&point, rung), end.is_some())?;
+            keeper.go_to(rung)?;
+            stored = (point.try_clone()?, rung);
             if stop {
                 return Ok(Status::StoppedByCaller);
             }
@@ -222,6 +222,7 @@ impl Task<'_> {
                             return Ok(Status::StoppedByCaller);
                         }
                         continuation = Continuation::new(self.settings, back)?;
+                        stored = (continuation.current().try_clone()?, keeper.rung());
                     }
                     Outside::Gone => return Ok(Status::StoppedLeftRange),
                     Outside::Cancelled => return Ok(Status::StoppedByCaller),
@@ -332,16 +333,23 @@ impl Task<'_> {
         b: End<'_>,
         search: impl Fn(&mut Locator, &mut dyn Problem, &Point, &Point) -> Result<Option<Point>>,
     ) -> Result<Option<(Point, usize)>> {
+        let mut found: Option<(Point, usize)> = None;
         loop {
             let rung = keeper.rung();
             let (a, b) = (keeper.carry(a.0, a.1)?, keeper.carry(b.0, b.1)?);
             let mut locator = Locator::new(a.unknowns().len(), self.settings)?;
             let Some(point) = search(&mut locator, keeper.problem(), &a, &b)? else {
-                return Ok(None);
+                // What was found with fewer harmonics is better than nothing.
+                if let Some((point, rung)) = &found {
+                    keeper.go_to(*rung)?;
+                    keeper.keep_special(kind, point.try_clone()?, true)?;
+                }
+                return Ok(found);
             };
-            if keeper.keep_special(kind, point.try_clone()?)? {
+            if keeper.keep_special(kind, point.try_clone()?, false)? {
                 return Ok(Some((point, rung)));
             }
+            found = Some((point, rung));
         }
     }
 }

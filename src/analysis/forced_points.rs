@@ -196,7 +196,7 @@ impl Keeper for ForcedPoints<'_> {
 
     /// The point is solved once more at its frequency with the flexibility factorised there: along
     /// the sweep it may have been interpolated.
-    fn keep_special(&mut self, kind: SpecialKind, mut point: Point) -> Result<bool> {
+    fn keep_special(&mut self, kind: SpecialKind, mut point: Point, must: bool) -> Result<bool> {
         self.stale = false;
         let here = &mut self.here;
         // At a fold the solution at a fixed frequency is not isolated.
@@ -221,7 +221,7 @@ impl Keeper for ForcedPoints<'_> {
         } else {
             here.corrector.evaluate(&mut here.problem, &point.v)?;
         }
-        if !suffices(self, kind, &point)? {
+        if !must && !suffices(self, kind, &point)? {
             return Ok(false);
         }
         let error = if kind.is_fold() { f64::NAN } else { self.error(&point)? };

@@ -230,9 +230,9 @@ impl Keeper for ModePoints<'_> {
         Ok(())
     }
 
-    fn keep_special(&mut self, kind: SpecialKind, point: Point) -> Result<bool> {
+    fn keep_special(&mut self, kind: SpecialKind, point: Point, must: bool) -> Result<bool> {
         self.evaluate(&point)?;
-        if !suffices(self, kind, &point)? {
+        if !must && !suffices(self, kind, &point)? {
             return Ok(false);
         }
         let mode = self.here.measure(&point, self.start.linear, &self.before);

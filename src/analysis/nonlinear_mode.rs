@@ -247,7 +247,7 @@ fn run(
         for (i, &p) in range.at.iter().enumerate() {
             if p <= linear_up_to {
                 let point = points.linear_point(p)?;
-                points.keep_special(SpecialKind::At(i), point)?;
+                points.keep_special(SpecialKind::At(i), point, false)?;
             } else if p < from {
                 points.go_to(rung)?;
                 let at_it = Settings { start: p, ..settings };
@@ -255,7 +255,7 @@ fn run(
                     match start::solve(points.problem(), &at_it, hooks.cancelled)? {
                         // Else it asks for more harmonics.
                         First::Found(point, _) => {
-                            if points.keep_special(SpecialKind::At(i), point)? {
+                            if points.keep_special(SpecialKind::At(i), point, false)? {
                                 break;
                             }
                         }
