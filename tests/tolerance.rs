@@ -316,6 +316,31 @@ fn every_wanted_frequency_is_found_once_where_the_harmonics_change() {
     }
 }
 
+/// Harmonics change on the way, and the branch neither turns round nor walks back and forth.
+#[test]
+fn branches_are_followed_to_their_ends_in_both_directions() {
+    for (name, contact) in [
+        ("Jenkins", Contact::jenkins(0, None, 1.0, 0.5, 0.6)),
+        ("stiff Jenkins", Contact::jenkins(0, None, 1e3, 0.5, 0.6)),
+        ("gap", Contact::unilateral(Some(0), None, 5.0, 0.2)),
+    ] {
+        for damping in [0.03, 0.1] {
+            let mut model = one_mass(damping, &contact, 0.3);
+            model.add_force(0, 2, 0.3.into()).unwrap();
+            for (from, to) in [(0.4, 1.8), (1.8, 0.4)] {
+                for tolerance in [1e-2, 1e-3] {
+                    let branch = sweep(&model, &within(tolerance), from, to, &[]);
+                    let case = format!("{name}, damping {damping}, {from} to {to}, {tolerance:.0e}");
+                    assert_eq!(branch.status(), Status::Ok, "{case}");
+                    let omega = branch.omega();
+                    let turns = omega.windows(3).filter(|w| (w[1] - w[0]) * (w[2] - w[1]) < 0.0).count();
+                    assert!(turns <= branch.folds().len(), "{case}: {turns} turns");
+                }
+            }
+        }
+    }
+}
+
 /// At a fold no number of harmonics makes the solution at its frequency sure: none is asked for.
 #[test]
 fn folds_do_not_ask_for_harmonics() {

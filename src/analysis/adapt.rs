@@ -56,6 +56,11 @@ pub(super) struct Choice {
     /// Lowest rung to which the branch may fall, and for how many points more: one above that where a point missed
     /// the tolerance.
     floor: (usize, usize),
+    /// The highest rung so far. The branch falls no further than to half its harmonics.
+    highest: usize,
+    /// Whether it had a fold. Then it does not fall at all, where something is nonlinear: with fewer harmonics it may
+    /// fold elsewhere, and turn round.
+    pub folded: bool,
 }
 
 impl Choice {
@@ -66,6 +71,8 @@ impl Choice {
             estimates: 0,
             last: None,
             floor: (0, 0),
+            highest: 0,
+            folded: false,
         }
     }
 
@@ -238,11 +245,17 @@ pub(super) fn settle(keeper: &mut dyn Keeper, point: Point, cancelled: Option<&d
     };
     let share = MARGIN * error / choice.tolerance;
     choice.floor.1 = choice.floor.1.saturating_sub(1);
-    let floor = if error > 0.0 && choice.floor.1 > 0 {
-        choice.floor.0
-    } else {
-        0
-    };
+    choice.highest = choice.highest.max(rung);
+    let (highest, recent) = (choice.highest, choice.floor);
+    let mut floor = 0;
+    if error > 0.0 && choice.folded {
+        floor = rung;
+    } else if error > 0.0 {
+        floor = keeper.ladder().rung_of_half(highest);
+        if recent.1 > 0 {
+            floor = floor.max(recent.0);
+        }
+    }
     let last = keeper.ladder().last();
     let next = keeper.ladder().rung_with(wanted).max(floor).min(last);
     if !((share > RAISE && next > rung) || (share < DROP && next < rung)) {

@@ -5,7 +5,7 @@ use super::adapt::{Assessment, Choice, Refined, refine, retreat, settle};
 use super::levels::Ladder;
 use crate::branch::{Branch, SpecialKind};
 use crate::continuation::events::{Event, Locator};
-use crate::continuation::{Advance, Continuation, Point, Settings};
+use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Error, Result, Status};
 use crate::error_estimate::Estimate;
 use crate::hooks::{Hooks, LogLevel, Progress};
@@ -176,7 +176,8 @@ impl Task<'_> {
             let Some(refined) = refined_point(keeper, point, end.is_some(), hooks)? else {
                 return Ok(Status::StoppedStepTooSmall);
             };
-            if refined.stuck
+            let astray = keeper.rung() != before && self.is_astray(keeper, (&stored.0, stored.1), &refined.point)?;
+            if (refined.stuck || astray)
                 && retreats < MOST_RETREATS
                 && let Some(previous) = continuation.previous()
                 && let Some(point) = retreat(keeper, (previous, before), hooks.cancelled)?
@@ -230,6 +231,18 @@ impl Task<'_> {
                 Some(status) => return Ok(status),
             }
         }
+    }
+
+    /// Whether a point found with other harmonics lies behind the one stored last, or outside of the range.
+    fn is_astray(&self, keeper: &dyn Keeper, (previous, rung): End<'_>, point: &Point) -> Result<bool> {
+        let previous = keeper.carry(previous, rung)?;
+        let metric = Metric::along(norm(point.unknowns()), &self.settings);
+        let forward = metric.dot(&point.v, &point.tangent) > metric.dot(&previous.v, &point.tangent);
+        let (low, high) = (
+            self.settings.start.min(self.settings.end),
+            self.settings.start.max(self.settings.end),
+        );
+        Ok(!forward || point.parameter() < low || point.parameter() > high)
     }
 
     /// Follows the branch from where it left at the start of the range to where it comes back, which folds

@@ -237,6 +237,7 @@ impl Keeper for ForcedPoints<'_> {
             slip_fractions: try_copy(here.problem.slip_fractions(), "the special points")?,
             point,
         };
+        self.choice.folded |= kind.is_fold();
         try_push(&mut self.specials, kept, "the special points")?;
         self.highest = self.highest.max(self.rung);
         Ok(true)

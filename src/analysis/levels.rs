@@ -124,6 +124,11 @@ impl<'m> Ladder<'m> {
         self.numbers[..last].partition_point(|&n| n < h)
     }
 
+    /// The lowest rung with at least half as many harmonics as one.
+    pub fn rung_of_half(&self, rung: usize) -> usize {
+        self.numbers.partition_point(|&n| 2 * n < self.numbers[rung])
+    }
+
     /// The highest rung that is affordable.
     pub fn last(&self) -> usize {
         let known = self.levels.iter().find_map(OnceCell::get);

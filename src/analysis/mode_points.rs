@@ -253,6 +253,7 @@ impl Keeper for ModePoints<'_> {
             mode,
             point,
         };
+        self.choice.folded |= kind.is_fold();
         try_push(&mut self.specials, kept, "the special points")?;
         self.highest = self.highest.max(self.rung);
         Ok(true)
