@@ -225,10 +225,14 @@ impl Branch {
         };
     }
 
-    /// `stalled` says whether round-off stopped some point above the tolerance.
-    pub(crate) fn set_ending(&mut self, status: Status, reason: Option<Error>, stalled: bool) {
-        let all = status == Status::Ok && stalled;
-        self.status = if all { Status::StoppedStalled } else { status };
+    /// `stalled` says whether round-off stopped some point above the tolerance of the residual, `missed` whether the
+    /// error of some point misses that which chooses the harmonics.
+    pub(crate) fn set_ending(&mut self, status: Status, reason: Option<Error>, (stalled, missed): (bool, bool)) {
+        self.status = match status {
+            Status::Ok if missed => Status::StoppedMaxHarmonics,
+            Status::Ok if stalled => Status::StoppedStalled,
+            status => status,
+        };
         self.reason = reason;
     }
 

@@ -7,7 +7,7 @@ mod laws;
 #[path = "common/energy.rs"]
 mod measures;
 
-use common::{B2, BASE, all_harmonics, harmonics, largest, relative_gap, slip, solve_at, sweep};
+use common::{B2, BASE, all_harmonics, harmonics, largest, one_mass, relative_gap, slip, solve_at, sweep};
 use hbvib::analysis::{estimate_at, forced_response, time_response};
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
@@ -84,21 +84,6 @@ fn the_estimate_holds_for_every_law() {
     }
     println!("{} of {} within [0.3, 3]", inside.0, inside.1);
     assert!(10 * inside.0 >= 9 * inside.1);
-}
-
-/// One mass with a contact, m = k = 1.
-fn one_mass(damping: f64, contact: &Contact, force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
-    model
 }
 
 #[test]

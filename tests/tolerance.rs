@@ -6,7 +6,7 @@ mod modes;
 #[path = "common/peers.rs"]
 mod peers;
 
-use common::{B2, BASE, Blisk, all_harmonics, data, harmonics, relative_gap, slip, solve_at, sweep};
+use common::{B2, BASE, Blisk, all_harmonics, data, harmonics, one_mass, relative_gap, slip, solve_at, sweep};
 use hbvib::analysis::{forced_response, synthesise};
 use hbvib::branch::Branch;
 use hbvib::contact::Contact;
@@ -160,21 +160,6 @@ fn every_point_of_the_blisk_is_within_the_tolerance() {
 #[ignore = "minutes"]
 fn every_point_of_many_blisks_is_within_the_tolerance() {
     check_blisks(0..40, 40);
-}
-
-/// One mass with a contact, m = k = 1.
-fn one_mass(damping: f64, contact: &Contact, force: f64) -> Model {
-    let mut model = Model::new(1).unwrap();
-    for (kind, value) in [
-        (MatrixKind::Mass, 1.0),
-        (MatrixKind::Damping, damping),
-        (MatrixKind::Stiffness, 1.0),
-    ] {
-        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
-    }
-    model.add_contact(contact).unwrap();
-    model.add_force(0, 1, force.into()).unwrap();
-    model
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::condense::Reduction;
 use crate::continuation::again::solve_again;
 use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
-use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::forced::ForcedEstimator;
 use crate::error_estimate::{Estimate, Shelf, Solved};
 use crate::model::Model;
@@ -157,15 +157,10 @@ impl<'a> ForcedPoints<'a> {
             let record = record(kept.level, &kept.point, &kept.response, &kept.slip_fractions, errors);
             self.branch.push_special(kept.kind, &record)?;
         }
-        let missed = self.missed && ending.status == Status::Ok;
-        let status = if missed {
-            Status::StoppedMaxHarmonics
-        } else {
-            ending.status
-        };
         self.branch.set_reduction(reduction);
         self.branch.set_estimates(self.choice.estimates);
-        self.branch.set_ending(status, ending.reason, self.stalled);
+        self.branch
+            .set_ending(ending.status, ending.reason, (self.stalled, self.missed));
         Ok(self.branch)
     }
 }

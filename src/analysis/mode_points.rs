@@ -9,7 +9,7 @@ use crate::branch::{Branch, Level, Record, SpecialKind};
 use crate::condense::Reduction;
 use crate::continuation::again::solve_again;
 use crate::continuation::{Point, Settings};
-use crate::error::{Result, Status, try_copy, try_push};
+use crate::error::{Result, try_copy, try_push};
 use crate::error_estimate::mode::ModeEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::model::Model;
@@ -184,15 +184,10 @@ impl<'a> ModePoints<'a> {
                 data.push(kept.mode)?;
             }
         }
-        let missed = self.missed && ending.status == Status::Ok;
-        let status = if missed {
-            Status::StoppedMaxHarmonics
-        } else {
-            ending.status
-        };
         self.branch.set_reduction(reduction);
         self.branch.set_estimates(self.choice.estimates);
-        self.branch.set_ending(status, ending.reason, self.stalled);
+        self.branch
+            .set_ending(ending.status, ending.reason, (self.stalled, self.missed));
         Ok(self.branch)
     }
 }

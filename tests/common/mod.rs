@@ -315,3 +315,18 @@ pub fn slip(branch: &Branch, point: usize) -> f64 {
         .iter()
         .fold(0.0, |m, &x| m.max(x))
 }
+
+/// One mass with a contact, m = k = 1.
+pub fn one_mass(damping: f64, contact: &Contact, force: f64) -> Model {
+    let mut model = Model::new(1).unwrap();
+    for (kind, value) in [
+        (MatrixKind::Mass, 1.0),
+        (MatrixKind::Damping, damping),
+        (MatrixKind::Stiffness, 1.0),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model.add_contact(contact).unwrap();
+    model.add_force(0, 1, force.into()).unwrap();
+    model
+}
