@@ -13,7 +13,7 @@ use crate::branch::SpecialKind;
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
-use crate::harmonics::HarmonicSet;
+use crate::linalg::norm;
 use core::cmp::Ordering;
 
 /// How far the error may be above its estimate.
@@ -95,30 +95,31 @@ impl Choice {
         self.estimates += usize::from(!found.estimate.certified || found.estimate.steps > 0);
     }
 
-    /// Highest harmonic that a solution with the harmonics `own` should have.
-    fn wanted(&self, found: &Assessment, own: &HarmonicSet) -> usize {
-        let corrected = &found.estimate.corrected;
-        let set = &corrected.set;
-        let size_of = |i: usize| {
-            let signals = corrected.motion.chunks_exact(set.packed_len().max(1));
-            signals.map(|y| set.get(y, i).norm()).fold(0.0, f64::hypot)
-        };
-        let numbers = set.numbers();
-        let all = (0..numbers.len()).map(size_of).fold(0.0, f64::hypot);
-        let highest = own.numbers().last().copied().unwrap_or(0);
-        let above = (0..numbers.len()).filter(|&i| numbers[i] > highest);
-        let left_out = above.map(size_of).fold(0.0, f64::hypot) / all;
+    /// Highest harmonic that the solution should have; 0 where nothing is known.
+    fn wanted(&self, found: &Assessment) -> usize {
+        if !found.estimate.certified {
+            return 0;
+        }
+        let left_out = found
+            .estimate
+            .tail
+            .iter()
+            .fold(0.0, |s, &(_, share)| f64::hypot(s, share));
         // Of a solution that misses nothing all is kept that is not rounding.
         let bound = if found.error > 0.0 && left_out > 0.0 {
             AIM * self.tolerance * left_out / (MARGIN * found.error)
         } else {
             NOTHING
         };
+        let corrected = &found.estimate.corrected;
+        let set = &corrected.set;
+        let all = norm(&corrected.motion);
         let mut tail = 0.0_f64;
-        for i in (0..numbers.len()).rev() {
-            tail = tail.hypot(size_of(i));
+        for (i, &number) in set.numbers().iter().enumerate().rev() {
+            let signals = corrected.motion.chunks_exact(set.packed_len());
+            tail = signals.map(|y| set.get(y, i).norm()).fold(tail, f64::hypot);
             if tail > bound * all {
-                return numbers[i];
+                return number;
             }
         }
         0
@@ -149,15 +150,10 @@ pub(super) fn refine(
         let Some(found) = keeper.assess(&point)? else {
             return done(point);
         };
-        let own = keeper.ladder().level(rung)?.condensed.set().try_clone()?;
         let choice = keeper.choice();
         choice.count(&found);
         let accepted = choice.accepts(found.error);
-        let wanted = if found.estimate.certified {
-            choice.wanted(&found, &own)
-        } else {
-            0
-        };
+        let wanted = choice.wanted(&found);
         choice.last = accepted.then_some((found.error, wanted));
         if !accepted {
             choice.floor = (rung + 1, PATIENCE);
@@ -175,15 +171,17 @@ pub(super) fn refine(
         let next = next.min(last);
         let may_climb = !accepted && next > rung && !found.estimate.too_large && climbs < MOST_CLIMBS;
         let raised = if accepted && next < rung {
-            go(keeper, &point, next, keep_parameter, cancelled)?
+            go(keeper, (&point, rung), next, keep_parameter, cancelled)?
         } else if may_climb {
             climb(keeper, &point, &found.estimate, next, keep_parameter, cancelled)?
         } else {
             None
         };
         let Some(better) = raised else {
-            let stuck = may_climb;
-            return Ok(Refined { point, stuck });
+            return Ok(Refined {
+                point,
+                stuck: may_climb,
+            });
         };
         point = better;
     }
@@ -196,15 +194,8 @@ pub(super) fn retreat(
     (point, rung): (&Point, usize),
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Option<Point>> {
-    let from = keeper.rung();
-    let to = (rung.max(from) + RETREAT).min(keeper.ladder().last());
-    keeper.go_to(to)?;
-    let start = keeper.carry(point, rung)?;
-    let found = keeper.solve_again(&start, true, cancelled)?;
-    if found.is_none() {
-        keeper.go_to(from)?;
-    }
-    Ok(found)
+    let to = (rung.max(keeper.rung()) + RETREAT).min(keeper.ladder().last());
+    go(keeper, (point, rung), to, true, cancelled)
 }
 
 /// Whether a point beside the curve may be kept; if not, the keeper has climbed, and it is to be found again. A fold
@@ -217,16 +208,12 @@ pub(super) fn suffices(keeper: &mut dyn Keeper, kind: SpecialKind, point: &Point
     let Some(found) = keeper.assess(point)? else {
         return Ok(true);
     };
-    keeper.choice().count(&found);
-    if keeper.choice().accepts(found.error) {
+    let choice = keeper.choice();
+    choice.count(&found);
+    if choice.accepts(found.error) {
         return Ok(true);
     }
-    let own = keeper.ladder().level(rung)?.condensed.set().try_clone()?;
-    let wanted = if found.estimate.certified {
-        keeper.choice().wanted(&found, &own)
-    } else {
-        0
-    };
+    let wanted = choice.wanted(&found);
     let last = keeper.ladder().last();
     let next = keeper.ladder().rung_with(wanted).max(rung + 1).min(last);
     if next <= rung || found.estimate.too_large {
@@ -262,7 +249,7 @@ pub(super) fn settle(keeper: &mut dyn Keeper, point: Point, cancelled: Option<&d
         return Ok(point);
     }
     // At its parameter, so that nothing lies between the point stored and the one that the branch goes on from.
-    let Some(found) = go(keeper, &point, next, true, cancelled)? else {
+    let Some(found) = go(keeper, (&point, rung), next, true, cancelled)? else {
         return Ok(point);
     };
     let before = keeper.carry(&point, rung)?;
@@ -275,17 +262,17 @@ pub(super) fn settle(keeper: &mut dyn Keeper, point: Point, cancelled: Option<&d
     Ok(found)
 }
 
-/// Solves with the harmonics of another rung; the keeper stays where it is if that fails.
+/// Solves near a point of a rung with the harmonics of another one; the keeper stays where it is if that fails.
 fn go(
     keeper: &mut dyn Keeper,
-    point: &Point,
+    (point, rung): (&Point, usize),
     to: usize,
     keep_parameter: bool,
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Option<Point>> {
     let from = keeper.rung();
     keeper.go_to(to)?;
-    let start = keeper.carry(point, from)?;
+    let start = keeper.carry(point, rung)?;
     let found = keeper.solve_again(&start, keep_parameter, cancelled)?;
     if found.is_none() {
         keeper.go_to(from)?;

@@ -3,7 +3,7 @@
 use super::adapt::{Assessment, Choice, suffices};
 use super::estimate::observed;
 use super::follow::{Ending, Keeper};
-use super::levels::{Ladder, carried_point, worth_keeping};
+use super::levels::{Ladder, Rungs};
 use crate::branch::{Branch, Level, Record, SpecialKind};
 use crate::condense::Reduction;
 use crate::continuation::again::solve_again;
@@ -44,13 +44,7 @@ impl<'a> Rung<'a> {
 pub(super) struct ForcedPoints<'a> {
     branch: Branch,
     settings: Settings,
-    ladder: &'a Ladder<'a>,
-    here: Rung<'a>,
-    /// The rungs that were used, but for the one at hand.
-    others: Vec<Option<Rung<'a>>>,
-    rung: usize,
-    /// The rung with the most harmonics among the points kept.
-    highest: usize,
+    rungs: Rungs<'a, Rung<'a>>,
     choice: Choice,
     estimator: Option<ForcedEstimator<'a>>,
     /// Whether the problem at hand may have been evaluated elsewhere than at the point at hand.
@@ -87,19 +81,11 @@ impl<'a> ForcedPoints<'a> {
         let level = ladder.level(rung)?;
         let told = if ladder.is_automatic() { 0 } else { solver.harmonics };
         let branch = Branch::new(level, level.condensed.reduction(model, solver)?, told, response)?;
-        let mut others = Vec::new();
-        for _ in 0..ladder.len() {
-            try_push(&mut others, None, "the harmonics")?;
-        }
         let estimates = solver.estimate_error || ladder.is_automatic();
         Ok(Self {
             branch,
-            here: Rung::new(level, &settings, response, given)?,
+            rungs: Rungs::new(ladder, rung, Rung::new(level, &settings, response, given)?)?,
             settings,
-            ladder,
-            others,
-            rung,
-            highest: rung,
             choice: Choice::new(solver.tolerance),
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, shelf)),
             stale: false,
@@ -112,13 +98,16 @@ impl<'a> ForcedPoints<'a> {
 
     /// What was removed from the problem that has the most harmonics.
     pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
-        self.ladder.level(self.highest)?.condensed.reduction(model, solver)
+        self.rungs.reduction(model, solver)
     }
 
     /// Evaluates the problem at a point, unless that was the last thing done on this rung.
     fn refresh(&mut self, point: &Point) -> Result<()> {
         if self.stale {
-            self.here.corrector.evaluate(&mut self.here.problem, &point.v)?;
+            self.rungs
+                .here
+                .corrector
+                .evaluate(&mut self.rungs.here.problem, &point.v)?;
             self.stale = false;
         }
         Ok(())
@@ -129,7 +118,7 @@ impl<'a> ForcedPoints<'a> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
         };
-        let here = &mut self.here;
+        let here = &mut self.rungs.here;
         let condensed = &here.level.condensed;
         here.problem.response(point.unknowns(), &mut here.response);
         let solved = Solved {
@@ -167,7 +156,7 @@ impl<'a> ForcedPoints<'a> {
 
 impl Keeper for ForcedPoints<'_> {
     fn problem(&mut self) -> &mut dyn Problem {
-        &mut self.here.problem
+        &mut self.rungs.here.problem
     }
 
     fn branch(&self) -> &Branch {
@@ -179,13 +168,13 @@ impl Keeper for ForcedPoints<'_> {
         self.stalled |= point.stalled;
         let error = self.error(point)?;
         self.missed |= self.choice.is_missed_by(error);
-        let here = &mut self.here;
+        let here = &mut self.rungs.here;
         here.problem.response(point.unknowns(), &mut here.response);
         let sampling_error = here.problem.sampling_error(point.unknowns(), point.parameter())?;
         let slips = here.problem.slip_fractions();
         let record = record(here.level, point, &here.response, slips, (sampling_error, error));
         self.branch.push_curve(&record)?;
-        self.highest = self.highest.max(self.rung);
+        self.rungs.note_kept();
         Ok(())
     }
 
@@ -193,7 +182,7 @@ impl Keeper for ForcedPoints<'_> {
     /// the sweep it may have been interpolated.
     fn keep_special(&mut self, kind: SpecialKind, mut point: Point, must: bool) -> Result<bool> {
         self.stale = false;
-        let here = &mut self.here;
+        let here = &mut self.rungs.here;
         // At a fold the solution at a fixed frequency is not isolated.
         let mut found = None;
         if !kind.is_fold() {
@@ -221,7 +210,7 @@ impl Keeper for ForcedPoints<'_> {
         }
         let error = if kind.is_fold() { f64::NAN } else { self.error(&point)? };
         self.missed |= !kind.is_fold() && self.choice.is_missed_by(error);
-        let here = &mut self.here;
+        let here = &mut self.rungs.here;
         here.problem.response(point.unknowns(), &mut here.response);
         let kept = Kept {
             kind,
@@ -234,36 +223,23 @@ impl Keeper for ForcedPoints<'_> {
         };
         self.choice.folded |= kind.is_fold();
         try_push(&mut self.specials, kept, "the special points")?;
-        self.highest = self.highest.max(self.rung);
+        self.rungs.note_kept();
         Ok(true)
     }
 
     fn ladder(&self) -> &Ladder<'_> {
-        self.ladder
+        self.rungs.ladder
     }
 
     fn rung(&self) -> usize {
-        self.rung
+        self.rungs.rung()
     }
 
     fn go_to(&mut self, rung: usize) -> Result<()> {
-        if rung == self.rung {
-            return Ok(());
-        }
-        let there = match self.others[rung].take() {
-            Some(there) => there,
-            None => Rung::new(
-                self.ladder.level(rung)?,
-                &self.settings,
-                self.branch.response_dof(),
-                None,
-            )?,
-        };
-        self.stale = true;
-        let left = core::mem::replace(&mut self.here, there);
-        self.others[self.rung] = worth_keeping(&left.level.condensed).then_some(left);
-        self.rung = rung;
-        Ok(())
+        self.stale |= rung != self.rungs.rung();
+        let (settings, response) = (&self.settings, self.branch.response_dof());
+        self.rungs
+            .go_to(rung, |level| Rung::new(level, settings, response, None))
     }
 
     fn choice(&mut self) -> &mut Choice {
@@ -284,12 +260,11 @@ impl Keeper for ForcedPoints<'_> {
     }
 
     fn carry(&self, point: &Point, from: usize) -> Result<Point> {
-        let (from, to) = (self.ladder.level(from)?, self.ladder.level(self.rung)?);
-        carried_point(point, &from.condensed, &to.condensed, 1, true)
+        self.rungs.carry(point, from, 1, true)
     }
 
     fn corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
-        let to = &self.ladder.level(self.rung)?.condensed;
+        let to = &self.rungs.here.level.condensed;
         let mut start = self.carry(point, from)?;
         let n = to.unknowns();
         let corrected = &estimate.corrected;
@@ -304,7 +279,7 @@ impl Keeper for ForcedPoints<'_> {
         keep_parameter: bool,
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Option<Point>> {
-        let here = &mut self.here;
+        let here = &mut self.rungs.here;
         let (problem, corrector) = (&mut here.problem, &mut here.corrector);
         let found = solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)?;
         self.stale = found.is_none();

@@ -1,7 +1,7 @@
 //! Numbers of harmonics that a run may solve with: one, or a ladder of them between which a tolerance chooses.
 
 use crate::branch::Level;
-use crate::condense::Condensed;
+use crate::condense::{Condensed, Reduction};
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::error_estimate::affordable;
@@ -108,11 +108,6 @@ impl<'m> Ladder<'m> {
         self.automatic
     }
 
-    /// Number of rungs.
-    pub fn len(&self) -> usize {
-        self.numbers.len()
-    }
-
     /// The rung to begin with: as many harmonics as `harmonics` says, fewer where the ladder ends before.
     pub fn first(&self, harmonics: usize) -> usize {
         self.numbers.iter().rposition(|&h| h <= harmonics).unwrap_or(0)
@@ -159,9 +154,81 @@ impl<'m> Ladder<'m> {
     }
 }
 
-/// Whether what was made for a rung is to be kept when it is left: small enough, and quick to come back to.
-pub(super) fn worth_keeping(condensed: &Condensed) -> bool {
-    condensed.unknowns() <= MOST_KEPT
+/// What an analysis has made for the rungs that it was on.
+pub(super) struct Rungs<'a, R> {
+    pub ladder: &'a Ladder<'a>,
+    /// What belongs to the rung at hand.
+    pub here: R,
+    others: Vec<Option<R>>,
+    rung: usize,
+    /// The rung with the most harmonics among the points kept.
+    highest: usize,
+}
+
+impl<'a, R> Rungs<'a, R> {
+    /// On a first rung.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(ladder: &'a Ladder<'a>, rung: usize, here: R) -> Result<Self> {
+        let mut others = Vec::new();
+        for _ in &ladder.numbers {
+            try_push(&mut others, None, WHAT)?;
+        }
+        Ok(Self {
+            ladder,
+            here,
+            others,
+            rung,
+            highest: rung,
+        })
+    }
+
+    /// The rung at hand.
+    pub fn rung(&self) -> usize {
+        self.rung
+    }
+
+    /// Goes to another rung, for which `make` is asked unless it is kept from before: what is small is.
+    ///
+    /// # Errors
+    /// Those of condensing the model and of `make`.
+    pub fn go_to(&mut self, rung: usize, make: impl FnOnce(&'a Level) -> Result<R>) -> Result<()> {
+        if rung == self.rung {
+            return Ok(());
+        }
+        let there = match self.others[rung].take() {
+            Some(there) => there,
+            None => make(self.ladder.level(rung)?)?,
+        };
+        let keep = self.ladder.level(self.rung)?.condensed.unknowns() <= MOST_KEPT;
+        let left = core::mem::replace(&mut self.here, there);
+        self.others[self.rung] = keep.then_some(left);
+        self.rung = rung;
+        Ok(())
+    }
+
+    /// Notes that a point was kept on the rung at hand.
+    pub fn note_kept(&mut self) {
+        self.highest = self.highest.max(self.rung);
+    }
+
+    /// What was removed from the problem that has the most harmonics.
+    ///
+    /// # Errors
+    /// Those of [`Condensed::reduction`].
+    pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
+        self.ladder.level(self.highest)?.condensed.reduction(model, solver)
+    }
+
+    /// A point of another rung in the harmonics at hand, see [`carried_point`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn carry(&self, point: &Point, from: usize, others: usize, scaled: bool) -> Result<Point> {
+        let (from, to) = (self.ladder.level(from)?, self.ladder.level(self.rung)?);
+        carried_point(point, &from.condensed, &to.condensed, others, scaled)
+    }
 }
 
 /// Unknowns, and the `others` numbers after the motions, in other harmonics; motions times a factor.
@@ -182,13 +249,7 @@ pub(super) fn carried(from: &Condensed, to: &Condensed, v: &[f64], others: usize
 ///
 /// # Errors
 /// `OutOfMemory`.
-pub(super) fn carried_point(
-    point: &Point,
-    from: &Condensed,
-    to: &Condensed,
-    others: usize,
-    scaled: bool,
-) -> Result<Point> {
+fn carried_point(point: &Point, from: &Condensed, to: &Condensed, others: usize, scaled: bool) -> Result<Point> {
     let factor = from.length() / to.length();
     let of_amplitude: Complex64 = if scaled { factor } else { 1.0 }.into();
     Ok(Point {

@@ -2,7 +2,7 @@
 
 use super::adapt::{Assessment, Choice, suffices};
 use super::follow::{Ending, Keeper};
-use super::levels::{Ladder, carried_point, worth_keeping};
+use super::levels::{Ladder, Rungs};
 use super::mode_rung::{Rung, Start};
 use crate::branch::mode::{ModeData, ModePoint};
 use crate::branch::{Branch, Level, Record, SpecialKind};
@@ -24,13 +24,7 @@ const WHAT: &str = "the nonlinear mode";
 pub(super) struct ModePoints<'a> {
     start: Start<'a>,
     settings: Settings,
-    ladder: &'a Ladder<'a>,
-    here: Rung<'a>,
-    /// The rungs that were used, but for the one at hand.
-    others: Vec<Option<Rung<'a>>>,
-    rung: usize,
-    /// The rung with the most harmonics among the points kept.
-    highest: usize,
+    rungs: Rungs<'a, Rung<'a>>,
     choice: Choice,
     branch: Branch,
     specials: Vec<Kept<'a>>,
@@ -72,18 +66,10 @@ impl<'a> ModePoints<'a> {
         estimator: Option<ModeEstimator<'a>>,
     ) -> Result<Self> {
         let level = ladder.level(rung)?;
-        let mut others = Vec::new();
-        for _ in 0..ladder.len() {
-            try_push(&mut others, None, WHAT)?;
-        }
         Ok(Self {
-            here: Rung::new(level, &start, &settings)?,
+            rungs: Rungs::new(ladder, rung, Rung::new(level, &start, &settings)?)?,
             start,
             settings,
-            ladder,
-            others,
-            rung,
-            highest: rung,
             choice: Choice::new(solver.tolerance),
             specials: Vec::new(),
             estimator,
@@ -103,17 +89,17 @@ impl<'a> ModePoints<'a> {
 
     /// log₁₀ of the amplitudes up to which the mode is linear, see [`Mode::linear_up_to`].
     pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
-        self.here.problem.linear_up_to(first)
+        self.rungs.here.problem.linear_up_to(first)
     }
 
     /// The linear mode as a point of the branch.
     pub fn linear_point(&mut self, p: f64) -> Result<Point> {
-        self.here.linear_point(p)
+        self.rungs.here.linear_point(p)
     }
 
     /// Evaluates the problem at a point.
     fn evaluate(&mut self, point: &Point) -> Result<()> {
-        self.here.evaluate(point, self.branch.response_dof())
+        self.rungs.here.evaluate(point, self.branch.response_dof())
     }
 
     /// Estimate of the point evaluated last.
@@ -121,7 +107,7 @@ impl<'a> ModePoints<'a> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
         };
-        let here = &self.here;
+        let here = &self.rungs.here;
         let condensed = &here.level.condensed;
         let (omega, damping) = Mode::frequency_and_damping(self.start.linear, point.unknowns());
         let solved = Solved {
@@ -137,7 +123,7 @@ impl<'a> ModePoints<'a> {
     /// Fundamental of the response and the errors of the point evaluated last.
     fn numbers(&mut self, point: &Point) -> Result<Numbers> {
         let omega = Mode::frequency_and_damping(self.start.linear, point.unknowns()).0;
-        let here = &mut self.here;
+        let here = &mut self.rungs.here;
         let amplitude = here.response[here.level.condensed.set().fundamental()];
         let sampling_error = here.problem.sampling_error(&here.motion, omega)?;
         let errors = match self.assessed.take() {
@@ -165,7 +151,7 @@ impl<'a> ModePoints<'a> {
 
     /// What was removed from the problem that has the most harmonics.
     pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
-        self.ladder.level(self.highest)?.condensed.reduction(model, solver)
+        self.rungs.reduction(model, solver)
     }
 
     /// Numbers the special points after the curve.
@@ -194,7 +180,7 @@ impl<'a> ModePoints<'a> {
 
 impl Keeper for ModePoints<'_> {
     fn problem(&mut self) -> &mut dyn Problem {
-        &mut self.here.problem
+        &mut self.rungs.here.problem
     }
 
     fn branch(&self) -> &Branch {
@@ -203,7 +189,7 @@ impl Keeper for ModePoints<'_> {
 
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.evaluate(point)?;
-        let mode = self.here.measure(point, self.start.linear, &self.before);
+        let mode = self.rungs.here.measure(point, self.start.linear, &self.before);
         // All that may fail comes before anything is kept.
         let numbers = self.numbers(point)?;
         self.missed |= self.misses(numbers.2, mode.damping_ratio);
@@ -213,7 +199,7 @@ impl Keeper for ModePoints<'_> {
             data.push_state(&point.v, &point.tangent)?;
             data.push(mode)?;
         }
-        let here = &self.here;
+        let here = &self.rungs.here;
         let slip = here.problem.forces().slip_fractions();
         let i = here.level.condensed.set().fundamental();
         let of = (self.start.linear, here.level);
@@ -221,7 +207,7 @@ impl Keeper for ModePoints<'_> {
         self.branch.push_curve(&record)?;
         let dofs = here.level.condensed.ndof();
         self.before = try_copy(&here.problem.shape()[i * dofs..(i + 1) * dofs], WHAT)?;
-        self.highest = self.highest.max(self.rung);
+        self.rungs.note_kept();
         Ok(())
     }
 
@@ -230,14 +216,14 @@ impl Keeper for ModePoints<'_> {
         if !must && !suffices(self, kind, &point)? {
             return Ok(false);
         }
-        let mode = self.here.measure(&point, self.start.linear, &self.before);
+        let mode = self.rungs.here.measure(&point, self.start.linear, &self.before);
         let mut numbers = self.numbers(&point)?;
         if kind.is_fold() {
             numbers.2 = (f64::NAN, f64::NAN);
         } else {
             self.missed |= self.misses(numbers.2, mode.damping_ratio);
         }
-        let here = &self.here;
+        let here = &self.rungs.here;
         let kept = Kept {
             numbers,
             kind,
@@ -250,30 +236,21 @@ impl Keeper for ModePoints<'_> {
         };
         self.choice.folded |= kind.is_fold();
         try_push(&mut self.specials, kept, "the special points")?;
-        self.highest = self.highest.max(self.rung);
+        self.rungs.note_kept();
         Ok(true)
     }
 
     fn ladder(&self) -> &Ladder<'_> {
-        self.ladder
+        self.rungs.ladder
     }
 
     fn rung(&self) -> usize {
-        self.rung
+        self.rungs.rung()
     }
 
     fn go_to(&mut self, rung: usize) -> Result<()> {
-        if rung == self.rung {
-            return Ok(());
-        }
-        let there = match self.others[rung].take() {
-            Some(there) => there,
-            None => Rung::new(self.ladder.level(rung)?, &self.start, &self.settings)?,
-        };
-        let left = core::mem::replace(&mut self.here, there);
-        self.others[self.rung] = worth_keeping(&left.level.condensed).then_some(left);
-        self.rung = rung;
-        Ok(())
+        let (start, settings) = (&self.start, &self.settings);
+        self.rungs.go_to(rung, |level| Rung::new(level, start, settings))
     }
 
     fn choice(&mut self) -> &mut Choice {
@@ -300,12 +277,11 @@ impl Keeper for ModePoints<'_> {
     }
 
     fn carry(&self, point: &Point, from: usize) -> Result<Point> {
-        let (from, to) = (self.ladder.level(from)?, self.ladder.level(self.rung)?);
-        carried_point(point, &from.condensed, &to.condensed, 3, false)
+        self.rungs.carry(point, from, 3, false)
     }
 
     fn corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
-        let to = &self.ladder.level(self.rung)?.condensed;
+        let to = &self.rungs.here.level.condensed;
         let mut start = self.carry(point, from)?;
         let n = to.unknowns();
         let corrected = &estimate.corrected;
@@ -323,7 +299,7 @@ impl Keeper for ModePoints<'_> {
         keep_parameter: bool,
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Option<Point>> {
-        let here = &mut self.here;
+        let here = &mut self.rungs.here;
         let (problem, corrector) = (&mut here.problem, &mut here.corrector);
         solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)
     }
