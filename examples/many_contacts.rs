@@ -17,8 +17,8 @@ use hbvib::linalg::bordered::Bordered;
 use hbvib::linalg::norm;
 use hbvib::options::SolverOptions;
 use hbvib::problem::contact_forces::ContactForces;
-use hbvib::problem::forced::Forced;
-use hbvib::problem::{Linearisation, Problem, Start};
+use hbvib::problem::harmonic_balance::HarmonicBalance;
+use hbvib::problem::{InitialGuess, Linearisation, Problem};
 
 use beam::{Beam, Z};
 use flags::{Flag, Flags};
@@ -89,7 +89,7 @@ impl Request {
         let condensed = Condensed::new(&model, &self.solver, omega)?;
         let response = self.plate.tips()[0] + Z;
         let begin = Instant::now();
-        let mut problem = Forced::new(&condensed, response, (omega, omega), 0, None)?;
+        let mut problem = HarmonicBalance::new(&condensed, response, (omega, omega), 0, None)?;
         let mut forces = ContactForces::new(&condensed, 0)?;
         let n = problem.size();
         let mut u = vec![0.0; n];
@@ -99,7 +99,7 @@ impl Request {
         row[n] = 1.0;
         let mut step = vec![0.0; n + 1];
         // The flexibility at this frequency belongs to the start: it stays the same here.
-        problem.start(Start::Reference, omega, &mut u)?;
+        problem.start(InitialGuess::Reference, omega, &mut u)?;
         writeln!(
             screen,
             "{} degrees of freedom, {} contacts, {} relative motions, {n} unknowns at H = {}\n\

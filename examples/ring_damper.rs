@@ -102,7 +102,7 @@ fn main() -> ExitCode {
 
 fn help() -> String {
     format!(
-        "Forced response and nonlinear modes of a bladed disk with a friction ring damper.\n\n\
+        "HarmonicBalance response and nonlinear modes of a bladed disk with a friction ring damper.\n\n\
          Without flags: figures 4 to 9 of the paper, as CSV, SVG and PNG under target/ring_damper/.\n\
          With flags: one response, or with --mode one nonlinear mode; what is not given has the value in brackets.\n\n\
          {}\nOf a response only:\n{}\nOf a nonlinear mode only:\n{}\n{}",

@@ -6,9 +6,9 @@
 //! `iteration` it prints instead where the time of a Newton iteration goes.
 
 use hbvib::analysis::forced_response;
-use hbvib::branch::Branch;
 use hbvib::hooks::Hooks;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::time::Instant;

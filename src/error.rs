@@ -25,7 +25,7 @@ pub enum Status {
     StoppedStalled = 5,
     /// The branch turned back, left the range where it began and did not come back; all points are kept.
     StoppedLeftRange = 6,
-    /// A callback of the host failed; the points found so far are kept.
+    /// A callback of the caller failed; the points found so far are kept.
     StoppedCallback = 7,
     /// A required pointer is NULL.
     Null = -1,
@@ -195,7 +195,7 @@ pub struct Error {
     pub status: Status,
     /// Number of the offending argument of the C function, counted from 1; 0 if none.
     pub argument: i32,
-    /// Code that a callback of the host returned; 0 if none did.
+    /// Code that a callback of the caller returned; 0 if none did.
     pub callback: i32,
     /// Whether the same call may succeed at another motion: a callback said so, or its numbers were
     /// not finite. A solver then tries a smaller step before it gives up.
@@ -219,7 +219,7 @@ impl Error {
         }
     }
 
-    /// A callback of the host returned `code` instead of 0: above 0 it may succeed elsewhere, below 0
+    /// A callback of the caller returned `code` instead of 0: above 0 it may succeed elsewhere, below 0
     /// it gives up for good.
     #[must_use]
     pub fn from_callback(code: i32, message: fmt::Arguments<'_>) -> Self {

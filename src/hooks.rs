@@ -1,4 +1,4 @@
-//! What a host may attach to a running solve: progress, cancellation, log.
+//! What a caller may attach to a running solve: progress, cancellation, log.
 
 /// State of a solve, reported at each accepted point.
 #[derive(Clone, Copy, Debug, Default)]
@@ -34,7 +34,7 @@ pub enum LogLevel {
 /// Receiver of log lines.
 pub type LogSink<'a> = dyn FnMut(LogLevel, &str) + 'a;
 
-/// Callbacks of the host. Nothing is ever printed; without hooks a solve is silent.
+/// Callbacks of the caller. Nothing is ever printed; without hooks a solve is silent.
 #[derive(Default)]
 pub struct Hooks<'a> {
     /// Called at each accepted point; `true` stops the solve and keeps the points so far.
@@ -46,7 +46,7 @@ pub struct Hooks<'a> {
 }
 
 impl Hooks<'_> {
-    /// Reports a point; `true` when the host wants to stop.
+    /// Reports a point; `true` when the caller wants to stop.
     pub fn report(&mut self, progress: &Progress) -> bool {
         self.progress.as_mut().is_some_and(|f| f(progress))
     }

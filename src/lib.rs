@@ -16,9 +16,9 @@
 
 #![deny(unsafe_code)]
 
+mod adaptivity;
 pub mod aft;
 pub mod analysis;
-pub mod branch;
 pub mod capi;
 pub mod condense;
 pub mod contact;
@@ -26,14 +26,13 @@ pub mod continuation;
 pub mod error;
 pub mod error_estimate;
 pub mod fourier;
-pub mod harmonics;
 pub mod hooks;
 pub mod linalg;
 pub mod model;
 pub mod options;
-pub mod postprocess;
 pub mod problem;
-pub mod time_response;
+pub mod results;
+pub mod time_integration;
 
 #[doc = include_str!("when_it_does_not_converge.md")]
 pub mod when_it_does_not_converge {}

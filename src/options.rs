@@ -1,8 +1,8 @@
 //! Options of the analyses and the one home of their defaults.
 
-mod time;
+mod time_options;
 
-pub use time::{SteadyMethod, TimeOptions, VerifyOptions};
+pub use crate::options::time_options::{SteadyMethod, TimeOptions, VerifyOptions};
 
 use crate::error::{Result, fail};
 use num_complex::Complex64;

@@ -45,7 +45,7 @@ fn compile(source: &str, folder: &Path, options: &[&str]) -> PathBuf {
 }
 
 /// Runs a program of tests/c_abi, which must be silent.
-fn silent(name: &str, arguments: impl Fn(&Path) -> Vec<PathBuf>) {
+fn eliminated(name: &str, arguments: impl Fn(&Path) -> Vec<PathBuf>) {
     let folder = workshop(name);
     let program = compile(
         &format!("tests/c_abi/{name}.c"),
@@ -70,27 +70,27 @@ fn silent(name: &str, arguments: impl Fn(&Path) -> Vec<PathBuf>) {
 
 #[test]
 fn bad_pointers_sizes_and_buffers_are_refused() {
-    silent("bad_pointers", |_| vec![]);
+    eliminated("bad_pointers", |_| vec![]);
 }
 
 #[test]
 fn bad_matrices_and_contacts_are_refused() {
-    silent("bad_values", |_| vec![]);
+    eliminated("bad_values", |_| vec![]);
 }
 
 #[test]
 fn bad_options_and_ranges_are_refused() {
-    silent("bad_options", |_| vec![]);
+    eliminated("bad_options", |_| vec![]);
 }
 
 #[test]
 fn sizes_are_told_and_indices_may_count_from_one() {
-    silent("counting", |_| vec![]);
+    eliminated("counting", |_| vec![]);
 }
 
 #[test]
 fn results_are_what_they_say() {
-    silent("results", |_| vec![]);
+    eliminated("results", |_| vec![]);
 }
 
 #[test]
@@ -100,19 +100,19 @@ fn nonlinear_modes_are_those_of_the_reference() {
     let rows = [0, table.len() / 2].map(|i| &table[i]);
     let mut numbers: Vec<&Value> = rows.iter().flat_map(|r| [&r["alpha"], &r["omega"], &r["D"]]).collect();
     numbers.push(&reference["D_max"]["D"]);
-    silent("mode", |_| {
+    eliminated("mode", |_| {
         numbers.iter().map(|v| number(v).to_string().into()).collect()
     });
 }
 
 #[test]
 fn bad_options_and_models_of_a_mode_are_refused() {
-    silent("bad_modes", |_| vec![]);
+    eliminated("bad_modes", |_| vec![]);
 }
 
 #[test]
 fn responses_are_synthesised_from_modes() {
-    silent("synthesis", |_| vec![]);
+    eliminated("synthesis", |_| vec![]);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn responses_in_time_are_the_truth_of_the_reference() {
     let td = &data("point_F5_208p85.json")["td"];
     let tip = &td["X"]["1"][0];
     let numbers = [&td["f_Hz"], &tip[0], &tip[1]];
-    silent("time", |_| {
+    eliminated("time", |_| {
         numbers.iter().map(|v| number(v).to_string().into()).collect()
     });
 }
@@ -131,44 +131,44 @@ fn points_checked_in_time_have_the_errors_of_the_reference() {
     let tip = &point["td"]["X"]["1"][0];
     let error = &point["hbm"]["hbm_exactN"]["9"]["rel_err_b2_vs_td"];
     let numbers = [&point["td"]["f_Hz"], &tip[0], &tip[1], error];
-    silent("verify", |_| {
+    eliminated("verify", |_| {
         numbers.iter().map(|v| number(v).to_string().into()).collect()
     });
 }
 
 #[test]
 fn many_contacts_and_springs_are_added_at_once() {
-    silent("tables", |_| vec![]);
+    eliminated("tables", |_| vec![]);
 }
 
 #[test]
 fn laws_elements_and_patches_are_those_of_closed_forms() {
-    silent("laws", |_| vec![]);
+    eliminated("laws", |_| vec![]);
 }
 
 #[test]
 fn bad_laws_elements_and_patches_are_refused() {
-    silent("bad_laws", |_| vec![]);
+    eliminated("bad_laws", |_| vec![]);
 }
 
 #[test]
 fn handles_cannot_be_mistaken() {
-    silent("handles", |_| vec![]);
+    eliminated("handles", |_| vec![]);
 }
 
 #[test]
 fn hooks_cancel_and_threads_share_a_model() {
-    silent("callbacks", |_| vec![]);
+    eliminated("callbacks", |_| vec![]);
 }
 
 #[test]
 fn forces_of_the_host_may_fail_and_call_the_library() {
-    silent("user_force", |_| vec![]);
+    eliminated("user_force", |_| vec![]);
 }
 
 #[test]
 fn the_library_is_a_guest_in_its_process() {
-    silent("process", |folder| {
+    eliminated("process", |folder| {
         let copy = folder.join("copy.so");
         fs::copy(library(), &copy).unwrap();
         vec![copy]

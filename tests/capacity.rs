@@ -4,7 +4,6 @@ mod common;
 
 use common::{D, R, harmonics};
 use hbvib::analysis::forced_response;
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
@@ -13,6 +12,7 @@ use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::ForcedOptions;
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -69,7 +69,7 @@ fn a_chain_is_refused_above_the_capacity_of_its_mode_and_answered_below() {
         let shape = &modes.shapes[k * N..(k + 1) * N];
         let largest = shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
         let phi: Vec<Complex64> = shape.iter().map(|z| z / largest).collect();
-        let capacity: f64 = limits
+        let slip_capacity: f64 = limits
             .iter()
             .map(|&(a, b, limit)| 4.0 / PI * limit * (phi[a] - b.map_or(Complex64::ZERO, |b: usize| phi[b])).norm())
             .sum();
@@ -78,12 +78,15 @@ fn a_chain_is_refused_above_the_capacity_of_its_mode_and_answered_below() {
             for (a, b, limit) in limits {
                 model.add_contact(&Contact::jenkins(a, b, 0.5, 1.0, limit)).unwrap();
             }
-            let force = share * capacity / phi[0].norm();
+            let force = share * slip_capacity / phi[0].norm();
             model.add_force(0, harmonic, Complex64::from_polar(force, 0.4)).unwrap();
             let frequency = omega / harmonic as f64;
             let resonance = model.resonance(frequency, harmonic).unwrap().unwrap();
-            assert!((resonance.capacity / capacity - 1.0).abs() < 1e-9, "mode {k}");
-            assert!((resonance.force / (share * capacity) - 1.0).abs() < 1e-9, "mode {k}");
+            assert!((resonance.slip_capacity / slip_capacity - 1.0).abs() < 1e-9, "mode {k}");
+            assert!(
+                (resonance.force / (share * slip_capacity) - 1.0).abs() < 1e-9,
+                "mode {k}"
+            );
             assert_eq!(
                 resonance.is_overloaded(),
                 share > 1.0,
@@ -137,7 +140,7 @@ fn of_repeated_resonances_the_force_picks_the_one_it_drives() {
     // All of them can bear 0.9 × 4/π, but not the first alone.
     model.add_force(0, 1, 0.5.into()).unwrap();
     let resonance = model.resonance(1.0, 1).unwrap().unwrap();
-    assert!((resonance.force - 0.5).abs() < 1e-12 && (resonance.capacity - 1.2 / PI).abs() < 1e-12);
+    assert!((resonance.force - 0.5).abs() < 1e-12 && (resonance.slip_capacity - 1.2 / PI).abs() < 1e-12);
     assert!(refused(&model, 1.0, 3));
 }
 
@@ -182,7 +185,7 @@ fn a_free_body_is_dragged_by_a_constant_load_above_the_slip_limit() {
         model
     };
     let resonance = of(0.31).resonance(0.7, 0).unwrap().unwrap();
-    assert!((resonance.force - 0.31).abs() < 1e-15 && (resonance.capacity - 0.3).abs() < 1e-15);
+    assert!((resonance.force - 0.31).abs() < 1e-15 && (resonance.slip_capacity - 0.3).abs() < 1e-15);
     assert!(of(0.31).overload(0.7).unwrap().is_some() && of(0.29).overload(0.7).unwrap().is_none());
     assert!(refused(&of(0.31), 0.7, 3));
     assert!(!refused(&of(0.1), 0.7, 3));

@@ -7,9 +7,9 @@ mod laws;
 mod measures;
 
 use common::solve_at;
-use hbvib::branch::ContactLoop;
 use hbvib::contact::Contact;
-use hbvib::contact::state::State;
+use hbvib::contact::contact_state::State;
+use hbvib::results::ContactLoop;
 use laws::{Case, case, cases, range, shaken, solve, structure};
 use measures::{exactly, work};
 
@@ -45,13 +45,13 @@ fn the_power_of_the_forces_is_what_structure_and_contact_take() {
         let (e, s) = (branch.energy_at(0).unwrap(), branch.contact_summary(0, 0).unwrap());
         let input = work(&branch, &case.forces);
         let balance = (e.structural_loss + s.work) / input - 1.0;
-        let told = (s.work - e.friction_loss).abs() / input;
+        let reported = (s.work - e.friction_loss).abs() / input;
         println!(
-            "{}: input {input:.3e}, contact {:.3e}, balance {balance:.1e}, told {told:.1e}",
+            "{}: input {input:.3e}, contact {:.3e}, balance {balance:.1e}, told {reported:.1e}",
             case.name, s.work
         );
         assert!(balance.abs() < 1e-9, "{}: {balance:e}", case.name);
-        assert!(told < 1e-10, "{}: {told:e}", case.name);
+        assert!(reported < 1e-10, "{}: {reported:e}", case.name);
         let takes_nothing = ["cubic", "unilateral", "table"].contains(&case.name) || case.name.ends_with("stuck");
         assert_eq!(s.work == 0.0, takes_nothing, "{}: {}", case.name, s.work);
         assert!(s.work >= 0.0, "{}", case.name);
@@ -82,7 +82,7 @@ fn loops_enclose_the_work_as_well_as_they_are_drawn() {
 
 #[test]
 fn a_contact_without_force_in_two_directions_shows_both_motions() {
-    let friction = |mu| Contact::friction_plane([Some(0), Some(1), None], [None; 3], (2.5, 0.0), mu, 1.0);
+    let friction = |mu| Contact::friction_3d([Some(0), Some(1), None], [None; 3], (2.5, 0.0), mu, 1.0);
     let mut model = structure();
     for mu in [0.0, 0.3] {
         model.add_contact(&friction(mu)).unwrap();
@@ -111,7 +111,7 @@ fn a_contact_without_force_in_two_directions_shows_both_motions() {
 fn loops_scale_with_the_units() {
     for (dofs, kn) in [([Some(0), Some(1), Some(2)], 1.5), ([Some(0), Some(1), None], 0.0)] {
         let loops = [1.0, 1e-6].map(|unit| {
-            let contact = Contact::friction_plane(dofs, [None; 3], (2.5, kn), 0.4, 0.5 * unit);
+            let contact = Contact::friction_3d(dofs, [None; 3], (2.5, kn), 0.4, 0.5 * unit);
             let forces = shaken().into_iter().map(|(dof, h, f)| (dof, h, f * unit)).collect();
             let branch = solve(&Case {
                 forces,

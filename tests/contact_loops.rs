@@ -9,8 +9,7 @@ mod modes;
 
 use common::{B1, BASE, D, R, all_harmonics, harmonics, solve_at, sweep};
 use hbvib::analysis::{contact_evaluate, nonlinear_mode};
-use hbvib::branch::{Branch, ContactLoop, ContactSummary};
-use hbvib::contact::state::State;
+use hbvib::contact::contact_state::State;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -18,6 +17,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeOptions, SolverOptions};
+use hbvib::results::{Branch, ContactLoop, ContactSummary};
 use measures::{close, exactly};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -95,7 +95,7 @@ fn check_friction(branch: &Branch, point: usize, id: usize, contact: &Contact) -
     assert!((area(&found) - s.work).abs() < 2e-6 * scale);
     assert!((share(&found, State::Slip) - s.slip_share).abs() < 20.0 / n as f64);
     for (f, g) in found.force.iter().zip(marched(&found.motion, k, limit)) {
-        // What the samples miss of a reversal.
+        // What the samples miss of a turning point.
         assert!((f - g).abs() < 1e-5 * limit, "{f} {g}");
     }
     assert!((s.half_range[0] - 0.5 * (s.motion_max[0] - s.motion_min[0])).abs() <= 1e-15 * s.half_range[0]);
@@ -115,9 +115,9 @@ fn check_all(branch: &Branch, model: &Model, point: usize) {
     let mut work = 0.0;
     for (id, contact) in model.contacts().iter().enumerate() {
         let s = check_friction(branch, point, id, contact);
-        let told = branch.slip_fraction_at(point).unwrap()[id];
-        assert!((s.slip_share - told).abs() < 1e-12, "{} {told}", s.slip_share);
-        assert!((s.work > 0.0) == (told > 0.0));
+        let reported = branch.slip_fraction_at(point).unwrap()[id];
+        assert!((s.slip_share - reported).abs() < 1e-12, "{} {reported}", s.slip_share);
+        assert!((s.work > 0.0) == (reported > 0.0));
         work += s.work;
     }
     close("work", work, branch.energy_at(point).unwrap().friction_loss, 1e-10);
@@ -139,7 +139,7 @@ fn a_slider_under_one_harmonic_takes_four_limits_times_the_slip() {
     let s = check_friction(&branch, 0, 0, &contact);
     close("work", s.work, 42.0, 1e-12);
     close("half range", s.half_range[0], 5.0, 1e-13);
-    // Stick from the reversal until the motion has gone by 2·1.5: 5(1 − cos φ) = 3.
+    // Stick from the turning point until the motion has gone by 2·1.5: 5(1 − cos φ) = 3.
     close("slip", s.slip_share, 1.0 - 2.0 * 0.4_f64.acos() / TAU, 1e-12);
     let l = branch.contact_loop(0, 0, 4).unwrap();
     for (f, expected) in l.force.iter().zip([3.0, -3.0, -3.0, 3.0]) {
@@ -340,9 +340,9 @@ fn a_branch_of_samples_tells_the_exact_law() {
     };
     let branch = solve_at(&model, &solver, TAU * 208.85);
     let s = check_friction(&branch, 0, 0, &BASE.contact());
-    let told = branch.energy_at(0).unwrap().friction_loss;
-    close("work", s.work, told, 1e-4);
-    assert!(s.work.to_bits() != told.to_bits());
+    let reported = branch.energy_at(0).unwrap().friction_loss;
+    close("work", s.work, reported, 1e-4);
+    assert!(s.work.to_bits() != reported.to_bits());
 }
 
 #[test]

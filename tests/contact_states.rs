@@ -7,9 +7,9 @@ mod laws;
 #[path = "common/energy.rs"]
 mod measures;
 
-use hbvib::branch::{ContactLoop, ContactSummary};
 use hbvib::contact::ContactKind;
-use hbvib::contact::state::State;
+use hbvib::contact::contact_state::State;
+use hbvib::results::{ContactLoop, ContactSummary};
 use laws::{Case, Plate, cases, range, solve};
 use std::f64::consts::TAU;
 
@@ -100,9 +100,9 @@ fn check_formula(case: &Case, l: &ContactLoop, f: impl Fn(&[f64], &[f64]) -> Vec
     let d = l.directions;
     let largest = l.force.iter().fold(0.0, |m: f64, f| m.max(f.abs()));
     let mut worst = 0.0_f64;
-    for (j, (u, told)) in l.motion.chunks_exact(d).zip(l.force.chunks_exact(d)).enumerate() {
+    for (j, (u, reported)) in l.motion.chunks_exact(d).zip(l.force.chunks_exact(d)).enumerate() {
         let v: Vec<f64> = (0..d).map(|k| velocity(l, case.omega, j, k)).collect();
-        for (a, b) in f(u, &v).iter().zip(told) {
+        for (a, b) in f(u, &v).iter().zip(reported) {
             worst = worst.max((a - b).abs() / largest);
         }
     }
@@ -119,7 +119,7 @@ fn forces_states_and_loads_are_those_of_the_law() {
         let s = branch.contact_summary(0, 0).unwrap();
         assert_eq!(l.motion.len(), n * l.directions);
         let share = |state| l.state.iter().filter(|s| **s == state).count() as f64 / n as f64;
-        for (share, told) in [(share(State::Slip), s.slip_share), (share(State::Open), s.open_share)] {
+        for (share, reported) in [(share(State::Slip), s.slip_share), (share(State::Open), s.open_share)] {
             // Sampled shares are those of the samples of the solution.
             let coarse = if case.samples > 0 {
                 4.0 / case.samples as f64
@@ -127,15 +127,15 @@ fn forces_states_and_loads_are_those_of_the_law() {
                 0.0
             };
             assert!(
-                (share - told).abs() < 20.0 / n as f64 + coarse,
-                "{}: {share} {told}",
+                (share - reported).abs() < 20.0 / n as f64 + coarse,
+                "{}: {share} {reported}",
                 case.name
             );
         }
-        let told = branch.slip_fraction_at(0).unwrap()[0];
+        let reported = branch.slip_fraction_at(0).unwrap()[0];
         assert!(
-            (told - s.slip_share).abs() < 1e-12,
-            "{}: {told} {}",
+            (reported - s.slip_share).abs() < 1e-12,
+            "{}: {reported} {}",
             case.name,
             s.slip_share
         );
@@ -156,7 +156,7 @@ fn forces_states_and_loads_are_those_of_the_law() {
         }
         let c = case.contact.clone();
         match &c.kind {
-            ContactKind::Jenkins | ContactKind::Friction | ContactKind::FrictionPlane => check_friction(&case, &l, &s),
+            ContactKind::Jenkins | ContactKind::Friction2d | ContactKind::Friction3d => check_friction(&case, &l, &s),
             ContactKind::Unilateral => {
                 let loads: Vec<f64> = l.motion.iter().map(|y| (c.kn * (-y - c.gap)).max(0.0)).collect();
                 assert!(l.force.iter().zip(&loads).all(|(f, load)| (f + load).abs() < 1e-14));
@@ -183,7 +183,7 @@ fn forces_states_and_loads_are_those_of_the_law() {
         }
         let has_states = matches!(
             c.kind,
-            ContactKind::Jenkins | ContactKind::Friction | ContactKind::FrictionPlane | ContactKind::Unilateral
+            ContactKind::Jenkins | ContactKind::Friction2d | ContactKind::Friction3d | ContactKind::Unilateral
         );
         if !has_states {
             assert!(l.state.iter().all(|s| *s == State::Stick), "{}", case.name);

@@ -5,7 +5,6 @@ mod common;
 
 use common::{BASE, Blisk, all_harmonics, harmonics, solve_at, sweep};
 use hbvib::analysis::forced_response::forced_response;
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -13,6 +12,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
 use std::cell::Cell;
 use std::f64::consts::{PI, TAU};
 

@@ -7,7 +7,7 @@ use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::analysis::harmonic_residual::contact_evaluate;
 use hbvib::contact::Contact;
 use hbvib::contact::law::{Law, Range};
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -172,7 +172,7 @@ fn far_from_its_cubic_term_the_spring_is_linear() {
         mean: -0.5,
         speed: 0.0,
     };
-    let factor = law.sticking_factor(&[range], reference);
+    let factor = law.linearisation_scale(&[range], reference);
     let term = K3.abs() * (2.0 / factor).powi(2);
     assert!((term / reference / 1e-12 - 1.0).abs() < 1e-12);
     let smaller: Vec<f64> = x.iter().map(|x| x / factor).collect();

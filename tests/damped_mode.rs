@@ -13,8 +13,8 @@ use hbvib::error::Status;
 use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::damped_mode::DampedMode;
+use hbvib::model::mode_selection::SelectedMode;
 use hbvib::model::spring::Wave;
-use hbvib::model::start_mode::StartMode;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{DampingForm, ModeChoice};
 use modes::{assert_wave, chain_frequency, chains, gap, mass_product, sector, skewed};
@@ -29,7 +29,7 @@ fn damped_modes_of_a_long_chain_keep_their_digits() {
         let alpha = 1e-4;
         model.set_rayleigh(alpha, 0.0).unwrap();
         for k in [0, 3] {
-            let start = model.start_mode(ModeChoice::Index(k)).unwrap();
+            let start = model.select_mode(ModeChoice::Index(k)).unwrap();
             let mode = model.damped_mode(&start, DampingForm::Mass).unwrap();
             let (w, d) = (chain_frequency(k, length), alpha / 2.0 / chain_frequency(k, length));
             assert!((start.omega / w - 1.0).abs() < 1e-14);
@@ -52,7 +52,7 @@ fn dense(model: &Model, which: MatrixKind) -> DMatrix<Complex64> {
 }
 
 /// ω, D and shape by Newton's method on real unknowns, in the whole of K, C, M.
-fn independent(model: &Model, start: &StartMode, form: DampingForm) -> (f64, f64, DVector<Complex64>) {
+fn independent(model: &Model, start: &SelectedMode, form: DampingForm) -> (f64, f64, DVector<Complex64>) {
     let n = model.ndof();
     let i = Complex64::I;
     let (m, c, own) = (
@@ -135,7 +135,7 @@ fn damped_modes_of_the_sector_agree_with_an_independent_solution() {
         for mut model in [sector(2), skewed(3), skewed(21)] {
             model.set_rayleigh(2.0, beta).unwrap();
             for family in 0..3 {
-                let start = model.start_mode(ModeChoice::Index(family)).unwrap();
+                let start = model.select_mode(ModeChoice::Index(family)).unwrap();
                 for form in FORMS {
                     let mode = model.damped_mode(&start, form).unwrap();
                     assert!(mode.damping > 0.0);
@@ -191,7 +191,7 @@ fn proportional_damping_has_its_closed_form() {
             (&own, DampingForm::Mass),
             (&own, DampingForm::Stiffness),
         ] {
-            let start = model.start_mode(ModeChoice::Index(index)).unwrap();
+            let start = model.select_mode(ModeChoice::Index(index)).unwrap();
             let mode = model.damped_mode(&start, form).unwrap();
             let expected = if core::ptr::eq(model, &raw const heavy) {
                 alpha / (2.0 * start.omega)
@@ -216,7 +216,7 @@ fn strong_and_gyroscopic_damping_agree_with_an_independent_solution() {
     ] {
         let model = two(k, damping);
         for index in 0..2 {
-            let start = model.start_mode(ModeChoice::Index(index)).unwrap();
+            let start = model.select_mode(ModeChoice::Index(index)).unwrap();
             for form in FORMS {
                 let mode = model.damped_mode(&start, form).unwrap();
                 let expected = independent(&model, &start, form);
@@ -237,7 +237,7 @@ fn without_damping_the_start_mode_is_returned_as_it_is() {
     let mut model = skewed(2);
     model.set_rayleigh(0.0, 0.0).unwrap();
     for form in FORMS {
-        let start = model.start_mode(ModeChoice::Index(1)).unwrap();
+        let start = model.select_mode(ModeChoice::Index(1)).unwrap();
         let mode = model.damped_mode(&start, form).unwrap();
         assert!(mode.damping == 0.0 && mode.omega.to_bits() == start.omega.to_bits() && mode.shape == start.shape);
     }
@@ -245,26 +245,26 @@ fn without_damping_the_start_mode_is_returned_as_it_is() {
 
 #[test]
 fn the_damped_wheel_keeps_the_wave_that_it_started_from() {
-    let wheel = BASE.wheel();
+    let full_wheel = BASE.full_wheel();
     for form in FORMS {
         let one = sector(2);
-        let start = one.start_mode(ModeChoice::Index(1)).unwrap();
+        let start = one.select_mode(ModeChoice::Index(1)).unwrap();
         let of_sector = one.damped_mode(&start, form).unwrap();
-        let pair = wheel.start_mode(ModeChoice::Near(start.omega)).unwrap();
+        let pair = full_wheel.select_mode(ModeChoice::Near(start.omega)).unwrap();
         for (member, sense) in [(0, 2.0), (1, -2.0)] {
-            let start = wheel.start_mode(ModeChoice::Index(pair.index + member)).unwrap();
-            let mode = wheel.damped_mode(&start, form).unwrap();
+            let start = full_wheel.select_mode(ModeChoice::Index(pair.index + member)).unwrap();
+            let mode = full_wheel.damped_mode(&start, form).unwrap();
             assert!((mode.omega / of_sector.omega - 1.0).abs() < 1e-12);
             assert!((mode.damping / of_sector.damping - 1.0).abs() < 1e-10);
             assert_wave(&mode.shape, sense);
         }
         let standing: Vec<_> = pair.shape.iter().map(|z| z.re.into()).collect();
-        let start = wheel.start_mode(ModeChoice::Shape(&standing)).unwrap();
-        let mode = wheel.damped_mode(&start, form).unwrap();
+        let start = full_wheel.select_mode(ModeChoice::Shape(&standing)).unwrap();
+        let mode = full_wheel.damped_mode(&start, form).unwrap();
         let tilted = largest(&mode.shape.iter().map(|z| z.im.into()).collect::<Vec<_>>());
         // The damping turns the phase within a sector, the wheel stays in a standing wave.
         assert!(tilted < 1e-2 * largest(&mode.shape));
-        assert!((mass_product(&wheel, &start.shape, &mode.shape).norm() - 1.0).abs() < 1e-4);
+        assert!((mass_product(&full_wheel, &start.shape, &mode.shape).norm() - 1.0).abs() < 1e-4);
     }
 }
 
@@ -280,7 +280,7 @@ fn a_pair_that_damping_parts_is_left_for_one_of_its_modes() {
         model.set_matrix(which, &MatrixView::dense(2, &a)).unwrap();
     }
     let shape = [Complex64::ONE, Complex64::from(0.4)];
-    let start = model.start_mode(ModeChoice::Shape(&shape)).unwrap();
+    let start = model.select_mode(ModeChoice::Shape(&shape)).unwrap();
     let mode = model.damped_mode(&start, DampingForm::Mass).unwrap();
     assert!((mode.omega - 2.0).abs() < 1e-12);
     let known = [0.02, 0.005];
@@ -302,7 +302,7 @@ fn damped_modes_that_do_not_exist_are_refused() {
         .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[0.1]))
         .unwrap();
     model.add_contact(&Contact::jenkins(0, None, 4.0, 0.5, 1.0)).unwrap();
-    let start = model.start_mode(ModeChoice::Index(0)).unwrap();
+    let start = model.select_mode(ModeChoice::Index(0)).unwrap();
     assert!((model.damped_mode(&start, DampingForm::Mass).unwrap().damping - 0.025).abs() < 1e-14);
     refused(
         model.damped_mode(&start, DampingForm::Stiffness),

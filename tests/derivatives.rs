@@ -12,8 +12,8 @@ use hbvib::contact::{Contact, ContactKind, Role};
 use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::problem::forced::Forced;
-use hbvib::problem::{Linearisation, Problem, Start};
+use hbvib::problem::harmonic_balance::HarmonicBalance;
+use hbvib::problem::{InitialGuess, Linearisation, Problem};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use stencil::{Checked, Stencil, config, pairs, parts};
@@ -226,7 +226,7 @@ struct Condensation {
 }
 
 /// All derivatives of the problem as it stands: R by u and p, and the observed amplitude.
-fn check_problem(problem: &mut Forced<'_>, at: &Condensation, play: f64) -> Checked {
+fn check_problem(problem: &mut HarmonicBalance<'_>, at: &Condensation, play: f64) -> Checked {
     let n = at.u.len();
     let mut out = Linearisation::new(n).unwrap();
     problem.evaluate(&at.u, at.p, &mut out).unwrap();
@@ -307,7 +307,7 @@ proptest! {
         let mut feed = Feed { numbers: &numbers, next: 0 };
         let model = random_model(shape, engine_order, &mut feed);
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
-        let mut problem = Forced::new(&condensed, response, (1.0, 1.0), 0, None).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, response, (1.0, 1.0), 0, None).unwrap();
         check_problem(&mut problem, &Condensation { u, p: omega, direction }, play)?;
     }
 
@@ -328,9 +328,9 @@ proptest! {
             model.add_contact(&Contact::unilateral(None, Some(1), 0.9, -0.2)).unwrap();
         }
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
-        let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), 0, None).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), 0, None).unwrap();
         let mut stuck = vec![0.0; u.len()];
-        prop_assert!(problem.start(Start::Stuck, omega, &mut stuck).unwrap() != preloaded);
+        prop_assert!(problem.start(InitialGuess::Stuck, omega, &mut stuck).unwrap() != preloaded);
         // The stuck motion must slip for a homotopy to exist; a larger one always does.
         for x in &mut stuck {
             *x *= 1e3;

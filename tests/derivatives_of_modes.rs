@@ -12,7 +12,7 @@ use hbvib::condense::Condensed;
 use hbvib::contact::Contact;
 use hbvib::model::spring::relative_row;
 use hbvib::options::{DampingForm, SolverOptions};
-use hbvib::problem::mode::{Gauge, LinearMode, Mode};
+use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
 use hbvib::problem::{Linearisation, Problem};
 use modes::{N, Skewed};
 use num_complex::Complex64;
@@ -25,7 +25,7 @@ fn size(a: &[f64]) -> f64 {
 }
 
 /// Jacobian, derivative by the parameter and observed amplitude at (u, p).
-fn check_problem(problem: &mut Mode<'_>, u: &[f64], p: f64, direction: &[f64]) -> Checked {
+fn check_problem(problem: &mut Epmc<'_>, u: &[f64], p: f64, direction: &[f64]) -> Checked {
     let n = u.len();
     let mut out = Linearisation::new(n).unwrap();
     problem.evaluate(u, p, &mut out).unwrap();
@@ -111,7 +111,7 @@ impl Case {
             .iter()
             .map(|c| c.slip_limit() / c.kt / condensed.length())
             .fold(f64::INFINITY, f64::min);
-        let mut problem = Mode::new(&condensed, &gauge, &linear, 0).unwrap();
+        let mut problem = Epmc::new(&condensed, &gauge, &linear, 0).unwrap();
         let n = problem.size();
         // Motions of a few times the least play at amplitude 10^p.
         let p = play.log10() + self.log10;

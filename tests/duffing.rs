@@ -11,8 +11,8 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;
-use hbvib::problem::forced::Forced;
-use hbvib::problem::{Problem, Start};
+use hbvib::problem::harmonic_balance::HarmonicBalance;
+use hbvib::problem::{InitialGuess, Problem};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -330,9 +330,9 @@ fn with_many_contacts_the_stuck_start_is_the_structure_on_linear_springs() {
     };
     let (condensed, _) = start(0.3);
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = Forced::new(&condensed, 0, (0.8, 0.8), 0, None).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.8), 0, None).unwrap();
     let mut u = vec![0.0; problem.size()];
-    assert!(problem.start(Start::Stuck, 0.8, &mut u).unwrap());
+    assert!(problem.start(InitialGuess::Stuck, 0.8, &mut u).unwrap());
     let (linear, model) = start(0.0);
     assert_eq!((linear.coordinates(), condensed.coordinates()), (0, 24));
     let branch = solve_at(&model, &harmonics(5), 0.8);

@@ -5,11 +5,11 @@
 mod common;
 
 use common::{harmonics, sweep};
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
+use hbvib::results::Branch;
 
 const C: f64 = 0.05;
 const CUBIC: f64 = 0.1;

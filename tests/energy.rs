@@ -5,12 +5,12 @@ mod common;
 mod measures;
 
 use common::{BASE, Blisk, all_harmonics, harmonics, slip, solve_at};
-use hbvib::branch::Energy;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
+use hbvib::results::Energy;
 use measures::{close, energy, exactly, maximum, work};
 use num_complex::Complex64;
 use std::f64::consts::TAU;

@@ -6,12 +6,12 @@ mod common;
 mod measures;
 
 use common::{BASE, Blisk, SECTORS, Wheel, all_harmonics, harmonics, phase, slip, solve_at};
-use hbvib::branch::{Branch, Energy};
 use hbvib::contact::Contact;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;
+use hbvib::results::{Branch, Energy};
 use measures::{close, energy, exactly, maximum, mean, work};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -83,23 +83,23 @@ impl Skewed {
         model
     }
 
-    fn wheel(self) -> Model {
-        let mut wheel = Wheel::new(N, SECTORS);
-        wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
-        wheel.set(MatrixKind::Stiffness, &STIFFNESS, Some(&STIFFNESS_NEXT), None);
-        wheel.set(
+    fn full_wheel(self) -> Model {
+        let mut full_wheel = Wheel::new(N, SECTORS);
+        full_wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
+        full_wheel.set(MatrixKind::Stiffness, &STIFFNESS, Some(&STIFFNESS_NEXT), None);
+        full_wheel.set(
             MatrixKind::Damping,
             &DAMPING,
             Some(&DAMPING_NEXT),
             Some(&DAMPING_PREVIOUS),
         );
         for contact in self.contacts() {
-            wheel.add_contact(&contact);
+            full_wheel.add_contact(&contact);
         }
         for (dof, h, value) in FORCES {
-            wheel.add_force(dof, h, value, self.engine_order);
+            full_wheel.add_force(dof, h, value, self.engine_order);
         }
-        wheel.model
+        full_wheel.model
     }
 }
 
@@ -172,8 +172,8 @@ impl Signals<'_> {
             ),
         ] {
             let sector = |t: f64| self.energy(0, kinetic, t);
-            let wheel = |t: f64| (0..SECTORS).map(|s| self.energy(s, kinetic, t)).sum::<f64>();
-            let expected = [mean(sector), maximum(sector), mean(wheel), maximum(wheel)];
+            let full_wheel = |t: f64| (0..SECTORS).map(|s| self.energy(s, kinetic, t)).sum::<f64>();
+            let expected = [mean(sector), maximum(sector), mean(full_wheel), maximum(full_wheel)];
             for (of, (found, expected)) in ["sector, mean", "sector, peak", "wheel, mean", "wheel, peak"]
                 .iter()
                 .zip(found.into_iter().zip(expected))
@@ -261,21 +261,21 @@ fn a_sector_tells_what_the_whole_wheel_has() {
     let blisk = |engine_order| Blisk { engine_order, ..BASE };
     let skewed = |engine_order| Skewed { engine_order, ..SKEWED };
     let cases = [
-        (blisk(2).sector(), blisk(2).wheel(), 7, TAU * 208.85),
-        (blisk(3).sector(), blisk(3).wheel(), 9, TAU * 212.4),
-        (skewed(2).sector(), skewed(2).wheel(), 4, 1.9),
-        (skewed(-2).sector(), skewed(-2).wheel(), 4, 1.9),
-        (skewed(12).sector(), skewed(12).wheel(), 4, 1.9),
-        (skewed(0).sector(), skewed(0).wheel(), 4, 1.9),
+        (blisk(2).sector(), blisk(2).full_wheel(), 7, TAU * 208.85),
+        (blisk(3).sector(), blisk(3).full_wheel(), 9, TAU * 212.4),
+        (skewed(2).sector(), skewed(2).full_wheel(), 4, 1.9),
+        (skewed(-2).sector(), skewed(-2).full_wheel(), 4, 1.9),
+        (skewed(12).sector(), skewed(12).full_wheel(), 4, 1.9),
+        (skewed(0).sector(), skewed(0).full_wheel(), 4, 1.9),
     ];
-    for (sector, wheel, highest, omega) in cases {
+    for (sector, full_wheel, highest, omega) in cases {
         let branch = solve_at(&sector, &exactly(highest), omega);
         assert!(slip(&branch, 0) > 0.0);
         let a = energy(&branch);
-        let b = energy(&solve_at(&wheel, &exactly(highest), omega));
+        let b = energy(&solve_at(&full_wheel, &exactly(highest), omega));
         let n = SECTORS as f64;
         println!("EO {}", sector.structure().engine_order());
-        for (name, sector, wheel) in [
+        for (name, sector, full_wheel) in [
             ("kinetic, mean", a.wheel_kinetic_mean, b.kinetic_mean),
             ("kinetic, peak", a.wheel_kinetic_peak, b.kinetic_peak),
             ("potential, mean", a.wheel_potential_mean, b.potential_mean),
@@ -286,7 +286,7 @@ fn a_sector_tells_what_the_whole_wheel_has() {
             ("structural loss", n * a.structural_loss, b.structural_loss),
             ("friction loss", n * a.friction_loss, b.friction_loss),
         ] {
-            close(name, sector, wheel, 1e-11);
+            close(name, sector, full_wheel, 1e-11);
         }
     }
 }

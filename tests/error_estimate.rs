@@ -4,10 +4,10 @@ mod common;
 
 use common::{B2, Blisk, D, NDOF, R, all_harmonics, harmonics, slip, solve_at};
 use hbvib::analysis::estimate_at;
-use hbvib::branch::Branch;
 use hbvib::error_estimate::Estimate;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::options::SolverOptions;
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::time::Instant;
 
@@ -215,13 +215,13 @@ fn what_an_estimate_costs_is_told() {
         let alone = milliseconds(|| {
             estimate_at(&model, &plain, &one, 0).unwrap();
         });
-        let lifted = options(found.harmonics);
-        let there = common::sweep(&model, &lifted, from, to, &[]);
+        let extended = options(found.harmonics);
+        let there = common::sweep(&model, &extended, from, to, &[]);
         let iteration = milliseconds(|| {
-            common::sweep(&model, &lifted, from, to, &[]);
+            common::sweep(&model, &extended, from, to, &[]);
         }) / there.newton_iterations().iter().sum::<f64>();
         let cold = milliseconds(|| {
-            solve_at(&model, &lifted, omega);
+            solve_at(&model, &extended, omega);
         });
         let own = milliseconds(|| {
             solve_at(&model, &plain, omega);

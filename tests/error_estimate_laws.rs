@@ -32,7 +32,7 @@ fn compare(model: &Model, solver: &SolverOptions, truth: &SolverOptions, omega: 
         guess: Some(&guess),
     };
     let truth = forced_response(model, truth, &range, &mut Hooks::default()).unwrap();
-    let fundamental = |b: &hbvib::branch::Branch| {
+    let fundamental = |b: &hbvib::results::Branch| {
         let i = b.carried_at(0).unwrap().iter().position(|&h| h > 0).unwrap();
         b.response_at(0).unwrap()[i]
     };
@@ -253,7 +253,7 @@ fn even_harmonics_that_are_kept_hardly_matter_to_the_estimate() {
     };
     let (odd, all) = (estimate(false), estimate(true));
     println!("{:.6e} {:.6e}", odd.response, all.response);
-    // The last harmonic that is lifted may be even.
+    // The last harmonic that is extended may be even.
     assert!((odd.response / all.response - 1.0).abs() < 0.02);
     assert!((odd.motion / all.motion - 1.0).abs() < 0.02);
 }
@@ -326,7 +326,7 @@ fn every_point_of_a_response_has_its_error_when_it_is_asked_for() {
         }
         slipping += 1;
         let alone = estimate_at(&model, &plain, &branch, point).unwrap().response;
-        // In a sweep the number of lifted harmonics may be that of a neighbour, a quarter more at most.
+        // In a sweep the number of extended harmonics may be that of a neighbour, a quarter more at most.
         println!("{:.3}: {error:.3e} {alone:.3e}", branch.omega_at(point).unwrap());
         assert!(error > 1e-5 && error < 0.2 && (0.5..=2.0).contains(&(error / alone)));
     }

@@ -13,12 +13,12 @@ mod sector;
 mod table;
 
 use hbvib::analysis::{nonlinear_mode, synthesise};
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use response::{Range, Response};
 use sector::{Sector, Size};
 use std::f64::consts::TAU;

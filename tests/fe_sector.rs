@@ -83,7 +83,7 @@ fn compare_all_frequencies(size: Size) {
     let sector = sector(size);
     compare_frequencies(&sector, Interface::Absent, ContactState::Free, "no_contact");
     compare_frequencies(&sector, Interface::Springs, ContactState::Free, "slip_kn_only");
-    compare_frequencies(&sector, Interface::Friction, ContactState::Stuck, "stuck");
+    compare_frequencies(&sector, Interface::Friction2d, ContactState::Stuck, "stuck");
 }
 
 #[test]
@@ -180,7 +180,7 @@ fn reduced_sector_at_two_newtons_with_two_harmonics() {
 #[test]
 fn a_wave_of_the_wrong_sign_is_seen() {
     let sector = sector(Size::Reduced);
-    let stuck = sector.model(Interface::Friction).unwrap();
+    let stuck = sector.model(Interface::Friction2d).unwrap();
     let backward = sector::SECTORS - sector::ENGINE_ORDER as usize;
     assert_eq!(
         stuck.structure().fold(backward as i64),

@@ -3,11 +3,11 @@
 //! one-harmonic Duffing oscillator, whose folds have a closed form.
 
 use hbvib::continuation::corrector::{Corrector, Outcome};
-use hbvib::continuation::events::{Event, Locator};
+use hbvib::continuation::special_points::{Event, Locator};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Advance, Continuation, Metric, Point, Settings};
 use hbvib::error::Result;
-use hbvib::problem::{Linearisation, Problem, Start};
+use hbvib::problem::{InitialGuess, Linearisation, Problem};
 use num_complex::Complex64;
 
 const DAMPING: f64 = 0.05;
@@ -47,7 +47,7 @@ impl Problem for Duffing {
         (Complex64::new(u[0], u[1]), Complex64::new(direction[0], direction[1]))
     }
 
-    fn start(&mut self, _: Start, _: f64, u: &mut [f64]) -> Result<bool> {
+    fn start(&mut self, _: InitialGuess, _: f64, u: &mut [f64]) -> Result<bool> {
         u.fill(0.0);
         Ok(true)
     }

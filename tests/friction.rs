@@ -7,11 +7,11 @@ mod friction;
 use friction::{March, Random, distance, evaluate, pieces, slipping_at_closing};
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::contact::Law;
-use hbvib::contact::friction::{CoupledPiece, Friction};
-use hbvib::contact::jenkins::Jenkins;
-use hbvib::contact::state::State;
-use hbvib::contact::unilateral::Unilateral;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::contact::contact_state::State;
+use hbvib::contact::laws::friction_2d::{CoupledPiece, Friction2d};
+use hbvib::contact::laws::jenkins::Jenkins;
+use hbvib::contact::laws::unilateral::Unilateral;
+use hbvib::fourier::HarmonicSet;
 use std::f64::consts::{PI, TAU};
 
 fn scalar(law: &dyn Law, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
@@ -102,7 +102,7 @@ fn a_constant_load_is_a_jenkins_contact() {
         // Odd harmonics alone are folded for Jenkins, walked around for a load that varies.
         let set = HarmonicSet::excited(&[1], [1, 3, 7][i % 3], true, i % 2 == 0, false).unwrap();
         let (law, motion) = random.case(&set);
-        let law = Friction {
+        let law = Friction2d {
             kn: 0.0,
             load: 2.0 * law.load.abs(),
             ..law
@@ -119,7 +119,7 @@ fn a_constant_load_is_a_jenkins_contact() {
         assert!(shift < 1e-9);
         for j in 0..m {
             let column = &out.jacobian[j * 2 * m..(j + 1) * 2 * m];
-            // Slip that begins just before a reversal has its time from rounding.
+            // Slip that begins just before a turning point has its time from rounding.
             assert!(distance(&column[..m], &reference.jacobian[j * m..]) < 1e-13 + 10.0 * shift);
             assert!(column[m..].iter().all(|v| *v == 0.0));
         }
@@ -161,7 +161,7 @@ fn the_normal_force_is_that_of_a_unilateral_spring() {
 #[test]
 fn a_contact_that_sticks_is_linear_and_is_dragged_along_by_its_bounds_alone() {
     let set = HarmonicSet::all(1).unwrap();
-    let law = Friction {
+    let law = Friction2d {
         kt: 2.0,
         kn: 1.0,
         mu: 0.5,
@@ -192,7 +192,7 @@ fn a_load_in_phase_with_the_motion_has_its_closed_form() {
         motion
     };
     let (kn, mu) = (2.0, 0.5);
-    let law = Friction {
+    let law = Friction2d {
         kt: 1.0,
         kn,
         mu,
@@ -226,7 +226,7 @@ fn a_load_that_just_vanishes_is_the_limit_from_both_sides() {
         let mut motion = random.case(&set).1;
         motion[7..].copy_from_slice(&[0.0, 0.8, 0.0, 0.15, 0.0, 0.05, 0.0]);
         let at = |load: f64| {
-            let law = Friction {
+            let law = Friction2d {
                 kt: 1.0,
                 kn: 1.0,
                 mu: 0.7,
@@ -255,22 +255,22 @@ fn constants_without_friction_or_contact_give_no_force_and_no_nan() {
     let mut random = Random(61);
     let motion = random.case(&set).1;
     let still = [0.3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-    let law = Friction {
+    let law = Friction2d {
         kt: 1.0,
         kn: 1.0,
         mu: 0.5,
         load: 0.4,
     };
     for law in [
-        Friction { mu: 0.0, ..law },
-        Friction { kt: 0.0, ..law },
-        Friction { load: -9.0, ..law },
-        Friction {
+        Friction2d { mu: 0.0, ..law },
+        Friction2d { kt: 0.0, ..law },
+        Friction2d { load: -9.0, ..law },
+        Friction2d {
             kn: 0.0,
             load: 0.0,
             ..law
         },
-        Friction {
+        Friction2d {
             kn: 0.0,
             load: -1.0,
             ..law
@@ -293,7 +293,7 @@ fn constants_without_friction_or_contact_give_no_force_and_no_nan() {
             for mean in [0.3, -0.3, 0.4] {
                 let mut whole = [x, y].concat();
                 whole[7] += mean - 0.3;
-                let law = Friction { kn, ..law };
+                let law = Friction2d { kn, ..law };
                 let out = evaluate(&law, &set, &whole);
                 let march = March {
                     law: &law,
@@ -328,7 +328,7 @@ fn ties_of_events_leave_the_force_right() {
             for x in &mut motion {
                 *x = (3.0 * *x).round() * 0.5;
             }
-            law = Friction {
+            law = Friction2d {
                 kt: 1.0,
                 kn: 1.0,
                 mu: 0.5,

@@ -6,11 +6,11 @@ mod friction;
 
 use friction::{March, Random, distance, evaluate, pieces, slipping_at_closing, sticking_at_closing};
 use hbvib::aft::Evaluation;
-use hbvib::contact::friction::Friction;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::contact::laws::friction_2d::Friction2d;
+use hbvib::fourier::HarmonicSet;
 
 /// Column by column differences of the force, by the four-point rule.
-fn differences(law: &Friction, set: &HarmonicSet, motion: &[f64], step: f64) -> Vec<f64> {
+fn differences(law: &Friction2d, set: &HarmonicSet, motion: &[f64], step: f64) -> Vec<f64> {
     let mut columns = Vec::new();
     for j in 0..motion.len() {
         let at = |s: f64| {
@@ -80,7 +80,7 @@ fn every_block_of_the_jacobian_is_that_of_differences() {
         // Homogeneity of degree 1 in motion and load: the offset is load·∂F/∂load.
         let at = |s: f64| {
             let load = law.load * (1.0 + s * 1e-4);
-            evaluate(&Friction { load, ..law }, &set, &motion).force
+            evaluate(&Friction2d { load, ..law }, &set, &motion).force
         };
         let (far, near) = ((at(2.0), at(-2.0)), (at(1.0), at(-1.0)));
         let by_load: Vec<f64> = (0..motion.len())
@@ -142,7 +142,7 @@ fn the_jacobian_integrates_to_the_force_through_every_change_of_events() {
 #[test]
 fn the_jacobian_is_the_derivative_of_the_force_next_to_every_event() {
     // One direction of many motions. Where the slope of the force is monotone within the step it lies between the
-    // one-sided differences. Bounds that all but stand still have many reversals, near each other.
+    // one-sided differences. Bounds that all but stand still have many turning points, near each other.
     let mut random = Random(71);
     let step = 1e-7;
     for i in 0..4000 {

@@ -8,14 +8,14 @@ mod brick;
 
 use beam::{Beam, STEEL, Y, Z};
 use hbvib::analysis::forced_response;
-use hbvib::branch::Branch;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::problem::forced::Forced;
-use hbvib::problem::{Linearisation, Problem, Start};
+use hbvib::problem::harmonic_balance::HarmonicBalance;
+use hbvib::problem::{InitialGuess, Linearisation, Problem};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -175,11 +175,11 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
     };
     let condensed = Condensed::new(&model, &solver, omega).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = Forced::new(&condensed, beam.tips()[0] + Z, (omega, omega), 0, None).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, beam.tips()[0] + Z, (omega, omega), 0, None).unwrap();
     let n = problem.size();
     let m = n / condensed.coordinates();
     let mut u = vec![0.0; n];
-    assert!(problem.start(Start::Reference, omega, &mut u).unwrap());
+    assert!(problem.start(InitialGuess::Reference, omega, &mut u).unwrap());
     // The vibration of the last contacts, but not their mean, grows until they slip.
     let contacts = condensed.contacts();
     for law in &condensed.laws()[contacts - 3..] {

@@ -5,10 +5,10 @@
 mod plane;
 
 use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::friction_plane::FrictionPlane;
-use hbvib::contact::jenkins::Jenkins;
 use hbvib::contact::law::Law;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::contact::laws::jenkins::Jenkins;
+use hbvib::fourier::HarmonicSet;
 use num_complex::Complex64;
 use plane::{OMEGA, Random, evaluate, gap, largest, law, short};
 use std::f64::consts::{PI, TAU};
@@ -63,7 +63,7 @@ fn circular_motion_slips_steadily_at_the_lag_of_its_closed_form() {
 }
 
 /// Force harmonics of the scalar law with the load N(y), marched over fine samples.
-fn scalar_truth(law: &FrictionPlane, set: &HarmonicSet, x: &[f64], y: &[f64]) -> Vec<f64> {
+fn scalar_truth(law: &Friction3d, set: &HarmonicSet, x: &[f64], y: &[f64]) -> Vec<f64> {
     let n: u32 = 1 << 19;
     let m = set.packed_len();
     let mut row = vec![0.0; m];
@@ -200,7 +200,7 @@ fn without_a_limit_the_contact_is_a_spring_and_without_friction_it_has_no_tangen
     let mut random = Random(5);
     let motion = random.motion(&set, 2, 2.0);
     for (mu, load) in [(1e12, 1.0), (0.4, 1e15), (0.4, f64::INFINITY)] {
-        let law = FrictionPlane {
+        let law = Friction3d {
             mu,
             load,
             ..law(1.0, false)
@@ -216,15 +216,15 @@ fn without_a_limit_the_contact_is_a_spring_and_without_friction_it_has_no_tangen
     }
     let motion = random.motion(&set, 3, 2.0);
     for law in [
-        FrictionPlane {
+        Friction3d {
             mu: 0.0,
             ..law(0.5, true)
         },
-        FrictionPlane {
+        Friction3d {
             kt: 0.0,
             ..law(0.5, true)
         },
-        FrictionPlane {
+        Friction3d {
             load: -9.0,
             ..law(0.5, true)
         },

@@ -4,15 +4,15 @@
 mod plane;
 
 use hbvib::aft::Evaluation;
-use hbvib::contact::friction_plane::FrictionPlane;
+use hbvib::contact::hysteretic_law::{Hysteretic, March};
 use hbvib::contact::law::Law;
-use hbvib::contact::marched::{March, Marched};
-use hbvib::harmonics::HarmonicSet;
+use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::fourier::HarmonicSet;
 use plane::{OMEGA, Random, evaluate, largest, law};
 use std::f64::consts::PI;
 
 /// The state after one step from motion `before` to `after`.
-fn stepped(law: &FrictionPlane, x: &[f64]) -> (Vec<f64>, March) {
+fn stepped(law: &Friction3d, x: &[f64]) -> (Vec<f64>, March) {
     let mut march = March::new(3, 2, 2).unwrap();
     let u: Vec<f64> = x[5..8].iter().chain(&x[2..5]).copied().collect();
     law.march(OMEGA, 2, &u, &[], &x[..2], &mut march).unwrap();

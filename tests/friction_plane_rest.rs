@@ -6,16 +6,16 @@ mod plane;
 #[path = "common/rest.rs"]
 mod rest;
 
-use hbvib::aft::marched::MarchedWay;
-use hbvib::contact::friction_plane::FrictionPlane;
+use hbvib::aft::hysteretic::HystereticEvaluator;
 use hbvib::contact::law::Law;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::fourier::HarmonicSet;
 use plane::{Random, evaluate, gap, largest, law};
 use rest::{Disc, nearest, nearest_of_many, outside};
 use std::f64::consts::TAU;
 
 /// The discs in which the slider may rest, at equidistant times.
-fn discs(law: &FrictionPlane, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Vec<Disc> {
+fn discs(law: &Friction3d, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Vec<Disc> {
     let m = set.packed_len();
     let mut row = vec![0.0; m];
     let of = |j: usize| {
@@ -32,7 +32,7 @@ fn discs(law: &FrictionPlane, set: &HarmonicSet, samples: usize, motion: &[f64])
 }
 
 /// Where the slider is at a sample, from its force there.
-fn slider(law: &FrictionPlane, way: &MarchedWay, x: [f64; 2], j: usize) -> [f64; 2] {
+fn slider(law: &Friction3d, way: &HystereticEvaluator, x: [f64; 2], j: usize) -> [f64; 2] {
     let z = &way.march().z[2 * j..];
     [x[0] - z[0] / law.kt, x[1] - z[1] / law.kt]
 }

@@ -13,22 +13,22 @@ use std::f64::consts::TAU;
 
 /// Harmonics of the whole wheel from those of its first sector.
 fn spread(x: &[Complex64], n: usize, sectors: usize, engine_order: i64) -> Vec<Complex64> {
-    let mut wheel = Vec::new();
+    let mut full_wheel = Vec::new();
     for (h, block) in x.chunks_exact(n).enumerate() {
         for s in 0..sectors {
-            wheel.extend(block.iter().map(|z| z * phase(h, engine_order, s, sectors)));
+            full_wheel.extend(block.iter().map(|z| z * phase(h, engine_order, s, sectors)));
         }
     }
-    wheel
+    full_wheel
 }
 
 /// Solves both and returns the largest relative difference and the slip share of the sector.
-fn gap(sector: &Model, wheel: &Model, highest: usize, omega: f64) -> (f64, f64) {
+fn gap(sector: &Model, full_wheel: &Model, highest: usize, omega: f64) -> (f64, f64) {
     let n = sector.ndof();
     let sectors = sector.structure().sectors();
     let engine_order = sector.structure().engine_order();
     let a = solve_at(sector, &harmonics(highest), omega);
-    let b = solve_at(wheel, &harmonics(highest), omega);
+    let b = solve_at(full_wheel, &harmonics(highest), omega);
     let expected = spread(&all_harmonics(&a, 0), n, sectors, engine_order);
     let found = all_harmonics(&b, 0);
     // The wheel has each contact once per sector, one kind after the other.
@@ -53,12 +53,12 @@ fn the_blisk_sector_equals_the_wheel_of_96_degrees_of_freedom() {
             force,
             ..BASE
         };
-        let (sector, wheel) = (case.sector(), case.wheel());
-        assert_eq!(wheel.ndof(), 96);
-        assert_eq!(wheel.contacts().len(), 24);
+        let (sector, full_wheel) = (case.sector(), case.full_wheel());
+        assert_eq!(full_wheel.ndof(), 96);
+        assert_eq!(full_wheel.contacts().len(), 24);
         let mut most = 0.0_f64;
         for f in hz {
-            let (error, share) = gap(&sector, &wheel, 7, TAU * f);
+            let (error, share) = gap(&sector, &full_wheel, 7, TAU * f);
             println!("EO {engine_order}, {f} Hz: {error:.1e}, slipping {share:.3} of the period");
             assert!(error < 1e-9);
             most = most.max(share);
@@ -141,25 +141,25 @@ impl Skewed {
         }
     }
 
-    fn wheel(&self) -> Model {
-        let mut wheel = Wheel::new(N, SECTORS);
-        wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
-        wheel.set(MatrixKind::Stiffness, &STIFFNESS, Some(&STIFFNESS_NEXT), None);
+    fn full_wheel(&self) -> Model {
+        let mut full_wheel = Wheel::new(N, SECTORS);
+        full_wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
+        full_wheel.set(MatrixKind::Stiffness, &STIFFNESS, Some(&STIFFNESS_NEXT), None);
         let previous = self.general.then_some(&DAMPING_PREVIOUS[..]);
-        wheel.set(MatrixKind::Damping, &DAMPING, Some(&DAMPING_NEXT), previous);
+        full_wheel.set(MatrixKind::Damping, &DAMPING, Some(&DAMPING_NEXT), previous);
         for contact in &self.contacts {
-            wheel.add_contact(contact);
+            full_wheel.add_contact(contact);
         }
         for (dof, harmonic, value) in self.forces() {
-            wheel.add_force(dof, harmonic, value, self.engine_order);
+            full_wheel.add_force(dof, harmonic, value, self.engine_order);
         }
-        wheel.model
+        full_wheel.model
     }
 
     fn check(&self, highest: usize) {
-        let (sector, wheel) = (self.sector(), self.wheel());
+        let (sector, full_wheel) = (self.sector(), self.full_wheel());
         for omega in [1.4, 2.3, 3.1] {
-            let (error, share) = gap(&sector, &wheel, highest, omega);
+            let (error, share) = gap(&sector, &full_wheel, highest, omega);
             println!(
                 "EO {}, angular frequency {omega}: {error:.1e}, slipping {share:.3} of the period",
                 self.engine_order

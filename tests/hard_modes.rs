@@ -7,11 +7,11 @@ mod peers;
 
 use common::{harmonics, solve_at, sweep};
 use hbvib::analysis::nonlinear_mode;
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::options::{ModeOptions, SolverOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use peers::{RANGE, blade_and_ring};
 
 fn mode(highest: usize, log10: (f64, f64), at: &[f64]) -> Branch {

@@ -7,12 +7,12 @@ mod peers;
 
 use common::{Blisk, all_harmonics, harmonics, relative_gap, slip, sweep};
 use hbvib::analysis::forced_response;
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
 use peers::{RANGE, blade_and_ring, structure};
 use std::f64::consts::PI;
 

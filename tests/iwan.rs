@@ -5,7 +5,7 @@ mod common;
 use common::{harmonics, solve_at};
 use hbvib::analysis::contact_evaluate;
 use hbvib::contact::Contact;
-use hbvib::contact::iwan::Iwan;
+use hbvib::contact::laws::iwan::Iwan;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;

@@ -222,11 +222,11 @@ fn header_library_and_packages_have_the_version_of_the_crate() {
          hbvib_version_string(), (unsigned)hbvib_version()); return 0; }\n",
     )
     .unwrap();
-    let told = printed(&mut compiled("cc", &[], &[source], &folder, "version"));
+    let reported = printed(&mut compiled("cc", &[], &[source], &folder, "version"));
     let number = VERSION
         .split('.')
         .fold(0, |n, part| n * 256 + part.parse::<u32>().unwrap());
-    assert_eq!(told, format!("{VERSION} {VERSION} {number}\n"));
+    assert_eq!(reported, format!("{VERSION} {VERSION} {number}\n"));
 
     // The modules say for which library they were written.
     let parts: Vec<&str> = VERSION.split('.').collect();
@@ -242,8 +242,8 @@ fn header_library_and_packages_have_the_version_of_the_crate() {
             "hbvib.f90: {constant}"
         );
     }
-    let told = printed(script(Path::new("-c")).arg("import hbvib; print(hbvib.__version__)"));
-    assert_eq!(told.trim(), VERSION);
+    let reported = printed(script(Path::new("-c")).arg("import hbvib; print(hbvib.__version__)"));
+    assert_eq!(reported.trim(), VERSION);
 
     let abi = VERSION.rsplit_once('.').unwrap().0;
     for (wanted, fits) in [
@@ -480,13 +480,13 @@ fn the_wheel_brings_its_library() {
             .current_dir(&folder),
     );
     check_table("the wheel", &text);
-    let told = printed(
+    let reported = printed(
         Command::new(python())
             .args(["-c", "import hbvib; print(hbvib.lib._name)"])
             .env("PYTHONPATH", folder.join("site"))
             .env_remove("HBVIB_LIBRARY"),
     );
-    assert_eq!(Path::new(told.trim()), installed.join("libhbvib.so"));
+    assert_eq!(Path::new(reported.trim()), installed.join("libhbvib.so"));
 }
 
 /// The README's program in a language: the text between its fences.

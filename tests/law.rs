@@ -30,7 +30,7 @@ fn work(motion: &[Complex64], force: &[Complex64]) -> f64 {
     terms.map(|(h, (x, f))| PI * h as f64 * (f * x.conj()).im).sum()
 }
 
-/// Motions with many reversals, in units of the play, by the number of their highest harmonic.
+/// Motions with many turning points, in units of the play, by the number of their highest harmonic.
 fn rich_motion(highest: usize, size: f64, seed: usize) -> Vec<Complex64> {
     (0..=highest)
         .map(|h| {
@@ -124,7 +124,7 @@ fn exact_events_agree_with_many_samples_of_the_same_law() {
 
 #[test]
 fn reversals_about_to_be_born_are_not_missed() {
-    // Near b = 1/9 the crest of cos τ − b cos(3τ + φ) splits, and up to three reversals lie within a
+    // Near b = 1/9 the crest of cos τ − b cos(3τ + φ) splits, and up to three turning points lie within a
     // small part of the shortest wave. Missing two of them makes the force jump.
     for phase in [-0.06, -0.02, 0.0, 0.003, 0.0494, 0.1] {
         for excess in [-1e-3, 1e-6, 1e-4, 1e-3, 4e-3, 0.0165, 0.05] {
@@ -145,7 +145,7 @@ fn reversals_about_to_be_born_are_not_missed() {
 
 #[test]
 fn a_motion_near_the_end_of_the_number_range_ends_too() {
-    // What is answered does not matter, that the search for reversals ends does.
+    // What is answered does not matter, that the search for turning points ends does.
     for size in [1e290, 1e305, 1e308] {
         let mut motion = vec![Complex64::new(size, -size); 10];
         motion[0] = 0.0.into();

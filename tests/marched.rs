@@ -5,11 +5,11 @@
 mod plane;
 
 use hbvib::aft::Evaluation;
-use hbvib::aft::marched::MarchedWay;
+use hbvib::aft::hysteretic::HystereticEvaluator;
+use hbvib::contact::hysteretic_law::{Hysteretic, March};
 use hbvib::contact::law::{Form, Law, Range};
-use hbvib::contact::marched::{March, Marched};
 use hbvib::error::Result;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
 use num_complex::Complex64;
 use plane::{OMEGA, Random, evaluate, gap, largest, law};
 use std::f64::consts::PI;
@@ -59,14 +59,14 @@ impl Law for Maxwell {
         true
     }
     fn form(&self) -> Form<'_> {
-        Form::Marched(self)
+        Form::Hysteretic(self)
     }
-    fn sticking_factor(&self, _: &[Range], _: f64) -> f64 {
+    fn linearisation_scale(&self, _: &[Range], _: f64) -> f64 {
         1.0
     }
 }
 
-impl Marched for Maxwell {
+impl Hysteretic for Maxwell {
     fn samples(&self, _: usize, asked: usize) -> usize {
         asked
     }
@@ -111,7 +111,7 @@ fn a_law_of_rates_has_its_complex_stiffness_and_its_derivative_by_frequency() {
     let set = HarmonicSet::excited(&[3, 6], 6, false, true, false).unwrap();
     for set in [HarmonicSet::all(3).unwrap(), set] {
         let motion = Random(9).motion(&set, 1, 1.0);
-        let mut way = MarchedWay::new(&set, &law, 2048).unwrap();
+        let mut way = HystereticEvaluator::new(&set, &law, 2048).unwrap();
         let mut out = Evaluation::new(&set, 1).unwrap();
         let mut force = |omega: f64| {
             way.evaluate(&law, omega, &motion, &mut out).unwrap();
@@ -138,7 +138,7 @@ fn a_law_of_rates_has_its_complex_stiffness_and_its_derivative_by_frequency() {
 #[test]
 fn too_few_samples_are_refused() {
     let set = HarmonicSet::all(5).unwrap();
-    let error = MarchedWay::new(&set, &law(1.0, true), 10).err().unwrap();
+    let error = HystereticEvaluator::new(&set, &law(1.0, true), 10).err().unwrap();
     assert!(error.message().contains("11"), "{error}");
-    assert!(MarchedWay::new(&set, &law(1.0, true), 11).is_ok());
+    assert!(HystereticEvaluator::new(&set, &law(1.0, true), 11).is_ok());
 }

@@ -8,7 +8,6 @@ mod refusal;
 
 use common::{BASE, harmonics};
 use hbvib::analysis::nonlinear_mode;
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
@@ -16,6 +15,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{Amplitude, ModeChoice, ModeOptions, SolverOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use refusal::refused;
 

@@ -5,10 +5,10 @@ mod common;
 mod modes;
 
 use common::{BASE, Blisk, all_harmonics, harmonics};
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::model::Model;
 use hbvib::options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use modes::{Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, follow, harmonic, only};
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;

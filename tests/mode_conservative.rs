@@ -5,7 +5,6 @@ mod common;
 
 use common::{data, harmonics, number};
 use hbvib::analysis::nonlinear_mode;
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -13,6 +12,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeChoice, ModeOptions, SolverOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 
 fn follow(model: &Model, solver: &SolverOptions, range: &ModeOptions) -> Branch {

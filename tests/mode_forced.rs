@@ -8,11 +8,11 @@ mod modes;
 
 use common::{B1, B2, BASE, Blisk, all_harmonics, harmonics, relative_gap, slip};
 use hbvib::analysis::forced_response::forced_response;
-use hbvib::branch::Branch;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::options::{DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
+use hbvib::results::Branch;
 use modes::{Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, follow, harmonic, only};
 use nalgebra::DVector;
 use num_complex::Complex64;

@@ -6,10 +6,10 @@ mod common;
 mod modes;
 
 use common::{BASE, Blisk, data, harmonics, number};
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use modes::{
     Skewed, WaveMatrices, blisk_matrices, damped, damping, delta, disk_minus_ring, follow, harmonic, only, singular_at,
     spring,

@@ -6,14 +6,14 @@ mod common;
 mod modes;
 
 use common::{BASE, Blisk, harmonics};
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::contact::Contact;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeChoice, ModeOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use modes::{damped, damping, delta, follow, only};
 
 fn log10(branch: &Branch) -> &[f64] {
@@ -63,7 +63,7 @@ fn six_decades_are_followed_in_one_run_for_any_number_of_harmonics() {
 fn six_decades_are_followed_for_nodal_diameters_0_to_12() {
     for engine_order in [0, 1, 3, 6, 12] {
         let case = Blisk { engine_order, ..BASE };
-        let start = case.sector().start_mode(ModeChoice::Index(0)).unwrap();
+        let start = case.sector().select_mode(ModeChoice::Index(0)).unwrap();
         let onset = (delta(&case) / (start.shape[common::D] - start.shape[common::R]).norm()).log10();
         let range = ModeOptions {
             log10_start: onset - 1.0,
@@ -100,7 +100,7 @@ fn a_plain_structure_with_a_contact_to_the_ground_is_followed_from_stuck_to_slid
     for (kt, limit) in [(0.5, 0.2), (0.5, 1e9), (20.0, 1e-9), (1e-3, 1.0)] {
         for family in [0, 1] {
             let model = two_masses(&[Contact::jenkins(0, None, kt, 1.0, limit)]);
-            let start = model.start_mode(ModeChoice::Index(family)).unwrap();
+            let start = model.select_mode(ModeChoice::Index(family)).unwrap();
             let onset = (limit / kt / start.shape[0].norm()).log10();
             let range = ModeOptions {
                 choice: ModeChoice::Index(family),

@@ -4,12 +4,12 @@ mod common;
 
 use common::{BASE, Blisk, D, R, data, harmonics, number};
 use hbvib::analysis::nonlinear_mode;
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::options::{ModeOptions, SolverOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use num_complex::Complex64;
 
 /// The blisk without structural damping.

@@ -5,13 +5,13 @@ mod common;
 
 use common::{B2, BASE, Blisk, harmonics, sweep};
 use hbvib::analysis::{nonlinear_mode, synthesise};
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

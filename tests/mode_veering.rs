@@ -6,12 +6,12 @@ mod common;
 mod modes;
 
 use common::{BASE, Blisk, D, R, data, harmonics, number};
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::contact::Contact;
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
 use hbvib::options::{ModeChoice, ModeOptions, SolverOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use modes::{damping, delta, follow, only};
 
 /// The sector of a nodal diameter without structural damping, its contact's stiffness scaled, and
@@ -63,7 +63,7 @@ fn assurance(branch: &Branch) -> f64 {
 /// this assurance between neighbours of the coarse ones.
 fn check(case: &Blisk, (stiffness, ring): (f64, f64), family: usize, highest: usize, least: f64) {
     let model = model(case, stiffness, ring);
-    let start = model.start_mode(ModeChoice::Index(family)).unwrap();
+    let start = model.select_mode(ModeChoice::Index(family)).unwrap();
     let play = delta(case) / stiffness;
     let onset = (play / (start.shape[D] - start.shape[R]).norm()).log10();
     let with = |step_max: f64| SolverOptions {
@@ -158,7 +158,7 @@ fn the_two_families_end_on_different_sliding_modes() {
     let ends: Vec<f64> = [1, 2]
         .into_iter()
         .map(|family| {
-            let start = model.start_mode(ModeChoice::Index(family)).unwrap();
+            let start = model.select_mode(ModeChoice::Index(family)).unwrap();
             let onset = (delta(&case) / (start.shape[D] - start.shape[R]).norm()).log10();
             let branch = run(&model, onset, family, &harmonics(3));
             let (omega, _, _) = only(&branch, TIMES.len() - 1);

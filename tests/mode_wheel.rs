@@ -6,25 +6,25 @@ mod common;
 mod modes;
 
 use common::{B2, BASE, Blisk, NDOF, SECTORS, all_harmonics, harmonics, phase, relative_gap};
-use hbvib::branch::Branch;
 use hbvib::model::Model;
-use hbvib::model::repeated::Multiple;
+use hbvib::model::repeated_modes::Multiple;
 use hbvib::options::{DampingForm, ModeChoice, ModeOptions};
+use hbvib::results::Branch;
 use modes::{damped, damping, delta, follow, only};
 use num_complex::Complex64;
 
 /// Amplitudes of the sector at which both are compared, over that of the onset.
 const TIMES: [f64; 7] = [0.5, 1.1, 2.0, 10.0, 100.0, 1e3, 1e4];
 
-fn wheel(case: &Blisk, beta: f64) -> Model {
-    let mut model = case.wheel();
+fn full_wheel(case: &Blisk, beta: f64) -> Model {
+    let mut model = case.full_wheel();
     model.set_rayleigh(0.0, beta).unwrap();
     model
 }
 
 /// log₁₀ of the sector's modal amplitude at which slip begins.
 fn onset(case: &Blisk, family: usize) -> f64 {
-    let start = case.sector().start_mode(ModeChoice::Index(family)).unwrap();
+    let start = case.sector().select_mode(ModeChoice::Index(family)).unwrap();
     (delta(case) / (start.shape[common::D] - start.shape[common::R]).norm()).log10()
 }
 
@@ -45,26 +45,26 @@ fn run(model: &Model, h: usize, choice: ModeChoice, onset: f64, form: DampingFor
 
 /// Harmonics of the whole wheel from those of its first sector.
 fn spread(x: &[Complex64], engine_order: i64) -> Vec<Complex64> {
-    let mut wheel = Vec::new();
+    let mut full_wheel = Vec::new();
     for (h, block) in x.chunks_exact(NDOF).enumerate() {
         for s in 0..SECTORS {
-            wheel.extend(block.iter().map(|z| z * phase(h, engine_order, s, SECTORS)));
+            full_wheel.extend(block.iter().map(|z| z * phase(h, engine_order, s, SECTORS)));
         }
     }
-    wheel
+    full_wheel
 }
 
 /// Largest errors of ω, of D relative to its maximum and of the harmonics.
-fn compare(sector: &Branch, wheel: &Branch, engine_order: i64) -> (f64, f64, f64) {
+fn compare(sector: &Branch, full_wheel: &Branch, engine_order: i64) -> (f64, f64, f64) {
     let most = damping(sector).iter().fold(0.0_f64, |m, &d| m.max(d));
     let mut worst = (0.0_f64, 0.0_f64, 0.0_f64);
     for (i, times) in TIMES.iter().enumerate() {
-        let ((w, d, p), (ww, dw, pw)) = (only(sector, i), only(wheel, i));
+        let ((w, d, p), (ww, dw, pw)) = (only(sector, i), only(full_wheel, i));
         let errors = (
             (ww / w - 1.0).abs(),
             (dw - d).abs() / most,
             relative_gap(
-                &all_harmonics(wheel, pw),
+                &all_harmonics(full_wheel, pw),
                 &spread(&all_harmonics(sector, p), engine_order),
             ),
         );
@@ -94,9 +94,9 @@ fn at_nodal_diameter_0_the_sector_equals_the_wheel() {
             let sector = run(&damped(&case, beta), h, ModeChoice::Index(family), onset, form);
             // All sectors move alike: the mode of the wheel is named by its frequency.
             let near = ModeChoice::Near(sector.mode().unwrap().omega);
-            let wheel = run(&wheel(&case, beta), h, near, onset + all_sectors(), form);
-            assert_eq!(wheel.mode().unwrap().multiplicity, 1);
-            let worst = compare(&sector, &wheel, 0);
+            let full_wheel = run(&full_wheel(&case, beta), h, near, onset + all_sectors(), form);
+            assert_eq!(full_wheel.mode().unwrap().multiplicity, 1);
+            let worst = compare(&sector, &full_wheel, 0);
             println!("{form:?}, family {family}, β = {beta:e}, H = {h}: {worst:?}");
             assert!(worst.0 < 1e-9 && worst.1 < 1e-9 && worst.2 < 1e-9);
         }
@@ -109,10 +109,16 @@ fn at_nodal_diameter_2_the_double_mode_of_the_wheel_is_followed_as_the_travellin
         let onset = onset(&BASE, 0);
         let sector = run(&damped(&BASE, beta), h, ModeChoice::Index(0), onset, DampingForm::Mass);
         let near = ModeChoice::Near(sector.mode().unwrap().omega);
-        let wheel = run(&wheel(&BASE, beta), h, near, onset + all_sectors(), DampingForm::Mass);
-        let info = wheel.mode().unwrap();
+        let full_wheel = run(
+            &full_wheel(&BASE, beta),
+            h,
+            near,
+            onset + all_sectors(),
+            DampingForm::Mass,
+        );
+        let info = full_wheel.mode().unwrap();
         assert_eq!((info.multiplicity, info.multiple), (2, Multiple::TravellingWave));
-        let worst = compare(&sector, &wheel, 2);
+        let worst = compare(&sector, &full_wheel, 2);
         println!("β = {beta:e}, H = {h}: {worst:?}");
         assert!(worst.0 < 1e-9 && worst.1 < 1e-9 && worst.2 < 1e-7);
     }

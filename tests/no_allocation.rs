@@ -8,28 +8,28 @@ mod common;
 
 use common::{BASE, harmonics};
 use hbvib::aft::Evaluation;
-use hbvib::aft::marched::MarchedWay;
-use hbvib::aft::pointwise::PointwiseEvaluator;
+use hbvib::aft::hysteretic::HystereticEvaluator;
+use hbvib::aft::memoryless::MemorylessEvaluator;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::contact::Contact;
-use hbvib::contact::friction_plane::FrictionPlane;
-use hbvib::contact::pointwise::Pointwise;
-use hbvib::contact::polynomial::Polynomial;
-use hbvib::contact::regularised::TanhFriction;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::laws::regularised::TanhFriction;
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
+use hbvib::contact::memoryless_law::Memoryless;
 use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Metric, Settings};
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::linalg::norm;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{DampingForm, ModeChoice, SolverOptions};
-use hbvib::postprocess::energy::balance;
-use hbvib::problem::forced::Forced;
-use hbvib::problem::mode::{Gauge, LinearMode, Mode};
-use hbvib::problem::{Linearisation, Problem, Start};
+use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
+use hbvib::problem::harmonic_balance::HarmonicBalance;
+use hbvib::problem::{InitialGuess, Linearisation, Problem};
+use hbvib::results::energy::balance;
 use num_complex::Complex64;
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
@@ -108,16 +108,16 @@ fn no_evaluation_allocates(model: &Model) {
         let options = options(highest, samples);
         let omega = TAU * 208.85;
         let condensed = Condensed::new(model, &options, omega).unwrap();
-        let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
         let n = problem.size();
         let mut u = vec![0.0; n];
         let mut at = Linearisation::new(n).unwrap();
-        assert!(problem.start(Start::Stuck, omega, &mut u).unwrap());
+        assert!(problem.start(InitialGuess::Stuck, omega, &mut u).unwrap());
         problem.evaluate(&u, omega, &mut at).unwrap();
         for (name, factor) in [("the same", 1.0), ("another", 1.001)] {
             let (count, ()) = allocations(|| {
                 for k in 0..5 {
-                    // The motion changes too: other reversals, other slips.
+                    // The motion changes too: other turning points, other slips.
                     u[k % n] *= 1.5;
                     let factor = 1.0 + (factor - 1.0) * f64::from(k as u32 + 1);
                     problem.evaluate(&u, omega * factor, &mut at).unwrap();
@@ -147,7 +147,7 @@ fn the_energy_balance_of_a_point_allocates_nothing() {
 #[test]
 fn an_evaluation_of_a_mode_allocates_nothing() {
     let model = BASE.sector();
-    let start = model.start_mode(ModeChoice::Index(0)).unwrap();
+    let start = model.select_mode(ModeChoice::Index(0)).unwrap();
     for form in [DampingForm::Mass, DampingForm::Stiffness] {
         let damped = model.damped_mode(&start, form).unwrap();
         let linear = LinearMode {
@@ -162,17 +162,17 @@ fn an_evaluation_of_a_mode_allocates_nothing() {
         for (highest, samples) in WAYS {
             let options = options(highest, samples);
             let (condensed, _) = Condensed::for_mode(&model, &options, form, &linear.shape).unwrap();
-            let mut problem = Mode::new(&condensed, &gauge, &linear, samples).unwrap();
+            let mut problem = Epmc::new(&condensed, &gauge, &linear, samples).unwrap();
             let n = problem.size();
             let mut u = vec![0.0; n];
             let mut at = Linearisation::new(n).unwrap();
-            assert!(problem.start(Start::Stuck, 0.0, &mut u).unwrap());
+            assert!(problem.start(InitialGuess::Stuck, 0.0, &mut u).unwrap());
             let (onset, _) = problem.linear_up_to(0.0).unwrap();
             // The first evaluation may lay out memory.
             problem.evaluate(&u, onset + 1.0, &mut at).unwrap();
             let (count, ()) = allocations(|| {
                 for k in 0..5 {
-                    // The motion changes too: other reversals, other slips.
+                    // The motion changes too: other turning points, other slips.
                     u[k % n] *= 1.5;
                     problem.evaluate(&u, onset + 0.5 * k as f64, &mut at).unwrap();
                 }
@@ -213,10 +213,10 @@ fn many_contacts_along_a_sweep_allocate_only_where_a_panel_is_laid() {
     let options = options(3, 0);
     let condensed = Condensed::new(&model, &options, 0.8).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = Forced::new(&condensed, 0, (0.8, 0.9), 0, None).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.9), 0, None).unwrap();
     let size = problem.size();
     let mut v = vec![0.0; size + 1];
-    assert!(problem.start(Start::Stuck, 0.8, &mut v[..size]).unwrap());
+    assert!(problem.start(InitialGuess::Stuck, 0.8, &mut v[..size]).unwrap());
     let settings = Settings {
         start: 0.8,
         end: 0.9,
@@ -254,10 +254,10 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
         let options = options(highest, samples);
         let omega = TAU * 208.85;
         let condensed = Condensed::new(&model, &options, omega).unwrap();
-        let mut problem = Forced::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
         let n = problem.size();
         let mut v = vec![0.0; n + 1];
-        assert!(problem.start(Start::Stuck, omega, &mut v[..n]).unwrap());
+        assert!(problem.start(InitialGuess::Stuck, omega, &mut v[..n]).unwrap());
         v[n] = omega;
         let settings = Settings {
             start: omega,
@@ -299,7 +299,7 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
 
 #[test]
 fn evaluating_laws_without_memory_asks_for_none() {
-    let laws: [(&str, Box<dyn Pointwise>); 3] = [
+    let laws: [(&str, Box<dyn Memoryless>); 3] = [
         (
             "polynomial",
             Box::new(Polynomial::tensors(2, &[], &[0.3; 8], &[-0.2; 16]).unwrap()),
@@ -313,7 +313,7 @@ fn evaluating_laws_without_memory_asks_for_none() {
             let set = HarmonicSet::all(highest).unwrap();
             let motion = vec![0.1; law.directions() * set.packed_len()];
             let mut out = Evaluation::new(&set, law.directions()).unwrap();
-            let mut evaluator = PointwiseEvaluator::new(&set, &*law, law.samples(set.highest_reduced(), 0)).unwrap();
+            let mut evaluator = MemorylessEvaluator::new(&set, &*law, law.samples(set.highest_reduced(), 0)).unwrap();
             let evaluation = || evaluator.evaluate(&*law, &set, 1.1, &motion, &mut out).unwrap();
             let (count, ()) = allocations(evaluation);
             assert_eq!(count, 0, "{name}, H = {highest}");
@@ -362,7 +362,7 @@ fn a_callback_with_states_is_asked_without_memory() {
         ..User::new(Arc::new(Creep), 1, 0).unwrap()
     };
     let motion: Vec<f64> = (0..11).map(|i| (0.7 + f64::from(i)).sin()).collect();
-    let mut way = MarchedWay::new(&set, &law, 256).unwrap();
+    let mut way = HystereticEvaluator::new(&set, &law, 256).unwrap();
     let mut out = Evaluation::new(&set, 1).unwrap();
     let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out));
     result.unwrap();
@@ -379,7 +379,7 @@ fn a_law_marched_over_samples_asks_for_no_memory() {
     let set = HarmonicSet::all(5).unwrap();
     // With separation, with slip alone, and stuck.
     for load in [0.4, 4.0, 1e3] {
-        let law = FrictionPlane {
+        let law = Friction3d {
             kt: 1.3,
             kn: 0.9,
             mu: 0.4,
@@ -387,7 +387,7 @@ fn a_law_marched_over_samples_asks_for_no_memory() {
             has_normal: true,
         };
         let motion: Vec<f64> = (0..33).map(|i| (0.7 + f64::from(i)).sin()).collect();
-        let mut way = MarchedWay::new(&set, &law, 128).unwrap();
+        let mut way = HystereticEvaluator::new(&set, &law, 128).unwrap();
         let mut out = Evaluation::new(&set, 3).unwrap();
         let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out));
         result.unwrap();
@@ -417,7 +417,7 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
         let dof = |k: usize| Some(3 * body + k);
         let preload = [1e3, 1.0, 0.3, 1.0, 0.2][body];
         let contact = if body % 2 == 0 {
-            Contact::friction_plane([dof(0), dof(1), dof(2)], [None; 3], (0.7, 0.9), 0.3, preload)
+            Contact::friction_3d([dof(0), dof(1), dof(2)], [None; 3], (0.7, 0.9), 0.3, preload)
         } else {
             Contact::friction([dof(0), dof(2)], [None; 2], (0.7, 0.9), 0.3, preload)
         };
@@ -436,10 +436,10 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
     let options = options(5, 0);
     let condensed = Condensed::new(&model, &options, omega).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = Forced::new(&condensed, 0, (omega, 1.1 * omega), 0, None).unwrap();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (omega, 1.1 * omega), 0, None).unwrap();
     let size = problem.size();
     let mut v = vec![0.0; size + 1];
-    problem.start(Start::Reference, omega, &mut v[..size]).unwrap();
+    problem.start(InitialGuess::Reference, omega, &mut v[..size]).unwrap();
     let settings = Settings {
         start: omega,
         end: 1.1 * omega,

@@ -5,9 +5,9 @@ mod common;
 mod refusal;
 
 use common::{all_harmonics, harmonics, relative_gap, slip, solve_at};
+use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::patch::Patch;
-use hbvib::contact::polynomial::Polynomial;
-use hbvib::contact::sides::Frame;
+use hbvib::contact::relative_motion::Frame;
 use hbvib::contact::{Contact, ContactKind, Role};
 use hbvib::error::Status;
 use hbvib::linalg::matrix_view::MatrixView;
@@ -113,7 +113,7 @@ const STRAIGHT: Rotation = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 #[test]
 fn a_patch_is_its_contacts_added_one_by_one() {
-    for kind in [ContactKind::Friction, ContactKind::FrictionPlane] {
+    for kind in [ContactKind::Friction2d, ContactKind::Friction3d] {
         let law = law(kind);
         let (mut at_once, mut one_by_one) = (nodes(&STRAIGHT), nodes(&STRAIGHT));
         assert_eq!(at_once.add_patch(&patch(&law, &NORMALS, Some(&TANGENTS))).unwrap(), 0);
@@ -147,7 +147,7 @@ fn a_patch_is_its_contacts_added_one_by_one() {
 #[test]
 fn a_patch_that_turns_with_its_structure_gives_the_response_that_turns() {
     let axis = [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0];
-    for kind in [ContactKind::Friction, ContactKind::FrictionPlane] {
+    for kind in [ContactKind::Friction2d, ContactKind::Friction3d] {
         let law = law(kind);
         let mut straight = nodes(&STRAIGHT);
         straight.add_patch(&patch(&law, &NORMALS, Some(&TANGENTS))).unwrap();
@@ -174,7 +174,7 @@ fn a_patch_that_turns_with_its_structure_gives_the_response_that_turns() {
 
 #[test]
 fn friction_in_a_plane_does_not_mind_which_tangents_are_chosen() {
-    let law = law(ContactKind::FrictionPlane);
+    let law = law(ContactKind::Friction3d);
     let turned = [[-3.0, 1.6, -1.2], [2.0, 5.0, -1.0]];
     let solve = |tangent| {
         let mut model = nodes(&STRAIGHT);
@@ -193,7 +193,7 @@ fn friction_in_a_plane_does_not_mind_which_tangents_are_chosen() {
 fn pairs_without_area_have_no_force_whatever_presses_on_them() {
     let mut jenkins = Contact::jenkins(0, None, 2.0, 0.4, f64::INFINITY);
     jenkins.gap = 0.0;
-    for law in [law(ContactKind::Friction), law(ContactKind::FrictionPlane), jenkins] {
+    for law in [law(ContactKind::Friction2d), law(ContactKind::Friction3d), jenkins] {
         let patch = Patch {
             area: &[0.0, 0.0],
             pressure: None,
@@ -218,7 +218,7 @@ fn rejects(case: &Patch<'_>, status: Status, words: &[&str]) {
 
 #[test]
 fn arrays_of_another_length_are_refused_by_name() {
-    let law = law(ContactKind::Friction);
+    let law = law(ContactKind::Friction2d);
     let good = patch(&law, &NORMALS, Some(&TANGENTS));
     let (dof_b, normal) = (Some(&NODES[..1]), &NORMALS[..1]);
     let (tangent, area) = (Some(&TANGENTS[..0]), &[1.0; 3]);
@@ -236,7 +236,7 @@ fn arrays_of_another_length_are_refused_by_name() {
 
 #[test]
 fn bad_entries_are_refused_by_number_and_the_law_by_itself() {
-    let law = law(ContactKind::Friction);
+    let law = law(ContactKind::Friction2d);
     let good = patch(&law, &NORMALS, Some(&TANGENTS));
     let dof_a = &[NODES[0], [Some(3), Some(4), Some(6)]];
     rejects(

@@ -6,13 +6,13 @@ mod pointwise;
 #[path = "common/stencil.rs"]
 mod stencil;
 
-use hbvib::aft::pointwise::PointwiseEvaluator;
-use hbvib::contact::pointwise::Pointwise;
-use hbvib::contact::polynomial::Polynomial;
-use hbvib::contact::regularised::TanhFriction;
-use hbvib::contact::user::User;
+use hbvib::aft::memoryless::MemorylessEvaluator;
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::laws::regularised::TanhFriction;
+use hbvib::contact::laws::user_law::User;
+use hbvib::contact::memoryless_law::Memoryless;
 use hbvib::error::Status;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
 use pointwise::{
     coupled, dense, evaluate, evaluate_at, gap, largest, mixed, motion, pendulum, quintic, refused, sets, suits, term,
     van_der_pol,
@@ -21,7 +21,7 @@ use std::f64::consts::TAU;
 use stencil::Stencil;
 
 /// Every kind of law, with motions and velocities, odd and not.
-fn laws() -> Vec<(&'static str, Box<dyn Pointwise>)> {
+fn laws() -> Vec<(&'static str, Box<dyn Memoryless>)> {
     vec![
         ("van der Pol", Box::new(van_der_pol())),
         ("quintic", Box::new(quintic())),
@@ -71,7 +71,7 @@ fn half_a_turn_serves_odd_motions() {
     let odd = HarmonicSet::excited(&[1], 7, true, true, false).unwrap();
     let all = HarmonicSet::all(7).unwrap();
     for law in [
-        &van_der_pol() as &dyn Pointwise,
+        &van_der_pol() as &dyn Memoryless,
         &quintic(),
         &TanhFriction::new(0.7, 0.4).unwrap(),
     ] {
@@ -146,7 +146,7 @@ fn regularised_friction_is_that_of_dense_sampling_as_exactly_as_its_samples_prom
 fn units_of_length_do_not_matter_and_those_of_an_eased_law_are_smaller() {
     let length = 1.0 / 256.0;
     let set = HarmonicSet::all(5).unwrap();
-    let easing = |law: &dyn Fn(f64) -> Box<dyn Pointwise>| {
+    let easing = |law: &dyn Fn(f64) -> Box<dyn Memoryless>| {
         let d = law(1.0).directions();
         let x = motion(&set, d, 3);
         let scaled: Vec<f64> = x.iter().map(|x| length * x).collect();
@@ -236,14 +236,14 @@ fn bad_constants_are_refused_by_name() {
     let few = User::new(force, 2, 8).unwrap();
     let set = HarmonicSet::all(4).unwrap();
     refused(
-        &PointwiseEvaluator::new(&set, &few, few.samples(4, 0)),
+        &MemorylessEvaluator::new(&set, &few, few.samples(4, 0)),
         Status::Argument,
         &["samples = 8", "at least 9"],
     );
     for samples in [usize::MAX, usize::MAX / 2, 1 << 58] {
         let many = User { samples, ..few.clone() };
         refused(
-            &PointwiseEvaluator::new(&set, &many, samples),
+            &MemorylessEvaluator::new(&set, &many, samples),
             Status::OutOfMemory,
             &["samples"],
         );

@@ -4,10 +4,10 @@
 mod pointwise;
 
 use hbvib::aft::{Evaluation, Evaluator};
-use hbvib::contact::pointwise::Pointwise;
-use hbvib::contact::polynomial::Polynomial;
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::memoryless_law::Memoryless;
 use hbvib::contact::{Contact, Law};
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
 use pointwise::{
     at_one_time, coupled, dense, evaluate, evaluate_with, gap, largest, mixed, motion, quintic, sets, suits, tensor,
     term, van_der_pol,

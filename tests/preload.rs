@@ -50,7 +50,7 @@ fn contacts(preload: f64) -> [(Contact, usize); 2] {
             1,
         ),
         (
-            Contact::friction_plane([Some(0), Some(1), Some(2)], ground, (KT, KN), MU, preload),
+            Contact::friction_3d([Some(0), Some(1), Some(2)], ground, (KT, KN), MU, preload),
             2,
         ),
     ]

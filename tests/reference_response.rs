@@ -6,7 +6,7 @@ use common::{BASE, Blisk, NDOF, all_harmonics, complex, data, harmonics, number,
 use hbvib::error::Status;
 use std::f64::consts::TAU;
 
-fn highest_peak(branch: &hbvib::branch::Branch) -> hbvib::branch::Special {
+fn highest_peak(branch: &hbvib::results::Branch) -> hbvib::results::Special {
     let peaks = branch.peaks();
     assert!(!peaks.is_empty());
     peaks

@@ -21,10 +21,10 @@ mod rest;
 
 use common::{all_harmonics, harmonics, relative_gap};
 use hbvib::analysis::{forced_response, time_response};
-use hbvib::branch::Branch;
 use hbvib::error::{Error, Status};
 use hbvib::hooks::Hooks;
 use hbvib::options::{ForcedOptions, SolverOptions, TimeOptions};
+use hbvib::results::Branch;
 use law::LAWS;
 use num_complex::Complex64;
 use problem::{Case, Known};
@@ -62,14 +62,14 @@ fn cold_start(case: &Case, solver: &SolverOptions) -> (Result<Branch, Error>, St
         omega_stop: case.omega,
         ..ForcedOptions::default()
     };
-    let mut told = String::new();
-    let mut log = |_, line: &str| told = line.to_string();
+    let mut reported = String::new();
+    let mut log = |_, line: &str| reported = line.to_string();
     let mut hooks = Hooks {
         log: Some(&mut log),
         ..Hooks::default()
     };
     let found = forced_response(&case.model(), solver, &range, &mut hooks);
-    (found, told)
+    (found, reported)
 }
 
 /// Samples with which an answer is sought again that its own samples leave above the bound.
@@ -96,8 +96,8 @@ fn holds_with_more_samples(case: &Case, x: &[Complex64]) -> bool {
 /// Which laws a case has.
 fn laws_of(case: &Case) -> [bool; LAWS.len()] {
     let mut has = [false; LAWS.len()];
-    for placed in &case.contacts {
-        has[placed.law.number()] = true;
+    for assembled in &case.contacts {
+        has[assembled.law.number()] = true;
     }
     has
 }
@@ -155,17 +155,17 @@ fn cold_starts_converge_to_solutions() {
                 converged += usize::from(is_bounded);
                 let x = all_harmonics(&branch, 0);
                 let r = Residual::of(&case, &x, BOUND);
-                let told = branch.sampling_error()[0] * r.contacts;
+                let reported = branch.sampling_error()[0] * r.contacts;
                 if r.size > worst.0 {
                     worst = (r.size, number);
                 }
                 let strict = r.size <= BOUND || r.size <= 2.0 * r.change;
                 // What the samples of a law leave must be told by the branch, and go with more of them.
-                let of_samples = !strict && r.size <= 2.0 * told && holds_with_more_samples(&case, &x);
+                let of_samples = !strict && r.size <= 2.0 * reported && holds_with_more_samples(&case, &x);
                 sampled += usize::from(of_samples);
                 if !is_bounded || !(strict || of_samples) {
                     wrong.push(format!(
-                        "{number}: {:?} {laws:?} n {} {r:?} told {told:.1e} status {:?}",
+                        "{number}: {:?} {laws:?} n {} {r:?} told {reported:.1e} status {:?}",
                         case.known,
                         case.n,
                         branch.status()

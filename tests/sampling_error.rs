@@ -5,7 +5,7 @@ mod common;
 
 use common::{all_harmonics, relative_gap, solve_at};
 use hbvib::analysis::contact_evaluate;
-use hbvib::contact::polynomial::Polynomial;
+use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
@@ -82,7 +82,7 @@ fn the_check_tells_the_size_of_the_error_of_sampling_and_falls_with_it() {
         ("friction", Contact::jenkins(0, None, 1.0, 0.5, 0.6), 0),
         (
             "friction in a plane",
-            Contact::friction_plane(plane, stop, (1.0, 0.9), 0.4, 0.5),
+            Contact::friction_3d(plane, stop, (1.0, 0.9), 0.4, 0.5),
             1 << 16,
         ),
         (

@@ -89,8 +89,8 @@ fn without_damping_friction_bounds_the_free_resonance() {
 /// Closed form: a square wave of height fc carries at most 4 fc/π in its fundamental.
 #[test]
 fn beyond_the_capacity_of_friction_no_solution_is_made_up() {
-    let capacity = 4.0 * 0.3 / std::f64::consts::PI;
-    let model = Oscillator { c: 0.0, ..BASE }.model(&[(1, 1.05 * capacity)]);
+    let slip_capacity = 4.0 * 0.3 / std::f64::consts::PI;
+    let model = Oscillator { c: 0.0, ..BASE }.model(&[(1, 1.05 * slip_capacity)]);
     let found = solve(&model, 1.0, 9, false);
     assert!(found.is_err_and(|e| e.status == Status::NoBoundedSolution));
 }

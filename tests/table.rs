@@ -4,15 +4,15 @@
 #[path = "common/stencil.rs"]
 mod stencil;
 
-use hbvib::aft::exact::Exact;
-use hbvib::aft::sampled::Sampled;
+use hbvib::aft::piecewise_exact::Exact;
+use hbvib::aft::piecewise_sampled::Sampled;
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::contact::Contact;
-use hbvib::contact::law::{Law, Piece, Pieces};
-use hbvib::contact::table::Table;
+use hbvib::contact::law::{Law, Piece, PiecewiseLinear};
+use hbvib::contact::laws::table::Table;
 use hbvib::error::Status;
-use hbvib::fourier::Reversals;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
+use hbvib::fourier::TurningPoints;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 use stencil::{Stencil, config};
@@ -222,12 +222,12 @@ fn a_symmetric_table_is_odd_and_half_a_turn_tells_it() {
 
 #[test]
 fn constants_at_rest_and_at_large() {
-    assert!(play().stiffness_at_rest().abs() < 1e-15);
+    assert!(play().stiffness_at_small_motion().abs() < 1e-15);
     assert!((play().largest_stiffness() - 5.0).abs() < 1e-12);
     assert!((crooked().largest_stiffness() - 6.5).abs() < 1e-12);
     // A point at zero: the mean of both slopes, which a small motion about it feels.
     let kink = Table::new(&[-1.0, 0.0, 1.0], &[-3.0, 0.0, 1.0]).unwrap();
-    assert!((kink.stiffness_at_rest() - 2.0).abs() < 1e-15);
+    assert!((kink.stiffness_at_small_motion() - 2.0).abs() < 1e-15);
     let set = HarmonicSet::excited(&[1], 1, true, false, false).unwrap();
     let out = evaluate(&kink, &set, &[0.0, 0.3, 0.4]);
     assert!((out.force[1] - 0.6).abs() < 1e-14 && (out.force[2] - 0.8).abs() < 1e-14);
@@ -300,9 +300,9 @@ fn a_motion_that_rests_or_just_touches_a_point_meets_no_gap() {
             for nudge in [0.0, 1e-16, -1e-16, 1e-12, -1e-12] {
                 x[1] = swing + nudge;
                 let mut pieces: Vec<Piece> = Vec::new();
-                let mut reversals = Vec::new();
-                Reversals::new(&set).unwrap().find(&set, &x, &mut reversals);
-                law.pieces(&set, &x, &reversals, &mut pieces);
+                let mut turning_points = Vec::new();
+                TurningPoints::new(&set).unwrap().find(&set, &x, &mut turning_points);
+                law.pieces(&set, &x, &turning_points, &mut pieces);
                 let covered: f64 = pieces.iter().map(|p| p.end - p.start).sum();
                 assert!((covered - TAU).abs() < 1e-12, "mean {mean}, swing {swing}: {covered}");
                 assert!(pieces.windows(2).all(|p| (p[0].end - p[1].start).abs() < 1e-15));

@@ -293,7 +293,7 @@ fn all_harmonics_of_a_point_and_its_events_are_those_of_the_whole_wheel_in_time(
 fn a_sector_in_its_wave_is_the_wheel_as_a_plain_structure() {
     let omega = TAU * 208.85;
     let sector = BASE.sector();
-    let wheel = BASE.wheel();
+    let full_wheel = BASE.full_wheel();
     let found = solve(&sector, &at(omega));
     let mut start = Vec::new();
     for (h, x) in found.harmonics.chunks_exact(4).enumerate() {
@@ -302,7 +302,7 @@ fn a_sector_in_its_wave_is_the_wheel_as_a_plain_structure() {
         }
     }
     let all = solve(
-        &wheel,
+        &full_wheel,
         &TimeOptions {
             start: Some(&start),
             ..at(omega)
@@ -318,11 +318,15 @@ fn a_sector_in_its_wave_is_the_wheel_as_a_plain_structure() {
 #[ignore = "takes minutes: 216 sensitivities over hundreds of periods"]
 fn the_wheel_comes_into_the_wave_from_rest() {
     let omega = TAU * 208.85;
-    let (wheel, sector) = (solve(&BASE.wheel(), &at(omega)), solve(&BASE.sector(), &at(omega)));
-    let first: Vec<Complex64> = wheel.harmonics.chunks_exact(96).flat_map(|x| x[..4].to_vec()).collect();
+    let (full_wheel, sector) = (solve(&BASE.full_wheel(), &at(omega)), solve(&BASE.sector(), &at(omega)));
+    let first: Vec<Complex64> = full_wheel
+        .harmonics
+        .chunks_exact(96)
+        .flat_map(|x| x[..4].to_vec())
+        .collect();
     // The ring may rest anywhere around the wheel.
     let error = relative_gap(&first[4..], &sector.harmonics[4..]);
-    println!("{error:.1e}, {} periods", wheel.periods);
+    println!("{error:.1e}, {} periods", full_wheel.periods);
     assert!(error < 1e-10);
 }
 

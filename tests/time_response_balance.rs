@@ -135,8 +135,8 @@ fn matrices_per_nodal_diameter_give_the_same_motion() {
 fn a_wave_is_the_motion_of_the_whole_wheel() {
     let engine_order = 8;
     let model = sector(engine_order, 1, false);
-    let mut wheel = Wheel::new(N, SECTORS);
-    wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
+    let mut full_wheel = Wheel::new(N, SECTORS);
+    full_wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
     let tied = |own: [f64; 9], next: [f64; 9]| {
         let (mut own, mut next) = (own, next);
         own[4] += 0.3;
@@ -145,21 +145,21 @@ fn a_wave_is_the_motion_of_the_whole_wheel() {
         (own, next)
     };
     let (own, next) = tied(STIFFNESS, STIFFNESS_NEXT);
-    wheel.set(MatrixKind::Stiffness, &own, Some(&next), None);
-    wheel.set(
+    full_wheel.set(MatrixKind::Stiffness, &own, Some(&next), None);
+    full_wheel.set(
         MatrixKind::Damping,
         &DAMPING,
         Some(&DAMPING_NEXT),
         Some(&DAMPING_PREVIOUS),
     );
     for contact in contacts(1) {
-        wheel.add_contact(&contact);
+        full_wheel.add_contact(&contact);
     }
     for (dof, re, im) in FORCES {
-        wheel.add_force(dof, 1, Complex64::new(re, im), engine_order);
+        full_wheel.add_force(dof, 1, Complex64::new(re, im), engine_order);
     }
     let wave = in_time(&model, 2.3, 5, None);
-    let all = in_time(&wheel.model, 2.3, 5, None);
+    let all = in_time(&full_wheel.model, 2.3, 5, None);
     let first: Vec<Complex64> = all
         .harmonics
         .chunks_exact(N * SECTORS)

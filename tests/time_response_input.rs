@@ -1,4 +1,4 @@
-//! What a response in time refuses, and how a host stops it.
+//! What a response in time refuses, and how a caller stops it.
 
 mod common;
 #[path = "common/refusal.rs"]
@@ -6,7 +6,7 @@ mod refusal;
 
 use common::BASE;
 use hbvib::analysis::time_response::time_response;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
 use hbvib::hooks::{Hooks, Progress};
@@ -138,7 +138,7 @@ fn motions_without_mass_and_complex_matrices_are_refused() {
 fn laws_that_are_not_integrated_are_refused_by_name() {
     let mut model = two_masses(&[1.0, 0.0, 0.0, 1.0]);
     model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
-    let plane = Contact::friction_plane([Some(0), Some(1), None], [None; 3], (1.0, 0.0), 0.3, 1.0);
+    let plane = Contact::friction_3d([Some(0), Some(1), None], [None; 3], (1.0, 0.0), 0.3, 1.0);
     model.add_contact(&plane).unwrap();
     refused(
         time_response(&model, &options(), &mut Hooks::default()),
@@ -159,7 +159,7 @@ fn laws_that_are_not_integrated_are_refused_by_name() {
     );
 }
 
-/// A law of the host with states, refused before it is asked.
+/// A law of the caller with states, refused before it is asked.
 struct NotAsked;
 
 impl UserForce for NotAsked {

@@ -6,9 +6,9 @@ mod common;
 mod laws_in_time;
 
 use common::relative_gap;
-use hbvib::contact::polynomial::{Monomial, Polynomial};
-use hbvib::contact::table::Table;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
+use hbvib::contact::laws::table::Table;
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Status;
 use hbvib::options::TimeOptions;
@@ -74,7 +74,7 @@ fn tensor() -> Polynomial {
     Polynomial::tensors(2, &linear, &quadratic, &cubic).unwrap()
 }
 
-/// The same force of the host, told by the polynomial's terms one by one; and what it was asked.
+/// The same force of the caller, told by the polynomial's terms one by one; and what it was asked.
 struct Host;
 
 impl UserForce for Host {
@@ -95,10 +95,10 @@ impl UserForce for Host {
 #[test]
 fn smooth_laws_over_several_motions_are_what_harmonic_balance_tends_to() {
     let forces = [(0, 1, 1.0.into()), (2, 2, 0.4.into())];
-    let host = User::new(Arc::new(Host), 2, 1024).unwrap();
+    let caller = User::new(Arc::new(Host), 2, 1024).unwrap();
     for (name, kind) in [
         ("tensor", ContactKind::Polynomial(tensor())),
-        ("host", ContactKind::User(host)),
+        ("host", ContactKind::User(caller)),
     ] {
         let model = slanted(&[Contact::over(vec![2, 0], kind)], &forces);
         for omega in [0.5, 1.4] {
@@ -151,7 +151,7 @@ fn laws_with_and_without_events_are_followed_together() {
     assert!(truth.periods <= 12);
 }
 
-/// A host that refuses motions beyond a size, or all of them.
+/// A caller that refuses motions beyond a size, or all of them.
 struct Refusing {
     beyond: f64,
     code: i32,

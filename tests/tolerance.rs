@@ -8,7 +8,6 @@ mod peers;
 
 use common::{B2, BASE, Blisk, all_harmonics, data, harmonics, one_mass, relative_gap, slip, solve_at, sweep};
 use hbvib::analysis::{forced_response, synthesise};
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -17,6 +16,7 @@ use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -5,7 +5,6 @@ mod common;
 
 use common::{all_harmonics, harmonics, solve_at};
 use hbvib::analysis::{contact_evaluate, forced_response, nonlinear_mode};
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -13,6 +12,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, ModeOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

@@ -2,8 +2,7 @@
 //! points found, and no number that is not finite comes out.
 
 use hbvib::analysis::{forced_response, nonlinear_mode};
-use hbvib::branch::Branch;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
@@ -11,6 +10,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -24,13 +24,13 @@ enum Failure {
 }
 
 /// f = u³ and v/10, which fails at call `at` (from 0), from there on if `forever`, and where |u| exceeds
-/// `reach`.
+/// `cutoff`.
 struct Frail {
     calls: AtomicUsize,
     at: usize,
     forever: bool,
     failure: Failure,
-    reach: f64,
+    cutoff: f64,
 }
 
 impl Frail {
@@ -40,7 +40,7 @@ impl Frail {
             at,
             forever,
             failure,
-            reach: f64::INFINITY,
+            cutoff: f64::INFINITY,
         }
     }
 }
@@ -52,7 +52,7 @@ impl UserForce for Frail {
         for j in 0..call.samples {
             let (u, v) = (call.u[j], call.v[j]);
             assert!(u.is_finite() && v.is_finite());
-            far |= u.abs() > self.reach;
+            far |= u.abs() > self.cutoff;
             call.f[j] = u * u * u + 0.1 * v;
             call.df_du[j] = 3.0 * u * u;
             call.df_dv[j] = 0.1;
@@ -222,7 +222,7 @@ fn a_failure_that_stays_ends_in_bounded_time_with_its_reason() {
             assert!(e.message().contains(word), "{e}");
             // Beyond a motion that the force does not know, the branch ends just before.
             let frail = Arc::new(Frail {
-                reach: 0.5,
+                cutoff: 0.5,
                 ..Frail::new(usize::MAX, false, failure)
             });
             let branch = analysis(&frail).unwrap();

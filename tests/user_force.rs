@@ -1,15 +1,15 @@
-//! Callbacks of the host as laws: what they are asked, what they may answer.
+//! Callbacks of the caller as laws: what they are asked, what they may answer.
 
 #[path = "common/pointwise.rs"]
 mod pointwise;
 
 use hbvib::aft::Evaluation;
-use hbvib::aft::pointwise::PointwiseEvaluator;
-use hbvib::contact::pointwise::{Pointwise, automatic_samples};
-use hbvib::contact::polynomial::Polynomial;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::aft::memoryless::MemorylessEvaluator;
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
+use hbvib::contact::memoryless_law::{Memoryless, automatic_samples};
 use hbvib::error::Status;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
 use pointwise::{Pendulum, dense, evaluate, gap, motion, pendulum, refused};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -21,7 +21,7 @@ fn a_callback_gives_the_harmonics_of_dense_sampling_and_is_called_once_per_perio
     let x = motion(&set, 2, 1);
     let omega = 0.7;
     let mut out = Evaluation::new(&set, 2).unwrap();
-    let mut evaluator = PointwiseEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
+    let mut evaluator = MemorylessEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
     for _ in 0..3 {
         evaluator.evaluate(&law, &set, omega, &x, &mut out).unwrap();
     }
@@ -89,7 +89,7 @@ fn a_callback_that_is_a_polynomial_gives_its_harmonics() {
         }
     }
     let nowhere = User { directions: 0, ..law };
-    let refusal = PointwiseEvaluator::new(&HarmonicSet::all(1).unwrap(), &nowhere, 64);
+    let refusal = MemorylessEvaluator::new(&HarmonicSet::all(1).unwrap(), &nowhere, 64);
     refused(&refusal, Status::Argument, &["directions = 0"]);
 }
 
@@ -126,7 +126,7 @@ fn failures_of_a_callback_keep_its_code_and_name_the_place() {
     let answer = |force: Failing, x: &[f64]| {
         let law = User::new(Arc::new(force), 2, 0).unwrap();
         let mut out = Evaluation::new(&set, 2).unwrap();
-        let mut evaluator = PointwiseEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
+        let mut evaluator = MemorylessEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
         evaluator.evaluate(&law, &set, 1.0, x, &mut out).map(|()| out)
     };
     let error = |force: Failing| answer(force, &x).expect_err("a failure");

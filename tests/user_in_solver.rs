@@ -1,10 +1,9 @@
-//! Forces of the host inside the analyses: equal to the library's own laws, with states, with a force at
+//! Forces of the caller inside the analyses: equal to the library's own laws, with states, with a force at
 //! rest, with wrong tangents.
 
 use hbvib::analysis::{Tangent, check_jacobian, forced_response, nonlinear_mode};
-use hbvib::branch::Branch;
-use hbvib::contact::polynomial::Polynomial;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
@@ -12,6 +11,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, ModeOptions, SolverOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -77,13 +77,13 @@ fn over(law: User) -> Contact {
 
 /// f = at_rest + u + 0.8 u³ + 0.1 u² v with lengths and forces in a unit, and tangents times a factor.
 struct Curved {
-    at_rest: f64,
+    static_force: f64,
     tangents: f64,
     unit: f64,
 }
 
 const RIGHT: Curved = Curved {
-    at_rest: 0.0,
+    static_force: 0.0,
     tangents: 1.0,
     unit: 1.0,
 };
@@ -93,7 +93,7 @@ impl UserForce for Curved {
         for j in 0..call.samples {
             let (u, v) = (call.u[j] / self.unit, call.v[j] / self.unit);
             assert!(u.is_finite() && v.is_finite());
-            call.f[j] = self.at_rest + self.unit * (u + 0.8 * u * u * u + 0.1 * u * u * v);
+            call.f[j] = self.static_force + self.unit * (u + 0.8 * u * u * u + 0.1 * u * u * v);
             call.df_du[j] = self.tangents * (1.0 + 2.4 * u * u + 0.2 * u * v);
             call.df_dv[j] = self.tangents * 0.1 * u * u;
         }
@@ -110,7 +110,7 @@ fn curved(force: Curved, odd: bool) -> User {
 
 /// The same as the library's own.
 fn polynomial() -> Contact {
-    use hbvib::contact::polynomial::Monomial;
+    use hbvib::contact::laws::polynomial::Monomial;
     let term = |coefficient, displacements: &'static [u32], velocities: &'static [u32]| Monomial {
         direction: 0,
         coefficient,
@@ -248,21 +248,27 @@ fn a_slider_with_a_state_responds_like_the_librarys_own() {
 #[test]
 fn a_force_at_rest_is_a_constant_load() {
     let solver = SolverOptions::default().fixed();
-    let loaded = Curved { at_rest: 0.7, ..RIGHT };
+    let loaded = Curved {
+        static_force: 0.7,
+        ..RIGHT
+    };
     let a = respond(&model(&over(curved(loaded, false)), 0.0), &solver).unwrap();
     let b = respond(&model(&over(curved(RIGHT, false)), -0.7), &solver).unwrap();
     println!("apart {:.1e}", apart(&a, &b));
     assert!(apart(&a, &b) < 1e-9);
     // A load this large has no start near the unloaded structure.
     let heavy = Curved {
-        at_rest: -30.0,
+        static_force: -30.0,
         ..RIGHT
     };
     let a = respond(&model(&over(curved(heavy, false)), 0.0), &solver).unwrap();
     let b = respond(&model(&over(curved(RIGHT, false)), 30.0), &solver).unwrap();
     assert!(apart(&a, &b) < 1e-9);
 
-    let loaded = || Curved { at_rest: 0.7, ..RIGHT };
+    let loaded = || Curved {
+        static_force: 0.7,
+        ..RIGHT
+    };
     let range = ModeOptions {
         log10_start: -3.0,
         log10_stop: 0.0,

@@ -5,7 +5,6 @@ mod common;
 
 use common::{B2, BASE, Blisk, Wheel, all_harmonics, complex, data, number, phase, relative_gap, sweep};
 use hbvib::analysis::{Verification, estimate_at, time_response, verify};
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -13,6 +12,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{SolverOptions, SteadyMethod, TimeOptions, VerifyOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -325,7 +325,7 @@ fn sector_and_wheel() -> (Model, Model) {
     let mut across = Contact::jenkins(0, Some(1), 1.5, 0.5, 0.4);
     across.sector_offset = 1;
     let mut sector = Model::cyclic(2, SECTORS).unwrap();
-    let mut wheel = Wheel::new(2, SECTORS);
+    let mut full_wheel = Wheel::new(2, SECTORS);
     for (which, a, coupling) in [
         (MatrixKind::Mass, mass, None),
         (MatrixKind::Damping, damping, None),
@@ -335,24 +335,24 @@ fn sector_and_wheel() -> (Model, Model) {
         if let Some(next) = coupling {
             sector.set_coupling(which, &MatrixView::dense(2, &next)).unwrap();
         }
-        wheel.set(which, &a, coupling.as_ref().map(<[f64; 4]>::as_slice), None);
+        full_wheel.set(which, &a, coupling.as_ref().map(<[f64; 4]>::as_slice), None);
     }
     sector.set_wave(1);
     sector.add_contact(&across).unwrap();
-    wheel.add_contact(&across);
+    full_wheel.add_contact(&across);
     sector.add_force(1, 1, 0.5.into()).unwrap();
-    wheel.add_force(1, 1, 0.5.into(), 1);
-    (sector, wheel.model)
+    full_wheel.add_force(1, 1, 0.5.into(), 1);
+    (sector, full_wheel.model)
 }
 
 #[test]
 fn a_sector_in_its_wave_has_the_errors_of_the_whole_wheel() {
-    let (sector, wheel) = sector_and_wheel();
+    let (sector, full_wheel) = sector_and_wheel();
     let solver = SolverOptions {
         response_dof: Some(1),
         ..options(7)
     };
-    let [one, all] = [&sector, &wheel].map(|model| {
+    let [one, all] = [&sector, &full_wheel].map(|model| {
         let branch = sweep(model, &solver, 1.9, 1.9, &[]);
         checked(model, &branch, 0)
     });

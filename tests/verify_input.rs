@@ -4,7 +4,6 @@ mod common;
 
 use common::{BASE, Blisk, sweep};
 use hbvib::analysis::{nonlinear_mode, verify};
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::{Error, Status};
 use hbvib::hooks::Hooks;
@@ -12,6 +11,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeOptions, SolverOptions, SteadyMethod, VerifyOptions};
+use hbvib::results::Branch;
 use std::f64::consts::TAU;
 
 /// Where the blisk slips.

@@ -47,7 +47,7 @@ pub fn run(data: &Path, folder: &Path, screen: &mut impl Write) -> Outcome {
 fn diameters(sector: &Sector, folder: &Path, screen: &mut impl Write) -> Outcome {
     let states = [
         ("no contact", Interface::Absent, ContactState::Free, Style::Markers),
-        ("stuck", Interface::Friction, ContactState::Stuck, Style::Line),
+        ("stuck", Interface::Friction2d, ContactState::Stuck, Style::Line),
     ];
     let highest = SECTORS / 2;
     let mut bar = Bar::new("natural frequencies", (states.len() * (highest + 1)) as u64);

@@ -91,7 +91,7 @@ pub enum Interface {
     /// The normal springs.
     Springs,
     /// The normal springs, and friction.
-    Friction,
+    Friction2d,
 }
 
 /// A sector as read.
@@ -146,7 +146,7 @@ impl Sector {
             let springs: Vec<Spring> = self.pairs.iter().map(|p| p.normal).collect();
             model.add_springs(&springs)?;
         }
-        if interface == Interface::Friction {
+        if interface == Interface::Friction2d {
             let contacts: Vec<Contact> = self.pairs.iter().flat_map(|p| p.friction.clone()).collect();
             model.add_contacts(&contacts)?;
         }
@@ -159,7 +159,7 @@ impl Sector {
     ///
     /// Those of the library.
     pub fn forced(&self, force: f64) -> hbvib::error::Result<Model> {
-        let mut model = self.model(Interface::Friction)?;
+        let mut model = self.model(Interface::Friction2d)?;
         model.add_force(self.size.tip(), 1, Complex64::new(force, 0.0))?;
         Ok(model)
     }

@@ -38,7 +38,7 @@ pub const RANGE: (f64, f64) = (512.0, 548.0);
 /// The text of `--help`.
 pub fn help() -> String {
     format!(
-        "Forced response of a finite-element sector with a friction ring under its rim.\n\n\
+        "HarmonicBalance response of a finite-element sector with a friction ring under its rim.\n\n\
          Without flags: natural frequencies, responses to 0.2 and 2 N and maps of the slip in the contact, as\n\
          CSV, SVG and PNG under target/fe_sector/.\n\
          With flags: one response; what is not given has the value in brackets.\n\n{}",

@@ -167,7 +167,7 @@ impl Beam {
     /// The contacts of the patch: t1 across the beam, t2 along it, n upwards, from the ground to the beam.
     pub fn contacts(&self) -> Result<Vec<Contact>> {
         let (kt, kn) = self.stiffness;
-        let law = Contact::friction_plane([None; 3], [None; 3], (kt, kn), self.friction, self.pressure);
+        let law = Contact::friction_3d([None; 3], [None; 3], (kt, kn), self.friction, self.pressure);
         let spots = self.spots();
         let dofs: Vec<_> = spots.iter().map(|s| [0, 1, 2].map(|k| Some(s.dof + k))).collect();
         let area: Vec<f64> = spots.iter().map(|s| s.area).collect();
@@ -192,10 +192,10 @@ impl Beam {
     }
 
     /// The beam on its lining under the constant load and a vibrating force: `force` across the beam and
-    /// `lift` times that upwards.
-    pub fn forced(&self, force: f64, lift: f64) -> Result<Model> {
+    /// `extend` times that upwards.
+    pub fn forced(&self, force: f64, extend: f64) -> Result<Model> {
         let mut model = self.resting()?;
-        self.excite(&mut model, force, lift)?;
+        self.excite(&mut model, force, extend)?;
         let above = self.elements[1];
         let spots = self.spots();
         let whole: f64 = spots.iter().map(|s| s.area).sum();
@@ -209,9 +209,9 @@ impl Beam {
 
     /// The linear limit for vanishing motion (`sticks`), or for motion so large that friction is nothing
     /// beside it, under the vibrating force: springs in place of the lining.
-    pub fn linear(&self, sticks: bool, force: f64, lift: f64) -> Result<Model> {
+    pub fn linear(&self, sticks: bool, force: f64, extend: f64) -> Result<Model> {
         let mut model = self.sprung(sticks)?;
-        self.excite(&mut model, force, lift)?;
+        self.excite(&mut model, force, extend)?;
         Ok(model)
     }
 
@@ -234,22 +234,22 @@ impl Beam {
         Ok(model)
     }
 
-    fn excite(&self, model: &mut Model, force: f64, lift: f64) -> Result<()> {
+    fn excite(&self, model: &mut Model, force: f64, extend: f64) -> Result<()> {
         let tips = self.tips();
         for &tip in &tips {
             let part = force / tips.len() as f64;
             model.add_force(tip + Z, 1, part.into())?;
-            model.add_force(tip + Y, 1, (lift * part).into())?;
+            model.add_force(tip + Y, 1, (extend * part).into())?;
         }
         Ok(())
     }
 
     /// Work per cycle of the vibrating force, −π Re(F) Im(X) summed over where it acts, for the fundamental
     /// of all degrees of freedom.
-    pub fn work_of_force(&self, fundamental: &[Complex64], force: f64, lift: f64) -> f64 {
+    pub fn work_of_force(&self, fundamental: &[Complex64], force: f64, extend: f64) -> f64 {
         let tips = self.tips();
         let part = force / tips.len() as f64;
-        let one = |tip: &usize| part * (fundamental[tip + Z].im + lift * fundamental[tip + Y].im);
+        let one = |tip: &usize| part * (fundamental[tip + Z].im + extend * fundamental[tip + Y].im);
         -std::f64::consts::PI * tips.iter().map(one).sum::<f64>()
     }
 }

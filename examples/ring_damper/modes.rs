@@ -9,8 +9,8 @@ use std::time::Instant;
 
 use hbvib::analysis::synthesis::SynthesisPeak;
 use hbvib::analysis::synthesise;
-use hbvib::branch::Branch;
 use hbvib::options::{DampingForm, SolverOptions, SynthesisOptions};
+use hbvib::results::Branch;
 
 use crate::backbone::{Backbone, Point, Wanted};
 use crate::csv::write_csv;

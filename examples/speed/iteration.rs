@@ -10,8 +10,8 @@ use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::linalg::bordered::Bordered;
 use hbvib::linalg::norm;
 use hbvib::options::SolverOptions;
-use hbvib::problem::forced::Forced;
-use hbvib::problem::{Linearisation, Problem, Start};
+use hbvib::problem::harmonic_balance::HarmonicBalance;
+use hbvib::problem::{InitialGuess, Linearisation, Problem};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -47,7 +47,7 @@ fn time(mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box
 struct Parts {
     unknowns: usize,
     /// Reversals of the motion, or its samples.
-    reversals: f64,
+    turning_points: f64,
     /// Force of the law and its Jacobian.
     law: f64,
     /// Residual with the forces.
@@ -74,11 +74,11 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     };
     let omega = 208.85 * TAU;
     let condensed = Condensed::new(&parameters.model()?, &options, omega)?;
-    let mut problem = Forced::new(&condensed, model::B2, (207.0 * TAU, 211.0 * TAU), samples, None)?;
+    let mut problem = HarmonicBalance::new(&condensed, model::B2, (207.0 * TAU, 211.0 * TAU), samples, None)?;
     let n = problem.size();
     let mut v = vec![0.0; n + 1];
     v[n] = omega;
-    problem.start(Start::Stuck, omega, &mut v[..n])?;
+    problem.start(InitialGuess::Stuck, omega, &mut v[..n])?;
     let mut row = vec![0.0; n + 1];
     row[n] = 1.0;
     let mut corrector = Corrector::new(n, 1e-10, 50)?;
@@ -104,7 +104,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     let mut evaluator = Evaluator::new(set, samples, core::iter::once(law))?;
     let mut out = Evaluation::new(set, 1)?;
     let u = &v[..n];
-    let reversals = time(|| {
+    let turning_points = time(|| {
         evaluator.prepare(set, black_box(u));
         Ok(())
     })?;
@@ -144,7 +144,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     let micro = 1e6;
     Ok(Parts {
         unknowns: n,
-        reversals: micro * reversals,
+        turning_points: micro * turning_points,
         law: micro * law,
         residual: micro * residual,
         matrix: micro * matrix,
@@ -175,7 +175,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
             };
             println!(
                 "{highest:3}  {events:>8}  {:8}  {:9.2}  {:6.2}  {:8.2}  {:8.2}  {:8.2}  {:9.2}  {exponent:>8}",
-                p.unknowns, p.reversals, p.law, p.residual, p.matrix, p.dense, p.iteration,
+                p.unknowns, p.turning_points, p.law, p.residual, p.matrix, p.dense, p.iteration,
             );
             last = (samples == 0).then_some((p.unknowns, p.iteration));
         }

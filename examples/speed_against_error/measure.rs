@@ -5,10 +5,10 @@ use std::thread;
 use std::time::Instant;
 
 use hbvib::analysis::{estimate_at, forced_response};
-use hbvib::branch::{Branch, Special};
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::results::{Branch, Special};
 use num_complex::Complex64;
 
 use crate::systems::System;

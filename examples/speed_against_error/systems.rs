@@ -111,7 +111,7 @@ fn plane() -> Built {
     stiffness[8] = 1.0;
     let mut model = structure(&mass, &damping, &stiffness)?;
     let dofs = [Some(0), Some(1), Some(2)];
-    model.add_contact(&Contact::friction_plane(dofs, [None; 3], (1.0, 0.6), 0.6, 0.5))?;
+    model.add_contact(&Contact::friction_3d(dofs, [None; 3], (1.0, 0.6), 0.6, 0.5))?;
     for (dof, force) in [
         Complex64::new(0.3, 0.0),
         Complex64::new(0.0, 0.2),

@@ -4,9 +4,9 @@ use std::error::Error;
 use std::thread;
 
 use hbvib::analysis::forced_response;
-use hbvib::branch::Branch;
 use hbvib::hooks::Hooks;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 
 use crate::measure::sweep;

@@ -6,11 +6,11 @@ use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
 use hbvib::analysis::forced_response;
-use hbvib::branch::Branch;
 use hbvib::error::Status;
 use hbvib::hooks::{Hooks, Progress};
 use hbvib::model::Model;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use serde_json::{Map, Value};
 

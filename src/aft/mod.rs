@@ -12,29 +12,28 @@
 //! law gives S at once, without pieces. Friction under a varying normal load has one such sum per
 //! pair of directions; see [`coupled`].
 
-mod assembly;
-mod block;
-pub mod coupled;
-pub mod exact;
-pub mod marched;
-mod normal;
-mod periodic;
-pub mod pointwise;
-pub mod sampled;
-mod sensitivity;
+pub mod hysteretic;
+mod hysteretic_derivatives;
+mod jacobian_assembly;
+mod jacobian_block;
+pub mod memoryless;
+mod normal_force;
+mod periodic_state;
+pub mod piecewise_exact;
+pub mod piecewise_sampled;
 mod spectral;
 mod toeplitz;
-mod transform;
+pub mod varying_normal_load;
 
-use crate::contact::state::State;
+use crate::aft::hysteretic::HystereticEvaluator;
+use crate::aft::jacobian_assembly::Assembly;
+use crate::aft::jacobian_block::{Block, add_stiffness, apply, pack};
+use crate::aft::memoryless::MemorylessEvaluator;
+use crate::aft::varying_normal_load::Coupled;
+use crate::contact::contact_state::State;
 use crate::contact::{Form, Law};
 use crate::error::{Result, fail, try_push, try_vec};
-use crate::harmonics::HarmonicSet;
-use assembly::Assembly;
-use block::{Block, add_stiffness, apply, pack};
-use coupled::Coupled;
-use marched::MarchedWay;
-use pointwise::PointwiseEvaluator;
+use crate::fourier::HarmonicSet;
 
 /// Ways of evaluating laws, with their tables.
 pub struct Evaluator {
@@ -44,9 +43,9 @@ pub struct Evaluator {
     /// Friction under a varying normal load.
     coupled: Option<Box<Coupled>>,
     /// Laws with states, by their directions, states and samples.
-    marched: Vec<MarchedWay>,
+    marched: Vec<HystereticEvaluator>,
     /// Laws without memory, by their directions and samples.
-    pointwise: Vec<PointwiseEvaluator>,
+    pointwise: Vec<MemorylessEvaluator>,
     sampling: Sampling,
 }
 
@@ -72,9 +71,9 @@ impl Sampling {
 /// Way of evaluating laws on one relative motion.
 enum Scalar {
     /// Events located, integrals in closed form.
-    Exact(Box<exact::Exact>),
+    Exact(Box<piecewise_exact::Exact>),
     /// Equidistant samples.
-    Sampled(Box<sampled::Sampled>),
+    Sampled(Box<piecewise_sampled::Sampled>),
 }
 
 /// Harmonics of a contact force and what belongs to them, all in packed form, one direction of the law
@@ -179,26 +178,26 @@ impl Evaluator {
 
     fn with<'l>(set: &HarmonicSet, sampling: Sampling, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
         let highest = set.highest_reduced();
-        let mut pointwise: Vec<PointwiseEvaluator> = Vec::new();
+        let mut pointwise: Vec<MemorylessEvaluator> = Vec::new();
         let mut most_pieces = 0;
         let mut coupled = None;
-        let mut marched: Vec<MarchedWay> = Vec::new();
+        let mut marched: Vec<HystereticEvaluator> = Vec::new();
         for law in laws {
             match law.form() {
-                Form::Pieces(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
+                Form::PiecewiseLinear(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
                 Form::Coupled(_) if coupled.is_none() => coupled = Some(Box::new(Coupled::new(set)?)),
                 Form::Coupled(_) | Form::Spectral(_) => {}
-                Form::Marched(law) => {
+                Form::Hysteretic(law) => {
                     let wanted = sampling.of(law.samples(highest, sampling.asked), highest);
                     if !marched.iter().any(|way| way.suits(law, wanted)) {
-                        let way = MarchedWay::new(set, law, wanted)?;
+                        let way = HystereticEvaluator::new(set, law, wanted)?;
                         try_push(&mut marched, way, "the contact laws")?;
                     }
                 }
-                Form::Pointwise(law) => {
+                Form::Memoryless(law) => {
                     let wanted = sampling.of(law.samples(highest, sampling.asked), highest);
                     if !pointwise.iter().any(|way| way.suits(law, wanted)) {
-                        let way = PointwiseEvaluator::new(set, law, wanted)?;
+                        let way = MemorylessEvaluator::new(set, law, wanted)?;
                         try_push(&mut pointwise, way, "the contact laws")?;
                     }
                 }
@@ -206,10 +205,10 @@ impl Evaluator {
         }
         Ok(Self {
             scalar: if sampling.asked == 0 {
-                Scalar::Exact(Box::new(exact::Exact::new(set, most_pieces)?))
+                Scalar::Exact(Box::new(piecewise_exact::Exact::new(set, most_pieces)?))
             } else {
                 let samples = sampling.of(sampling.asked, highest);
-                Scalar::Sampled(Box::new(sampled::Sampled::new(set, samples)?))
+                Scalar::Sampled(Box::new(piecewise_sampled::Sampled::new(set, samples)?))
             },
             smooth: Assembly::new(set)?,
             coupled,
@@ -219,7 +218,7 @@ impl Evaluator {
         })
     }
 
-    /// Takes the packed motion of one relative coordinate in: its reversals or samples serve every
+    /// Takes the packed motion of one relative coordinate in: its turning points or samples serve every
     /// law on the coordinate alone.
     pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
         match &mut self.scalar {
@@ -243,15 +242,15 @@ impl Evaluator {
     ) -> Result<()> {
         match (law.form(), &mut self.scalar) {
             (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
-            (Form::Pieces(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
-            (Form::Pieces(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
+            (Form::PiecewiseLinear(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
+            (Form::PiecewiseLinear(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
             (Form::Coupled(law), _) => {
                 let Some(way) = &mut self.coupled else {
                     return fail!(Internal, "no memory for the pieces of a contact law");
                 };
                 way.evaluate(law, set, motion, out);
             }
-            (Form::Marched(law), _) => {
+            (Form::Hysteretic(law), _) => {
                 let highest = set.highest_reduced();
                 let wanted = self.sampling.of(law.samples(highest, self.sampling.asked), highest);
                 let Some(way) = self.marched.iter_mut().find(|way| way.suits(law, wanted)) else {
@@ -259,7 +258,7 @@ impl Evaluator {
                 };
                 return way.evaluate(law, omega, motion, out);
             }
-            (Form::Pointwise(law), _) => {
+            (Form::Memoryless(law), _) => {
                 let highest = set.highest_reduced();
                 let wanted = self.sampling.of(law.samples(highest, self.sampling.asked), highest);
                 let Some(way) = self.pointwise.iter_mut().find(|way| way.suits(law, wanted)) else {
@@ -275,10 +274,10 @@ impl Evaluator {
     #[must_use]
     pub fn samples(&self, law: &dyn Law) -> bool {
         match law.form() {
-            Form::Pieces(_) => self.sampling.asked > 0,
+            Form::PiecewiseLinear(_) => self.sampling.asked > 0,
             Form::Spectral(_) | Form::Coupled(_) => false,
-            Form::Marched(_) => true,
-            Form::Pointwise(law) => !law.is_alias_free(),
+            Form::Hysteretic(_) => true,
+            Form::Memoryless(law) => !law.is_alias_free(),
         }
     }
 

@@ -8,10 +8,10 @@
 //! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
-use super::Evaluation;
-use super::assembly::Assembly;
+use crate::aft::Evaluation;
+use crate::aft::jacobian_assembly::Assembly;
 use crate::contact::law::Spectral;
-use crate::harmonics::HarmonicSet;
+use crate::fourier::HarmonicSet;
 
 impl Assembly {
     /// Evaluates a law without events.

@@ -6,7 +6,7 @@
 //! O(H) numbers: (Sₖ) and (i Sₖ) for the differences, (Sₖ) and (−i Sₖ) for the sums of harmonics.
 
 use crate::error::{Result, try_vec};
-use crate::harmonics::HarmonicSet;
+use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 
 /// The lists from which the columns of T(S) are read.
@@ -37,17 +37,17 @@ impl Toeplitz {
     /// # Errors
     /// `OutOfMemory`.
     pub(super) fn new(set: &HarmonicSet) -> Result<Self> {
-        const WHAT: &str = "a contact Jacobian";
+        const CONTEXT: &str = "a contact Jacobian";
         let order = set.oscillating();
-        let list = || try_vec((4 * order).saturating_sub(2), 0.0, WHAT);
+        let list = || try_vec((4 * order).saturating_sub(2), 0.0, CONTEXT);
         let mean = if set.has_mean() { 2 * order } else { 0 };
         Ok(Self {
             order,
             has_mean: set.has_mean(),
             differences: [list()?, list()?],
             sums: [list()?, list()?],
-            row: try_vec(set.packed_len(), 0.0, WHAT)?,
-            column: [try_vec(mean, 0.0, WHAT)?, try_vec(mean, 0.0, WHAT)?],
+            row: try_vec(set.packed_len(), 0.0, CONTEXT)?,
+            column: [try_vec(mean, 0.0, CONTEXT)?, try_vec(mean, 0.0, CONTEXT)?],
         })
     }
 

@@ -1,11 +1,11 @@
-//! The tangents of a law of the host against central differences on a test motion: where a solve does not
+//! The tangents of a law of the caller against central differences on a test motion: where a solve does not
 //! converge, a wrong one is the first suspect.
 
-mod steps;
+mod step_derivatives;
 
 use crate::contact::ContactKind;
-use crate::contact::pointwise::{Pointwise, Samples};
-use crate::contact::user::User;
+use crate::contact::laws::user_law::User;
+use crate::contact::memoryless_law::{Memoryless, Samples};
 use crate::error::{Error, Result, fail, try_copy, try_vec};
 use crate::model::Model;
 use std::f64::consts::TAU;
@@ -48,7 +48,7 @@ pub struct JacobianGap {
     pub row: usize,
     /// Its column; for [`Tangent::ForceByState`] the state before the sample that was moved.
     pub column: usize,
-    /// The value that the host gave; for [`Tangent::ForceByState`] the change of force that follows
+    /// The value that the caller gave; for [`Tangent::ForceByState`] the change of force that follows
     /// from it per change of that state.
     pub given: f64,
     /// The difference quotient.
@@ -58,7 +58,7 @@ pub struct JacobianGap {
 /// Samples of the test motion.
 const SAMPLES: usize = 64;
 
-const WHAT: &str = "the test of a Jacobian";
+const CONTEXT: &str = "the test of a Jacobian";
 
 /// Step of a central difference relative to what is moved: its error, of second order, and rounding
 /// meet at the cube root of the precision.
@@ -66,12 +66,12 @@ fn step_of(size: f64) -> f64 {
     f64::EPSILON.cbrt() * size
 }
 
-/// Compares all tangents of the law of the host that is contact `contact` with central differences, on a
+/// Compares all tangents of the law of the caller that is contact `contact` with central differences, on a
 /// built-in motion with a mean and the harmonics 1 and 3 whose directions reach about `amplitudes`, at
 /// the angular frequency `omega`.
 ///
 /// # Errors
-/// `Index` for an unknown contact, `Argument` where it is none of the host's and for bad numbers,
+/// `Index` for an unknown contact, `Argument` where it is none of the caller's and for bad numbers,
 /// `Dimension` for another number of amplitudes; those of the callback.
 pub fn check_jacobian(model: &Model, contact: usize, omega: f64, amplitudes: &[f64]) -> Result<JacobianGap> {
     let Some(kept) = model.contacts().get(contact) else {
@@ -105,7 +105,7 @@ pub fn check_jacobian(model: &Model, contact: usize, omega: f64, amplitudes: &[f
     let found = if law.states == 0 {
         without_memory(law, &motion)
     } else {
-        steps::with_states(law, &motion)
+        step_derivatives::with_states(law, &motion)
     };
     found.map_err(|e: Error| e.at(format_args!("contact {contact}")))
 }
@@ -123,8 +123,8 @@ struct Motion {
 impl Motion {
     fn new(omega: f64, amplitudes: &[f64], velocity: bool) -> Result<Self> {
         let d = amplitudes.len();
-        let mut u = try_vec(SAMPLES.saturating_mul(d), 0.0, WHAT)?;
-        let mut v = try_vec(if velocity { u.len() } else { 0 }, 0.0, WHAT)?;
+        let mut u = try_vec(SAMPLES.saturating_mul(d), 0.0, CONTEXT)?;
+        let mut v = try_vec(if velocity { u.len() } else { 0 }, 0.0, CONTEXT)?;
         for j in 0..SAMPLES {
             for (k, a) in amplitudes.iter().enumerate() {
                 let tau = TAU * j as f64 / SAMPLES as f64 + 0.7 * k as f64;
@@ -138,7 +138,7 @@ impl Motion {
             omega,
             u,
             v,
-            amplitudes: try_copy(amplitudes, WHAT)?,
+            amplitudes: try_copy(amplitudes, CONTEXT)?,
         })
     }
 
@@ -176,10 +176,10 @@ impl Told {
     fn new(motion: &Motion) -> Result<Self> {
         let (signals, d) = (motion.u.len(), motion.amplitudes.len());
         Ok(Self {
-            f: try_vec(signals, 0.0, WHAT)?,
-            df_du: try_vec(signals.saturating_mul(d), 0.0, WHAT)?,
-            df_dv: try_vec(motion.v.len().saturating_mul(d), 0.0, WHAT)?,
-            scratch: try_vec(signals.saturating_mul(2), 0.0, WHAT)?,
+            f: try_vec(signals, 0.0, CONTEXT)?,
+            df_du: try_vec(signals.saturating_mul(d), 0.0, CONTEXT)?,
+            df_dv: try_vec(motion.v.len().saturating_mul(d), 0.0, CONTEXT)?,
+            scratch: try_vec(signals.saturating_mul(2), 0.0, CONTEXT)?,
         })
     }
 
@@ -198,7 +198,7 @@ impl Told {
 
 /// Largest magnitude of each of the `width` numbers of a sample.
 fn sizes(values: &[f64], width: usize) -> Result<Vec<f64>> {
-    let mut sizes = try_vec(width, 0.0, WHAT)?;
+    let mut sizes = try_vec(width, 0.0, CONTEXT)?;
     for sample in values.chunks_exact(width) {
         for (size, x) in sizes.iter_mut().zip(sample) {
             *size = x.abs().max(*size);
@@ -212,9 +212,9 @@ fn sizes(values: &[f64], width: usize) -> Result<Vec<f64>> {
 fn without_memory(law: &User, motion: &Motion) -> Result<JacobianGap> {
     let d = law.directions;
     let mut worst = JacobianGap::default();
-    let (mut told, mut up, mut down) = (Told::new(motion)?, Told::new(motion)?, Told::new(motion)?);
-    told.ask(law, motion.omega, &motion.u, &motion.v)?;
-    let changed = sizes(&told.f, d)?;
+    let (mut reported, mut up, mut down) = (Told::new(motion)?, Told::new(motion)?, Told::new(motion)?);
+    reported.ask(law, motion.omega, &motion.u, &motion.v)?;
+    let changed = sizes(&reported.f, d)?;
     for of_velocity in [false, true] {
         if of_velocity && !law.velocity {
             continue;
@@ -223,12 +223,12 @@ fn without_memory(law: &User, motion: &Motion) -> Result<JacobianGap> {
             let moved = motion.size(k, of_velocity);
             let h = step_of(moved);
             for (out, shift) in [(&mut up, h), (&mut down, -h)] {
-                let (mut u, mut v) = (try_copy(&motion.u, WHAT)?, try_copy(&motion.v, WHAT)?);
+                let (mut u, mut v) = (try_copy(&motion.u, CONTEXT)?, try_copy(&motion.v, CONTEXT)?);
                 let signal = if of_velocity { &mut v } else { &mut u };
                 signal.iter_mut().skip(k).step_by(d).for_each(|x| *x += shift);
                 out.ask(law, motion.omega, &u, &v)?;
             }
-            let block = if of_velocity { &told.df_dv } else { &told.df_du };
+            let block = if of_velocity { &reported.df_dv } else { &reported.df_du };
             for (at, (a, b)) in up.f.iter().zip(&down.f).enumerate() {
                 let entry = JacobianGap {
                     gap: 0.0,

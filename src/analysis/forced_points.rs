@@ -1,36 +1,36 @@
 //! The points of a forced response: what is measured and stored of each, and the harmonics that they are solved with.
 
-use super::adapt::{Assessment, Choice, suffices};
-use super::estimate::observed;
-use super::follow::{Ending, Keeper};
-use super::levels::{Ladder, Rungs};
-use crate::branch::{Branch, Level, Record, SpecialKind};
+use crate::adaptivity::branch_tracer::{Ending, Keeper};
+use crate::adaptivity::controller::{AdaptivityController, Assessment, meets_tolerance};
+use crate::adaptivity::harmonic_levels::{HarmonicLevels, Resolutions};
+use crate::analysis::point_error::observed;
 use crate::condense::Reduction;
-use crate::continuation::again::solve_again;
 use crate::continuation::corrector::Corrector;
+use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_push, try_vec};
-use crate::error_estimate::forced::ForcedEstimator;
-use crate::error_estimate::{Estimate, Shelf, Solved};
+use crate::error_estimate::forced_response_error::ForcedEstimator;
+use crate::error_estimate::{Estimate, ExtendedModels, Solved};
 use crate::model::Model;
 use crate::model::spring::along;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
-use crate::problem::forced::Forced;
+use crate::problem::harmonic_balance::HarmonicBalance;
+use crate::results::{Branch, Record, Resolution, SpecialKind};
 use num_complex::Complex64;
 
-/// The problem with the harmonics of one rung.
-struct Rung<'a> {
-    level: &'a Level,
-    problem: Forced<'a>,
+/// The problem with the harmonics of one resolution.
+struct AtResolution<'a> {
+    level: &'a Resolution,
+    problem: HarmonicBalance<'a>,
     corrector: Corrector,
     response: Vec<Complex64>,
 }
 
-impl<'a> Rung<'a> {
-    fn new(level: &'a Level, settings: &Settings, response: usize, given: Option<Vec<f64>>) -> Result<Self> {
+impl<'a> AtResolution<'a> {
+    fn new(level: &'a Resolution, settings: &Settings, response: usize, given: Option<Vec<f64>>) -> Result<Self> {
         let range = (settings.start, settings.end);
-        let problem = Forced::new(&level.condensed, response, range, level.samples, given)?;
+        let problem = HarmonicBalance::new(&level.condensed, response, range, level.samples, given)?;
         Ok(Self {
             corrector: Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?,
             response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, "the response")?,
@@ -44,8 +44,8 @@ impl<'a> Rung<'a> {
 pub(super) struct ForcedPoints<'a> {
     branch: Branch,
     settings: Settings,
-    rungs: Rungs<'a, Rung<'a>>,
-    choice: Choice,
+    resolutions: Resolutions<'a, AtResolution<'a>>,
+    choice: AdaptivityController,
     estimator: Option<ForcedEstimator<'a>>,
     /// Whether the problem at hand may have been evaluated elsewhere than at the point at hand.
     stale: bool,
@@ -60,7 +60,7 @@ pub(super) struct ForcedPoints<'a> {
 /// A special point until the curve is complete.
 struct Kept<'a> {
     kind: SpecialKind,
-    level: &'a Level,
+    level: &'a Resolution,
     point: Point,
     response: Vec<Complex64>,
     slip_fractions: Vec<f64>,
@@ -69,25 +69,33 @@ struct Kept<'a> {
 }
 
 impl<'a> ForcedPoints<'a> {
-    /// An empty collection, on a rung whose problem may be given a start.
+    /// An empty collection, on a resolution whose problem may be given a start.
     pub fn new(
         model: &'a Model,
         solver: &SolverOptions,
         settings: Settings,
-        (ladder, shelf): (&'a Ladder<'a>, &'a Shelf),
-        (rung, given): (usize, Option<Vec<f64>>),
+        (harmonic_levels, extended_models): (&'a HarmonicLevels<'a>, &'a ExtendedModels),
+        (resolution, given): (usize, Option<Vec<f64>>),
         response: usize,
     ) -> Result<Self> {
-        let level = ladder.level(rung)?;
-        let told = if ladder.is_automatic() { 0 } else { solver.harmonics };
-        let branch = Branch::new(level, level.condensed.reduction(model, solver)?, told, response)?;
-        let estimates = solver.estimate_error || ladder.is_automatic();
+        let level = harmonic_levels.level(resolution)?;
+        let reported = if harmonic_levels.is_automatic() {
+            0
+        } else {
+            solver.harmonics
+        };
+        let branch = Branch::new(level, level.condensed.reduction(model, solver)?, reported, response)?;
+        let estimates = solver.estimate_error || harmonic_levels.is_automatic();
         Ok(Self {
             branch,
-            rungs: Rungs::new(ladder, rung, Rung::new(level, &settings, response, given)?)?,
+            resolutions: Resolutions::new(
+                harmonic_levels,
+                resolution,
+                AtResolution::new(level, &settings, response, given)?,
+            )?,
             settings,
-            choice: Choice::new(solver.tolerance),
-            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, shelf)),
+            choice: AdaptivityController::new(solver.tolerance),
+            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended_models)),
             stale: false,
             assessed: None,
             specials: Vec::new(),
@@ -98,16 +106,16 @@ impl<'a> ForcedPoints<'a> {
 
     /// What was removed from the problem that has the most harmonics.
     pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
-        self.rungs.reduction(model, solver)
+        self.resolutions.reduction(model, solver)
     }
 
-    /// Evaluates the problem at a point, unless that was the last thing done on this rung.
+    /// Evaluates the problem at a point, unless that was the last thing done on this resolution.
     fn refresh(&mut self, point: &Point) -> Result<()> {
         if self.stale {
-            self.rungs
+            self.resolutions
                 .here
                 .corrector
-                .evaluate(&mut self.rungs.here.problem, &point.v)?;
+                .evaluate(&mut self.resolutions.here.problem, &point.v)?;
             self.stale = false;
         }
         Ok(())
@@ -118,7 +126,7 @@ impl<'a> ForcedPoints<'a> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
         };
-        let here = &mut self.rungs.here;
+        let here = &mut self.resolutions.here;
         let condensed = &here.level.condensed;
         here.problem.response(point.unknowns(), &mut here.response);
         let solved = Solved {
@@ -156,7 +164,7 @@ impl<'a> ForcedPoints<'a> {
 
 impl Keeper for ForcedPoints<'_> {
     fn problem(&mut self) -> &mut dyn Problem {
-        &mut self.rungs.here.problem
+        &mut self.resolutions.here.problem
     }
 
     fn branch(&self) -> &Branch {
@@ -168,13 +176,13 @@ impl Keeper for ForcedPoints<'_> {
         self.stalled |= point.stalled;
         let error = self.error(point)?;
         self.missed |= self.choice.is_missed_by(error);
-        let here = &mut self.rungs.here;
+        let here = &mut self.resolutions.here;
         here.problem.response(point.unknowns(), &mut here.response);
         let sampling_error = here.problem.sampling_error(point.unknowns(), point.parameter())?;
         let slips = here.problem.slip_fractions();
         let record = record(here.level, point, &here.response, slips, (sampling_error, error));
         self.branch.push_curve(&record)?;
-        self.rungs.note_kept();
+        self.resolutions.note_kept();
         Ok(())
     }
 
@@ -182,12 +190,12 @@ impl Keeper for ForcedPoints<'_> {
     /// the sweep it may have been interpolated.
     fn keep_special(&mut self, kind: SpecialKind, mut point: Point, must: bool) -> Result<bool> {
         self.stale = false;
-        let here = &mut self.rungs.here;
+        let here = &mut self.resolutions.here;
         // At a fold the solution at a fixed frequency is not isolated.
         let mut found = None;
         if !kind.is_fold() {
             here.problem.set_pointwise(true);
-            let again = solve_again(
+            let again = resolve(
                 &mut here.problem,
                 &mut here.corrector,
                 &self.settings,
@@ -205,12 +213,12 @@ impl Keeper for ForcedPoints<'_> {
         } else {
             here.corrector.evaluate(&mut here.problem, &point.v)?;
         }
-        if !must && !suffices(self, kind, &point)? {
+        if !must && !meets_tolerance(self, kind, &point)? {
             return Ok(false);
         }
         let error = if kind.is_fold() { f64::NAN } else { self.error(&point)? };
         self.missed |= !kind.is_fold() && self.choice.is_missed_by(error);
-        let here = &mut self.rungs.here;
+        let here = &mut self.resolutions.here;
         here.problem.response(point.unknowns(), &mut here.response);
         let kept = Kept {
             kind,
@@ -223,26 +231,26 @@ impl Keeper for ForcedPoints<'_> {
         };
         self.choice.folded |= kind.is_fold();
         try_push(&mut self.specials, kept, "the special points")?;
-        self.rungs.note_kept();
+        self.resolutions.note_kept();
         Ok(true)
     }
 
-    fn ladder(&self) -> &Ladder<'_> {
-        self.rungs.ladder
+    fn harmonic_levels(&self) -> &HarmonicLevels<'_> {
+        self.resolutions.harmonic_levels
     }
 
-    fn rung(&self) -> usize {
-        self.rungs.rung()
+    fn resolution(&self) -> usize {
+        self.resolutions.resolution()
     }
 
-    fn go_to(&mut self, rung: usize) -> Result<()> {
-        self.stale |= rung != self.rungs.rung();
+    fn go_to(&mut self, resolution: usize) -> Result<()> {
+        self.stale |= resolution != self.resolutions.resolution();
         let (settings, response) = (&self.settings, self.branch.response_dof());
-        self.rungs
-            .go_to(rung, |level| Rung::new(level, settings, response, None))
+        self.resolutions
+            .go_to(resolution, |level| AtResolution::new(level, settings, response, None))
     }
 
-    fn choice(&mut self) -> &mut Choice {
+    fn choice(&mut self) -> &mut AdaptivityController {
         &mut self.choice
     }
 
@@ -259,36 +267,36 @@ impl Keeper for ForcedPoints<'_> {
         }))
     }
 
-    fn carry(&self, point: &Point, from: usize) -> Result<Point> {
-        self.rungs.carry(point, from, 1, true)
+    fn transfer(&self, point: &Point, from: usize) -> Result<Point> {
+        self.resolutions.transfer(point, from, 1, true)
     }
 
     fn corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
-        let to = &self.rungs.here.level.condensed;
-        let mut start = self.carry(point, from)?;
+        let to = &self.resolutions.here.level.condensed;
+        let mut start = self.transfer(point, from)?;
         let n = to.unknowns();
         let corrected = &estimate.corrected;
         to.set()
-            .carry(&corrected.set, &corrected.motion, 1.0 / to.length(), &mut start.v[..n]);
+            .transfer(&corrected.set, &corrected.motion, 1.0 / to.length(), &mut start.v[..n]);
         Ok(start)
     }
 
-    fn solve_again(
+    fn resolve(
         &mut self,
         near: &Point,
         keep_parameter: bool,
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Option<Point>> {
-        let here = &mut self.rungs.here;
+        let here = &mut self.resolutions.here;
         let (problem, corrector) = (&mut here.problem, &mut here.corrector);
-        let found = solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)?;
+        let found = resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)?;
         self.stale = found.is_none();
         Ok(found)
     }
 }
 
 fn record<'a>(
-    level: &'a Level,
+    level: &'a Resolution,
     point: &'a Point,
     response: &'a [Complex64],
     slip_fractions: &'a [f64],
@@ -309,7 +317,7 @@ fn record<'a>(
 }
 
 /// Packed relative motions of a guess given for all degrees of freedom.
-pub(super) fn relative_motion(level: &Level, ndof: usize, guess: &[Complex64]) -> Result<Vec<f64>> {
+pub(super) fn relative_motion(level: &Resolution, ndof: usize, guess: &[Complex64]) -> Result<Vec<f64>> {
     let condensed = &level.condensed;
     let set = condensed.set();
     let m = set.packed_len();

@@ -1,20 +1,20 @@
 //! Forced response over a range of frequency.
 
-use super::follow::{Ending, Keeper, Task};
-use super::forced_points::{ForcedPoints, relative_motion};
-use super::levels::Ladder;
-use super::unbounded;
-use crate::branch::Branch;
+use crate::adaptivity::branch_tracer::{BranchTracer, Ending, Keeper};
+use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::analysis::forced_points::{ForcedPoints, relative_motion};
+use crate::analysis::unbounded_response;
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::continuation::Settings;
-use crate::continuation::start::{self, First};
+use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
-use crate::error_estimate::Shelf;
+use crate::error_estimate::ExtendedModels;
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
+use crate::results::Branch;
 use num_complex::Complex64;
 
 /// Follows the periodic response of `model` to its forces from `range.omega_start` to
@@ -38,12 +38,12 @@ pub fn forced_response(
     if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
-    let ladder = Ladder::new(model, solver, &forced_harmonics(model)?, |harmonics| {
+    let harmonic_levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::new(model, &options, range.omega_start)
     })?;
-    let rung = ladder.first(solver.harmonics);
-    let level = ladder.level(rung)?;
+    let resolution = harmonic_levels.first(solver.harmonics);
+    let level = harmonic_levels.level(resolution)?;
     let response = match solver.response_dof {
         Some(dof) => dof,
         // At the lower end, so that both directions follow the same one.
@@ -60,15 +60,22 @@ pub fn forced_response(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let shelf = Shelf::new()?;
-    let mut points = ForcedPoints::new(model, solver, settings, (&ladder, &shelf), (rung, given), response)?;
+    let extended_models = ExtendedModels::new()?;
+    let mut points = ForcedPoints::new(
+        model,
+        solver,
+        settings,
+        (&harmonic_levels, &extended_models),
+        (resolution, given),
+        response,
+    )?;
     let held = points.branch().reduction().held_by_contacts;
-    let first = match first(&mut points, &settings, rung, hooks) {
+    let first = match first(&mut points, &settings, resolution, hooks) {
         Ok(First::Found(point, way)) => Some((point, way)),
         Ok(First::Cancelled) => None,
-        Err(e) => return Err(tell_why(e, model, range.omega_start, &level.condensed, held)),
+        Err(e) => return Err(with_reason(e, model, range.omega_start, &level.condensed, held)),
     };
-    let task = Task {
+    let task = BranchTracer {
         settings,
         range: (range.omega_start, range.omega_stop),
         at: range.at,
@@ -86,19 +93,19 @@ pub fn forced_response(
     let mut ending = Ending::of(outcome, points.branch())?;
     if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
         let last = points.branch().omega().last();
-        ending.reason = last.and_then(|&omega| unbounded::reason(model, omega));
+        ending.reason = last.and_then(|&omega| unbounded_response::reason(model, omega));
     }
     let reduction = points.reduction(model, solver)?;
     points.finish(&ending, reduction)
 }
 
 /// The first point, with the harmonics at hand or, where that fails and a tolerance chooses them, with the fewest.
-fn first(points: &mut ForcedPoints<'_>, settings: &Settings, rung: usize, hooks: &Hooks<'_>) -> Result<First> {
-    let found = start::solve(points.problem(), settings, hooks.cancelled);
+fn first(points: &mut ForcedPoints<'_>, settings: &Settings, resolution: usize, hooks: &Hooks<'_>) -> Result<First> {
+    let found = initial_point::solve(points.problem(), settings, hooks.cancelled);
     match found {
-        Err(e) if e.status == Status::NoConvergence && rung > 0 => {
+        Err(e) if e.status == Status::NoConvergence && resolution > 0 => {
             points.go_to(0)?;
-            start::solve(points.problem(), settings, hooks.cancelled).map_err(|_| e)
+            initial_point::solve(points.problem(), settings, hooks.cancelled).map_err(|_| e)
         }
         found => found,
     }
@@ -116,11 +123,11 @@ fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
 
 /// Why no first point was found, as far as it is known: there is none, or, where contacts press at rest, it comes
 /// from the static solution.
-fn tell_why(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: usize) -> Error {
+fn with_reason(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: usize) -> Error {
     if e.status != Status::NoConvergence {
         return e;
     }
-    if let Some(reason) = unbounded::reason(model, omega) {
+    if let Some(reason) = unbounded_response::reason(model, omega) {
         return reason;
     }
     if !condensed.is_preloaded() {

@@ -1,10 +1,10 @@
-//! Residual and Jacobian at a caller's point, and a law on a prescribed motion: for hosts with a
+//! Residual and Jacobian at a caller's point, and a law on a prescribed motion: for callers with a
 //! continuation of their own, and for tests. Nothing is removed or condensed here.
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::contact::{self, Contact};
 use crate::error::{Result, fail, try_push, try_vec};
-use crate::harmonics::HarmonicSet;
+use crate::fourier::HarmonicSet;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, Wave, along, relative_row};
@@ -162,7 +162,7 @@ struct ContactTerms {
 
 impl ContactTerms {
     fn new(model: &Model, solver: &SolverOptions, omega: f64, x: &[Complex64]) -> Result<Self> {
-        const WHAT: &str = "the contacts";
+        const CONTEXT: &str = "the contacts";
         let n = model.ndof();
         let set = HarmonicSet::all(solver.harmonics)?;
         let m = set.packed_len();
@@ -177,12 +177,12 @@ impl ContactTerms {
                 for h in 0..=solver.harmonics {
                     let row = relative_row(&direction, model.structure().phase(h, contact.sector_offset));
                     set.set(packed, h, along(&row, &x[h * n..(h + 1) * n]));
-                    try_push(&mut own, row, WHAT)?;
+                    try_push(&mut own, row, CONTEXT)?;
                 }
-                try_push(&mut rows, own, WHAT)?;
+                try_push(&mut rows, own, CONTEXT)?;
             }
             let evaluation = evaluate(contact, &set, solver.samples, omega, &packed)?;
-            try_push(&mut terms, (rows, evaluation), WHAT)?;
+            try_push(&mut terms, (rows, evaluation), CONTEXT)?;
         }
         Ok(Self { set, terms })
     }
@@ -281,7 +281,7 @@ impl Block<'_> {
 /// A law in the caller's units at packed motions.
 fn evaluate(contact: &Contact, set: &HarmonicSet, samples: usize, omega: f64, packed: &[f64]) -> Result<Evaluation> {
     let law = contact.law(1.0)?;
-    if omega == 0.0 && matches!(law.form(), contact::Form::Marched(_)) {
+    if omega == 0.0 && matches!(law.form(), contact::Form::Hysteretic(_)) {
         return fail!(
             Argument,
             "omega = 0, needs a number > 0 for a law with states, which takes steps in time"

@@ -1,31 +1,31 @@
 //! The points of a nonlinear mode: what is measured and stored of each.
 
-use super::adapt::{Assessment, Choice, suffices};
-use super::follow::{Ending, Keeper};
-use super::levels::{Ladder, Rungs};
-use super::mode_rung::{Rung, Start};
-use crate::branch::mode::{ModeData, ModePoint};
-use crate::branch::{Branch, Level, Record, SpecialKind};
+use crate::adaptivity::branch_tracer::{Ending, Keeper};
+use crate::adaptivity::controller::{AdaptivityController, Assessment, meets_tolerance};
+use crate::adaptivity::harmonic_levels::{HarmonicLevels, Resolutions};
+use crate::analysis::mode_resolution::{AtResolution, InitialGuess};
 use crate::condense::Reduction;
-use crate::continuation::again::solve_again;
+use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_push};
-use crate::error_estimate::mode::ModeEstimator;
+use crate::error_estimate::mode_error::ModeEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
-use crate::problem::mode::{LinearMode, Mode};
+use crate::problem::epmc::{Epmc, LinearMode};
+use crate::results::mode_branch::{ModeData, ModePoint};
+use crate::results::{Branch, Record, Resolution, SpecialKind};
 use num_complex::Complex64;
 
-const WHAT: &str = "the nonlinear mode";
+const CONTEXT: &str = "the nonlinear mode";
 
 /// Collects the points of one run.
 pub(super) struct ModePoints<'a> {
-    start: Start<'a>,
+    start: InitialGuess<'a>,
     settings: Settings,
-    rungs: Rungs<'a, Rung<'a>>,
-    choice: Choice,
+    resolutions: Resolutions<'a, AtResolution<'a>>,
+    choice: AdaptivityController,
     branch: Branch,
     specials: Vec<Kept<'a>>,
     estimator: Option<ModeEstimator<'a>>,
@@ -43,7 +43,7 @@ pub(super) struct ModePoints<'a> {
 /// A special point until the curve is complete.
 struct Kept<'a> {
     kind: SpecialKind,
-    level: &'a Level,
+    level: &'a Resolution,
     point: Point,
     motion: Vec<f64>,
     response: Vec<Complex64>,
@@ -56,21 +56,25 @@ struct Kept<'a> {
 type Numbers = (Complex64, f64, (f64, f64));
 
 impl<'a> ModePoints<'a> {
-    /// An empty collection on a rung.
+    /// An empty collection on a resolution.
     pub fn new(
-        start: Start<'a>,
+        start: InitialGuess<'a>,
         solver: &SolverOptions,
         settings: Settings,
-        (ladder, rung): (&'a Ladder<'a>, usize),
+        (harmonic_levels, resolution): (&'a HarmonicLevels<'a>, usize),
         branch: Branch,
         estimator: Option<ModeEstimator<'a>>,
     ) -> Result<Self> {
-        let level = ladder.level(rung)?;
+        let level = harmonic_levels.level(resolution)?;
         Ok(Self {
-            rungs: Rungs::new(ladder, rung, Rung::new(level, &start, &settings)?)?,
+            resolutions: Resolutions::new(
+                harmonic_levels,
+                resolution,
+                AtResolution::new(level, &start, &settings)?,
+            )?,
             start,
             settings,
-            choice: Choice::new(solver.tolerance),
+            choice: AdaptivityController::new(solver.tolerance),
             specials: Vec::new(),
             estimator,
             assessed: None,
@@ -87,19 +91,19 @@ impl<'a> ModePoints<'a> {
         self.branch.set_mode(data);
     }
 
-    /// log₁₀ of the amplitudes up to which the mode is linear, see [`Mode::linear_up_to`].
+    /// log₁₀ of the amplitudes up to which the mode is linear, see [`Epmc::linear_up_to`].
     pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
-        self.rungs.here.problem.linear_up_to(first)
+        self.resolutions.here.problem.linear_up_to(first)
     }
 
     /// The linear mode as a point of the branch.
     pub fn linear_point(&mut self, p: f64) -> Result<Point> {
-        self.rungs.here.linear_point(p)
+        self.resolutions.here.linear_point(p)
     }
 
     /// Evaluates the problem at a point.
     fn evaluate(&mut self, point: &Point) -> Result<()> {
-        self.rungs.here.evaluate(point, self.branch.response_dof())
+        self.resolutions.here.evaluate(point, self.branch.response_dof())
     }
 
     /// Estimate of the point evaluated last.
@@ -107,9 +111,9 @@ impl<'a> ModePoints<'a> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);
         };
-        let here = &self.rungs.here;
+        let here = &self.resolutions.here;
         let condensed = &here.level.condensed;
-        let (omega, damping) = Mode::frequency_and_damping(self.start.linear, point.unknowns());
+        let (omega, damping) = Epmc::frequency_and_damping(self.start.linear, point.unknowns());
         let solved = Solved {
             condensed,
             motion: &here.motion,
@@ -122,8 +126,8 @@ impl<'a> ModePoints<'a> {
 
     /// Fundamental of the response and the errors of the point evaluated last.
     fn numbers(&mut self, point: &Point) -> Result<Numbers> {
-        let omega = Mode::frequency_and_damping(self.start.linear, point.unknowns()).0;
-        let here = &mut self.rungs.here;
+        let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).0;
+        let here = &mut self.resolutions.here;
         let amplitude = here.response[here.level.condensed.set().fundamental()];
         let sampling_error = here.problem.sampling_error(&here.motion, omega)?;
         let errors = match self.assessed.take() {
@@ -151,7 +155,7 @@ impl<'a> ModePoints<'a> {
 
     /// What was removed from the problem that has the most harmonics.
     pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
-        self.rungs.reduction(model, solver)
+        self.resolutions.reduction(model, solver)
     }
 
     /// Numbers the special points after the curve.
@@ -180,7 +184,7 @@ impl<'a> ModePoints<'a> {
 
 impl Keeper for ModePoints<'_> {
     fn problem(&mut self) -> &mut dyn Problem {
-        &mut self.rungs.here.problem
+        &mut self.resolutions.here.problem
     }
 
     fn branch(&self) -> &Branch {
@@ -189,7 +193,7 @@ impl Keeper for ModePoints<'_> {
 
     fn keep(&mut self, point: &Point) -> Result<()> {
         self.evaluate(point)?;
-        let mode = self.rungs.here.measure(point, self.start.linear, &self.before);
+        let mode = self.resolutions.here.measure(point, self.start.linear, &self.before);
         // All that may fail comes before anything is kept.
         let numbers = self.numbers(point)?;
         self.missed |= self.misses(numbers.2, mode.damping_ratio);
@@ -199,31 +203,31 @@ impl Keeper for ModePoints<'_> {
             data.push_state(&point.v, &point.tangent)?;
             data.push(mode)?;
         }
-        let here = &self.rungs.here;
+        let here = &self.resolutions.here;
         let slip = here.problem.forces().slip_fractions();
         let i = here.level.condensed.set().fundamental();
         let of = (self.start.linear, here.level);
         let record = record(of, point, &here.motion, &here.response, slip, numbers);
         self.branch.push_curve(&record)?;
         let dofs = here.level.condensed.ndof();
-        self.before = try_copy(&here.problem.shape()[i * dofs..(i + 1) * dofs], WHAT)?;
-        self.rungs.note_kept();
+        self.before = try_copy(&here.problem.shape()[i * dofs..(i + 1) * dofs], CONTEXT)?;
+        self.resolutions.note_kept();
         Ok(())
     }
 
     fn keep_special(&mut self, kind: SpecialKind, point: Point, must: bool) -> Result<bool> {
         self.evaluate(&point)?;
-        if !must && !suffices(self, kind, &point)? {
+        if !must && !meets_tolerance(self, kind, &point)? {
             return Ok(false);
         }
-        let mode = self.rungs.here.measure(&point, self.start.linear, &self.before);
+        let mode = self.resolutions.here.measure(&point, self.start.linear, &self.before);
         let mut numbers = self.numbers(&point)?;
         if kind.is_fold() {
             numbers.2 = (f64::NAN, f64::NAN);
         } else {
             self.missed |= self.misses(numbers.2, mode.damping_ratio);
         }
-        let here = &self.rungs.here;
+        let here = &self.resolutions.here;
         let kept = Kept {
             numbers,
             kind,
@@ -236,24 +240,25 @@ impl Keeper for ModePoints<'_> {
         };
         self.choice.folded |= kind.is_fold();
         try_push(&mut self.specials, kept, "the special points")?;
-        self.rungs.note_kept();
+        self.resolutions.note_kept();
         Ok(true)
     }
 
-    fn ladder(&self) -> &Ladder<'_> {
-        self.rungs.ladder
+    fn harmonic_levels(&self) -> &HarmonicLevels<'_> {
+        self.resolutions.harmonic_levels
     }
 
-    fn rung(&self) -> usize {
-        self.rungs.rung()
+    fn resolution(&self) -> usize {
+        self.resolutions.resolution()
     }
 
-    fn go_to(&mut self, rung: usize) -> Result<()> {
+    fn go_to(&mut self, resolution: usize) -> Result<()> {
         let (start, settings) = (&self.start, &self.settings);
-        self.rungs.go_to(rung, |level| Rung::new(level, start, settings))
+        self.resolutions
+            .go_to(resolution, |level| AtResolution::new(level, start, settings))
     }
 
-    fn choice(&mut self) -> &mut Choice {
+    fn choice(&mut self) -> &mut AdaptivityController {
         &mut self.choice
     }
 
@@ -265,7 +270,7 @@ impl Keeper for ModePoints<'_> {
             return Ok(None);
         };
         self.assessed = Some((estimate.frequency, estimate.damping));
-        let damping = Mode::frequency_and_damping(self.start.linear, point.unknowns()).1;
+        let damping = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).1;
         let of_damping = self.of_largest(estimate.damping, damping);
         // Both are unknown, or none.
         let error = if estimate.certified {
@@ -276,37 +281,37 @@ impl Keeper for ModePoints<'_> {
         Ok(Some(Assessment { error, estimate }))
     }
 
-    fn carry(&self, point: &Point, from: usize) -> Result<Point> {
-        self.rungs.carry(point, from, 3, false)
+    fn transfer(&self, point: &Point, from: usize) -> Result<Point> {
+        self.resolutions.transfer(point, from, 3, false)
     }
 
     fn corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
-        let to = &self.rungs.here.level.condensed;
-        let mut start = self.carry(point, from)?;
+        let to = &self.resolutions.here.level.condensed;
+        let mut start = self.transfer(point, from)?;
         let n = to.unknowns();
         let corrected = &estimate.corrected;
         let unit = 10f64.powf(point.parameter()) * to.length();
         to.set()
-            .carry(&corrected.set, &corrected.motion, 1.0 / unit, &mut start.v[..n]);
+            .transfer(&corrected.set, &corrected.motion, 1.0 / unit, &mut start.v[..n]);
         let both = (corrected.omega, corrected.damping);
-        Mode::set_frequency_and_damping(self.start.linear, both, &mut start.v[..n + 2]);
+        Epmc::set_frequency_and_damping(self.start.linear, both, &mut start.v[..n + 2]);
         Ok(start)
     }
 
-    fn solve_again(
+    fn resolve(
         &mut self,
         near: &Point,
         keep_parameter: bool,
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Option<Point>> {
-        let here = &mut self.rungs.here;
+        let here = &mut self.resolutions.here;
         let (problem, corrector) = (&mut here.problem, &mut here.corrector);
-        solve_again(problem, corrector, &self.settings, near, keep_parameter, cancelled)
+        resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)
     }
 }
 
 fn record<'a>(
-    (linear, level): (&LinearMode, &'a Level),
+    (linear, level): (&LinearMode, &'a Resolution),
     point: &'a Point,
     motion: &'a [f64],
     response: &'a [Complex64],
@@ -315,7 +320,7 @@ fn record<'a>(
 ) -> Record<'a> {
     Record {
         level,
-        omega: Mode::frequency_and_damping(linear, point.unknowns()).0,
+        omega: Epmc::frequency_and_damping(linear, point.unknowns()).0,
         motion,
         amplitude,
         response,

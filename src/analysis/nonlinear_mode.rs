@@ -1,26 +1,26 @@
 //! A nonlinear mode over a range of amplitude: its frequency and damping from contacts that stick to
 //! contacts that slide.
 
-use super::follow::{Ending, Keeper, Task};
-use super::levels::Ladder;
-use super::mode_points::ModePoints;
-use super::mode_rung::Start;
-use crate::branch::mode::{ModeData, ModeInfo};
-use crate::branch::{Branch, SpecialKind};
+use crate::adaptivity::branch_tracer::{BranchTracer, Ending, Keeper};
+use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::analysis::mode_points::ModePoints;
+use crate::analysis::mode_resolution::InitialGuess;
 use crate::condense::Condensed;
 use crate::contact::Contact;
-use crate::continuation::start::{self, First, Way};
+use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
-use crate::error_estimate::mode::ModeEstimator;
+use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::model::spring::{along, relative_row};
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::Problem;
-use crate::problem::at_rest::force_at_rest;
-use crate::problem::mode::{Gauge, LinearMode};
+use crate::problem::epmc::{Gauge, LinearMode};
+use crate::problem::static_force::static_force;
+use crate::results::mode_branch::{ModeData, ModeInfo};
+use crate::results::{Branch, SpecialKind};
 use num_complex::Complex64;
 
 /// Motion that counts as none, relative to the largest of the mode.
@@ -42,7 +42,7 @@ const BELOW_ONSET: f64 = 3.0;
 ///
 /// # Errors
 /// Bad options and models ([`SolverOptions::check`], [`ModeOptions::check`],
-/// [`Model::start_mode`]), `Argument` for a mode that moves no contact and for a reference degree of
+/// [`Model::select_mode`]), `Argument` for a mode that moves no contact and for a reference degree of
 /// freedom at a node of the mode, `Unsupported` for constant forces, `NoConvergence` when no first
 /// point was found.
 pub fn nonlinear_mode(
@@ -87,7 +87,7 @@ pub fn nonlinear_mode(
 
 /// The mode on the wave of the model's engine order.
 fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<Branch> {
-    let chosen = model.start_mode(range.choice)?;
+    let chosen = model.select_mode(range.choice)?;
     let damped = model.damped_mode(&chosen, range.damping_form)?;
     let mut linear = LinearMode {
         omega: damped.omega,
@@ -95,12 +95,12 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         shape: damped.shape,
     };
     let gauge = gauge(model, range, &mut linear)?;
-    let ladder = Ladder::new(model, solver, &[1], |harmonics| {
+    let harmonic_levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Ok(Condensed::for_mode(model, &options, range.damping_form, &linear.shape)?.0)
     })?;
-    let rung = ladder.first(solver.harmonics);
-    let level = ladder.level(rung)?;
+    let resolution = harmonic_levels.first(solver.harmonics);
+    let level = harmonic_levels.level(resolution)?;
     let condensed = &level.condensed;
     let i = condensed.set().fundamental();
     let moved = condensed.blocks()[i]
@@ -117,17 +117,21 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
             chosen.omega
         );
     }
-    if let Some(id) = force_at_rest(condensed, linear.omega, level.samples)? {
+    if let Some(id) = static_force(condensed, linear.omega, level.samples)? {
         return fail!(
             Unsupported,
             "contact {id} has a force at rest; nonlinear modes under constant forces are not provided yet"
         );
     }
     let response = solver.response_dof.unwrap_or(gauge.reference_dof);
-    let told = if ladder.is_automatic() { 0 } else { solver.harmonics };
-    let branch = Branch::new(level, condensed.reduction(model, solver)?, told, response)?;
+    let reported = if harmonic_levels.is_automatic() {
+        0
+    } else {
+        solver.harmonics
+    };
+    let branch = Branch::new(level, condensed.reduction(model, solver)?, reported, response)?;
     let start = (&linear, &gauge);
-    let estimates = solver.estimate_error || ladder.is_automatic();
+    let estimates = solver.estimate_error || harmonic_levels.is_automatic();
     let estimator = estimates.then(|| ModeEstimator::new(model, solver, range.damping_form, start, response));
     let settings = Settings {
         start: range.log10_start,
@@ -136,11 +140,18 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let begin = Start {
+    let begin = InitialGuess {
         linear: &linear,
         gauge: &gauge,
     };
-    let mut points = ModePoints::new(begin, solver, settings, (&ladder, rung), branch, estimator)?;
+    let mut points = ModePoints::new(
+        begin,
+        solver,
+        settings,
+        (&harmonic_levels, resolution),
+        branch,
+        estimator,
+    )?;
     let (linear_up_to, nearly) = points.linear_up_to(range.log10_start)?;
     points.set_mode(ModeData::new(
         ModeInfo {
@@ -225,7 +236,7 @@ fn run(
     };
     // The branch may come back to amplitudes below the onset, slipping.
     let followed = if from < end { start } else { from };
-    let task = Task {
+    let task = BranchTracer {
         settings: Settings {
             start: followed,
             ..settings
@@ -235,10 +246,10 @@ fn run(
         max_points: solver.max_points,
         before: None,
     };
-    let rung = points.rung();
+    let resolution = points.resolution();
     if start <= linear_up_to {
         // Nothing moves there but the fundamental.
-        if points.ladder().is_automatic() {
+        if points.harmonic_levels().is_automatic() {
             points.go_to(0)?;
         }
         if let Some(status) = linear_range(points, &task, linear_up_to.min(end), hooks)? {
@@ -249,10 +260,10 @@ fn run(
                 let point = points.linear_point(p)?;
                 points.keep_special(SpecialKind::At(i), point, false)?;
             } else if p < from {
-                points.go_to(rung)?;
+                points.go_to(resolution)?;
                 let at_it = Settings { start: p, ..settings };
                 loop {
-                    match start::solve(points.problem(), &at_it, hooks.cancelled)? {
+                    match initial_point::solve(points.problem(), &at_it, hooks.cancelled)? {
                         // Else it asks for more harmonics.
                         First::Found(point, _) => {
                             if points.keep_special(SpecialKind::At(i), point, false)? {
@@ -271,7 +282,7 @@ fn run(
             return Ok(Status::StoppedMaxPoints);
         }
     }
-    points.go_to(rung)?;
+    points.go_to(resolution)?;
     let onset = if linear_up_to.is_finite() {
         Some(points.linear_point(linear_up_to)?)
     } else {
@@ -317,14 +328,14 @@ fn first_nonlinear(
     hooks: &Hooks<'_>,
 ) -> Result<First> {
     if settings.start <= near || !near.is_finite() {
-        return start::solve(problem, settings, hooks.cancelled);
+        return initial_point::solve(problem, settings, hooks.cancelled);
     }
     let at_near = Settings {
         start: near,
         end: settings.start,
         ..*settings
     };
-    let first = match start::solve(problem, &at_near, hooks.cancelled) {
+    let first = match initial_point::solve(problem, &at_near, hooks.cancelled) {
         Ok(First::Found(point, _)) => point,
         Ok(First::Cancelled) => return Ok(First::Cancelled),
         // The amplitude turns as soon as contacts slip: the way leads round the corner.
@@ -358,7 +369,7 @@ fn first_nonlinear(
 /// be solved there. They are as dense as the largest steps of the continuation.
 fn linear_range(
     points: &mut ModePoints<'_>,
-    task: &Task<'_>,
+    task: &BranchTracer<'_>,
     end: f64,
     hooks: &mut Hooks<'_>,
 ) -> Result<Option<Status>> {

@@ -10,17 +10,17 @@
 //! two frequencies at each amplitude, and the resonance where the root vanishes.
 
 mod oscillator;
-mod refinement;
+mod resonance;
 
-use crate::branch::mode::ModeData;
-use crate::branch::{Branch, Recovery};
+use crate::analysis::synthesis::oscillator::{Load, State};
+use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SynthesisOptions;
+use crate::results::mode_branch::ModeData;
+use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
-use oscillator::{Load, State};
-use refinement::Refinement;
 
 /// A synthesised response at one frequency.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,7 @@ pub struct Synthesis {
     pub peaks: Vec<SynthesisPeak>,
 }
 
-const WHAT: &str = "the synthesised response";
+const CONTEXT: &str = "the synthesised response";
 
 /// Synthesises the response to the forces of `model` in the fundamental from a nonlinear mode.
 ///
@@ -113,7 +113,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
         );
     };
     check_model(branch, data, model)?;
-    let mut force = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
+    let mut force = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
     model.excitation().add_to(1, options.force_factor, &mut force);
     if force.iter().all(|f| *f == Complex64::ZERO) {
         return fail!(Argument, "the model has no force in the fundamental");
@@ -131,7 +131,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     };
     let mut states = Vec::new();
     let mut recovery = Recovery::at(branch, 0)?;
-    let mut x = try_vec(model.ndof(), Complex64::ZERO, WHAT)?;
+    let mut x = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
     for point in 0..branch.points() {
         recovery.go_to(point)?;
         recovery.harmonic(branch.level_at(point).set().fundamental(), &mut x)?;
@@ -139,7 +139,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
             return fail!(Internal, "point {point} of the mode has no numbers");
         };
         let state = load.state(branch.omega()[point], &numbers, &x);
-        try_push(&mut states, state, WHAT)?;
+        try_push(&mut states, state, CONTEXT)?;
     }
     let mut synthesis = Synthesis {
         points: flanks(&states)?,
@@ -159,7 +159,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
                 rising: a < 0.0,
                 validity: validity(data, &state, backwards),
             };
-            try_push(&mut synthesis.peaks, peak, WHAT)?;
+            try_push(&mut synthesis.peaks, peak, CONTEXT)?;
         }
     }
     Ok(synthesis)
@@ -192,7 +192,7 @@ fn flanks(states: &[State]) -> Result<Vec<SynthesisPoint>> {
     let lower = states.iter().map(|s| s.spread().and_then(|r| s.at(-r)));
     let upper = states.iter().rev().map(|s| s.spread().and_then(|r| s.at(r)));
     for point in lower.chain(upper).flatten() {
-        try_push(&mut points, point, WHAT)?;
+        try_push(&mut points, point, CONTEXT)?;
     }
     Ok(points)
 }

@@ -5,12 +5,12 @@
 //! All norms are root mean squares over the period and the degrees of freedom, ‖x‖² = |X₀|² + ½ Σₕ |Xₕ|², so
 //! that parts of a distance add up by their squares.
 
-use super::time_response::{TimeResponse, time_response};
-use crate::branch::Branch;
+use crate::analysis::time_response::{TimeResponse, time_response};
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::options::{TimeOptions, VerifyOptions};
+use crate::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -143,9 +143,9 @@ fn times(highest: usize) -> usize {
 }
 
 fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) -> Result<Verification> {
-    const WHAT: &str = "the comparison with the motion in time";
+    const CONTEXT: &str = "the comparison with the motion in time";
     let (ndof, count) = (time.ndof, time.harmonics.len() / time.ndof);
-    let mut errors = try_vec(count, 0.0, WHAT)?;
+    let mut errors = try_vec(count, 0.0, CONTEXT)?;
     let (mut square, mut gap) = (0.0, 0.0);
     let rows = x.chunks_exact(ndof).zip(time.harmonics.chunks_exact(ndof));
     for (h, (error, (x, y))) in errors.iter_mut().zip(rows).enumerate() {

@@ -7,7 +7,7 @@ use super::sized::{Described, init, load};
 use super::tables;
 use super::types::{hbvib_model, hbvib_special_dof, hbvib_status};
 use crate::analysis;
-use crate::contact::sides::Frame;
+use crate::contact::relative_motion::Frame;
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
@@ -24,8 +24,8 @@ fn kind(number: i32) -> Result<ContactKind> {
     const REGULARISED: i32 = known::HBVIB_REGULARISED as i32;
     Ok(match number {
         JENKINS => ContactKind::Jenkins,
-        FRICTION_2D => ContactKind::Friction,
-        FRICTION_3D => ContactKind::FrictionPlane,
+        FRICTION_2D => ContactKind::Friction2d,
+        FRICTION_3D => ContactKind::Friction3d,
         UNILATERAL => ContactKind::Unilateral,
         CUBIC => ContactKind::Cubic,
         REGULARISED => ContactKind::Regularised,
@@ -222,7 +222,7 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
 ) -> hbvib_status {
     call(|| {
         let mut contact = law(&unsafe { load(c, 1) }?).blame(1)?;
-        if matches!(contact.kind, ContactKind::FrictionPlane) && contact.kn != 0.0 {
+        if matches!(contact.kind, ContactKind::Friction3d) && contact.kn != 0.0 {
             // A place along n says that the load varies.
             contact.dof_a[2] = Some(0);
         }

@@ -5,9 +5,9 @@ use super::handles::{KeptBranch, read};
 use super::sized::{Described, check_out, fill_out, init};
 use super::special::optional;
 use super::types::{hbvib_branch, hbvib_status};
-use crate::branch::MOST_TIMES;
-use crate::contact::state::State;
+use crate::contact::contact_state::State;
 use crate::error::{Result, Status, fail};
+use crate::results::MOST_TIMES;
 
 /// What a contact does at one time.
 #[repr(C)]

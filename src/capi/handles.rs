@@ -6,9 +6,9 @@
 //! readers or notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
 
 use super::types::{hbvib_branch, hbvib_model};
-use crate::branch::Branch;
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
+use crate::results::Branch;
 use core::ops::{Deref, DerefMut};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 

@@ -5,7 +5,7 @@ use super::handles::{KeptBranch, read};
 use super::sized::{Described, check_out, fill_out, init};
 use super::types::{hbvib_branch, hbvib_status};
 use crate::error::{Result, Status, fail};
-use crate::model::repeated::Multiple;
+use crate::model::repeated_modes::Multiple;
 use crate::options::Amplitude;
 
 /// How the linear mode was chosen among those of one frequency.

@@ -6,8 +6,8 @@ use super::handles::{KeptBranch, free, read};
 use super::sized::{Described, check_out, fill_out, init};
 use super::told::Told;
 use super::types::{hbvib_branch, hbvib_field, hbvib_scalar, hbvib_status, hbvib_view};
-use crate::branch::mode::ModeField;
 use crate::error::{Status, fail, try_vec};
+use crate::results::mode_branch::ModeField;
 use core::ptr;
 use num_complex::Complex64;
 

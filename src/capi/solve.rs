@@ -9,11 +9,11 @@ use super::types::{
     hbvib_solver_options, hbvib_status,
 };
 use crate::analysis;
-use crate::branch::Branch;
 use crate::error::{Result, TEXT_CAPACITY, fail};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
+use crate::results::Branch;
 use core::ptr;
 use core::sync::atomic::{AtomicI32, Ordering};
 use num_complex::Complex64;

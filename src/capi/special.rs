@@ -3,8 +3,8 @@
 use super::boundary::{Blame, call, check_pointer, count, index};
 use super::handles::{KeptBranch, read};
 use super::types::{hbvib_branch, hbvib_status};
-use crate::branch::Special;
 use crate::error::{Result, Status, fail};
+use crate::results::Special;
 use core::ptr;
 
 /// Output arrays for special points, each of them optional, with the numbers of their arguments.

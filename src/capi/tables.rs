@@ -4,7 +4,7 @@ use super::boundary::{Blame, call, check_pointer, count, input};
 use super::handles::write;
 use super::types::{hbvib_model, hbvib_special_dof, hbvib_status};
 use crate::contact::Contact;
-use crate::contact::iwan::Iwan;
+use crate::contact::laws::iwan::Iwan;
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::model::spring::Spring;

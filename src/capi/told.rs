@@ -1,7 +1,7 @@
 //! What a call says when its result was written.
 
-use crate::branch::Branch;
 use crate::error::{Error, Status};
+use crate::results::Branch;
 
 /// What a call that wrote its result tells: a status, and why the result is a part only, where the
 /// status alone does not say it.

@@ -6,7 +6,7 @@ use super::boundary::{Blame, call, check_pointer, count, index, input, outside};
 use super::handles::write;
 use super::sized::{Described, check_reserved, init, load};
 use super::types::{hbvib_model, hbvib_status};
-use crate::contact::user::{Call, User, UserForce};
+use crate::contact::laws::user_law::{Call, User, UserForce};
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;

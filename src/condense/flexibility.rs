@@ -4,9 +4,9 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use super::Condensed;
-use super::dynamic::{By, DynamicStiffness, add_slope_product, product};
-use crate::contact::sides::Direction;
+use crate::condense::Condensed;
+use crate::condense::dynamic_stiffness::{By, DynamicStiffness, add_slope_product, product};
+use crate::contact::relative_motion::Direction;
 use crate::error::{Result, try_vec};
 use crate::model::spring::{along, relative_row};
 use num_complex::Complex64;

@@ -1,6 +1,6 @@
 //! Contacts of each law by their degrees of freedom and constants.
 
-use super::{Contact, ContactKind};
+use crate::contact::{Contact, ContactKind};
 
 impl Contact {
     /// A Jenkins contact between degree of freedom `a` and `b` (or the ground).
@@ -24,7 +24,7 @@ impl Contact {
     }
 
     /// A law without constants of its own between degree of freedom `a` and `b` (or the ground): a
-    /// table, or a polynomial or law of the host over one motion.
+    /// table, or a polynomial or law of the caller over one motion.
     #[must_use]
     pub fn between(a: usize, b: Option<usize>, kind: ContactKind) -> Self {
         Self {
@@ -33,7 +33,7 @@ impl Contact {
         }
     }
 
-    /// A polynomial or law of the host over the motions of degrees of freedom.
+    /// A polynomial or law of the caller over the motions of degrees of freedom.
     #[must_use]
     pub fn over(dofs: Vec<usize>, kind: ContactKind) -> Self {
         Self {
@@ -49,7 +49,7 @@ impl Contact {
     #[must_use]
     pub fn friction(a: [Option<usize>; 2], b: [Option<usize>; 2], (kt, kn): (f64, f64), mu: f64, preload: f64) -> Self {
         Self {
-            kind: ContactKind::Friction,
+            kind: ContactKind::Friction2d,
             dof_a: [a[0], None, a[1]],
             dof_b: [b[0], None, b[1]],
             kn,
@@ -60,7 +60,7 @@ impl Contact {
     /// The same in the plane of two tangential directions, between the degrees of freedom along t1, t2
     /// and n.
     #[must_use]
-    pub fn friction_plane(
+    pub fn friction_3d(
         a: [Option<usize>; 3],
         b: [Option<usize>; 3],
         (kt, kn): (f64, f64),
@@ -68,7 +68,7 @@ impl Contact {
         preload: f64,
     ) -> Self {
         Self {
-            kind: ContactKind::FrictionPlane,
+            kind: ContactKind::Friction3d,
             dof_a: a,
             dof_b: b,
             kn,

@@ -5,12 +5,12 @@
 //! coefficients and Jacobian follow is the same for all laws of a [`Form`] and lives in
 //! [`crate::aft`], which knows no law by name. All quantities are in the solver's units.
 
-use super::friction::Friction;
-use super::marched::Marched;
-use super::pointwise::Pointwise;
-use super::state::State;
+use crate::contact::contact_state::State;
+use crate::contact::hysteretic_law::Hysteretic;
+use crate::contact::laws::friction_2d::Friction2d;
+use crate::contact::memoryless_law::Memoryless;
 use crate::fourier::Extremum;
-use crate::harmonics::HarmonicSet;
+use crate::fourier::HarmonicSet;
 use core::fmt::Debug;
 use num_complex::Complex64;
 
@@ -29,11 +29,11 @@ pub trait Law: Debug + Send + Sync {
 
     /// The factor s from which on s·f(x/s) is (nearly) linear, for motions of the given ranges: friction
     /// sticks, a polynomial term is small against the stiffness `reference`.
-    fn sticking_factor(&self, ranges: &[Range], reference: f64) -> f64;
+    fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64;
 
-    /// Whether [`Self::sticking_factor`] is known for any motion; else it is a guess from the size of
+    /// Whether [`Self::linearisation_scale`] is known for any motion; else it is a guess from the size of
     /// the motions that matter.
-    fn knows_its_linear_range(&self) -> bool {
+    fn has_known_linear_range(&self) -> bool {
         true
     }
 }
@@ -66,22 +66,22 @@ pub const SMALL: f64 = 1e-12;
 /// The forms in which laws answer.
 pub enum Form<'a> {
     /// Intervals on which the force is affine in the one relative motion: exact.
-    Pieces(&'a dyn Pieces),
+    PiecewiseLinear(&'a dyn PiecewiseLinear),
     /// A spectrum of the stiffness on one relative motion: exact.
     Spectral(&'a dyn Spectral),
     /// Friction in one direction under a normal load that varies: exact.
-    Coupled(&'a Friction),
+    Coupled(&'a Friction2d),
     /// Force, states and the derivatives of their steps, marched over equidistant times.
-    Marched(&'a dyn Marched),
+    Hysteretic(&'a dyn Hysteretic),
     /// Force and tangents at equidistant times, without memory.
-    Pointwise(&'a dyn Pointwise),
+    Memoryless(&'a dyn Memoryless),
 }
 
 /// A law on one relative motion whose force is affine in it between events.
-pub trait Pieces {
-    /// Exact pieces over one turn (half a turn for sets of odd harmonics) from the reversals of the
+pub trait PiecewiseLinear {
+    /// Exact pieces over one turn (half a turn for sets of odd harmonics) from the turning points of the
     /// motion.
-    fn pieces(&self, set: &HarmonicSet, motion: &[f64], reversals: &[Extremum], pieces: &mut Vec<Piece>);
+    fn pieces(&self, set: &HarmonicSet, motion: &[f64], turning_points: &[Extremum], pieces: &mut Vec<Piece>);
 
     /// Pieces in sample numbers over one turn from equidistant samples of the motion.
     fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>);

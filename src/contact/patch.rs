@@ -1,8 +1,8 @@
 //! A contact patch: many node pairs between two surfaces, each with the share of area that it stands
 //! for.
 
-use super::sides::Frame;
-use super::{Contact, ContactKind};
+use crate::contact::relative_motion::Frame;
+use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, fail, try_push};
 
 /// Node pairs of two surfaces. All arrays have one entry per pair; `None` takes the value of `law`.

@@ -1,7 +1,7 @@
 //! Newton's method on R(u, p) = 0 with one linear condition on (u, p): the corrector of the
 //! continuation, and with damping the solver of the first point.
 
-use super::Metric;
+use crate::continuation::Metric;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
 use crate::linalg::bordered::{Bordered, Parts};
 use crate::linalg::norm;

@@ -1,7 +1,7 @@
 //! How a branch is measured: the unknowns in units that follow the branch, the parameter in units
 //! of the range.
 
-use super::Settings;
+use crate::continuation::Settings;
 use crate::linalg::norm;
 
 /// Units in which the unknowns and the parameter are measured.

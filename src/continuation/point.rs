@@ -1,6 +1,6 @@
 //! A solved point of a branch with its tangent.
 
-use super::corrector::Corrected;
+use crate::continuation::corrector::Corrected;
 use crate::error::{Result, try_copy};
 use num_complex::Complex64;
 

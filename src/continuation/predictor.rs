@@ -1,7 +1,7 @@
 //! Cubic Hermite interpolation and extrapolation of a branch through two points and their
 //! tangents.
 
-use super::{Metric, Point};
+use crate::continuation::{Metric, Point};
 use num_complex::Complex64;
 
 /// The cubic through `a` (s = 0) and `b` (s = 1) with their tangents.
@@ -11,7 +11,7 @@ pub struct Cubic<'p> {
     /// Length of the chord in the metric.
     pub chord: f64,
     /// Factors that give the stored tangents the length of the chord.
-    reach: (f64, f64),
+    cutoff: (f64, f64),
 }
 
 impl<'p> Cubic<'p> {
@@ -23,13 +23,13 @@ impl<'p> Cubic<'p> {
             a,
             b,
             chord,
-            reach: (chord / metric.norm(&a.tangent), chord / metric.norm(&b.tangent)),
+            cutoff: (chord / metric.norm(&a.tangent), chord / metric.norm(&b.tangent)),
         }
     }
 
     /// Weights of a, b and of their tangents at s, and of their derivatives.
     fn weights(&self, s: f64) -> ([f64; 4], [f64; 4]) {
-        let (ra, rb) = self.reach;
+        let (ra, rb) = self.cutoff;
         let (s2, s3) = (s * s, s * s * s);
         (
             [

@@ -5,11 +5,11 @@
 //! structure) are eliminated first: x_t = b_t − J_ta x_a − r_t x_p. What remains couples the others
 //! and the parameter.
 
-mod refine;
+mod factor_reuse;
 
-use super::lu::Lu;
 use crate::error::{Result, try_vec};
-pub use refine::Parts;
+pub use crate::linalg::bordered::factor_reuse::Parts;
+use crate::linalg::lu::Lu;
 
 /// LU factors of the (n + 1) × (n + 1) matrix [J r; tᵀ].
 pub struct Bordered {
@@ -36,21 +36,21 @@ impl Bordered {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
-        const WHAT: &str = "the bordered system";
+        const CONTEXT: &str = "the bordered system";
         // Eliminated times active unknowns is at most (n/2)·(n/2 + 1).
         let rest = (n / 2 + 1).saturating_mul(n / 2 + 2);
         let mut bordered = Self {
             lu: Lu::new(n + 1, 1)?,
             n,
-            active: try_vec(n, 0, WHAT)?,
-            eliminated: try_vec(n, 0, WHAT)?,
-            rest: try_vec(rest, 0.0, WHAT)?,
-            border: try_vec(n, 0.0, WHAT)?,
+            active: try_vec(n, 0, CONTEXT)?,
+            eliminated: try_vec(n, 0, CONTEXT)?,
+            rest: try_vec(rest, 0.0, CONTEXT)?,
+            border: try_vec(n, 0.0, CONTEXT)?,
             u_scale: 1.0,
-            reduced: try_vec(n + 1, 0.0, WHAT)?,
-            known: try_vec(n + 1, 0.0, WHAT)?,
-            change: try_vec(n + 1, 0.0, WHAT)?,
-            scaled: try_vec(n, 0.0, WHAT)?,
+            reduced: try_vec(n + 1, 0.0, CONTEXT)?,
+            known: try_vec(n + 1, 0.0, CONTEXT)?,
+            change: try_vec(n + 1, 0.0, CONTEXT)?,
+            scaled: try_vec(n, 0.0, CONTEXT)?,
         };
         bordered.rest.clear();
         Ok(bordered)

@@ -1,8 +1,8 @@
 //! Whether a large sparse matrix is positive definite. Lanczos iteration would not tell: it meets a
 //! negative direction by chance only.
 
-use super::sparse::{Csc, Form};
 use crate::error::{Error, Result, fail, try_push, try_vec};
+use crate::linalg::sparse::{Csc, Form};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
@@ -13,7 +13,7 @@ use num_complex::Complex64;
 /// What is added to the diagonal, relative to it: rounding must not make a singular matrix fail.
 const MARGIN: f64 = 1e-10;
 
-const WHAT: &str = "a Cholesky factorisation";
+const CONTEXT: &str = "a Cholesky factorisation";
 
 /// Refuses a Hermitian mass matrix that is negative in some direction, by a Cholesky
 /// factorisation of M + 1e-10 diag(M).
@@ -31,7 +31,7 @@ pub fn check_mass(m: &Csc) -> Result<()> {
         }
         // A row without mass is taken out by a one of its own.
         let added = if alone { 1.0 } else { MARGIN * diagonal };
-        try_push(&mut margin, (j, j, added.into()), WHAT)?;
+        try_push(&mut margin, (j, j, added.into()), CONTEXT)?;
     }
     first_bad_pivot(m, margin)?.map_or(Ok(()), negative)
 }
@@ -44,7 +44,7 @@ pub fn check_mass(m: &Csc) -> Result<()> {
 pub fn resists_all_motion(k: &Csc) -> Result<bool> {
     let mut margin = Vec::new();
     for j in 0..k.rows {
-        try_push(&mut margin, (j, j, (-MARGIN * k.get(j, j).re).into()), WHAT)?;
+        try_push(&mut margin, (j, j, (-MARGIN * k.get(j, j).re).into()), CONTEXT)?;
     }
     Ok(first_bad_pivot(k, margin)?.is_none())
 }
@@ -58,7 +58,7 @@ fn first_bad_pivot(a: &Csc, margin: Vec<(usize, usize, Complex64)>) -> Result<Op
         &[(Complex64::ONE, a, Form::Plain), (Complex64::ONE, &margin, Form::Plain)],
     )?;
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &a.row_idx);
-    let no_memory = || Error::out_of_memory(WHAT);
+    let no_memory = || Error::out_of_memory(CONTEXT);
     let symbolic = factorize_symbolic_cholesky(
         pattern,
         Side::Lower,
@@ -68,7 +68,7 @@ fn first_bad_pivot(a: &Csc, margin: Vec<(usize, usize, Complex64)>) -> Result<Op
     .map_err(|_| no_memory())?;
     let need = symbolic.factorize_numeric_llt_scratch::<Complex64>(Par::Seq, faer::Spec::default());
     let mut scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
-    let mut values = try_vec(symbolic.len_val(), Complex64::ZERO, WHAT)?;
+    let mut values = try_vec(symbolic.len_val(), Complex64::ZERO, CONTEXT)?;
     let factored = symbolic.factorize_numeric_llt(
         &mut values,
         SparseColMatRef::new(pattern, &a.values),

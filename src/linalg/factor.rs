@@ -1,9 +1,9 @@
 //! Factors of a complex matrix in sparse storage: densely for small or full matrices, sparsely for
 //! large ones.
 
-use super::lu::Lu;
-use super::sparse::Csc;
 use crate::error::{Error, Result, Status, fail, try_vec};
+use crate::linalg::lu::Lu;
+use crate::linalg::sparse::Csc;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::sparse::linalg::LuError;
 use faer::sparse::linalg::lu::{LuRef, LuSymbolicParams, NumericLu, SymbolicLu, factorize_symbolic_lu};
@@ -124,19 +124,19 @@ impl Sparse {
 
     /// Ordering and structure of the factors, which matrices of one pattern share.
     fn analyse(&mut self, a: &Csc) -> Result<()> {
-        const WHAT: &str = "a sparse factorisation";
-        self.col_ptr = try_vec(a.col_ptr.len(), 0, WHAT)?;
+        const CONTEXT: &str = "a sparse factorisation";
+        self.col_ptr = try_vec(a.col_ptr.len(), 0, CONTEXT)?;
         self.col_ptr.copy_from_slice(&a.col_ptr);
-        self.row_idx = try_vec(a.row_idx.len(), 0, WHAT)?;
+        self.row_idx = try_vec(a.row_idx.len(), 0, CONTEXT)?;
         self.row_idx.copy_from_slice(&a.row_idx);
         let pattern = SymbolicSparseColMatRef::new_checked(self.n, self.n, &self.col_ptr, None, &self.row_idx);
         let symbolic =
-            factorize_symbolic_lu(pattern, LuSymbolicParams::default()).map_err(|_| Error::out_of_memory(WHAT))?;
+            factorize_symbolic_lu(pattern, LuSymbolicParams::default()).map_err(|_| Error::out_of_memory(CONTEXT))?;
         let need = symbolic
             .factorize_numeric_lu_scratch::<Complex64>(Par::Seq, faer::Spec::default())
             .or(symbolic.solve_in_place_scratch::<Complex64>(self.columns, Par::Seq))
             .or(symbolic.solve_transpose_in_place_scratch::<Complex64>(self.columns, Par::Seq));
-        self.scratch = MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(WHAT))?;
+        self.scratch = MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(CONTEXT))?;
         self.symbolic = Some(symbolic);
         Ok(())
     }

@@ -1,10 +1,10 @@
 //! The generalised minimal residual method (Saad & Schultz 1986, doi:10.1137/0907058) for a matrix that is
 //! only known by its products.
 
-use super::norm;
 use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::linalg::norm;
 
-const WHAT: &str = "an iterative linear solution";
+const CONTEXT: &str = "an iterative linear solution";
 
 /// Solves A x = b with x = 0 as the start, until ‖b − A x‖ ≤ tolerance·‖b‖; `product` fills A v. Returns whether it
 /// came so far within `most` products; b then holds x.
@@ -25,18 +25,18 @@ pub fn gmres(
         return Ok(false);
     }
     let mut basis: Vec<Vec<f64>> = Vec::new();
-    let mut first = try_copy(b, WHAT)?;
+    let mut first = try_copy(b, CONTEXT)?;
     scale(&mut first, 1.0 / size);
-    try_push(&mut basis, first, WHAT)?;
+    try_push(&mut basis, first, CONTEXT)?;
     // Columns of the triangular factor of Hessenberg's matrix, and the rotations that made it.
     let mut triangle: Vec<Vec<f64>> = Vec::new();
     let mut rotations: Vec<(f64, f64)> = Vec::new();
     let mut rest: Vec<f64> = Vec::new();
-    try_push(&mut rest, size, WHAT)?;
+    try_push(&mut rest, size, CONTEXT)?;
     for k in 0..most {
-        let mut v = try_vec(b.len(), 0.0, WHAT)?;
+        let mut v = try_vec(b.len(), 0.0, CONTEXT)?;
         product(&basis[k], &mut v)?;
-        let mut column = try_vec(k + 1, 0.0, WHAT)?;
+        let mut column = try_vec(k + 1, 0.0, CONTEXT)?;
         // Twice, for the sake of rounding.
         for _ in 0..2 {
             for (h, q) in column.iter_mut().zip(&basis) {
@@ -59,17 +59,17 @@ pub fn gmres(
         }
         let (c, s) = (column[k] / length, below / length);
         column[k] = length;
-        try_push(&mut rotations, (c, s), WHAT)?;
-        try_push(&mut triangle, column, WHAT)?;
+        try_push(&mut rotations, (c, s), CONTEXT)?;
+        try_push(&mut triangle, column, CONTEXT)?;
         let last = rest[k];
         rest[k] = c * last;
-        try_push(&mut rest, -s * last, WHAT)?;
+        try_push(&mut rest, -s * last, CONTEXT)?;
         if rest[k + 1].abs() <= tolerance * size {
             combine(&basis, &triangle, &mut rest, b);
             return Ok(true);
         }
         scale(&mut v, 1.0 / below);
-        try_push(&mut basis, v, WHAT)?;
+        try_push(&mut basis, v, CONTEXT)?;
     }
     Ok(false)
 }

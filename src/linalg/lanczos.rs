@@ -5,10 +5,10 @@
 //! The basis is kept orthogonal in full. Repeated eigenvalues need a start for each copy: after
 //! convergence the search starts anew, orthogonal to what was found, until nothing larger comes.
 
-use super::eigen::Pairs;
-use super::factor::Factor;
-use super::sparse::{Csc, Form};
 use crate::error::{Result, fail, try_push, try_vec};
+use crate::linalg::eigen::Pairs;
+use crate::linalg::factor::Factor;
+use crate::linalg::sparse::{Csc, Form};
 use nalgebra::{DMatrix, SymmetricEigen};
 use num_complex::Complex64;
 

@@ -22,13 +22,13 @@ impl LeastSquares {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
-        const WHAT: &str = "a least-squares problem";
+        const CONTEXT: &str = "a least-squares problem";
         Ok(Self {
             n,
-            a: try_vec(n.saturating_mul(n), 0.0, WHAT)?,
-            order: try_vec(n, 0, WHAT)?,
-            lengths: try_vec(n, 0.0, WHAT)?,
-            solution: try_vec(n, 0.0, WHAT)?,
+            a: try_vec(n.saturating_mul(n), 0.0, CONTEXT)?,
+            order: try_vec(n, 0, CONTEXT)?,
+            lengths: try_vec(n, 0.0, CONTEXT)?,
+            solution: try_vec(n, 0.0, CONTEXT)?,
         })
     }
 

@@ -32,7 +32,7 @@ impl Scalar for Complex64 {
 /// Order above which the blocked kernels are quicker.
 const BLOCKED_ABOVE: usize = 32;
 
-const WHAT: &str = "an LU factorisation";
+const CONTEXT: &str = "an LU factorisation";
 
 /// Memory that the blocked kernels want.
 struct Blocked {
@@ -68,17 +68,17 @@ impl<T: Scalar> Lu<T> {
                     Par::Seq,
                 ));
             Some(Blocked {
-                forward: try_vec(n, 0, WHAT)?,
-                backward: try_vec(n, 0, WHAT)?,
-                scratch: MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(WHAT))?,
+                forward: try_vec(n, 0, CONTEXT)?,
+                backward: try_vec(n, 0, CONTEXT)?,
+                scratch: MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(CONTEXT))?,
             })
         } else {
             None
         };
         Ok(Self {
             n,
-            a: try_vec(nn, <T as nalgebra::ComplexField>::from_real(0.0), WHAT)?,
-            pivots: try_vec(n, 0, WHAT)?,
+            a: try_vec(nn, <T as nalgebra::ComplexField>::from_real(0.0), CONTEXT)?,
+            pivots: try_vec(n, 0, CONTEXT)?,
             blocked,
         })
     }

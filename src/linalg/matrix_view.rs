@@ -1,7 +1,7 @@
 //! The borrowed matrix that callers hand in, and the one home of its checks.
 
-use super::sparse::{Csc, Form};
 use crate::error::{Error, Result, Status, fail, try_push};
+use crate::linalg::sparse::{Csc, Form};
 use num_complex::Complex64;
 
 /// How the entries lie in memory.

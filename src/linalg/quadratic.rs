@@ -1,7 +1,7 @@
 //! The form xᴴ A x and the product A x, accurate though their terms cancel: for a motion that hardly
 //! strains a stiff structure they are smaller than the rounding of their largest term.
 
-use super::sparse::Csc;
+use crate::linalg::sparse::Csc;
 use num_complex::Complex64;
 
 /// A sum with its rounding errors kept apart (Ogita, Rump & Oishi 2005, doi:10.1137/030601818).

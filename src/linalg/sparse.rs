@@ -89,15 +89,15 @@ impl Csc {
     /// # Errors
     /// `OutOfMemory`.
     pub fn try_clone(&self) -> Result<Self> {
-        const WHAT: &str = "a sparse matrix";
+        const CONTEXT: &str = "a sparse matrix";
         let mut copy = Self {
             rows: self.rows,
             cols: self.cols,
             ..Self::default()
         };
-        try_extend(&mut copy.col_ptr, &self.col_ptr, WHAT)?;
-        try_extend(&mut copy.row_idx, &self.row_idx, WHAT)?;
-        try_extend(&mut copy.values, &self.values, WHAT)?;
+        try_extend(&mut copy.col_ptr, &self.col_ptr, CONTEXT)?;
+        try_extend(&mut copy.row_idx, &self.row_idx, CONTEXT)?;
+        try_extend(&mut copy.values, &self.values, CONTEXT)?;
         Ok(copy)
     }
 

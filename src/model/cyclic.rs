@@ -5,9 +5,9 @@
 //! A_h = A₀ + A₁ e^{−ihφ} + A₋₁ e^{+ihφ} (Thomas 1979, doi:10.1002/nme.1620140107; Wildheim 1979,
 //! doi:10.1115/1.3424673).
 
-use super::structure::{MatrixKind, Structure};
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 

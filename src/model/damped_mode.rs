@@ -5,15 +5,15 @@
 //! stiffness. One complex equation settles the two real unknowns: inverse iteration on a problem
 //! that is nonlinear in its eigenvalue (Neumaier 1985, doi:10.1137/0722055).
 
-use super::Model;
-use super::linear_modes::ContactState;
-use super::spring::Wave;
-use super::start_mode::{StartMode, times};
-use super::structure::MatrixKind;
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::linear_modes::ContactState;
+use crate::model::mode_selection::{SelectedMode, times};
+use crate::model::spring::Wave;
+use crate::model::structure::MatrixKind;
 use crate::options::DampingForm;
 use num_complex::Complex64;
 
@@ -48,7 +48,7 @@ const NEARLY_EQUAL: f64 = 3e-8;
 /// Strain energy of the structure itself, relative to that of the mode, that is rounding.
 const NO_STRAIN: f64 = 1e-12;
 
-const WHAT: &str = "the damped mode";
+const CONTEXT: &str = "the damped mode";
 
 fn no_artificial_damping<T>() -> Result<T> {
     fail!(
@@ -59,7 +59,7 @@ fn no_artificial_damping<T>() -> Result<T> {
 
 impl Model {
     /// The mode with the structure's damping, contacts stuck, that grows out of `start`, a mode of
-    /// [`Self::start_mode`]. Without damping it is `start`, and D is 0 exactly.
+    /// [`Self::select_mode`]. Without damping it is `start`, and D is 0 exactly.
     ///
     /// A mixture of modes of equal frequency is kept where the damping leaves it a mode.
     ///
@@ -67,7 +67,7 @@ impl Model {
     /// `NoConvergence` where the damping is so strong that no mode is reached; `Singular` where
     /// artificial damping of the stiffness type does not act on the mode; `Dimension` for a shape
     /// of another length; `OutOfMemory`.
-    pub fn damped_mode(&self, start: &StartMode, form: DampingForm) -> Result<DampedMode> {
+    pub fn damped_mode(&self, start: &SelectedMode, form: DampingForm) -> Result<DampedMode> {
         let n = self.ndof();
         if start.shape.len() != n {
             return fail!(
@@ -79,7 +79,7 @@ impl Model {
         let structure = self.structure();
         let problem = Damped {
             form,
-            stiffness: self.stiffness_at_rest(Wave::Harmonic(1), ContactState::Stuck)?,
+            stiffness: self.stiffness_at_small_motion(Wave::Harmonic(1), ContactState::Stuck)?,
             own: structure.wave_matrix(MatrixKind::Stiffness, 1)?,
             damping: structure.wave_matrix(MatrixKind::Damping, 1)?,
             mass: structure.wave_matrix(MatrixKind::Mass, 1)?,
@@ -87,7 +87,7 @@ impl Model {
         let undamped = DampedMode {
             omega: start.omega,
             damping: 0.0,
-            shape: try_copy(&start.shape, WHAT)?,
+            shape: try_copy(&start.shape, CONTEXT)?,
         };
         let conservative = problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
         if conservative && problem.damping.max_abs() == 0.0 {
@@ -159,7 +159,7 @@ impl Damped {
     fn columns(&self, mode: &DampedMode) -> Result<Vec<Complex64>> {
         let (n, x, i) = (self.mass.rows, &mode.shape, Complex64::I);
         let (omega, d) = (mode.omega, mode.damping);
-        let mut columns = try_vec(3 * n, Complex64::ZERO, WHAT)?;
+        let mut columns = try_vec(3 * n, Complex64::ZERO, CONTEXT)?;
         let (residual, derivatives) = columns.split_at_mut(n);
         for (factor, a) in self.factors(omega, d).into_iter().zip(self.terms()) {
             a.multiply_add(factor, x, residual);
@@ -184,7 +184,7 @@ impl Damped {
     fn follow(&self, start: &DampedMode, offset: f64) -> Result<DampedMode> {
         let n = self.mass.rows;
         let mut mode = DampedMode {
-            shape: try_copy(&start.shape, WHAT)?,
+            shape: try_copy(&start.shape, CONTEXT)?,
             ..*start
         };
         let v = times(&self.mass, &start.shape)?;
@@ -237,9 +237,9 @@ impl Damped {
     /// Whether A x = 0 but for rounding, or for the difference of frequencies that count as equal.
     fn residual(&self, mode: &DampedMode, repeated: bool) -> Result<bool> {
         let n = self.mass.rows;
-        let mut sum = try_vec(n, Complex64::ZERO, WHAT)?;
-        let mut sizes = try_vec(n, 0.0_f64, WHAT)?;
-        let mut inertia = try_vec(n, Complex64::ZERO, WHAT)?;
+        let mut sum = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        let mut sizes = try_vec(n, 0.0_f64, CONTEXT)?;
+        let mut inertia = try_vec(n, Complex64::ZERO, CONTEXT)?;
         for (factor, a) in self.factors(mode.omega, mode.damping).into_iter().zip(self.terms()) {
             a.multiply_add(factor, &mode.shape, &mut sum);
             for (j, x) in mode.shape.iter().enumerate() {

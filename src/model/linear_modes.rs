@@ -1,8 +1,5 @@
 //! Undamped natural modes of the structure with its contacts removed or stuck.
 
-use super::Model;
-use super::spring::Wave;
-use super::structure::MatrixKind;
 use crate::contact::Role;
 use crate::error::{Result, Status, check_memory, fail};
 use crate::linalg::definite::resists_all_motion;
@@ -10,6 +7,9 @@ use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::Csc;
+use crate::model::Model;
+use crate::model::spring::Wave;
+use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
@@ -103,7 +103,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::sprung_stiffness`].
-    pub fn stiffness_at_rest(&self, wave: Wave, contacts: ContactState) -> Result<Csc> {
+    pub fn stiffness_at_small_motion(&self, wave: Wave, contacts: ContactState) -> Result<Csc> {
         let stuck = self
             .contacts()
             .iter()
@@ -126,7 +126,7 @@ impl Model {
             Wave::Diameter(diameter) => structure.diameter_matrix(MatrixKind::Mass, diameter)?,
             Wave::Harmonic(harmonic) => structure.wave_matrix(MatrixKind::Mass, harmonic)?,
         };
-        let stiffness = self.stiffness_at_rest(wave, contacts)?;
+        let stiffness = self.stiffness_at_small_motion(wave, contacts)?;
         for (name, a) in [("stiffness", &stiffness), ("mass", &mass)] {
             let (i, j, gap) = a.worst_hermitian_pair();
             if gap > 1e-10 * a.max_abs() {

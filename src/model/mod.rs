@@ -1,27 +1,27 @@
 //! The model: structure, contacts, excitation. Matrices and contact data go in here.
 
-pub mod capacity;
-mod check;
 pub mod cyclic;
 pub mod damped_mode;
 pub mod excitation;
+pub mod full_wheel;
 pub mod linear_modes;
-pub mod repeated;
+pub mod mode_selection;
+mod model_checks;
+pub mod repeated_modes;
+pub mod slip_capacity;
 pub mod spring;
-pub mod start_mode;
 pub mod structure;
-pub mod wheel;
 
 use crate::contact::Contact;
-use crate::contact::iwan::Iwan;
+use crate::contact::laws::iwan::Iwan;
 use crate::contact::patch::Patch;
-use crate::contact::sides::Direction;
+use crate::contact::relative_motion::Direction;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
-use excitation::Excitation;
+use crate::model::excitation::Excitation;
+use crate::model::spring::Spring;
+use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
-use spring::Spring;
-use structure::{MatrixKind, Structure};
 
 /// What memory is asked for.
 const CONTACTS: &str = "the contacts";

@@ -1,11 +1,11 @@
 //! Linear springs between degrees of freedom, and the stiffness that springs and stuck contacts add
 //! to a wave.
 
-use super::Model;
-use super::structure::MatrixKind;
-use crate::contact::sides::Direction;
+use crate::contact::relative_motion::Direction;
 use crate::error::{Result, try_push};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// A linear spring. It takes no part in Rayleigh damping.
@@ -58,7 +58,7 @@ impl Model {
     /// K of a wave with the springs of the model and those of the `stuck` contacts.
     ///
     /// # Errors
-    /// Those of [`Structure::wave_matrix`](super::structure::Structure::wave_matrix).
+    /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
     pub fn sprung_stiffness<'c>(
         &self,
         wave: Wave,
@@ -94,7 +94,7 @@ impl Model {
             let row = |k| relative_row(&c.direction(k), phase(c.sector_offset));
             for k in 0..c.directions() {
                 for l in 0..c.directions() {
-                    add(&row(k), &row(l), c.stiffness_at_rest(k, l))?;
+                    add(&row(k), &row(l), c.stiffness_at_small_motion(k, l))?;
                 }
             }
         }

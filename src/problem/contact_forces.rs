@@ -4,11 +4,11 @@
 mod coupling;
 mod ranges;
 
-use super::blocks::Blocks;
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
 use crate::error::{Result, try_push, try_vec};
-use crate::harmonics::HarmonicSet;
+use crate::fourier::HarmonicSet;
+use crate::problem::contact_jacobian::Blocks;
 use num_complex::Complex64;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
@@ -36,7 +36,7 @@ pub struct ContactForces<'a> {
     /// Per coordinate whether ∂f/∂y is that of laws which all stick, or along their normal are closed.
     linear: Vec<bool>,
     /// Per coordinate whether all its laws stick and none acts along its normal, where a load rests.
-    silent: Vec<bool>,
+    inactive: Vec<bool>,
     slip_fractions: Vec<f64>,
 }
 
@@ -47,7 +47,7 @@ impl<'a> ContactForces<'a> {
     /// `OutOfMemory`.
     pub fn new(condensed: &'a Condensed, samples: usize) -> Result<Self> {
         let mut forces = Self::unchecked(condensed, samples)?;
-        let laws = || condensed.laws().iter().map(|placed| &*placed.law);
+        let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
         if laws().any(|law| forces.evaluator.samples(law)) {
             forces.other = Some(Evaluator::otherwise(condensed.set(), samples, laws())?);
         }
@@ -59,19 +59,19 @@ impl<'a> ContactForces<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn unchecked(condensed: &'a Condensed, samples: usize) -> Result<Self> {
-        const WHAT: &str = "the contact forces";
+        const CONTEXT: &str = "the contact forces";
         // A linear problem has no contact to evaluate, and its harmonics need not be a comb.
         let linear = condensed.coordinates() == 0;
         let set = if linear { &HarmonicSet::all(0)? } else { condensed.set() };
         let m = set.packed_len();
         let size = condensed.coordinates().saturating_mul(m);
-        let laws = || condensed.laws().iter().map(|placed| &*placed.law);
+        let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
         let most = laws().map(crate::contact::Law::directions).max().unwrap_or(0);
         let mut found = Vec::new();
         for d in 1..=most {
             let used = laws().any(|law| law.directions() == d);
             let memory = if used { Some(Evaluation::new(set, d)?) } else { None };
-            try_push(&mut found, memory, WHAT)?;
+            try_push(&mut found, memory, CONTEXT)?;
         }
         let samples = if linear { 0 } else { samples };
         let evaluator = Evaluator::new(set, samples, laws())?;
@@ -80,25 +80,25 @@ impl<'a> ContactForces<'a> {
             evaluator,
             other: None,
             factor: 1.0,
-            scaled: try_vec(size, 0.0, WHAT)?,
-            gathered: try_vec(most.saturating_mul(m), 0.0, WHAT)?,
-            checked: try_vec(most.saturating_mul(m), 0.0, WHAT)?,
+            scaled: try_vec(size, 0.0, CONTEXT)?,
+            gathered: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
+            checked: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
             found,
-            force: try_vec(size, 0.0, WHAT)?,
-            offset: try_vec(size, 0.0, WHAT)?,
-            by_omega: try_vec(size, 0.0, WHAT)?,
+            force: try_vec(size, 0.0, CONTEXT)?,
+            offset: try_vec(size, 0.0, CONTEXT)?,
+            by_omega: try_vec(size, 0.0, CONTEXT)?,
             jacobians: Blocks::new(condensed, m)?,
             all_stuck: false,
-            linear: try_vec(condensed.coordinates(), false, WHAT)?,
-            silent: try_vec(condensed.coordinates(), false, WHAT)?,
-            slip_fractions: try_vec(condensed.laws().len(), 0.0, WHAT)?,
+            linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
+            inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
+            slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
         })
     }
 
     /// Sees every law f at a motion `factor` times smaller, as s·f(y/s). A large factor gives the laws
     /// at rest, linear springs (infinite: exactly those); 1 gives the laws themselves; between them
     /// runs the homotopy that finds a first point.
-    pub fn ease(&mut self, factor: f64) {
+    pub fn set_scale(&mut self, factor: f64) {
         self.factor = factor;
     }
 
@@ -115,7 +115,7 @@ impl<'a> ContactForces<'a> {
         self.jacobians.clear();
         self.all_stuck = true;
         self.linear.fill(true);
-        self.silent.fill(true);
+        self.inactive.fill(true);
         let s = self.factor;
         // What scales with the motion; at rest it follows from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
@@ -124,8 +124,8 @@ impl<'a> ContactForces<'a> {
         }
         let mut blocks = 0;
         let mut prepared = usize::MAX;
-        for (k, placed) in self.condensed.laws().iter().enumerate() {
-            let at = &placed.coordinates;
+        for (k, assembled) in self.condensed.laws().iter().enumerate() {
+            let at = &assembled.coordinates;
             let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
@@ -135,19 +135,19 @@ impl<'a> ContactForces<'a> {
                 prepared = at[0];
             }
             self.evaluator
-                .evaluate(&*placed.law, set, y, omega, found)
-                .map_err(|e| e.at(format_args!("contact {}", placed.contact)))?;
+                .evaluate(&*assembled.law, set, y, omega, found)
+                .map_err(|e| e.at(format_args!("contact {}", assembled.contact)))?;
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
             for (i, &c) in at.iter().enumerate() {
-                let normal = placed.normal == Some(i);
+                let normal = assembled.normal == Some(i);
                 self.linear[c] &= if normal {
                     found.open_fraction == 0.0
                 } else {
                     found.stuck
                 };
-                self.silent[c] &= found.stuck && !normal;
+                self.inactive[c] &= found.stuck && !normal;
                 let (here, law) = (c * m..(c + 1) * m, i * m..(i + 1) * m);
                 add(&mut self.force[here.clone()], &found.force[law.clone()], unit);
                 add(&mut self.offset[here.clone()], &found.offset[law.clone()], unit);
@@ -203,9 +203,9 @@ impl<'a> ContactForces<'a> {
     }
 
     /// ∂f/∂ln s of a coordinate in the i-th carried harmonic, where s is the factor of
-    /// [`Self::ease`]: for any law with force F and Jacobian J it is s·(F − J Y) at Y = y/s.
+    /// [`Self::set_scale`]: for any law with force F and Jacobian J it is s·(F − J Y) at Y = y/s.
     #[must_use]
-    pub fn by_ease(&self, coordinate: usize, i: usize) -> Complex64 {
+    pub fn d_ln_scale(&self, coordinate: usize, i: usize) -> Complex64 {
         self.part(&self.offset, coordinate, i)
     }
 
@@ -223,9 +223,9 @@ impl<'a> ContactForces<'a> {
 
     /// Whether all laws know from which motion on they are (nearly) linear.
     #[must_use]
-    pub fn know_their_linear_range(&self) -> bool {
+    pub fn have_known_linear_range(&self) -> bool {
         let mut laws = self.condensed.laws().iter();
-        laws.all(|placed| placed.law.knows_its_linear_range())
+        laws.all(|assembled| assembled.law.has_known_linear_range())
     }
 }
 

@@ -1,11 +1,11 @@
 //! The vocabulary between a mechanical problem and the continuation: R(u, p) = 0 with one
 //! parameter p. The continuation sees this trait and nothing else of mechanics.
 
-pub mod at_rest;
-mod blocks;
 pub mod contact_forces;
-pub mod forced;
-pub mod mode;
+mod contact_jacobian;
+pub mod epmc;
+pub mod harmonic_balance;
+pub mod static_force;
 
 use crate::error::{Result, try_vec};
 use num_complex::Complex64;
@@ -54,7 +54,7 @@ impl Linearisation {
 
 /// Start values for the first point, in the order in which they are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Start {
+pub enum InitialGuess {
     /// The caller's guess, where there is one.
     Given,
     /// All contacts as at small motion: stuck, or open.
@@ -83,7 +83,7 @@ pub trait Problem {
     ///
     /// # Errors
     /// Those of [`Self::evaluate`].
-    fn start(&mut self, kind: Start, p: f64, u: &mut [f64]) -> Result<bool>;
+    fn start(&mut self, kind: InitialGuess, p: f64, u: &mut [f64]) -> Result<bool>;
 
     /// Turns the problem at fixed `p` into a homotopy whose parameter runs between the returned
     /// values: at the first the problem is easy to solve from `u`, the stuck start or rest where

@@ -4,8 +4,8 @@
 #![allow(dead_code)]
 
 use super::common::{all_harmonics, harmonics};
-use hbvib::branch::{Branch, Energy};
 use hbvib::options::SolverOptions;
+use hbvib::results::{Branch, Energy};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 

@@ -5,15 +5,15 @@
 
 use super::common::solve_at;
 use super::measures::exactly;
-use hbvib::branch::Branch;
-use hbvib::contact::polynomial::Polynomial;
-use hbvib::contact::table::Table;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::laws::table::Table;
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -112,7 +112,7 @@ pub fn cases() -> Vec<Case> {
     let ground = [None; 3];
     let over = |kind| Contact::over(vec![0, 1], kind);
     let (tangents, all) = ([Some(0), Some(1), None], [Some(0), Some(1), Some(2)]);
-    let plane = |dofs, load| Contact::friction_plane(dofs, ground, (2.5, 1.5), 0.4, load);
+    let plane = |dofs, load| Contact::friction_3d(dofs, ground, (2.5, 1.5), 0.4, load);
     let flat = |load| Contact {
         kn: 0.0,
         ..plane(tangents, load)
@@ -120,7 +120,7 @@ pub fn cases() -> Vec<Case> {
     let pair = |load| Contact::friction([Some(0), Some(2)], [None; 2], (2.5, 1.5), 0.4, load);
     let table = Table::new(&[-0.5, -0.1, 0.2, 0.6], &[-1.4, -0.1, 0.3, 0.5]).unwrap();
     let damper = Polynomial::scalar(&[0.5, 0.3, 0.2], &[0.02, 0.0, 0.05]).unwrap();
-    let host = || ContactKind::User(User::new(Arc::new(Plate), 2, 0).unwrap());
+    let caller = || ContactKind::User(User::new(Arc::new(Plate), 2, 0).unwrap());
     // Samples that make the sampled law as good as the area is asked to be.
     let fine = |samples, case: Case| Case { samples, ..case };
     let with = |forces, case: Case| Case { forces, ..case };
@@ -162,7 +162,7 @@ pub fn cases() -> Vec<Case> {
             "polynomial with damper",
             Contact::between(0, Some(1), ContactKind::Polynomial(damper)),
         ),
-        fine(256, case("host", over(host()))),
+        fine(256, case("host", over(caller()))),
         fine(
             256,
             with(
@@ -170,7 +170,7 @@ pub fn cases() -> Vec<Case> {
                 Case {
                     omega: 0.6,
                     highest: 15,
-                    ..case("host, in thirds", over(host()))
+                    ..case("host, in thirds", over(caller()))
                 },
             ),
         ),

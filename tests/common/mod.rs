@@ -5,13 +5,13 @@
 #![allow(dead_code)]
 
 use hbvib::analysis::forced_response::forced_response;
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
 use num_complex::Complex64;
 use serde_json::Value;
 use std::f64::consts::TAU;
@@ -176,17 +176,17 @@ impl Blisk {
     }
 
     /// The same physics as a plain structure of all sectors, sector after sector.
-    pub fn wheel(&self) -> Model {
+    pub fn full_wheel(&self) -> Model {
         let a = self.matrices();
-        let mut wheel = Wheel::new(a.n, SECTORS);
-        wheel.set(MatrixKind::Mass, &a.mass, None, None);
-        wheel.set(MatrixKind::Stiffness, &a.own, Some(&a.next), None);
-        wheel.model.set_rayleigh(0.0, BETA).unwrap();
-        wheel.add_contact(&self.contact());
+        let mut full_wheel = Wheel::new(a.n, SECTORS);
+        full_wheel.set(MatrixKind::Mass, &a.mass, None, None);
+        full_wheel.set(MatrixKind::Stiffness, &a.own, Some(&a.next), None);
+        full_wheel.model.set_rayleigh(0.0, BETA).unwrap();
+        full_wheel.add_contact(&self.contact());
         for dof in [B2, B1] {
-            wheel.add_force(dof, 1, self.force_value().into(), self.engine_order);
+            full_wheel.add_force(dof, 1, self.force_value().into(), self.engine_order);
         }
-        wheel.model
+        full_wheel.model
     }
 }
 

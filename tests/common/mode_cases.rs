@@ -5,8 +5,6 @@
 
 use crate::common::{Blisk, SECTORS, all_harmonics, phase};
 use hbvib::analysis::nonlinear_mode;
-use hbvib::branch::Branch;
-use hbvib::branch::mode::ModeField;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -14,6 +12,8 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ModeOptions, SolverOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
 use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 

@@ -3,10 +3,10 @@
 #![allow(dead_code)]
 
 use hbvib::aft::Evaluation;
-use hbvib::aft::marched::MarchedWay;
-use hbvib::contact::friction_plane::FrictionPlane;
+use hbvib::aft::hysteretic::HystereticEvaluator;
 use hbvib::contact::law::Law;
-use hbvib::harmonics::HarmonicSet;
+use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::fourier::HarmonicSet;
 
 pub const OMEGA: f64 = 1.7;
 
@@ -39,8 +39,8 @@ impl Random {
     }
 }
 
-pub fn law(load: f64, has_normal: bool) -> FrictionPlane {
-    FrictionPlane {
+pub fn law(load: f64, has_normal: bool) -> Friction3d {
+    Friction3d {
         kt: 1.3,
         kn: if has_normal { 0.9 } else { 0.0 },
         mu: 0.4,
@@ -49,9 +49,14 @@ pub fn law(load: f64, has_normal: bool) -> FrictionPlane {
     }
 }
 
-pub fn evaluate(law: &FrictionPlane, set: &HarmonicSet, samples: usize, motion: &[f64]) -> (Evaluation, MarchedWay) {
+pub fn evaluate(
+    law: &Friction3d,
+    set: &HarmonicSet,
+    samples: usize,
+    motion: &[f64],
+) -> (Evaluation, HystereticEvaluator) {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
-    let mut way = MarchedWay::new(set, law, samples).unwrap();
+    let mut way = HystereticEvaluator::new(set, law, samples).unwrap();
     way.evaluate(law, OMEGA, motion, &mut out).unwrap();
     (out, way)
 }

@@ -4,12 +4,12 @@
 #![allow(dead_code)]
 
 use hbvib::aft::Evaluation;
-use hbvib::aft::pointwise::PointwiseEvaluator;
-use hbvib::contact::pointwise::{Pointwise, Samples};
-use hbvib::contact::polynomial::{Monomial, Polynomial};
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::aft::memoryless::MemorylessEvaluator;
+use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
+use hbvib::contact::memoryless_law::{Memoryless, Samples};
 use hbvib::error::{Error, Status};
-use hbvib::harmonics::HarmonicSet;
+use hbvib::fourier::HarmonicSet;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -33,19 +33,25 @@ pub fn sets(highest: usize) -> [HarmonicSet; 4] {
     ]
 }
 
-pub fn evaluate(law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
+pub fn evaluate(law: &dyn Memoryless, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
     evaluate_at(0, law, set, omega, motion)
 }
 
 /// The same with samples asked for.
-pub fn evaluate_at(asked: usize, law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
+pub fn evaluate_at(asked: usize, law: &dyn Memoryless, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
     evaluate_with(law.samples(set.highest_reduced(), asked), law, set, omega, motion)
 }
 
 /// The same with so many samples.
-pub fn evaluate_with(samples: usize, law: &dyn Pointwise, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
+pub fn evaluate_with(
+    samples: usize,
+    law: &dyn Memoryless,
+    set: &HarmonicSet,
+    omega: f64,
+    motion: &[f64],
+) -> Evaluation {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
-    let mut evaluator = PointwiseEvaluator::new(set, law, samples).unwrap();
+    let mut evaluator = MemorylessEvaluator::new(set, law, samples).unwrap();
     evaluator.evaluate(law, set, omega, motion, &mut out).unwrap();
     out
 }
@@ -61,7 +67,7 @@ pub fn gap(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Forces and tangents of `law` at one time.
-pub fn at_one_time(law: &dyn Pointwise, omega: f64, u: &[f64], v: &[f64]) -> Vec<f64> {
+pub fn at_one_time(law: &dyn Memoryless, omega: f64, u: &[f64], v: &[f64]) -> Vec<f64> {
     let d = law.directions();
     let (mut f, mut du, mut dv) = (vec![0.0; d], vec![0.0; d * d], vec![0.0; d * d]);
     let feels = law.uses_velocity();
@@ -203,7 +209,7 @@ pub fn pendulum() -> (Arc<Pendulum>, User) {
 }
 
 /// Whether `set` carries all that the law excites.
-pub fn suits(law: &dyn Pointwise, set: &HarmonicSet) -> bool {
+pub fn suits(law: &dyn Memoryless, set: &HarmonicSet) -> bool {
     law.is_odd() || !set.is_odd()
 }
 

@@ -30,7 +30,7 @@ fn text(p: *const c_char) -> String {
 /// What the status of the call just made is called, and its sentence.
 type Told = (String, String);
 
-fn told(status: i32) -> Told {
+fn reported(status: i32) -> Told {
     (text(hbvib_status_name(status)), text(hbvib_last_error()))
 }
 
@@ -43,12 +43,12 @@ impl Host {
     fn new() -> Self {
         let mut model = ptr::null_mut();
         assert_eq!(unsafe { hbvib_model_new(1, &raw mut model) }, 0);
-        let host = Self(model);
+        let caller = Self(model);
         for kind in [hbvib_matrix_kind::HBVIB_MASS, hbvib_matrix_kind::HBVIB_STIFFNESS] {
-            assert_eq!(host.set(kind, 1.0), 0);
+            assert_eq!(caller.set(kind, 1.0), 0);
         }
-        assert_eq!(host.force(0.1), 0);
-        host
+        assert_eq!(caller.force(0.1), 0);
+        caller
     }
 
     fn set(&self, kind: hbvib_matrix_kind, value: f64) -> i32 {
@@ -138,27 +138,32 @@ fn evaluate(law: &hbvib_contact, harmonics: i64, samples: i64, motion: f64) -> i
 
 /// What the calls say that an input of the case's list can be handed to.
 fn calls(input: &str) -> Vec<Told> {
-    let host = Host::new();
+    let caller = Host::new();
     let good = jenkins(1.0, 0.3);
     let bad = [f64::NAN, f64::INFINITY];
-    let refused = |law: hbvib_contact| vec![told(host.contact(law)), told(evaluate(&law, 1, 0, 0.1))];
+    let refused = |law: hbvib_contact| vec![reported(caller.contact(law)), reported(evaluate(&law, 1, 0, 0.1))];
     match input {
         "NaN in K" => bad
-            .map(|v| told(host.set(hbvib_matrix_kind::HBVIB_STIFFNESS, v)))
+            .map(|v| reported(caller.set(hbvib_matrix_kind::HBVIB_STIFFNESS, v)))
             .to_vec(),
-        "Inf in F" => bad.map(|v| told(host.force(v))).to_vec(),
+        "Inf in F" => bad.map(|v| reported(caller.force(v))).to_vec(),
         "negative kt" => refused(jenkins(-1.0, 0.3)),
         "negative fc" => [refused(jenkins(1.0, -0.3)), refused(hbvib_contact { mu: -0.3, ..good })].concat(),
-        "H<0" => vec![told(host.solve(-1, 0, 1.0)), told(evaluate(&good, -1, 0, 0.1))],
-        "N<2H+1" => vec![told(host.solve(9, 18, 1.3)), told(evaluate(&good, 1, 2, 0.1))],
+        "H<0" => vec![
+            reported(caller.solve(-1, 0, 1.0)),
+            reported(evaluate(&good, -1, 0, 0.1)),
+        ],
+        "N<2H+1" => vec![reported(caller.solve(9, 18, 1.3)), reported(evaluate(&good, 1, 2, 0.1))],
         "n=0" => {
             let mark = ptr::without_provenance_mut::<hbvib_model>(64);
             let mut model = mark;
             let status = unsafe { hbvib_model_new(0, &raw mut model) };
             assert_eq!(model, mark);
-            vec![told(status)]
+            vec![reported(status)]
         }
-        "omega 0 or negative" => [0.0, -0.0, -1.0].map(|omega| told(host.solve(3, 0, omega))).to_vec(),
+        "omega 0 or negative" => [0.0, -0.0, -1.0]
+            .map(|omega| reported(caller.solve(3, 0, omega)))
+            .to_vec(),
         other => panic!("the case has an input without a check: {other}"),
     }
 }
@@ -179,11 +184,15 @@ pub fn bad_inputs(case: &Case) {
         }
     }
     // The same with good numbers is accepted: it was the input that was refused. The motion is looked at, too.
-    let host = Host::new();
+    let caller = Host::new();
     let good = jenkins(1.0, 0.3);
-    let accepted = [host.contact(good), host.solve(9, 19, 1.3), evaluate(&good, 1, 3, 0.1)];
+    let accepted = [
+        caller.contact(good),
+        caller.solve(9, 19, 1.3),
+        evaluate(&good, 1, 3, 0.1),
+    ];
     case.holds(&format!("good numbers: {accepted:?}"), accepted == [0; 3]);
-    let (name, sentence) = told(evaluate(&good, 1, 0, f64::NAN));
+    let (name, sentence) = reported(evaluate(&good, 1, 0, f64::NAN));
     case.holds(
         &format!("NaN in a motion: {name}, \"{sentence}\""),
         name == "HBVIB_E_NOT_FINITE",

@@ -4,10 +4,10 @@ use super::Case;
 use super::blisk::{plain, unforced};
 use super::common::harmonics;
 use hbvib::analysis::nonlinear_mode;
-use hbvib::branch::mode::ModePoint;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::options::{ModeOptions, SolverOptions};
+use hbvib::results::mode_branch::ModePoint;
 use std::f64::consts::TAU;
 
 /// Frequency in Hz and numbers of the mode at the case's amplitude.

@@ -3,11 +3,11 @@
 use super::Case;
 use super::common::{harmonics, sweep};
 use super::one_mass::{EVERY_H, at, by_default, structure};
-use hbvib::branch::Branch;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::model::Model;
 use hbvib::options::SolverOptions;
+use hbvib::results::Branch;
 
 /// f = kn·max(x − gap, 0).
 fn stopped(case: &Case) -> Model {

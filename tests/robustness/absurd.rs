@@ -2,7 +2,7 @@
 
 use super::common::harmonics;
 use hbvib::analysis::forced_response;
-use hbvib::contact::user::{Call, User, UserForce};
+use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::{Contact, ContactKind};
 use hbvib::error::Result;
 use hbvib::hooks::Hooks;
@@ -160,12 +160,12 @@ fn absurd_options_end_within_their_bounds() {
         let found = model(&spring, &driven).and_then(|m| forced_response(&m, &solver, &range, &mut Hooks::default()));
         let asked = spring.0.load(Ordering::Relaxed);
         let bound = (HOMOTOPIES + solver.max_points) * CORRECTIONS * (solver.max_newton + 1) * DAMPINGS;
-        let told = match &found {
+        let reported = match &found {
             Ok(branch) => format!("{:?}, {} points", branch.status(), branch.points()),
             Err(e) => format!("{:?}: {}", e.status, e.message()),
         };
-        println!("{name}: {asked} evaluations; {told}");
+        println!("{name}: {asked} evaluations; {reported}");
         assert!(asked <= bound, "{name}: {asked} evaluations, at most {bound}");
-        assert!(found.is_ok_and(|branch| branch.points() <= solver.max_points) || !told.is_empty());
+        assert!(found.is_ok_and(|branch| branch.points() <= solver.max_points) || !reported.is_empty());
     }
 }

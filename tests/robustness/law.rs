@@ -3,8 +3,8 @@
 
 use super::random::Random;
 use super::rest::{Disc, nearest_of_many};
-use hbvib::contact::polynomial::Polynomial;
-use hbvib::contact::table::Table;
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::laws::table::Table;
 use hbvib::contact::{Contact, ContactKind};
 
 /// A law with its constants.
@@ -15,7 +15,7 @@ pub enum Law {
         limit: f64,
     },
     /// Directions: along the surface, along the normal.
-    Friction {
+    Friction2d {
         kt: f64,
         kn: f64,
         mu: f64,
@@ -94,7 +94,7 @@ impl Law {
                     limit / mu
                 };
                 if number == 1 {
-                    Self::Friction { kt: k, kn, mu, load }
+                    Self::Friction2d { kt: k, kn, mu, load }
                 } else {
                     Self::Plane {
                         kt: k,
@@ -178,7 +178,7 @@ impl Law {
     pub fn number(&self) -> usize {
         match self {
             Self::Jenkins { .. } => 0,
-            Self::Friction { .. } => 1,
+            Self::Friction2d { .. } => 1,
             Self::Plane { .. } => 2,
             Self::Unilateral { preload: 0.0, .. } => 3,
             Self::Unilateral { .. } => 4,
@@ -192,7 +192,7 @@ impl Law {
     /// Number of relative motions.
     pub fn directions(&self) -> usize {
         match self {
-            Self::Friction { .. } | Self::Plane { normal: false, .. } => 2,
+            Self::Friction2d { .. } | Self::Plane { normal: false, .. } => 2,
             Self::Plane { .. } => 3,
             _ => 1,
         }
@@ -206,7 +206,7 @@ impl Law {
         let gap = |load: f64, kn: f64| if load < 0.0 { -load / kn } else { 0.0 };
         match *self {
             Self::Jenkins { kt, limit } => Contact::jenkins(a.unwrap(), b, kt, 1.0, limit),
-            Self::Friction { kt, kn, mu, load } => Contact {
+            Self::Friction2d { kt, kn, mu, load } => Contact {
                 gap: gap(load, kn),
                 ..Contact::friction(side(0), side(1), (kt, kn), mu, load.max(0.0))
             },
@@ -218,7 +218,7 @@ impl Law {
                 normal,
             } => Contact {
                 gap: gap(load, kn),
-                ..Contact::friction_plane(all(0), all(1), (kt, if normal { kn } else { 0.0 }), mu, load.max(0.0))
+                ..Contact::friction_3d(all(0), all(1), (kt, if normal { kn } else { 0.0 }), mu, load.max(0.0))
             },
             Self::Unilateral { kn, gap, preload } => Contact {
                 preload,
@@ -306,7 +306,7 @@ impl Law {
     fn force(&self, slider: &mut Slider, [before, u]: [&[f64]; 2], v: &[f64], f: &mut [f64; 3]) {
         match *self {
             Self::Jenkins { kt, limit } => f[..1].copy_from_slice(&slider.drag::<1>(kt, limit, &u[..1])),
-            Self::Friction { kt, kn, mu, load } => {
+            Self::Friction2d { kt, kn, mu, load } => {
                 let normal = slider.press([load - kn * before[1], load - kn * u[1]], [&before[..1], &u[..1]]);
                 f[..1].copy_from_slice(&slider.drag::<1>(kt, mu * normal, &u[..1]));
                 f[1] = -normal;

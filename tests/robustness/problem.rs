@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 /// A contact: its law, and degree of freedom of side a and b for each direction.
 #[derive(Clone, Debug)]
-pub struct Placed {
+pub struct AssembledLaw {
     pub law: Law,
     pub sides: Vec<[Option<usize>; 2]>,
 }
@@ -37,7 +37,7 @@ pub struct Case {
     pub mass: Vec<f64>,
     pub damping: Vec<f64>,
     pub stiffness: Vec<f64>,
-    pub contacts: Vec<Placed>,
+    pub contacts: Vec<AssembledLaw>,
     pub forces: Vec<(usize, usize, Complex64)>,
     pub omega: f64,
     pub known: Known,
@@ -131,14 +131,14 @@ impl Case {
 
     /// One mass on its spring under Jenkins contacts at the resonance, without damping.
     fn at_resonance(stiffness: f64, mass: f64, force: f64, random: &mut Random) -> Self {
-        let mut capacity = 0.0;
+        let mut slip_capacity = 0.0;
         let mut contacts = Vec::new();
         for _ in 0..=random.below(4) {
             let limit = force * random.decade(-1.0, 0.5);
-            capacity += 4.0 * limit / PI;
+            slip_capacity += 4.0 * limit / PI;
             let kt = stiffness * random.decade(-2.0, 3.0);
             let sides = vec![[Some(0), None]];
-            contacts.push(Placed {
+            contacts.push(AssembledLaw {
                 law: Law::Jenkins { kt, limit },
                 sides,
             });
@@ -157,7 +157,7 @@ impl Case {
             damping: vec![0.0],
             stiffness: vec![omega * omega * mass],
             contacts,
-            forces: vec![(0, 1, share * capacity * random.phase())],
+            forces: vec![(0, 1, share * slip_capacity * random.phase())],
             omega,
             known: if bounded {
                 Known::BelowCapacity
@@ -197,7 +197,7 @@ impl Case {
             mass: diagonal(&vec![1.0; n]),
             damping: diagonal(&c),
             stiffness: diagonal(&k),
-            contacts: vec![Placed { law, sides }],
+            contacts: vec![AssembledLaw { law, sides }],
             forces,
             omega: 1.0,
             known: Known::Damped,
@@ -230,8 +230,8 @@ impl Case {
         ] {
             model.set_matrix(which, &MatrixView::dense(self.n, a)).unwrap();
         }
-        for placed in &self.contacts {
-            model.add_contact(&placed.law.contact(&placed.sides)).unwrap();
+        for assembled in &self.contacts {
+            model.add_contact(&assembled.law.contact(&assembled.sides)).unwrap();
         }
         for &(dof, harmonic, value) in &self.forces {
             model.add_force(dof, harmonic, value).unwrap();
@@ -246,7 +246,7 @@ impl Case {
 }
 
 /// A contact of the law of a number between degrees of freedom, or one and the ground.
-fn place(number: usize, n: usize, sizes: Sizes, random: &mut Random) -> Placed {
+fn place(number: usize, n: usize, sizes: Sizes, random: &mut Random) -> AssembledLaw {
     // Friction needs a degree of freedom for each direction.
     let number = match number {
         1 | 2 if n < 2 => 0,
@@ -266,7 +266,7 @@ fn place(number: usize, n: usize, sizes: Sizes, random: &mut Random) -> Placed {
         };
         sides.push([Some(a), b]);
     }
-    Placed { law, sides }
+    AssembledLaw { law, sides }
 }
 
 fn diagonal(values: &[f64]) -> Vec<f64> {

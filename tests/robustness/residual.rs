@@ -74,10 +74,10 @@ fn sampled(case: &Case, x: &[Complex64], samples: usize) -> (Vec<Complex64>, f64
         .map(|j| Complex64::cis(TAU * j as f64 / samples as f64))
         .collect();
     let mut contacts = 0.0;
-    for placed in &case.contacts {
-        let d = placed.law.directions();
+    for assembled in &case.contacts {
+        let d = assembled.law.directions();
         let (mut u, mut v, mut f) = (vec![0.0; d * samples], vec![0.0; d * samples], vec![0.0; d * samples]);
-        for (k, [a, b]) in placed.sides.iter().enumerate() {
+        for (k, [a, b]) in assembled.sides.iter().enumerate() {
             let y = relative(x, n, [*a, *b]);
             for j in 0..samples {
                 u[j * d + k] = y[0].re;
@@ -88,8 +88,8 @@ fn sampled(case: &Case, x: &[Complex64], samples: usize) -> (Vec<Complex64>, f64
                 }
             }
         }
-        placed.law.march(&u, &v, &mut f);
-        for (k, [a, b]) in placed.sides.iter().enumerate() {
+        assembled.law.march(&u, &v, &mut f);
+        for (k, [a, b]) in assembled.sides.iter().enumerate() {
             for h in 0..count {
                 let mut sum = Complex64::ZERO;
                 for j in 0..samples {

@@ -1,9 +1,9 @@
 //! The mode at one amplitude as an oscillator under a force.
 
-use super::SynthesisPoint;
-use crate::branch::mode::ModePoint;
+use crate::analysis::synthesis::SynthesisPoint;
 use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
+use crate::results::mode_branch::ModePoint;
 use num_complex::Complex64;
 
 /// What acts on the mode.

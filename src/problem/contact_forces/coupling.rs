@@ -1,8 +1,8 @@
 //! How the contact forces couple the relative motions: their Jacobians in Newton's matrix, and which
 //! of them leave it because they are those of the reference stiffness.
 
-use super::{ContactForces, add};
 use crate::error::Result;
+use crate::problem::contact_forces::{ContactForces, add};
 use core::ops::Range;
 use num_complex::Complex64;
 
@@ -15,21 +15,21 @@ impl ContactForces<'_> {
     /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the
     /// contact: then ∂f/∂y = κ, and no change couples back.
     #[must_use]
-    pub fn drops_out(&self, coordinate: usize) -> bool {
-        self.linear[coordinate] && self.condensed.may_drop_out(coordinate)
+    pub fn is_eliminated(&self, coordinate: usize) -> bool {
+        self.linear[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
     /// Whether besides f = κ y, so that nothing at all couples back; a normal load at rest does.
     #[must_use]
-    pub fn is_silent(&self, coordinate: usize) -> bool {
-        self.silent[coordinate] && self.condensed.may_drop_out(coordinate)
+    pub fn is_inactive(&self, coordinate: usize) -> bool {
+        self.inactive[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
     /// Tells per unknown motion whether some force that does not drop out depends on it.
     pub fn mark_active(&self, active: &mut [bool]) {
         let m = self.condensed.set().packed_len();
         active.fill(false);
-        for c in (0..self.condensed.coordinates()).filter(|&c| !self.drops_out(c)) {
+        for c in (0..self.condensed.coordinates()).filter(|&c| !self.is_eliminated(c)) {
             for (by, _) in self.jacobians.of_force(c) {
                 active[by * m..(by + 1) * m].fill(true);
             }
@@ -41,7 +41,7 @@ impl ContactForces<'_> {
     pub fn is_felt(&self, coordinate: usize) -> bool {
         self.jacobians
             .of_motion(coordinate)
-            .any(|(force, _)| !self.drops_out(force))
+            .any(|(force, _)| !self.is_eliminated(force))
     }
 
     /// Change of w in the i-th carried harmonic along a change of the motion.
@@ -80,7 +80,11 @@ impl ContactForces<'_> {
     /// What is added to the diagonal of a mean in Newton's matrix.
     #[must_use]
     pub fn mean_floor(&self, coordinate: usize) -> f64 {
-        if self.drops_out(coordinate) { 0.0 } else { MEAN_FLOOR }
+        if self.is_eliminated(coordinate) {
+            0.0
+        } else {
+            MEAN_FLOOR
+        }
     }
 
     /// Copies the Jacobians of all laws at the motion evaluated last.
@@ -112,7 +116,7 @@ impl ContactForces<'_> {
     ) {
         let set = self.condensed.set();
         let m = set.packed_len();
-        let counts = |(force, _): &(usize, &[f64])| !self.drops_out(*force);
+        let counts = |(force, _): &(usize, &[f64])| !self.is_eliminated(*force);
         let forces = || self.jacobians.of_motion(motion).filter(counts);
         let mut several = forces().skip(1);
         let only = if several.next().is_none() {
@@ -153,7 +157,7 @@ impl ContactForces<'_> {
                 for (x, s) in column[at..].iter_mut().step_by(m).zip(&*sum) {
                     *x += s.re;
                 }
-                if q == at && !self.drops_out(motion) {
+                if q == at && !self.is_eliminated(motion) {
                     column[motion * m + at] += MEAN_FLOOR;
                 }
             } else {
@@ -180,7 +184,7 @@ impl ContactForces<'_> {
         let set = self.condensed.set();
         let (m, harmonics) = (set.packed_len(), set.numbers().len());
         let mean = usize::from(set.has_mean());
-        let counts = |(force, _): &(usize, &[f64])| !self.drops_out(*force);
+        let counts = |(force, _): &(usize, &[f64])| !self.is_eliminated(*force);
         for (force, block) in self.jacobians.of_motion(motion).filter(counts) {
             change.copy_from_slice(&block[q * m..(q + 1) * m]);
             if force == motion {

@@ -1,9 +1,9 @@
 //! What the laws look like at other motions and other samples: where they are linear, and how much
 //! their sampling matters.
 
-use super::{ContactForces, gather};
 use crate::contact::law::Range;
 use crate::error::{Error, Result, try_push};
+use crate::problem::contact_forces::{ContactForces, gather};
 
 impl ContactForces<'_> {
     /// What sampling matters: ‖F_N − F_M‖/‖F_N‖ over the forces of all laws that are sampled, with M =
@@ -25,8 +25,8 @@ impl ContactForces<'_> {
         let set = self.condensed.set();
         let m = set.packed_len();
         let (mut difference, mut size) = (0.0, 0.0);
-        for placed in self.condensed.laws() {
-            let (law, at) = (&*placed.law, &placed.coordinates);
+        for assembled in self.condensed.laws() {
+            let (law, at) = (&*assembled.law, &assembled.coordinates);
             if !self.evaluator.samples(law) {
                 continue;
             }
@@ -38,11 +38,11 @@ impl ContactForces<'_> {
                 self.evaluator.prepare(set, y);
                 other.prepare(set, y);
             }
-            let told = |e: Error| e.at(format_args!("contact {}", placed.contact));
-            self.evaluator.evaluate(law, set, y, omega, found).map_err(told)?;
+            let reported = |e: Error| e.at(format_args!("contact {}", assembled.contact));
+            self.evaluator.evaluate(law, set, y, omega, found).map_err(reported)?;
             let checked = &mut self.checked[..found.force.len()];
             checked.copy_from_slice(&found.force);
-            other.evaluate(law, set, y, omega, found).map_err(told)?;
+            other.evaluate(law, set, y, omega, found).map_err(reported)?;
             for (a, b) in checked.iter().zip(&found.force) {
                 difference += (a - b) * (a - b);
                 size += a * a;
@@ -51,11 +51,11 @@ impl ContactForces<'_> {
         Ok(if size == 0.0 { 0.0 } else { f64::sqrt(difference / size) })
     }
 
-    /// The factor of [`Self::ease`] from which on the forces of the given motion are (nearly) linear.
+    /// The factor of [`Self::set_scale`] from which on the forces of the given motion are (nearly) linear.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn sticking_factor(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+    pub fn linearisation_scale(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
         let set = self.condensed.set();
         let m = set.packed_len();
         let mut ranges = Vec::new();
@@ -70,14 +70,14 @@ impl ContactForces<'_> {
         }
         let mut own = Vec::new();
         let mut largest = 0.0_f64;
-        for placed in self.condensed.laws() {
+        for assembled in self.condensed.laws() {
             own.clear();
             let mut reference = f64::INFINITY;
-            for &c in &placed.coordinates {
+            for &c in &assembled.coordinates {
                 try_push(&mut own, ranges[c], "the contacts")?;
                 reference = reference.min(self.condensed.stiffness(c));
             }
-            largest = largest.max(placed.law.sticking_factor(&own, reference));
+            largest = largest.max(assembled.law.linearisation_scale(&own, reference));
         }
         Ok(largest)
     }

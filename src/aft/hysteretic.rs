@@ -1,0 +1,326 @@
+//! Harmonics of a law with states that is marched over samples: periodic states, force, and the exact
+//! derivative of the discrete force.
+//!
+//! The states at the start of the period are those that return after it. A law that can stick through the
+//! period knows which of many it is. Others are sought by Newton's method, from a state that the law knows to
+//! be near or from the virgin one, loaded from rest straight to the motion of the last sample, so that the
+//! result depends on the motion alone; where slip of a law that knows nothing comes to an end the marched
+//! state is kept. With the
+//! basis bⱼ at sample j the derivatives of the states follow from those of the steps,
+//!
+//! > Sⱼ = Aⱼ Sⱼ₋₁ + Bⱼ⁻ bⱼ₋₁ + Bⱼ bⱼ,  ∂F/∂X = Σ w ⊗ bⱼ ⊗ (∂f/∂z Sⱼ + ∂f/∂u bⱼ)
+//!
+//! (velocities alike), begun with the derivative of the periodic start; see periodic.rs. Force
+//! and derivative are those of the sampled law: as good as the samples, but exact as a pair.
+
+use crate::aft::Evaluation;
+use crate::aft::hysteretic_derivatives::{Sensitivity, Signals};
+use crate::aft::normal_force::Normal;
+use crate::aft::periodic_state::{ReturnMap, largest};
+use crate::contact::hysteretic_law::{Hysteretic, March, Sticking, StuckState};
+use crate::error::{Error, Result, Status, fail, try_vec};
+use crate::fourier::HarmonicSet;
+
+/// Marches that may end in a step of Newton's method.
+const NEWTON_MARCHES: usize = 100;
+
+/// Marches in all; the others only march on.
+const MARCHES: usize = 300;
+
+/// Marches from a start at rest, which returns but for rounding.
+const REST_MARCHES: usize = 4;
+
+/// Tables and memory for marching one law over motions of one harmonic set.
+pub struct HystereticEvaluator {
+    states: usize,
+    /// Common divisor g of the carried harmonics.
+    base: f64,
+    signals: Signals,
+    /// Fourier weights of a packed signal.
+    weights: Vec<f64>,
+    /// Motion and velocity of a load from rest: two samples, the second at rest.
+    load_u: Vec<f64>,
+    load_v: Vec<f64>,
+    march: March,
+    rest: StuckState,
+    /// Whether the last start was at rest.
+    rests: bool,
+    map: ReturnMap,
+    sensitivity: Sensitivity,
+    normal: Option<Normal>,
+    /// States that each march began with.
+    starts: Vec<f64>,
+    /// Whether the start after each march came from Newton's method.
+    by_newton: Vec<bool>,
+    step: Vec<f64>,
+    marches: usize,
+}
+
+impl HystereticEvaluator {
+    /// Tables and memory for `law` at `samples` samples per period of motions of `set`.
+    ///
+    /// # Errors
+    /// `Argument` for too few samples; `OutOfMemory`.
+    pub fn new(set: &HarmonicSet, law: &dyn Hysteretic, samples: usize) -> Result<Self> {
+        let least = (2 * set.highest_reduced() + 1).max(2);
+        if samples < least {
+            return fail!(
+                Argument,
+                "samples = {samples}, needs at least {least} for the harmonics carried"
+            );
+        }
+        let (d, s) = (law.directions(), law.states());
+        let memory = |size: usize| try_vec(size, 0.0, "a march over samples");
+        let mean = usize::from(set.has_mean());
+        let mut weights = try_vec(set.packed_len(), 2.0 / samples as f64, "a march over samples")?;
+        weights[..mean].fill(1.0 / samples as f64);
+        Ok(Self {
+            states: s,
+            base: set.base() as f64,
+            signals: Signals::new(set, d, law.uses_velocity(), samples)?,
+            weights,
+            load_u: memory(2 * d)?,
+            load_v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
+            march: March::new(d, s, samples)?,
+            rest: StuckState::new(d, s, samples)?,
+            rests: false,
+            map: ReturnMap::new(s)?,
+            sensitivity: Sensitivity::new(d, s, d - usize::from(law.normal().is_some()), set.packed_len())?,
+            normal: law.normal().map(|_| Normal::new(set)).transpose()?,
+            starts: memory(s.saturating_mul(MARCHES))?,
+            by_newton: try_vec(MARCHES, false, "a march over samples")?,
+            step: memory(s)?,
+            marches: 0,
+        })
+    }
+
+    /// Whether this was made for laws like `law` at so many samples.
+    #[must_use]
+    pub fn suits(&self, law: &dyn Hysteretic, samples: usize) -> bool {
+        self.signals.directions == law.directions()
+            && self.states == law.states()
+            && self.load_v.is_empty() != law.uses_velocity()
+            && self.normal.is_some() == law.normal().is_some()
+            && self.signals.samples == samples
+    }
+
+    /// The march of the last evaluation: forces and states at the samples.
+    #[must_use]
+    pub fn march(&self) -> &March {
+        &self.march
+    }
+
+    /// Marches that the last evaluation took to find its periodic states.
+    #[must_use]
+    pub fn marches(&self) -> usize {
+        self.marches
+    }
+
+    /// Force, Jacobian and derivative by ω of `law` at the circular frequency `omega` > 0 for a packed
+    /// motion, one direction after the other. `law` has the directions and states of the one that
+    /// memory was made for.
+    ///
+    /// # Errors
+    /// Those of the law; `NoConvergence` when its states do not become periodic, `NotFinite` when they
+    /// do not stay finite.
+    pub fn evaluate(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64], out: &mut Evaluation) -> Result<()> {
+        let virgin = self.coarsen_or_refine(law, omega, motion)?;
+        let omega = self.base * omega;
+        self.differentiate_start(law, omega)?;
+        for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
+            sums.fill(0.0);
+        }
+        self.sensitivity
+            .pass(&self.march, &self.signals, omega, Some(&mut *out));
+        self.finish(motion, out);
+        if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
+            normal.evaluate(&law, motion, out);
+        }
+        let n = self.signals.samples as f64;
+        out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
+        out.open_fraction = self.march.open.iter().sum::<f64>() / n;
+        out.stuck = law.sticks() && virgin && out.slip_fraction == 0.0 && out.open_fraction == 0.0;
+        Ok(())
+    }
+
+    /// Finds the periodic states alone, as [`Self::evaluate`] does first; [`Self::march`] then has the forces
+    /// and states. Whether the law is as it was loaded from rest.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn coarsen_or_refine(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64]) -> Result<bool> {
+        // The law sees the period 2π/(gω) of the set.
+        let omega = self.base * omega;
+        self.signals.fill(omega, motion);
+        self.find_period(law, omega)
+    }
+
+    /// Weights the Fourier sums and forms the offset.
+    fn finish(&self, motion: &[f64], out: &mut Evaluation) {
+        let weigh = |sums: &mut [f64]| {
+            for signal in sums.chunks_exact_mut(self.weights.len().max(1)) {
+                for (value, weight) in signal.iter_mut().zip(&self.weights) {
+                    *value *= weight;
+                }
+            }
+        };
+        weigh(&mut out.force);
+        weigh(&mut out.by_omega);
+        out.by_omega.iter_mut().for_each(|f| *f *= self.base);
+        out.offset.copy_from_slice(&out.force);
+        for (column, x) in out.jacobian.chunks_exact_mut(motion.len().max(1)).zip(motion) {
+            weigh(column);
+            for (o, j) in out.offset.iter_mut().zip(column) {
+                *o -= *j * x;
+            }
+        }
+    }
+
+    /// Marches once from `starts[k]`.
+    fn march_from(&mut self, law: &dyn Hysteretic, omega: f64, k: usize) -> Result<()> {
+        let z0 = &self.starts[k * self.states..(k + 1) * self.states];
+        let Signals { samples, u, v, .. } = &self.signals;
+        law.march(omega, *samples, u, v, z0, &mut self.march)
+    }
+
+    /// The virgin law, loaded from rest straight to the motion of the last sample: the first start and
+    /// its derivative. Whether it neither slipped nor was open on the way.
+    fn load(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
+        let Signals {
+            samples,
+            directions,
+            u,
+            v,
+            ..
+        } = &self.signals;
+        let last = (samples - 1) * directions;
+        self.load_u[..*directions].copy_from_slice(&u[last..]);
+        if !v.is_empty() {
+            self.load_v[..*directions].copy_from_slice(&v[last..]);
+        }
+        self.step.fill(0.0);
+        law.march(omega, 2, &self.load_u, &self.load_v, &self.step, &mut self.march)?;
+        self.starts[..self.states].copy_from_slice(&self.march.z[..self.states]);
+        self.sensitivity.load(&self.march, &self.signals, omega);
+        Ok(self.march.slip[0] == 0.0 && self.march.open[0] == 0.0)
+    }
+
+    /// Finds states that return. Whether the law is as it was loaded.
+    ///
+    /// Where the law does not know when it can stick: a state that is kept although slip led to it lies on the
+    /// border of those that need no slip; where on it, the slip of the marches before has decided, and
+    /// Newton's method has only guessed. Then the law is marched from the load on, as long as that takes no
+    /// more than [`MARCHES`].
+    fn find_period(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
+        let Signals { samples, u, .. } = &self.signals;
+        let rests = law.rest(*samples, u, &mut self.rest);
+        self.rests = rests == Sticking::Here;
+        if self.rests || rests == Sticking::Nearly {
+            self.starts[..self.states].copy_from_slice(&self.rest.z);
+            self.sensitivity.rest(&self.rest, &self.signals, omega);
+            let defect = if self.rests {
+                self.search(law, omega, 0, REST_MARCHES)?
+            } else {
+                self.search(law, omega, NEWTON_MARCHES, NEWTON_MARCHES)?
+            };
+            if defect == 0.0 {
+                return Ok(self.rests && self.rest.virgin);
+            }
+            self.rests = false;
+        }
+        let virgin = self.load(law, omega)?;
+        let mut defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
+        // A law that rests nowhere slips and forgets: whatever finds its one periodic state.
+        let guessed = rests == Sticking::Unknown && self.by_newton[..self.marches - 1].contains(&true);
+        if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0, MARCHES)? > 0.0 {
+            defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
+        }
+        if defect > 0.0 {
+            return Err(Error::new(
+                Status::NoConvergence,
+                format_args!(
+                    "the states did not return after {MARCHES} periods (difference {defect:.1e}); raise samples"
+                ),
+            )
+            .recoverable());
+        }
+        Ok(virgin && self.marches == 1)
+    }
+
+    /// Marches from the first start until the states return to within rounding, with Newton's method
+    /// up to the march `newton_until`. What is left of their difference at the last march, 0 if they return.
+    fn search(&mut self, law: &dyn Hysteretic, omega: f64, newton_until: usize, most: usize) -> Result<f64> {
+        let (s, n) = (self.states, self.signals.samples);
+        let tolerance = f64::EPSILON * (64.0 + 4.0 * (n as f64).sqrt());
+        let mut before = f64::INFINITY;
+        for k in 0..most {
+            self.march_from(law, omega, k)?;
+            let end = &self.march.z[(n - 1) * s..n * s];
+            for ((step, end), start) in self.step.iter_mut().zip(end).zip(&self.starts[k * s..]) {
+                *step = end - start;
+            }
+            let defect = largest(&self.step);
+            if !defect.is_finite() {
+                let message = format_args!("the states are not finite after a period");
+                return Err(Error::new(Status::NotFinite, message).recoverable());
+            }
+            self.marches = k + 1;
+            if defect <= tolerance * largest(&self.march.z[..n * s]) {
+                self.map.form(&self.march, n);
+                return Ok(0.0);
+            }
+            if k + 1 == most {
+                return Ok(defect);
+            }
+            // Two marches show whether slip goes on at all; a defect that grew asks for a plain march.
+            let mut by_newton = k > 0 && k < newton_until && defect < before;
+            before = defect;
+            if by_newton {
+                self.map.form(&self.march, n);
+                by_newton = self.map.is_regular;
+            }
+            if by_newton {
+                self.map.solve(&mut self.step);
+                by_newton = self.step.iter().all(|x| x.is_finite());
+            }
+            self.by_newton[k] = by_newton;
+            let (starts, next) = self.starts.split_at_mut((k + 1) * s);
+            for (i, next) in next[..s].iter_mut().enumerate() {
+                *next = if by_newton {
+                    starts[k * s + i] + self.step[i]
+                } else {
+                    self.march.z[(n - 1) * s + i]
+                };
+            }
+        }
+        Ok(0.0)
+    }
+
+    /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part
+    /// remembers the marches that led to it; their derivatives are then followed from the load on.
+    fn differentiate_start(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<()> {
+        if self.rests {
+            return Ok(());
+        }
+        let last = self.marches - 1;
+        if self.map.has_kept && last > 0 {
+            for k in 0..last {
+                self.march_from(law, omega, k)?;
+                if self.by_newton[k] {
+                    self.map.form(&self.march, self.signals.samples);
+                    self.sensitivity.periodic(&self.map, &self.march, &self.signals, omega);
+                } else {
+                    self.sensitivity.onward(&self.march, &self.signals, omega);
+                }
+            }
+            self.march_from(law, omega, last)?;
+            self.map.form(&self.march, self.signals.samples);
+        }
+        if self.map.is_regular {
+            self.sensitivity.periodic(&self.map, &self.march, &self.signals, omega);
+        } else {
+            self.sensitivity.onward(&self.march, &self.signals, omega);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,75 @@
+//! Blocks of a Jacobian: what Fourier coefficients of a piece or of a tangent stiffness add to the
+//! derivative of one direction's force by one direction's motion.
+
+use crate::aft::toeplitz::Toeplitz;
+use crate::fourier::HarmonicSet;
+use crate::linalg::add_product;
+use num_complex::Complex64;
+
+/// A square block of a column-major matrix.
+pub(super) struct Block<'a> {
+    matrix: &'a mut [f64],
+    /// Rows of the matrix.
+    rows: usize,
+    /// Place of the block's first entry.
+    first: usize,
+    /// Rows of the block.
+    size: usize,
+}
+
+impl<'a> Block<'a> {
+    /// ∂F_i/∂X_j of a matrix over `directions` directions.
+    pub(super) fn new(matrix: &'a mut [f64], directions: usize, size: usize, [i, j]: [usize; 2]) -> Self {
+        let rows = directions * size;
+        Self {
+            matrix,
+            rows,
+            first: j * size * rows + i * size,
+            size,
+        }
+    }
+
+    /// Adds factor·g ⊗ c.
+    pub(super) fn add_product(&mut self, factor: f64, g: &[f64], c: &[f64]) {
+        for (j, c) in c.iter().enumerate() {
+            let from = self.first + j * self.rows;
+            let factor = factor * c;
+            for (entry, g) in self.matrix[from..from + self.size].iter_mut().zip(g) {
+                *entry += factor * g;
+            }
+        }
+    }
+
+    /// Adds T(S).
+    pub(super) fn add_toeplitz(&mut self, toeplitz: &Toeplitz) {
+        toeplitz.add(&mut self.matrix[self.first..], self.rows);
+    }
+}
+
+/// Packed g of a piece, gₕ = (2 − δ₀ₕ)·tₕ, from its transforms tₙ = (1/2π)∫ e^{−inτ} dτ.
+pub(super) fn pack(set: &HarmonicSet, transform: &[Complex64], g: &mut [f64]) {
+    let mean = usize::from(set.has_mean());
+    if mean == 1 {
+        g[0] = transform[0].re;
+    }
+    for (k, pair) in g[mean..].chunks_exact_mut(2).enumerate() {
+        let t = 2.0 * transform[set.reduced(k)];
+        pair[0] = t.re;
+        pair[1] = t.im;
+    }
+}
+
+/// force = offset + jacobian · motion.
+pub(super) fn apply(jacobian: &[f64], motion: &[f64], offset: &[f64], force: &mut [f64]) {
+    force.copy_from_slice(offset);
+    add_product(1.0, jacobian, motion, force);
+}
+
+/// Adds s·tₙ, the share of a piece of tangent stiffness s, to the spectrum of the stiffness.
+pub(super) fn add_stiffness(spectrum: &mut [Complex64], stiffness: f64, transform: &[Complex64]) {
+    if stiffness != 0.0 {
+        for (s, t) in spectrum.iter_mut().zip(transform) {
+            *s += stiffness * t;
+        }
+    }
+}

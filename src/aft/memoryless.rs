@@ -1,0 +1,234 @@
+//! Evaluation of laws without memory: samples of motion and velocity in, harmonics of the force and
+//! their derivatives out.
+//!
+//! With the spectra Sᵘ and Sᵛ of the tangents ∂f/∂u and ∂f/∂v, and D the derivative by time, which
+//! multiplies Xₕ by iωh,
+//!
+//! > ∂F/∂X = T(Sᵘ) + T(Sᵛ)·D,  ∂F/∂ω = T(Sᵛ)·(ihX),  offset = F − ∂F/∂X · X.
+//!
+//! Both are the exact derivatives of the sampled F, however few the samples, because the samples of
+//! a motion are linear in its harmonics.
+
+use crate::aft::Evaluation;
+use crate::aft::toeplitz::Toeplitz;
+use crate::contact::memoryless_law::{Memoryless, Samples};
+use crate::error::{Result, fail, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::fourier::transform::{Half, Lane, Transform};
+use num_complex::Complex64;
+
+/// Tables and memory for one law, or for several of equal directions and samples, on the motions of
+/// one harmonic set.
+pub struct MemorylessEvaluator {
+    directions: usize,
+    velocity: bool,
+    half_suffices: bool,
+    /// Samples per period asked for.
+    wanted: usize,
+    transform: Transform,
+    /// Motions and velocities, samples × d.
+    u: Vec<f64>,
+    v: Vec<f64>,
+    /// Forces, samples × d, and their tangents, samples × d × d.
+    f: Vec<f64>,
+    df_du: Vec<f64>,
+    df_dv: Vec<f64>,
+    scratch: Vec<f64>,
+    /// Harmonics 0 ..= 2·highest of what is being transformed.
+    spectrum: Vec<Complex64>,
+    toeplitz: Toeplitz,
+    /// ih·X, d·m.
+    quadrature: Vec<f64>,
+    /// A packed velocity, m.
+    packed: Vec<f64>,
+    /// T(Sᵛ) of one pair of directions, m × m.
+    block: Vec<f64>,
+}
+
+impl MemorylessEvaluator {
+    /// Memory for `law` on motions of `set` at `wanted` samples per period or a few more.
+    ///
+    /// # Errors
+    /// `Argument` for a law without directions, and where it asks for fewer samples than tell the
+    /// harmonics apart; `OutOfMemory`.
+    pub fn new(set: &HarmonicSet, law: &dyn Memoryless, wanted: usize) -> Result<Self> {
+        let (d, m) = (law.directions(), set.packed_len());
+        let highest = set.highest_reduced();
+        if d == 0 {
+            return fail!(Argument, "directions = 0 of a contact law, needs at least 1");
+        }
+        if wanted <= 2 * highest {
+            return fail!(
+                Argument,
+                "samples = {wanted} of a contact law, needs at least {} for {highest} harmonics",
+                2 * highest + 1
+            );
+        }
+        let half = set.is_odd() && law.half_period_suffices();
+        let transform = Transform::new(set, wanted, half)?;
+        let n = transform.held();
+        let velocity = law.uses_velocity();
+        let feels = usize::from(velocity);
+        let signals = n.saturating_mul(d);
+        let tangents = signals.saturating_mul(d);
+        let samples = |len: usize| try_vec(len, 0.0, "samples");
+        Ok(Self {
+            directions: d,
+            velocity,
+            half_suffices: law.half_period_suffices(),
+            wanted,
+            transform,
+            u: samples(signals)?,
+            v: samples(feels * signals)?,
+            f: samples(signals)?,
+            df_du: samples(tangents)?,
+            df_dv: samples(feels * tangents)?,
+            scratch: samples(signals.saturating_mul(2))?,
+            spectrum: try_vec(2 * highest + 1, Complex64::ZERO, "a stiffness spectrum")?,
+            toeplitz: Toeplitz::new(set)?,
+            quadrature: samples(feels * d * m)?,
+            packed: samples(feels * m)?,
+            block: try_vec(feels * m.saturating_mul(m), 0.0, "a contact Jacobian")?,
+        })
+    }
+
+    /// Whether this was made for laws like `law` at so many samples.
+    #[must_use]
+    pub fn suits(&self, law: &dyn Memoryless, wanted: usize) -> bool {
+        self.directions == law.directions()
+            && self.velocity == law.uses_velocity()
+            && self.half_suffices == law.half_period_suffices()
+            && self.wanted == wanted
+    }
+
+    /// Force and derivatives of `law` at a motion, d·m numbers, direction after direction. `law` is
+    /// the one that this was made for, or the same in other units.
+    ///
+    /// # Errors
+    /// Those of the law; then `out` is of no use.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn Memoryless,
+        set: &HarmonicSet,
+        omega: f64,
+        motion: &[f64],
+        out: &mut Evaluation,
+    ) -> Result<()> {
+        if motion.is_empty() {
+            // A set without harmonics.
+            return Ok(());
+        }
+        self.sample(set, omega, motion);
+        for values in [&mut self.f, &mut self.df_du, &mut self.df_dv] {
+            values.fill(0.0);
+        }
+        let samples = Samples {
+            f: &mut self.f,
+            df_du: &mut self.df_du,
+            df_dv: &mut self.df_dv,
+            scratch: &mut self.scratch,
+        };
+        // The samples cover the period 2π/(gω) of the set.
+        let own = set.base() as f64 * omega;
+        law.evaluate(own, self.transform.held(), &self.u, &self.v, samples)?;
+        out.clear();
+        self.forces(set, out);
+        self.tangents(set, omega, out);
+        // F − J·X
+        let order = out.force.len();
+        out.offset.copy_from_slice(&out.force);
+        for (column, x) in out.jacobian.chunks_exact(order).zip(motion) {
+            for (o, j) in out.offset.iter_mut().zip(column) {
+                *o -= j * x;
+            }
+        }
+        Ok(())
+    }
+
+    /// Samples of the motions and their velocities.
+    fn sample(&mut self, set: &HarmonicSet, omega: f64, motion: &[f64]) {
+        let m = set.packed_len();
+        let step = self.directions;
+        for first in 0..step {
+            let lane = Lane { first, step };
+            let x = &motion[first * m..(first + 1) * m];
+            self.transform.synthesise(set, x, &mut self.u, lane);
+            if !self.velocity {
+                continue;
+            }
+            let quadrature = &mut self.quadrature[first * m..(first + 1) * m];
+            for (i, &h) in set.numbers().iter().enumerate() {
+                let rotated = Complex64::I * h as f64 * set.get(x, i);
+                set.set(quadrature, i, rotated);
+            }
+            for (v, q) in self.packed.iter_mut().zip(&*quadrature) {
+                *v = omega * q;
+            }
+            self.transform.synthesise(set, &self.packed, &mut self.v, lane);
+        }
+    }
+
+    /// Packed harmonics of the forces.
+    fn forces(&mut self, set: &HarmonicSet, out: &mut Evaluation) {
+        let (m, step) = (set.packed_len(), self.directions);
+        let harmonics = &mut self.spectrum[..=set.highest_reduced()];
+        let mean = usize::from(set.has_mean());
+        for (first, force) in out.force.chunks_exact_mut(m).enumerate() {
+            self.transform
+                .analyse(&self.f, Lane { first, step }, Half::Opposite, harmonics);
+            if mean == 1 {
+                force[0] = harmonics[0].re;
+            }
+            for (k, pair) in force[mean..].chunks_exact_mut(2).enumerate() {
+                let z = 2.0 * harmonics[set.reduced(k)];
+                pair[0] = z.re;
+                pair[1] = z.im;
+            }
+        }
+    }
+
+    /// Jacobian and ∂F/∂ω, one pair of directions after the other.
+    fn tangents(&mut self, set: &HarmonicSet, omega: f64, out: &mut Evaluation) {
+        let (m, d) = (set.packed_len(), self.directions);
+        let order = d * m;
+        let step = d * d;
+        for j in 0..d {
+            for i in 0..d {
+                let lane = Lane { first: i * d + j, step };
+                let corner = j * m * order + i * m;
+                self.transform
+                    .analyse(&self.df_du, lane, Half::Repeats, &mut self.spectrum);
+                self.toeplitz.set(set, &self.spectrum);
+                self.toeplitz.add(&mut out.jacobian[corner..], order);
+                if !self.velocity {
+                    continue;
+                }
+                self.transform
+                    .analyse(&self.df_dv, lane, Half::Repeats, &mut self.spectrum);
+                self.block.fill(0.0);
+                self.toeplitz.set(set, &self.spectrum);
+                self.toeplitz.add(&mut self.block, m);
+                let by_omega = &mut out.by_omega[i * m..(i + 1) * m];
+                let quadrature = &self.quadrature[j * m..(j + 1) * m];
+                for (column, q) in self.block.chunks_exact(m).zip(quadrature) {
+                    for (b, t) in by_omega.iter_mut().zip(column) {
+                        *b += t * q;
+                    }
+                }
+                // T·D: D maps (Re, Im) to ωh·(−Im, Re), so its columns are those of T, exchanged.
+                let mean = usize::from(set.has_mean());
+                for (pair, &h) in set.numbers()[mean..].iter().enumerate() {
+                    let rate = omega * h as f64;
+                    let at = mean + 2 * pair;
+                    let (re, im) = self.block[at * m..(at + 2) * m].split_at(m);
+                    for (shift, factor, source) in [(0, rate, im), (1, -rate, re)] {
+                        let begin = corner + (at + shift) * order;
+                        for (entry, t) in out.jacobian[begin..begin + m].iter_mut().zip(source) {
+                            *entry += factor * t;
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

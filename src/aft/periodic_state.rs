@@ -1,0 +1,143 @@
+//! The start of a marched period that returns to itself.
+//!
+//! One march maps the states z at the start to those at the end, with the derivative P, the product of
+//! the derivatives of the steps. Where a load wipes memory, P shrinks, and Newton's step solves
+//! (I − P) δ = z_end − z. Where nothing slips P = I: any state returns, and the marched one is kept.
+//! Between them lies a projector Π onto what P leaves alone, P Π = Π P = Π; then
+//!
+//! > (I − P + Π) δ = z_end − z
+//!
+//! is Newton's step outside it and one more march within it. The same matrix gives the derivative of
+//! the periodic start: (I − P + Π) S = q + Π S_before with q the derivative of the march at a fixed start
+//! and S_before that of the start marched from.
+
+use crate::contact::hysteretic_law::March;
+use crate::error::Result;
+use crate::error::try_vec;
+use crate::linalg::lu::Lu;
+
+/// Squarings in the search for Π; what decays by less than 1e-10 per period counts as kept in part.
+const SQUARINGS: usize = 40;
+
+/// Entries of Π below this are no projection.
+const NOTHING: f64 = 1e-9;
+
+/// The linearised map over one period.
+pub(super) struct ReturnMap {
+    states: usize,
+    /// P, row-major.
+    p: Vec<f64>,
+    /// Π, row-major.
+    kept: Vec<f64>,
+    scratch: Vec<f64>,
+    /// Factors of I − P + Π.
+    factors: Lu<f64>,
+    /// Whether Π is not zero.
+    pub has_kept: bool,
+    /// Whether I − P + Π could be factored.
+    pub is_regular: bool,
+}
+
+impl ReturnMap {
+    pub fn new(states: usize) -> Result<Self> {
+        let memory = || try_vec(states.saturating_mul(states), 0.0, "a map over a period");
+        Ok(Self {
+            states,
+            p: memory()?,
+            kept: memory()?,
+            scratch: memory()?,
+            factors: Lu::new(states, 1)?,
+            has_kept: false,
+            is_regular: false,
+        })
+    }
+
+    /// Forms P, Π and the factors from the steps of a march.
+    pub fn form(&mut self, march: &March, samples: usize) {
+        let s = self.states;
+        unit(s, &mut self.p);
+        for step in march.dz_dz[..samples * s * s].chunks_exact((s * s).max(1)) {
+            product(s, step, &self.p, &mut self.scratch);
+            std::mem::swap(&mut self.p, &mut self.scratch);
+        }
+        self.project();
+        let matrix = self.factors.matrix();
+        for row in 0..s {
+            for column in 0..s {
+                let unit = if row == column { 1.0 } else { 0.0 };
+                matrix[column * s + row] = unit - self.p[row * s + column] + self.kept[row * s + column];
+            }
+        }
+        self.is_regular = self.factors.factor().is_ok();
+    }
+
+    /// Π = lim ((I + P)/2)^(2ⁿ): the mean with I leaves an eigenvalue of 1 alone and damps all others on
+    /// the unit circle, −1 among them.
+    fn project(&mut self) {
+        let s = self.states;
+        unit(s, &mut self.kept);
+        for (kept, p) in self.kept.iter_mut().zip(&self.p) {
+            *kept = 0.5 * (*kept + p);
+        }
+        for _ in 0..SQUARINGS {
+            product(s, &self.kept, &self.kept, &mut self.scratch);
+            std::mem::swap(&mut self.kept, &mut self.scratch);
+            let size = largest(&self.kept);
+            let change = self
+                .kept
+                .iter()
+                .zip(&self.scratch)
+                .fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+            // Further squaring of a projector would only let rounding grow.
+            if size < NOTHING || size.is_nan() || size > NOTHING.recip() || change < 1e-13 * size {
+                break;
+            }
+        }
+        let size = largest(&self.kept);
+        self.has_kept = size >= NOTHING && size <= NOTHING.recip();
+        if !self.has_kept {
+            self.kept.fill(0.0);
+        }
+    }
+
+    /// δ = (I − P + Π)⁻¹ b in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        self.factors.solve(b);
+    }
+
+    /// Column `column` of S = (I − P + Π)⁻¹ (q + Π S_before), into `solved`; S_before and q are row-major
+    /// with rows of `width`.
+    pub fn start_column(&self, q: &[f64], before: &[f64], width: usize, column: usize, solved: &mut [f64]) {
+        for (row, value) in solved.iter_mut().enumerate() {
+            *value = q[row * width + column];
+            for k in 0..self.states {
+                *value += self.kept[row * self.states + k] * before[k * width + column];
+            }
+        }
+        self.factors.solve(solved);
+    }
+}
+
+/// Largest magnitude; NaN if one is.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    values
+        .iter()
+        .fold(0.0, |m, x| if x.abs() > m || x.is_nan() { x.abs() } else { m })
+}
+
+fn unit(n: usize, a: &mut [f64]) {
+    a.fill(0.0);
+    a.iter_mut().step_by(n + 1).for_each(|x| *x = 1.0);
+}
+
+/// c = a b, row-major.
+fn product(n: usize, a: &[f64], b: &[f64], c: &mut [f64]) {
+    for (row, out) in a.chunks_exact(n.max(1)).zip(c.chunks_exact_mut(n.max(1))) {
+        out.fill(0.0);
+        for (factor, line) in row.iter().zip(b.chunks_exact(n)) {
+            for (o, l) in out.iter_mut().zip(line) {
+                *o += factor * l;
+            }
+        }
+    }
+}

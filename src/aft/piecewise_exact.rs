@@ -1,0 +1,112 @@
+//! Exact evaluation: turning points and slip times located, Fourier integrals in closed form.
+//!
+//! It knows no law by name: [`PiecewiseLinear::pieces`] returns intervals, and each contributes
+//! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices;
+//! the other half repeats it with opposite sign and doubles every integral that is used.
+
+use crate::aft::Evaluation;
+use crate::aft::jacobian_assembly::Assembly;
+use crate::contact::law::{Piece, PiecewiseLinear};
+use crate::error::{Error, Result, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::fourier::{Extremum, TurningPoints};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Tables and memory of the exact evaluation for one harmonic set.
+pub struct Exact {
+    turning_points: TurningPoints,
+    extrema: Vec<Extremum>,
+    pieces: Vec<Piece>,
+    transform: Vec<Complex64>,
+    assembly: Assembly,
+}
+
+impl Exact {
+    /// Memory for motions of `set` under laws of up to `most_pieces` pieces.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet, most_pieces: usize) -> Result<Self> {
+        let highest = set.highest_reduced();
+        let assembly = Assembly::new(set)?;
+        // x' has at most 2·highest roots per turn.
+        let mut extrema = Vec::new();
+        let mut pieces = Vec::new();
+        extrema
+            .try_reserve_exact(2 * highest + 4)
+            .and_then(|()| pieces.try_reserve_exact(most_pieces))
+            .map_err(|_| Error::out_of_memory("the pieces of a motion"))?;
+        Ok(Self {
+            turning_points: TurningPoints::new(set)?,
+            extrema,
+            pieces,
+            transform: try_vec(2 * highest + 1, Complex64::ZERO, "a transform")?,
+            assembly,
+        })
+    }
+
+    /// Finds the turning points of a packed motion.
+    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
+        self.turning_points.find(set, motion, &mut self.extrema);
+    }
+
+    /// The pieces of the law evaluated last.
+    #[must_use]
+    pub fn pieces(&self) -> &[Piece] {
+        &self.pieces
+    }
+
+    /// Half the range of the prepared motion.
+    #[must_use]
+    pub fn half_range(&self, set: &HarmonicSet) -> f64 {
+        let (low, high) = self
+            .extrema
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), e| (l.min(e.x), h.max(e.x)));
+        if self.extrema.is_empty() {
+            0.0
+        } else if set.is_odd() {
+            high.max(-low)
+        } else {
+            0.5 * (high - low)
+        }
+    }
+
+    /// Force and Jacobian of `law` for the prepared motion; see [`super`].
+    pub fn evaluate(&mut self, law: &dyn PiecewiseLinear, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        self.pieces.clear();
+        law.pieces(set, motion, &self.extrema, &mut self.pieces);
+        self.assembly.start(out);
+        let turn = TAU / set.stride() as f64;
+        for piece in &self.pieces {
+            transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
+            let state = law.state(piece);
+            self.assembly
+                .add(set, (piece, state), &self.transform, piece.anchor, out);
+        }
+        self.assembly.finish(set, motion, out);
+    }
+}
+
+/// scale·∫ₐᵇ e^{−inτ} dτ for all n. With odd harmonics and `turn` = π the piece stands for its mirror
+/// image too; then even n belong to the stiffness spectrum and odd n to g, and both double.
+pub(super) fn transform([a, b]: [f64; 2], scale: f64, turn: f64, out: &mut [Complex64]) {
+    out.fill(Complex64::ZERO);
+    out[0] = (scale * (b - a)).into();
+    // A whole turn has no harmonics but the mean. Odd n over half a turn: only offsets of a clamped
+    // slider would use them, and an odd motion never clamps.
+    if a == 0.0 && b >= turn {
+        return;
+    }
+    let (ea, eb) = (Complex64::cis(-a), Complex64::cis(-b));
+    let (mut za, mut zb) = (ea, eb);
+    for (n, t) in out.iter_mut().enumerate().skip(1) {
+        let d = za - zb;
+        // d / (i n) = −i d / n
+        let factor = scale / n as f64;
+        *t = Complex64::new(d.im * factor, -d.re * factor);
+        za *= ea;
+        zb *= eb;
+    }
+}

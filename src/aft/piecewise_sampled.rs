@@ -1,0 +1,91 @@
+//! Sampled evaluation: the law at N equidistant times per period, Fourier sums instead of
+//! integrals. The force is O(N⁻²) accurate, the Jacobian O(N⁻¹); it serves for cross-checks and
+//! for laws without exact events. Smooth laws are not sampled: their harmonics are exact.
+
+use crate::aft::Evaluation;
+use crate::aft::jacobian_assembly::Assembly;
+use crate::contact::law::{Piece, PiecewiseLinear};
+use crate::error::{Error, Result, try_vec};
+use crate::fourier::HarmonicSet;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Tables and memory of the sampled evaluation for one harmonic set.
+pub struct Sampled {
+    /// e^{−iτⱼ}
+    turns: Vec<Complex64>,
+    basis: Vec<f64>,
+    samples: Vec<f64>,
+    pieces: Vec<Piece>,
+    transform: Vec<Complex64>,
+    assembly: Assembly,
+}
+
+impl Sampled {
+    /// Memory for motions of `set` at `n` times.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet, n: usize) -> Result<Self> {
+        let mut turns = try_vec(n, Complex64::ONE, "samples")?;
+        for (j, z) in turns.iter_mut().enumerate() {
+            *z = Complex64::cis(-TAU * j as f64 / n as f64);
+        }
+        let mut pieces = Vec::new();
+        pieces
+            .try_reserve_exact(n + 2)
+            .map_err(|_| Error::out_of_memory("samples"))?;
+        Ok(Self {
+            turns,
+            basis: try_vec(set.packed_len(), 0.0, "samples")?,
+            samples: try_vec(n, 0.0, "samples")?,
+            pieces,
+            transform: try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, "a transform")?,
+            assembly: Assembly::new(set)?,
+        })
+    }
+
+    /// Samples a packed motion.
+    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
+        let n = self.samples.len();
+        for j in 0..n {
+            set.basis(TAU * j as f64 / n as f64, &mut self.basis);
+            self.samples[j] = self.basis.iter().zip(motion).map(|(c, x)| c * x).sum();
+        }
+    }
+
+    /// Half the range of the prepared motion, as far as the samples show it.
+    #[must_use]
+    pub fn half_range(&self) -> f64 {
+        let high = self.samples.iter().fold(f64::NEG_INFINITY, |m, &x| m.max(x));
+        let low = self.samples.iter().fold(f64::INFINITY, |m, &x| m.min(x));
+        0.5 * (high - low)
+    }
+
+    /// Force and Jacobian of `law` for the prepared motion; see [`super`].
+    pub fn evaluate(&mut self, law: &dyn PiecewiseLinear, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        self.pieces.clear();
+        law.sampled_pieces(&self.samples, &mut self.pieces);
+        self.assembly.start(out);
+        let n = self.samples.len();
+        for piece in &self.pieces {
+            // (1/N) Σ e^{−inτⱼ} over the samples of the piece.
+            self.transform.fill(Complex64::ZERO);
+            for j in piece.start as usize..piece.end as usize {
+                let turn = self.turns[j % n];
+                let mut z = Complex64::ONE;
+                for t in &mut self.transform {
+                    *t += z;
+                    z *= turn;
+                }
+            }
+            for t in &mut self.transform {
+                *t /= n as f64;
+            }
+            let anchor = piece.anchor.map(|j| TAU * j / n as f64);
+            self.assembly
+                .add(set, (piece, law.state(piece)), &self.transform, anchor, out);
+        }
+        self.assembly.finish(set, motion, out);
+    }
+}

@@ -1,0 +1,134 @@
+//! Exact evaluation of friction under a varying normal load: two directions, x along the surface
+//! and y along its normal.
+//!
+//! The tangential force is made of pieces f = a·x + b·y + a_r·x(r) + b_r·y(r) + o, see
+//! [`CoupledPiece`], so that with the spectra S of a and b
+//!
+//! > ∂Fₜ/∂X = T(Sᵃ) + Σ a_r g ⊗ c(r),  ∂Fₜ/∂Y = T(Sᵇ) + Σ (b_r + m) g ⊗ c(r),
+//!
+//! where m·dy(r) is what a time of closing r that moves with the normal motion adds. The normal
+//! force is that of a unilateral spring and does not depend on x. m belongs to the derivative alone,
+//! so Fₜ = ∂Fₜ/∂X · X + ∂Fₜ/∂Y · Y + Σ (o − m·y(r)) g.
+
+use crate::aft::piecewise_exact::transform;
+use crate::aft::toeplitz::Toeplitz;
+use crate::aft::{Block, Evaluation, add_stiffness, apply, is_whole, pack};
+use crate::contact::Piece;
+use crate::contact::contact_state::State;
+use crate::contact::laws::friction_2d::{CoupledPiece, Friction2d, Scratch, is_closed, piece_lists};
+use crate::error::{Result, try_vec};
+use crate::fourier::HarmonicSet;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Tables and memory of the evaluation for one harmonic set.
+pub struct Coupled {
+    scratch: Scratch,
+    normal: Vec<Piece>,
+    tangential: Vec<CoupledPiece>,
+    transform: Vec<Complex64>,
+    /// Of ∂Fₜ/∂X, ∂Fₜ/∂Y and ∂Fₙ/∂Y.
+    spectra: [Vec<Complex64>; 3],
+    toeplitz: Toeplitz,
+    g: Vec<f64>,
+    anchor: Vec<f64>,
+}
+
+/// Force's and motion's direction of each spectrum.
+const BLOCKS: [[usize; 2]; 3] = [[0, 0], [0, 1], [1, 1]];
+
+impl Coupled {
+    /// Memory for motions of `set`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet) -> Result<Self> {
+        let (normal, tangential) = piece_lists(set)?;
+        let spectrum = || try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, "a stiffness spectrum");
+        Ok(Self {
+            scratch: Scratch::new(set)?,
+            normal,
+            tangential,
+            transform: spectrum()?,
+            spectra: [spectrum()?, spectrum()?, spectrum()?],
+            toeplitz: Toeplitz::new(set)?,
+            g: try_vec(set.packed_len(), 0.0, "a contact force")?,
+            anchor: try_vec(set.packed_len(), 0.0, "a contact force")?,
+        })
+    }
+
+    /// The pieces of the tangential force at the motion evaluated last.
+    #[must_use]
+    pub fn tangential(&self) -> &[CoupledPiece] {
+        &self.tangential
+    }
+
+    /// The pieces of the normal force at the motion evaluated last.
+    #[must_use]
+    pub fn normal(&self) -> &[Piece] {
+        &self.normal
+    }
+
+    /// Force and Jacobian of `law` at the packed x, then the packed y, in `out` of two directions.
+    pub fn evaluate(&mut self, law: &Friction2d, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        law.pieces(set, motion, &mut self.scratch, &mut self.normal, &mut self.tangential);
+        out.clear();
+        for spectrum in &mut self.spectra {
+            spectrum.fill(Complex64::ZERO);
+        }
+        self.add_normal(set, out);
+        self.add_tangential(set, motion, out);
+        let m = set.packed_len();
+        for (spectrum, place) in self.spectra.iter().zip(BLOCKS) {
+            self.toeplitz.set(set, spectrum);
+            Block::new(&mut out.jacobian, 2, m, place).add_toeplitz(&self.toeplitz);
+        }
+        apply(&out.jacobian, motion, &out.offset, &mut out.force);
+    }
+
+    fn add_normal(&mut self, set: &HarmonicSet, out: &mut Evaluation) {
+        let m = set.packed_len();
+        for piece in &self.normal {
+            transform([piece.start, piece.end], TAU.recip(), TAU, &mut self.transform);
+            if !is_closed(piece) {
+                out.open_fraction += self.transform[0].re;
+                continue;
+            }
+            add_stiffness(&mut self.spectra[2], piece.slope, &self.transform);
+            pack(set, &self.transform, &mut self.g);
+            for (o, g) in out.offset[m..].iter_mut().zip(&self.g) {
+                *o += piece.offset * g;
+            }
+        }
+    }
+
+    fn add_tangential(&mut self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        let m = set.packed_len();
+        for piece in &self.tangential {
+            if piece.state == State::Open {
+                continue;
+            }
+            transform([piece.start, piece.end], TAU.recip(), TAU, &mut self.transform);
+            let share = self.transform[0].re;
+            out.count(piece.state, share);
+            out.stuck = piece.state == State::Stick && piece.anchor.is_none() && is_whole(share);
+            let [by_x, by_y, _] = &mut self.spectra;
+            add_stiffness(by_x, piece.of_x, &self.transform);
+            add_stiffness(by_y, piece.of_y, &self.transform);
+            pack(set, &self.transform, &mut self.g);
+            let mut constant = piece.constant;
+            if let Some(r) = piece.anchor {
+                set.basis(r, &mut self.anchor);
+                let by_y = piece.at_y + piece.moved_y;
+                for (j, factor) in [piece.at_x, by_y].into_iter().enumerate() {
+                    Block::new(&mut out.jacobian, 2, m, [0, j]).add_product(factor, &self.g, &self.anchor);
+                }
+                let y: f64 = self.anchor.iter().zip(&motion[m..]).map(|(c, y)| c * y).sum();
+                constant -= piece.moved_y * y;
+            }
+            for (o, g) in out.offset[..m].iter_mut().zip(&self.g) {
+                *o += constant * g;
+            }
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The equations of a nonlinear mode with one number of harmonics, and what is measured of a point there.
+
+use crate::continuation::corrector::Corrector;
+use crate::continuation::{Point, Settings};
+use crate::error::{Result, try_vec};
+use crate::linalg::{inner, norm};
+use crate::problem::epmc::{Epmc, Gauge, LinearMode};
+use crate::problem::{Linearisation, Problem};
+use crate::results::Resolution;
+use crate::results::energy::{self, Balance};
+use crate::results::mode_branch::ModePoint;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the nonlinear mode";
+
+/// What a mode starts from.
+#[derive(Clone, Copy)]
+pub(super) struct InitialGuess<'a> {
+    pub linear: &'a LinearMode,
+    pub gauge: &'a Gauge,
+}
+
+/// The equations with the harmonics of one resolution.
+pub(super) struct AtResolution<'a> {
+    pub level: &'a Resolution,
+    pub problem: Epmc<'a>,
+    pub corrector: Corrector,
+    at: Linearisation,
+    /// Packed relative motions of the point evaluated last.
+    pub motion: Vec<f64>,
+    forces: Vec<f64>,
+    /// Carried harmonics of the response degree of freedom there.
+    pub response: Vec<Complex64>,
+    weighted: Vec<Complex64>,
+}
+
+impl<'a> AtResolution<'a> {
+    /// Memory for a resolution.
+    pub fn new(level: &'a Resolution, data: &InitialGuess<'a>, settings: &Settings) -> Result<Self> {
+        let problem = Epmc::new(&level.condensed, data.gauge, data.linear, level.samples)?;
+        let unknowns = problem.size();
+        Ok(Self {
+            corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,
+            at: Linearisation::new(unknowns)?,
+            motion: try_vec(unknowns - 2, 0.0, CONTEXT)?,
+            forces: try_vec(unknowns - 2, 0.0, CONTEXT)?,
+            weighted: try_vec(level.condensed.ndof(), Complex64::ZERO, CONTEXT)?,
+            response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, CONTEXT)?,
+            problem,
+            level,
+        })
+    }
+
+    /// The linear mode as a point of the branch.
+    pub fn linear_point(&mut self, p: f64) -> Result<Point> {
+        let Self { problem, at, .. } = self;
+        let n = problem.size();
+        let mut v = try_vec(n + 1, 0.0, CONTEXT)?;
+        problem.linear_start(&mut v[..n]);
+        v[n] = p;
+        let mut tangent = try_vec(n + 1, 0.0, CONTEXT)?;
+        tangent[n] = 1.0;
+        problem.evaluate(&v[..n], p, at)?;
+        let (amplitude, slope) = problem.observe(&v[..n], &tangent);
+        Ok(Point {
+            v,
+            tangent,
+            amplitude,
+            slope,
+            residual: norm(&at.residual) / at.scale,
+            iterations: 0,
+            step: 0.0,
+            stalled: false,
+            positive: true,
+        })
+    }
+
+    /// Evaluates the problem at a point, and the response of a degree of freedom.
+    pub fn evaluate(&mut self, point: &Point, dof: usize) -> Result<()> {
+        let (u, p) = (point.unknowns(), point.parameter());
+        self.problem.evaluate(u, p, &mut self.at)?;
+        let a = 10f64.powf(p);
+        for (m, u) in self.motion.iter_mut().zip(u) {
+            *m = a * u;
+        }
+        let dofs = self.level.condensed.ndof();
+        for (r, x) in self.response.iter_mut().zip(self.problem.shape().chunks_exact(dofs)) {
+            *r = a * x[dof];
+        }
+        Ok(())
+    }
+
+    /// What is stored of the point evaluated last; `before` is the fundamental of the point before, if there is one.
+    pub fn measure(&mut self, point: &Point, linear: &LinearMode, before: &[Complex64]) -> ModePoint {
+        let condensed = &*self.level.condensed;
+        let n = point.unknowns().len();
+        let (u, p) = (point.unknowns(), point.parameter());
+        let (omega, damping_ratio) = Epmc::frequency_and_damping(linear, u);
+        let dofs = condensed.ndof();
+        let x = self.problem.shape();
+        self.forces.copy_from_slice(self.problem.forces().forces());
+        let unit = 10f64.powf(p) * condensed.length();
+        let balance: Balance = energy::balance(condensed, omega, x, &self.forces, &u[..n - 2]);
+        let i = condensed.set().fundamental();
+        let first = &x[i * dofs..(i + 1) * dofs];
+        condensed.blocks()[i].multiply_mass(first, &mut self.weighted);
+        let size = inner(first, &self.weighted).re;
+        let assurance = if before.is_empty() {
+            1.0
+        } else {
+            let overlap = inner(before, &self.weighted).norm_sqr();
+            condensed.blocks()[i].multiply_mass(before, &mut self.weighted);
+            overlap / (size * inner(before, &self.weighted).re)
+        };
+        ModePoint {
+            log10_amplitude: p,
+            modal_amplitude: unit * size.sqrt(),
+            damping_ratio,
+            energy: balance.twice_mean_kinetic * unit * unit,
+            fundamental_share: 0.5 * omega * omega * size / balance.twice_mean_kinetic,
+            friction_loss: balance.friction_loss * unit * unit,
+            structural_loss: balance.structural_loss * unit * unit,
+            assurance,
+        }
+    }
+}

@@ -1,0 +1,90 @@
+//! The error of stored points, see [`crate::error_estimate`].
+
+use crate::condense::{Artificial, Condensed};
+use crate::error::{Result, fail};
+use crate::error_estimate::forced_response_error::ForcedEstimator;
+use crate::error_estimate::mode_error::ModeEstimator;
+use crate::error_estimate::{Estimate, ExtendedModels, Solved};
+use crate::model::Model;
+use crate::options::{DampingForm, SolverOptions};
+use crate::results::Branch;
+use num_complex::Complex64;
+
+/// Estimates how wrong a stored point of a branch is by the harmonics that it leaves out. `model` and `solver`
+/// are those that the branch was computed with.
+///
+/// The estimate solves, once or a few times, the linear equations of a problem with more harmonics: at least
+/// twice as many, and all in which the structure gives way to its contacts. Where that is not affordable, or
+/// does not settle, the estimate is not certified and its errors are NaN.
+///
+/// # Errors
+/// `Index` for an unknown point, `Argument` for another model or other options than those of the branch,
+/// `Callback` for a law of the caller that gives up, `OutOfMemory`.
+pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point: usize) -> Result<Estimate> {
+    solver.check()?;
+    let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
+        return fail!(
+            Index,
+            "point = {point}, needs 0 .. {} (points and special points)",
+            branch.stored()
+        );
+    };
+    if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() {
+        return fail!(
+            Argument,
+            "the branch has {} degrees of freedom and {} contacts, the model {} and {}: it is another one",
+            branch.ndof(),
+            branch.contacts(),
+            model.ndof(),
+            model.contacts().len()
+        );
+    }
+    let samples = branch.samples_at(point);
+    if solver.tolerance == 0.0 && (solver.harmonics != branch.harmonics() || solver.samples != samples) {
+        return fail!(
+            Argument,
+            "the branch has harmonics = {} and samples = {samples}, the options {} and {}",
+            branch.harmonics(),
+            solver.harmonics,
+            solver.samples
+        );
+    }
+    let solver = &SolverOptions { samples, ..*solver };
+    let condensed = branch.level_at(point);
+    let solved = Solved {
+        condensed,
+        motion,
+        omega,
+        response: branch
+            .response_at(point)
+            .and_then(|x| x.get(observed(condensed)))
+            .copied()
+            .unwrap_or(Complex64::ZERO),
+        sticks: None,
+    };
+    let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
+        let extended_models = ExtendedModels::new()?;
+        return ForcedEstimator::new(model, solver, branch.response_dof(), &extended_models).at(&solved);
+    };
+    let wave;
+    let model = if model.structure().engine_order() == data.info.engine_order {
+        model
+    } else {
+        let mut other = model.try_clone()?;
+        other.set_wave(data.info.engine_order);
+        wave = other;
+        &wave
+    };
+    let form = match condensed.blocks().first().map(|b| &b.artificial) {
+        Some(Artificial::Stiffness(_)) => DampingForm::Stiffness,
+        _ => DampingForm::Mass,
+    };
+    let start = (&data.linear, &data.gauge);
+    let mut estimator = ModeEstimator::new(model, solver, form, start, branch.response_dof());
+    estimator.at(&solved, at.log10_amplitude, at.damping_ratio)
+}
+
+/// Position of the harmonic whose amplitude a forced response tells: the lowest above zero.
+pub(super) fn observed(condensed: &Condensed) -> usize {
+    condensed.set().numbers().iter().position(|&h| h > 0).unwrap_or(0)
+}

@@ -1,0 +1,176 @@
+//! The resonance between two points of a mode's branch, solved on the mode's equations.
+
+use crate::adaptivity::harmonic_levels::carried;
+use crate::analysis::synthesis::oscillator::{Load, State};
+use crate::condense::Condensed;
+use crate::continuation::special_points::Locator;
+use crate::continuation::step_control::StepControl;
+use crate::continuation::{Point, Settings};
+use crate::error::{Result, try_copy, try_vec};
+use crate::linalg::inner;
+use crate::problem::epmc::Epmc;
+use crate::problem::{Linearisation, Problem};
+use crate::results::Branch;
+use crate::results::energy::balance;
+use crate::results::mode_branch::{ModeData, ModePoint};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the synthesised response";
+
+/// Relative accuracy of the amplitude of a resonance.
+const WIDTH: f64 = 1e-12;
+
+/// Most evaluations for one resonance.
+const MAX_EVALUATIONS: usize = 60;
+
+/// Solves the mode between two points of its branch.
+pub(super) struct Refinement<'a> {
+    branch: &'a Branch,
+    data: &'a ModeData,
+    load: &'a Load,
+    solver: Solver<'a>,
+    x: Vec<Complex64>,
+}
+
+/// The mode's equations with the harmonics of one stored point.
+struct Solver<'a> {
+    level: usize,
+    condensed: &'a Condensed,
+    problem: Epmc<'a>,
+    locator: Locator,
+    at: Linearisation,
+}
+
+impl<'a> Solver<'a> {
+    fn new(branch: &'a Branch, data: &'a ModeData, point: usize) -> Result<Self> {
+        let condensed = branch.level_at(point);
+        let problem = Epmc::new(condensed, &data.gauge, &data.linear, branch.samples_at(point))?;
+        let n = problem.size();
+        let settings = Settings {
+            start: data.range.0,
+            end: data.range.1,
+            tolerance: 1e-10,
+            max_iterations: 25,
+            steps: StepControl::new(0.0, 0.0, 0.0),
+        };
+        Ok(Self {
+            level: branch.level_number(point),
+            condensed,
+            at: Linearisation::new(n)?,
+            locator: Locator::new(n, settings)?,
+            problem,
+        })
+    }
+}
+
+impl<'a> Refinement<'a> {
+    pub fn new(branch: &'a Branch, data: &'a ModeData, load: &'a Load) -> Result<Self> {
+        Ok(Self {
+            branch,
+            data,
+            load,
+            solver: Solver::new(branch, data, 0)?,
+            x: try_vec(branch.ndof(), Complex64::ZERO, CONTEXT)?,
+        })
+    }
+
+    /// The state without excess between points k and k + 1, whose excesses are given, by the
+    /// Illinois variant of regula falsi in log₁₀ a.
+    pub fn between(&mut self, k: usize, first: f64, last: f64) -> Result<Option<State>> {
+        let carried = |point: usize| self.branch.level_at(point).set().numbers().len();
+        let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
+        if self.branch.level_number(richer) != self.solver.level {
+            self.solver = Solver::new(self.branch, self.data, richer)?;
+        }
+        let (Some(a), Some(b)) = (self.point(k)?, self.point(k + 1)?) else {
+            return Ok(None);
+        };
+        let (mut low, mut high) = ((a.parameter(), first), (b.parameter(), last));
+        let mut side = 0;
+        let mut found = None;
+        for _ in 0..MAX_EVALUATIONS {
+            let p = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let p = if p.is_finite() { p } else { 0.5 * (low.0 + high.0) };
+            let Some(state) = self.solve(&a, &b, p)? else { break };
+            let f = state.excess();
+            found = Some(state);
+            if f == 0.0 || (high.0 - low.0).abs() <= WIDTH || f.abs() <= WIDTH * state.work.norm() {
+                break;
+            }
+            if (f < 0.0) == (low.1 < 0.0) {
+                low = (p, f);
+                if side == -1 {
+                    high.1 *= 0.5;
+                }
+                side = -1;
+            } else {
+                high = (p, f);
+                if side == 1 {
+                    low.1 *= 0.5;
+                }
+                side = 1;
+            }
+        }
+        Ok(found)
+    }
+
+    /// A point of the curve as the continuation left it, in the harmonics at hand.
+    fn point(&self, k: usize) -> Result<Option<Point>> {
+        let Some((v, tangent)) = self.data.state(k) else {
+            return Ok(None);
+        };
+        let to = self.solver.condensed;
+        let from = self.branch.level_at(k);
+        let transfer = |v: &[f64]| carried(from, to, v, v.len() - from.unknowns(), 1.0);
+        Ok(Some(Point {
+            v: transfer(v)?,
+            tangent: transfer(tangent)?,
+            amplitude: Complex64::ZERO,
+            slope: Complex64::ZERO,
+            residual: 0.0,
+            iterations: 0,
+            step: 0.0,
+            stalled: false,
+            positive: true,
+        }))
+    }
+
+    fn solve(&mut self, a: &Point, b: &Point, p: f64) -> Result<Option<State>> {
+        let Solver {
+            condensed,
+            problem,
+            locator,
+            at,
+            ..
+        } = &mut self.solver;
+        let n = problem.size();
+        let mut v = try_copy(&a.v, CONTEXT)?;
+        if p <= self.data.info.linear_up_to {
+            v[n] = p;
+        } else if let Some(point) = locator.at_parameter(problem, a, b, p)? {
+            v = point.v;
+        } else {
+            return Ok(None);
+        }
+        problem.evaluate(&v[..n], p, at)?;
+        let (omega, damping_ratio) = Epmc::frequency_and_damping(&self.data.linear, &v[..n]);
+        let unit = 10f64.powf(p) * condensed.length();
+        let dofs = self.branch.ndof();
+        let i = condensed.set().fundamental();
+        let shape = &problem.shape()[i * dofs..(i + 1) * dofs];
+        condensed.blocks()[i].multiply_mass(shape, &mut self.x);
+        let size = inner(shape, &self.x).re;
+        let energy = balance(condensed, omega, problem.shape(), &[], &[]).twice_mean_kinetic;
+        let point = ModePoint {
+            log10_amplitude: p,
+            modal_amplitude: unit * size.sqrt(),
+            damping_ratio,
+            fundamental_share: 0.5 * omega * omega * size / energy,
+            ..ModePoint::default()
+        };
+        for (to, from) in self.x.iter_mut().zip(shape) {
+            *to = from * unit;
+        }
+        Ok(Some(self.load.state(omega, &point, &self.x)))
+    }
+}

@@ -1,0 +1,58 @@
+//! The contacts of a model as they were when it was condensed, sorted by what a solver makes of them.
+
+use crate::contact::{Contact, Role};
+use crate::error::{Result, try_push};
+use crate::model::{Model, copy};
+
+/// All contacts of a model. Those that are linear have no relative coordinate.
+#[derive(Clone, Debug, Default)]
+pub struct ContactClasses {
+    all: Vec<Contact>,
+    pub(super) active: Vec<usize>,
+    pub(super) never_slipping: Vec<usize>,
+    /// The directions of the linear ones, as (contact, direction).
+    pub(super) linear: Vec<(usize, usize)>,
+    inert: usize,
+}
+
+impl ContactClasses {
+    pub(super) fn new(model: &Model) -> Result<Self> {
+        const CONTEXT: &str = "the contacts";
+        let mut contact_classes = Self::default();
+        for contact in model.contacts() {
+            try_push(&mut contact_classes.all, copy(contact)?, CONTEXT)?;
+        }
+        for (i, contact) in model.contacts().iter().enumerate() {
+            match contact.role() {
+                Role::Active => try_push(&mut contact_classes.active, i, CONTEXT)?,
+                Role::Spring => try_push(&mut contact_classes.never_slipping, i, CONTEXT)?,
+                Role::Inert => contact_classes.inert += 1,
+            }
+            if contact.role() != Role::Active {
+                for direction in 0..contact.directions() {
+                    try_push(&mut contact_classes.linear, (i, direction), CONTEXT)?;
+                }
+            }
+        }
+        Ok(contact_classes)
+    }
+
+    /// All contacts, in the order of the model.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.all
+    }
+
+    /// Number of contacts without force.
+    #[must_use]
+    pub fn inert(&self) -> usize {
+        self.inert
+    }
+
+    /// Position of the first direction of a linear contact in [`crate::condense::HarmonicBlock::linear_rows`]; the
+    /// others follow.
+    #[must_use]
+    pub fn linear(&self, contact: usize) -> Option<usize> {
+        self.linear.binary_search(&(contact, 0)).ok()
+    }
+}

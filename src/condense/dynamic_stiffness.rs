@@ -1,0 +1,291 @@
+//! The dynamic stiffness Z_κ of one harmonic after the other, factorised.
+//!
+//! Z_κ = K + Wᴴ κ W − h²ω²M + ihωC, and in a nonlinear mode of damping ratio D the artificial
+//! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
+//! −2ihDK.
+
+use crate::condense::{Artificial, Condensed, HarmonicBlock};
+use crate::error::{Error, Result, fail, try_push, try_vec};
+use crate::linalg::factor::Factor;
+use crate::linalg::quadratic::{self, ComplexSum};
+use crate::linalg::sparse::Csc;
+use crate::model::spring::along;
+use num_complex::Complex64;
+
+/// By what a derivative of Z_κ is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum By {
+    Omega,
+    Damping,
+}
+
+/// Memory for factorising Z_κ of one harmonic after the other.
+pub struct DynamicStiffness {
+    factor: Factor,
+    /// Z_κ per harmonic.
+    z: Vec<Csc>,
+    /// b − Z x, and memory for summing it exactly.
+    rest: Vec<Complex64>,
+    sums: Vec<ComplexSum>,
+    part: Vec<ComplexSum>,
+}
+
+/// Relative error of the relative motions at which a residual summed with its rounding errors is
+/// worth its cost.
+const NOISE: f64 = 1e-12;
+
+/// Degrees of freedom up to which such a residual is never needed.
+const PLAIN_UP_TO: usize = 100;
+
+impl DynamicStiffness {
+    /// Memory for a condensed model, solving up to `columns` right-hand sides at a time.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, columns: usize) -> Result<Self> {
+        const CONTEXT: &str = "the dynamic stiffness";
+        let mut z = Vec::new();
+        for block in condensed.blocks() {
+            try_push(&mut z, block.reference.try_clone()?, CONTEXT)?;
+        }
+        let Some(first) = condensed.blocks().first() else {
+            return fail!(Internal, "no harmonic is carried");
+        };
+        let n = condensed.ndof();
+        let exact = if n > PLAIN_UP_TO { n } else { 0 };
+        Ok(Self {
+            factor: Factor::new(&first.reference, columns)?,
+            z,
+            rest: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            sums: try_vec(exact, ComplexSum::default(), CONTEXT)?,
+            part: try_vec(exact, ComplexSum::default(), CONTEXT)?,
+        })
+    }
+
+    /// Factors Z_κ of the i-th carried harmonic at a frequency, which may be complex, and a damping
+    /// ratio.
+    ///
+    /// # Errors
+    /// `Singular` naming the harmonic, at an undamped resonance that no contact feels.
+    pub fn factor(&mut self, condensed: &Condensed, i: usize, omega: Complex64, damping: f64) -> Result<()> {
+        let block = &condensed.blocks()[i];
+        let z = &mut self.z[i];
+        let sum = Combination::value(block, omega, damping);
+        for (at, z) in z.values.iter_mut().enumerate() {
+            *z = sum.at(block, at);
+        }
+        self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega.re))
+    }
+
+    /// Solves Z B = B (or Zᵀ) in place with the factors at hand, those of the i-th harmonic at
+    /// `omega`.
+    ///
+    /// # Errors
+    /// As [`Self::factor`].
+    pub fn solve(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        b: &mut [Complex64],
+        transposed: bool,
+    ) -> Result<()> {
+        self.factor
+            .solve(b, transposed)
+            .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
+    }
+
+    /// Refines a solution x of Z x = b with the factors at hand, those of the i-th harmonic at (ω, D).
+    ///
+    /// Near a resonance of Z_κ the rounding of a plain solution is many times that of the relative
+    /// motions that follow from it, and a mode is always near one. What the first step changes in
+    /// the relative motions tells whether rounding of the residual itself matters.
+    ///
+    /// # Errors
+    /// As [`Self::factor`].
+    pub fn refine(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        at: (f64, f64),
+        b: &[Complex64],
+        x: &mut [Complex64],
+    ) -> Result<()> {
+        let noise = self.refinement(condensed, i, at, b, x, false)?;
+        if noise > NOISE && !self.sums.is_empty() {
+            self.refinement(condensed, i, at, b, x, true)?;
+        }
+        Ok(())
+    }
+
+    /// One step x += Z⁻¹(b − Z x); returns the relative change of the relative motions.
+    fn refinement(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        at: (f64, f64),
+        b: &[Complex64],
+        x: &mut [Complex64],
+        exact: bool,
+    ) -> Result<f64> {
+        let block = &condensed.blocks()[i];
+        let sum = Combination::value(block, at.0.into(), at.1);
+        self.rest.copy_from_slice(b);
+        if exact {
+            sum.exact_product(block, x, &mut self.sums, &mut self.part);
+            for (rest, sum) in self.rest.iter_mut().zip(&mut self.sums) {
+                *rest = sum.subtracted_from(*rest);
+            }
+        } else {
+            let pattern = &block.reference;
+            for (j, x) in x.iter().enumerate() {
+                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                    self.rest[pattern.row_idx[at]] -= sum.at(block, at) * x;
+                }
+            }
+        }
+        let solved = self.factor.solve(&mut self.rest, false);
+        solved.map_err(|e| at_harmonic(e, block, at.0))?;
+        let mut change = (0.0_f64, 0.0_f64);
+        for row in &block.rows {
+            change.0 = change.0.max(along(row, &self.rest).norm());
+            change.1 = change.1.max(along(row, x).norm());
+        }
+        for (x, d) in x.iter_mut().zip(&self.rest) {
+            *x += *d;
+        }
+        Ok(if change.0 == 0.0 { 0.0 } else { change.0 / change.1 })
+    }
+}
+
+/// Z_κ or one of its derivatives as a sum of the block's matrices.
+#[derive(Clone, Copy)]
+struct Combination {
+    reference: f64,
+    damping: Complex64,
+    mass: Complex64,
+    /// Factor of the structure's own stiffness, for artificial damping of that type.
+    own: Complex64,
+}
+
+impl Combination {
+    /// Z_κ
+    fn value(block: &HarmonicBlock, omega: Complex64, damping: f64) -> Self {
+        let hw = block.number as f64 * omega;
+        let artificial = Self::slope(block, omega, damping, By::Damping);
+        Self {
+            reference: 1.0,
+            damping: Complex64::I * hw,
+            mass: damping * artificial.mass - hw * hw,
+            own: damping * artificial.own,
+        }
+    }
+
+    /// ∂Z/∂ω or ∂Z/∂D
+    fn slope(block: &HarmonicBlock, omega: Complex64, damping: f64, by: By) -> Self {
+        let h = block.number as f64;
+        let ih = Complex64::I * h;
+        let zero = Self {
+            reference: 0.0,
+            damping: Complex64::ZERO,
+            mass: Complex64::ZERO,
+            own: Complex64::ZERO,
+        };
+        match (by, &block.artificial) {
+            (By::Omega, artificial) => Self {
+                damping: ih,
+                mass: match artificial {
+                    Artificial::Mass => -2.0 * (h + 2.0 * Complex64::I * damping) * h * omega,
+                    Artificial::None | Artificial::Stiffness(_) => -2.0 * h * h * omega,
+                },
+                ..zero
+            },
+            (By::Damping, Artificial::None) => zero,
+            (By::Damping, Artificial::Mass) => Self {
+                mass: -2.0 * ih * omega * omega,
+                ..zero
+            },
+            (By::Damping, Artificial::Stiffness(_)) => Self { own: -2.0 * ih, ..zero },
+        }
+    }
+
+    /// sums ← Z x without rounding between its terms: the matrices are multiplied one by one, since
+    /// their sum is rounded anew at each frequency.
+    fn exact_product(&self, block: &HarmonicBlock, x: &[Complex64], sums: &mut [ComplexSum], part: &mut [ComplexSum]) {
+        let own = match &block.artificial {
+            Artificial::Stiffness(own) => Some((self.own, own)),
+            Artificial::None | Artificial::Mass => None,
+        };
+        let terms = [
+            Some((self.reference.into(), &block.reference.values)),
+            Some((self.damping, &block.damping)),
+            Some((self.mass, &block.mass)),
+            own,
+        ];
+        sums.fill(ComplexSum::default());
+        for (factor, values) in terms.into_iter().flatten() {
+            part.fill(ComplexSum::default());
+            quadratic::product(&block.reference, values, x, part);
+            for (sum, part) in sums.iter_mut().zip(part.iter()) {
+                sum.add_multiple(*part, factor);
+            }
+        }
+    }
+
+    #[inline]
+    fn at(&self, block: &HarmonicBlock, at: usize) -> Complex64 {
+        let z =
+            self.reference * block.reference.values[at] + self.damping * block.damping[at] + self.mass * block.mass[at];
+        match &block.artificial {
+            Artificial::Stiffness(own) => z + self.own * own[at],
+            Artificial::None | Artificial::Mass => z,
+        }
+    }
+}
+
+/// y += ∂Z x or y += ∂Zᵀ x for the i-th carried harmonic.
+#[allow(clippy::too_many_arguments)]
+pub(super) fn add_slope_product(
+    condensed: &Condensed,
+    i: usize,
+    (omega, damping): (Complex64, f64),
+    by: By,
+    transposed: bool,
+    x: &[Complex64],
+    y: &mut [Complex64],
+) {
+    let block = &condensed.blocks()[i];
+    let pattern = &block.reference;
+    let sum = Combination::slope(block, omega, damping, by);
+    for j in 0..x.len() {
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            let k = pattern.row_idx[at];
+            let (to, from) = if transposed { (j, k) } else { (k, j) };
+            y[to] += sum.at(block, at) * x[from];
+        }
+    }
+}
+
+/// left·Z right at a complex frequency; nothing is conjugated.
+pub(super) fn product(
+    condensed: &Condensed,
+    i: usize,
+    omega: Complex64,
+    left: &[Complex64],
+    right: &[Complex64],
+) -> Complex64 {
+    let block = &condensed.blocks()[i];
+    let pattern = &block.reference;
+    let z = Combination::value(block, omega, 0.0);
+    let mut sum = Complex64::ZERO;
+    for (j, x) in right.iter().enumerate() {
+        for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+            sum += left[pattern.row_idx[at]] * z.at(block, at) * x;
+        }
+    }
+    sum
+}
+
+fn at_harmonic(e: Error, block: &HarmonicBlock, omega: f64) -> Error {
+    e.at(format_args!("harmonic {} at angular frequency {omega}", block.number))
+}

@@ -1,0 +1,98 @@
+//! The flexibility tables of all carried harmonics at a frequency: by factorisation where that is
+//! cheap or a single frequency is wanted, interpolated along a sweep otherwise.
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::{Table, Workspace};
+use crate::condense::frequency_interpolation::FrequencyInterpolation;
+use crate::condense::resonance_poles;
+use crate::error::{Result, try_push};
+
+/// Degrees of freedom above which a sweep interpolates.
+const INTERPOLATE_ABOVE: usize = 32;
+
+/// Relative error of interpolated tables.
+const TOLERANCE: f64 = 1e-11;
+
+/// Tables of all carried harmonics.
+pub struct FrequencyCache {
+    workspace: Workspace,
+    current: Vec<Table>,
+    interpolations: Vec<FrequencyInterpolation>,
+    /// Frequency at which the tables hold, and whether they were made pointwise.
+    tabulated: Option<(f64, bool)>,
+    pointwise: bool,
+}
+
+impl FrequencyCache {
+    /// Tables for a sweep over `range` = (start, end), with `response` as the last row.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, response: usize, range: (f64, f64)) -> Result<Self> {
+        const CONTEXT: &str = "the contact flexibility";
+        let coordinates = condensed.coordinates();
+        let (start, end) = range;
+        let sweep = start.to_bits() != end.to_bits();
+        let mut workspace = Workspace::new(condensed, Some(response))?;
+        let mut tables = Vec::new();
+        let mut interpolations = Vec::new();
+        for i in 0..condensed.blocks().len() {
+            try_push(&mut tables, Table::new(coordinates)?, CONTEXT)?;
+            if sweep && condensed.ndof() > INTERPOLATE_ABOVE {
+                let resonances = resonance_poles::near(condensed, &mut workspace, i, range)?;
+                let interpolation = FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE)?;
+                try_push(&mut interpolations, interpolation, CONTEXT)?;
+            }
+        }
+        Ok(Self {
+            workspace,
+            current: tables,
+            interpolations,
+            tabulated: None,
+            // Without a sweep nobody follows a slope.
+            pointwise: !sweep && condensed.ndof() > INTERPOLATE_ABOVE,
+        })
+    }
+
+    /// Tables by factorisation from now on, without slopes if that is dear.
+    pub fn set_pointwise(&mut self, pointwise: bool) {
+        if !self.interpolations.is_empty() {
+            self.pointwise = pointwise;
+        }
+    }
+
+    /// The tables last made.
+    #[must_use]
+    pub fn current(&self) -> &[Table] {
+        &self.current
+    }
+
+    /// Makes the tables at `omega`, unless they hold there already.
+    ///
+    /// # Errors
+    /// Those of [`Workspace::evaluate`].
+    pub fn tabulate(&mut self, condensed: &Condensed, omega: f64) -> Result<()> {
+        if self.tabulated == Some((omega, self.pointwise)) {
+            return Ok(());
+        }
+        self.tabulated = None;
+        let workspace = &mut self.workspace;
+        for (i, table) in self.current.iter_mut().enumerate() {
+            let done = match self.interpolations.get_mut(i) {
+                Some(interpolation) if !self.pointwise => interpolation.evaluate(omega, table, |w, values| {
+                    values.copy_from_slice(&workspace.evaluate(condensed, i, w, false)?.value);
+                    Ok(())
+                })?,
+                _ => false,
+            };
+            if !done {
+                // A derived clone_from would take new memory at each frequency.
+                let found = workspace.evaluate(condensed, i, omega, !self.pointwise)?;
+                table.value.copy_from_slice(&found.value);
+                table.slope.copy_from_slice(&found.slope);
+            }
+        }
+        self.tabulated = Some((omega, self.pointwise));
+        Ok(())
+    }
+}

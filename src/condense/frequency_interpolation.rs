@@ -1,0 +1,329 @@
+//! The flexibility of a large structure along a sweep: Chebyshev panels instead of a factorisation
+//! per iteration.
+//!
+//! What is interpolated is d(ω)·H(ω) with d = Π(ω − pₖ) over the resonances pₖ near the range, so
+//! that they are no obstacle. That is analytic off the other resonances, so on a panel that is short against its distance
+//! from them the Chebyshev series converges geometrically (Trefethen, Approximation Theory and
+//! Approximation Practice, 2013, ch. 8). Panels are laid where the sweep goes, as wide as the tail
+//! of the series allows; the derivative is that of the series.
+
+use crate::condense::flexibility::Table;
+use crate::error::{Result, try_push, try_vec};
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// Samples per panel.
+const NODES: usize = 24;
+
+/// Attempts at one panel before it is taken as good as rounding allows, or given up.
+const MAX_ATTEMPTS: usize = 24;
+
+/// Tail up to which a panel that rounding keeps from converging is accepted.
+const NOISE: f64 = 1e-8;
+
+/// One interval with its series.
+struct Panel {
+    low: f64,
+    high: f64,
+    /// NODES × table size, degree by degree.
+    coefficients: Vec<Complex64>,
+}
+
+/// The panels of one harmonic.
+pub struct FrequencyInterpolation {
+    outputs: usize,
+    tolerance: f64,
+    resonances: Vec<Complex64>,
+    /// Width that the next panel tries.
+    width: f64,
+    /// Width of the panel laid last.
+    last_width: f64,
+    rising: bool,
+    panels: Vec<Panel>,
+    samples: Vec<Complex64>,
+    /// Relative size of the coefficients of each degree on the panel tried last.
+    decay: [f64; NODES],
+    /// cos(πm/(2N)) for m in one turn.
+    cosines: [f64; 4 * NODES],
+    /// Factorisations used.
+    evaluations: usize,
+}
+
+impl FrequencyInterpolation {
+    /// For tables of `coordinates` contacts along a sweep over `range` = (start, end) with the
+    /// given `resonances` near it, with a relative error of `tolerance`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(coordinates: usize, range: (f64, f64), resonances: Vec<Complex64>, tolerance: f64) -> Result<Self> {
+        let (start, end) = range;
+        let outputs = coordinates + 1;
+        let size = NODES.saturating_mul(outputs.saturating_mul(outputs));
+        Ok(Self {
+            outputs,
+            tolerance,
+            resonances,
+            // One panel over all of it, with the room that lies behind its start.
+            width: 1.1 * (end - start).abs(),
+            last_width: 0.0,
+            rising: end >= start,
+            panels: Vec::new(),
+            samples: try_vec(size, Complex64::ZERO, "the interpolated flexibility")?,
+            decay: [0.0; NODES],
+            cosines: core::array::from_fn(|m| (PI * m as f64 / (2 * NODES) as f64).cos()),
+            evaluations: 0,
+        })
+    }
+
+    /// Factorisations used so far.
+    #[must_use]
+    pub fn evaluations(&self) -> usize {
+        self.evaluations
+    }
+
+    /// Fills `table` at `omega`; `sample` evaluates H by factorisation. `false`: no panel of
+    /// sensible width converged here.
+    ///
+    /// # Errors
+    /// What `sample` reports, `OutOfMemory`.
+    pub fn evaluate(
+        &mut self,
+        omega: f64,
+        table: &mut Table,
+        mut sample: impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<bool> {
+        let found = self.panels.iter().rposition(|p| p.low <= omega && omega <= p.high);
+        let index = match found {
+            Some(index) => index,
+            None => match self.lay(omega, &mut sample)? {
+                Some(panel) => {
+                    try_push(&mut self.panels, panel, "the interpolated flexibility")?;
+                    self.panels.len() - 1
+                }
+                None => return Ok(false),
+            },
+        };
+        self.panels[index].evaluate(omega, table);
+        let (d, d_slope) = self.denominator(omega);
+        for (value, slope) in table.value.iter_mut().zip(&mut table.slope) {
+            *value /= d;
+            *slope = (*slope - d_slope * *value) / d;
+        }
+        Ok(true)
+    }
+
+    /// d(ω), its factors scaled by the size of their resonances, and d′(ω).
+    fn denominator(&self, omega: f64) -> (Complex64, Complex64) {
+        let (mut d, mut slope) = (Complex64::ONE, Complex64::ZERO);
+        for p in &self.resonances {
+            let scale = 1.0 / p.norm();
+            let factor = (omega - p) * scale;
+            slope = slope * factor + d * scale;
+            d *= factor;
+        }
+        (d, slope)
+    }
+
+    /// Lays a panel over `omega`, beside its neighbours.
+    fn lay(
+        &mut self,
+        omega: f64,
+        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<Option<Panel>> {
+        let below = self
+            .panels
+            .iter()
+            .map(|p| p.high)
+            .filter(|&x| x < omega)
+            .fold(0.0, f64::max);
+        let above = self
+            .panels
+            .iter()
+            .map(|p| p.low)
+            .filter(|&x| x > omega)
+            .fold(f64::INFINITY, f64::min);
+        let mut last_tail = f64::INFINITY;
+        for _ in 0..MAX_ATTEMPTS {
+            // A little room behind, should the corrector step back.
+            let back = 0.05 * self.width;
+            let (low, high) = if self.rising {
+                let low = below.max(omega - back);
+                (low, (low + self.width).min(above).max(omega))
+            } else {
+                let high = above.min(omega + back);
+                ((high - self.width).max(below).min(omega), high)
+            };
+            if high - low <= 1e-9 * omega {
+                return Ok(None);
+            }
+            self.transform(low, high, sample)?;
+            let tail = self.decay[NODES - 2].max(self.decay[NODES - 1]);
+            let stalled = tail > 0.3 * last_tail && tail < NOISE;
+            if stalled {
+                // This is what rounding leaves of the factorisations: later panels need not try.
+                self.tolerance = self.tolerance.max(2.0 * tail);
+            }
+            if tail <= self.tolerance {
+                let mut coefficients = try_vec(self.samples.len(), Complex64::ZERO, "the interpolated flexibility")?;
+                coefficients.copy_from_slice(&self.samples);
+                // On the way to a resonance each panel is shorter than the one before.
+                let width = high - low;
+                let trend = if self.last_width > 0.0 {
+                    width / self.last_width
+                } else {
+                    1.0
+                };
+                self.width = width * trend.clamp(0.3, 1.0) * self.room().clamp(0.7, 4.0);
+                self.last_width = width;
+                return Ok(Some(Panel {
+                    low,
+                    high,
+                    coefficients,
+                }));
+            }
+            last_tail = tail;
+            let factor = 0.9 * (self.tolerance / tail).powf(1.0 / (NODES - 1) as f64);
+            self.width = (high - low) * factor.clamp(0.1, 0.6);
+        }
+        Ok(None)
+    }
+
+    /// How much wider a panel could have been. Its series reached the tolerance t at degree k, so
+    /// it converges like t^(1/k) per degree, and about as much slower as a panel is wider.
+    fn room(&self) -> f64 {
+        let last = self.decay.iter().rposition(|d| *d > 3.0 * self.tolerance);
+        let needed = last.unwrap_or(0) + 2;
+        let spare = 1.0 / needed as f64 - 1.0 / (NODES - 2) as f64;
+        0.9 * self.tolerance.powf(-spare)
+    }
+
+    /// Samples a panel, turns the samples into coefficients in place, and notes their relative
+    /// size: the largest over contact flexibility, contact motion, response row and response, each
+    /// against its own largest value.
+    fn transform(
+        &mut self,
+        low: f64,
+        high: f64,
+        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<()> {
+        let size = self.outputs * self.outputs;
+        for j in 0..NODES {
+            let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
+            let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
+            let (d, _) = self.denominator(omega);
+            let values = &mut self.samples[j * size..(j + 1) * size];
+            sample(omega, values)?;
+            for v in values {
+                *v *= d;
+            }
+            self.evaluations += 1;
+        }
+        let mut largest = [0.0_f64; 4];
+        let mut sizes = [[0.0_f64; 4]; NODES];
+        for entry in 0..size {
+            let group = usize::from(entry % self.outputs == self.outputs - 1)
+                + 2 * usize::from(entry / self.outputs == self.outputs - 1);
+            let mut values = [Complex64::ZERO; NODES];
+            for (j, v) in values.iter_mut().enumerate() {
+                *v = self.samples[j * size + entry];
+                largest[group] = largest[group].max(v.norm());
+            }
+            for (k, sizes) in sizes.iter_mut().enumerate() {
+                let mut sum = Complex64::ZERO;
+                for (j, v) in values.iter().enumerate() {
+                    // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
+                    sum += v * self.cosines[(k * (2 * j + 1)) % (4 * NODES)];
+                }
+                sum *= if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
+                self.samples[k * size + entry] = sum;
+                sizes[group] = sizes[group].max(sum.norm());
+            }
+        }
+        for (decay, sizes) in self.decay.iter_mut().zip(sizes) {
+            *decay = (0..4)
+                .filter(|&g| largest[g] > 0.0)
+                .fold(0.0, |worst, g| worst.max(sizes[g] / largest[g]));
+        }
+        Ok(())
+    }
+}
+
+impl Panel {
+    /// Σ cₖ Tₖ(x) and its derivative, T′ₖ = k Uₖ₋₁.
+    fn evaluate(&self, omega: f64, table: &mut Table) {
+        let x = (2.0 * omega - self.low - self.high) / (self.high - self.low);
+        let stretch = 2.0 / (self.high - self.low);
+        table.value.fill(Complex64::ZERO);
+        table.slope.fill(Complex64::ZERO);
+        let size = table.value.len();
+        let (mut t, mut t_next) = (1.0, x);
+        let (mut u_before, mut u) = (0.0, 1.0);
+        for (k, coefficients) in self.coefficients.chunks_exact(size).enumerate() {
+            // uₖ₋₁ is in `u_before` shifted by one: U₋₁ = 0, U₀ = 1.
+            let slope = k as f64 * u_before * stretch;
+            for ((v, s), c) in table.value.iter_mut().zip(&mut table.slope).zip(coefficients) {
+                *v += t * c;
+                *s += slope * c;
+            }
+            (t, t_next) = (t_next, 2.0 * x * t_next - t);
+            (u_before, u) = (u, 2.0 * x * u - u_before);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sweep_over_a_sharp_resonance_is_reproduced_with_its_slope() {
+        // One mode with Q = 500: H = 1/(1 - w^2 + 0.002 i w), in both directions.
+        let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
+        let slope = |w: f64| -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
+        for (start, end) in [(0.9, 1.1), (1.1, 0.9)] {
+            let mut interpolation = FrequencyInterpolation::new(0, (start, end), Vec::new(), 1e-11).unwrap();
+            let mut table = Table::new(0).unwrap();
+            for k in 0..=400 {
+                let w = start + (end - start) * f64::from(k) / 400.0;
+                let done = interpolation
+                    .evaluate(w, &mut table, |w, values| {
+                        values[0] = exact(w);
+                        Ok(())
+                    })
+                    .unwrap();
+                assert!(done);
+                assert!(
+                    (table.value[0] - exact(w)).norm() < 1e-9 * exact(w).norm(),
+                    "{w}: {:.2e}",
+                    (table.value[0] - exact(w)).norm() / exact(w).norm()
+                );
+                assert!(
+                    (table.slope[0] - slope(w)).norm() < 1e-6 * slope(w).norm(),
+                    "{w}: {:.2e}",
+                    (table.slope[0] - slope(w)).norm() / slope(w).norm()
+                );
+            }
+            assert!(interpolation.evaluations() < 600, "{}", interpolation.evaluations());
+        }
+    }
+
+    #[test]
+    fn a_resonance_that_is_known_costs_a_single_panel() {
+        let pole = (Complex64::new(4.0 - 0.002_f64.powi(2), 0.0).sqrt() + Complex64::new(0.0, 0.002)) * 0.5;
+        let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
+        let mut interpolation = FrequencyInterpolation::new(0, (0.9, 1.1), vec![pole], 1e-11).unwrap();
+        let mut table = Table::new(0).unwrap();
+        for k in 0..=100 {
+            let w = 0.9 + 0.002 * f64::from(k);
+            let sample = |w: f64, values: &mut [Complex64]| {
+                values[0] = exact(w);
+                Ok(())
+            };
+            assert!(interpolation.evaluate(w, &mut table, sample).unwrap());
+            assert!((table.value[0] - exact(w)).norm() < 1e-11 * exact(w).norm());
+            let slope = -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
+            assert!((table.slope[0] - slope).norm() < 1e-9 * slope.norm());
+        }
+        assert_eq!(interpolation.evaluations(), NODES);
+    }
+}

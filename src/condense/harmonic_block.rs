@@ -1,0 +1,115 @@
+//! What one harmonic sees of the structure: its matrices on one pattern, and the rows of the contacts.
+
+use crate::condense::contact_classes::ContactClasses;
+use crate::error::{Result, try_push, try_vec};
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::spring::{Row, Wave, relative_row};
+use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
+
+/// Matrix of the artificial damping of a nonlinear mode; see [`crate::condense::dynamic_stiffness`].
+#[derive(Clone, Debug)]
+pub enum Artificial {
+    /// A forced response has none.
+    None,
+    /// M, which every harmonic has.
+    Mass,
+    /// K of the structure alone, at the entries of the pattern.
+    Stiffness(Vec<Complex64>),
+}
+
+/// What one harmonic sees of the structure.
+#[derive(Clone, Debug)]
+pub struct HarmonicBlock {
+    /// Harmonic number h.
+    pub number: usize,
+    /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
+    pub reference: Csc,
+    /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
+    pub stiffness: Vec<Complex64>,
+    /// C_h at the entries of the pattern.
+    pub damping: Vec<Complex64>,
+    /// M_h at the entries of the pattern.
+    pub mass: Vec<Complex64>,
+    /// The artificial damping.
+    pub artificial: Artificial,
+    /// F_h in units of the length scale.
+    pub force: Vec<Complex64>,
+    /// Rows of W, one per relative coordinate.
+    pub rows: Vec<Row>,
+    /// Rows of the relative motions of linear contacts, which are no coordinates.
+    pub linear_rows: Vec<Row>,
+}
+
+impl HarmonicBlock {
+    /// y = M x
+    pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
+        y.fill(Complex64::ZERO);
+        let pattern = &self.reference;
+        for (j, x) in x.iter().enumerate() {
+            for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                y[pattern.row_idx[at]] += self.mass[at] * x;
+            }
+        }
+    }
+}
+
+/// The block of harmonic `number`, with contacts that never slip as springs, one row for each of the
+/// (contact, direction) pairs that stand for the coordinates, and their reference stiffness. No force and no
+/// artificial damping yet.
+pub(super) fn harmonic_block(
+    model: &Model,
+    number: usize,
+    contact_classes: &ContactClasses,
+    representatives: &[(usize, usize)],
+    kappa: impl Fn(usize) -> Complex64,
+) -> Result<HarmonicBlock> {
+    let structure = model.structure();
+    let n = model.ndof();
+    let stuck = contact_classes.never_slipping.iter().map(|&i| &model.contacts()[i]);
+    let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
+    let rows_of = |contacts: &[(usize, usize)]| -> Result<Vec<Row>> {
+        let mut rows = try_vec(contacts.len(), [None; 6], "the contacts")?;
+        for (r, &(i, k)) in rows.iter_mut().zip(contacts) {
+            let contact = &model.contacts()[i];
+            let phase = structure.phase(number, contact.sector_offset);
+            *r = relative_row(&contact.direction(k), phase);
+        }
+        Ok(rows)
+    };
+    let rows = rows_of(representatives)?;
+    let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
+    let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
+    let mut references = Vec::new();
+    for (c, row) in rows.iter().enumerate() {
+        for &(p, a) in row.iter().flatten() {
+            for &(q, b) in row.iter().flatten() {
+                try_push(&mut references, (p, q, a.conj() * kappa(c) * b), "the contacts")?;
+            }
+        }
+    }
+    let references = Csc::from_triplets(n, n, references)?;
+    // Zero factors add the pattern alone.
+    let (one, zero) = (Complex64::ONE, Complex64::ZERO);
+    let reference = Csc::sum(
+        n,
+        &[
+            (one, &stiffness, Form::Plain),
+            (one, &references, Form::Plain),
+            (zero, &damping, Form::Plain),
+            (zero, &mass, Form::Plain),
+        ],
+    )?;
+    Ok(HarmonicBlock {
+        number,
+        damping: damping.aligned(&reference)?,
+        mass: mass.aligned(&reference)?,
+        stiffness: stiffness.aligned(&reference)?,
+        reference,
+        artificial: Artificial::None,
+        force: try_vec(n, Complex64::ZERO, "the forces")?,
+        rows,
+        linear_rows: rows_of(&contact_classes.linear)?,
+    })
+}

@@ -1,0 +1,102 @@
+//! Resonances of Z_κ near a range of frequency: the complex ω at which Z_κ(ω) is singular.
+//!
+//! They start from the undamped modes of K + Wᴴ Re(κ) W, and two-sided inverse iteration moves them
+//! to where damping and the reference stiffness put them:
+//! p ← p − yᴴ Z x / (yᴴ Z′ x) with x ← Z⁻¹Z′x, y ← Z⁻ᴴZ′ᴴy
+//! (Ruhe 1973, Algorithms for the nonlinear eigenvalue problem, doi:10.1137/0710059).
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::Workspace;
+use crate::error::{Result, Status, try_push};
+use crate::linalg::lanczos;
+use crate::linalg::sparse::{Csc, Form};
+use num_complex::Complex64;
+
+/// Modes that are looked at; a range beyond them is treated without poles.
+const MODES: usize = 24;
+
+/// Iterations; convergence is cubic.
+const MAX_ITERATIONS: usize = 8;
+
+/// Relative change of a pole that counts as converged.
+const TOLERANCE: f64 = 1e-12;
+
+/// The resonances of the i-th carried harmonic within `range` and one width of it on either side.
+/// Where they cannot be found the list is shorter; nothing depends on it but speed.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn near(condensed: &Condensed, workspace: &mut Workspace, i: usize, range: (f64, f64)) -> Result<Vec<Complex64>> {
+    let block = &condensed.blocks()[i];
+    let mut found = Vec::new();
+    let h = block.number as f64;
+    let n = condensed.ndof();
+    if block.number == 0 || MODES > n / 2 {
+        return Ok(found);
+    }
+    let reference = &block.reference;
+    let half = Complex64::new(0.5, 0.0);
+    // (A + Aᴴ)/2, with Aᴴ as the conjugate of the transpose.
+    let transposed = Csc::sum(n, &[(Complex64::ONE, reference, Form::Transposed)])?;
+    let hermitian = Csc::sum(
+        n,
+        &[(half, reference, Form::Plain), (half, &transposed, Form::Conjugated)],
+    )?;
+    let mut mass = reference.try_clone()?;
+    mass.values.copy_from_slice(&block.mass);
+    let modes = match lanczos::lowest(&hermitian, &mass, MODES) {
+        Ok(modes) => modes,
+        Err(e) if e.status == Status::OutOfMemory => return Err(e),
+        Err(_) => return Ok(found),
+    };
+    let (low, high) = (range.0.min(range.1), range.0.max(range.1));
+    let width = high - low;
+    for (mode, lambda) in modes.values.iter().enumerate() {
+        let omega = lambda.max(0.0).sqrt() / h;
+        if omega < low - width || omega > high + width {
+            continue;
+        }
+        let shape: Vec<Complex64> = modes.vectors.column(mode).iter().copied().collect();
+        let pole = refine(condensed, workspace, i, omega.into(), shape)?;
+        if let Some(p) = pole.filter(|p| p.re > low - 2.0 * width && p.re < high + 2.0 * width) {
+            let known = found.iter().any(|q: &Complex64| (q - p).norm() <= 1e-6 * p.norm());
+            if !known {
+                try_push(&mut found, p, "the resonances")?;
+            }
+        }
+    }
+    Ok(found)
+}
+
+/// Follows one resonance from its undamped mode.
+fn refine(
+    condensed: &Condensed,
+    workspace: &mut Workspace,
+    i: usize,
+    mut p: Complex64,
+    shape: Vec<Complex64>,
+) -> Result<Option<Complex64>> {
+    let mut left: Vec<Complex64> = shape.iter().map(Complex64::conj).collect();
+    let mut right = shape;
+    let mut last = f64::INFINITY;
+    for _ in 0..MAX_ITERATIONS {
+        // `left` holds conj(y), so that yᴴ A x is a plain product.
+        let step = workspace.resonance_step(condensed, i, p, &left, &right);
+        if !step.is_finite() || step.norm() > 0.5 * p.norm() {
+            return Ok(None);
+        }
+        p -= step;
+        // Rounding ends the convergence at about the condition of the eigenvalue.
+        if step.norm() <= TOLERANCE * p.norm() || (step.norm() < 1e-8 * p.norm() && step.norm() > 0.1 * last) {
+            return Ok(Some(p));
+        }
+        last = step.norm();
+        match workspace.inverse_step(condensed, i, p, &mut left, &mut right) {
+            Ok(()) => {}
+            Err(e) if e.status == Status::OutOfMemory => return Err(e),
+            // Singular to rounding: p is the resonance.
+            Err(_) => return Ok(Some(p)),
+        }
+    }
+    Ok(None)
+}

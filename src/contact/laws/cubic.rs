@@ -1,0 +1,74 @@
+//! The cubic spring: f = k·x + c·x³ on one relative motion, hardening for c > 0, softening for
+//! c < 0.
+//!
+//! The force is a polynomial, so nothing needs to be located in time: harmonics of products are
+//! convolutions of harmonics, and balance with H harmonics is exact. With x = X₀ + Re Σ Xₚ e^{ipτ} =
+//! Σ cₚ e^{ipτ} (c₀ = X₀, cₚ = Xₚ/2, c₋ₚ = conj cₚ) the stiffness spectrum of the cubic term is
+//! 3c·(x²)ₙ = 3c·Σ cₚ cₙ₋ₚ. One harmonic of amplitude A gives the describing function
+//! k + ¾·c·A². An oscillator on such a spring is Duffing's; see Krack & Gross, Harmonic Balance
+//! for Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6.
+
+use crate::contact::law::{Form, Law, Range, SMALL, Spectral};
+use crate::fourier::HarmonicSet;
+use num_complex::Complex64;
+
+/// Constants of a cubic spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cubic {
+    /// k, stiffness at small motion
+    pub linear: f64,
+    /// c, force per length cubed, of any sign
+    pub cubic: f64,
+}
+
+impl Law for Cubic {
+    fn is_odd(&self) -> bool {
+        true
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::Spectral(self)
+    }
+
+    /// From here on the cubic term is small against `reference`.
+    fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64 {
+        ranges[0].size() * (self.cubic.abs() / (SMALL * reference)).sqrt()
+    }
+}
+
+impl Spectral for Cubic {
+    /// A product of two carried harmonics p ≥ q contributes to p + q and to p − q.
+    fn spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]) {
+        spectrum.fill(Complex64::ZERO);
+        let (mean, rest) = motion.split_at(usize::from(set.has_mean()));
+        let mean = mean.first().copied().unwrap_or(0.0);
+        spectrum[0] = (mean * mean).into();
+        let c = |pair: &[f64]| Complex64::new(0.5 * pair[0], 0.5 * pair[1]);
+        for (i, pair) in rest.chunks_exact(2).enumerate() {
+            let (p, cp) = (set.reduced(i), c(pair));
+            spectrum[p] += 2.0 * mean * cp;
+            spectrum[2 * p] += cp * cp;
+            spectrum[0] += 2.0 * cp.norm_sqr();
+            for (j, pair) in rest.chunks_exact(2).enumerate().take(i) {
+                let (q, cq) = (set.reduced(j), c(pair));
+                spectrum[p + q] += 2.0 * cp * cq;
+                spectrum[p - q] += 2.0 * cp * cq.conj();
+            }
+        }
+        for s in spectrum {
+            *s *= 3.0 * self.cubic;
+        }
+    }
+
+    fn linear(&self) -> f64 {
+        self.linear
+    }
+
+    fn degree(&self) -> f64 {
+        3.0
+    }
+
+    fn at(&self, x: f64) -> f64 {
+        x * (self.linear + self.cubic * x * x)
+    }
+}

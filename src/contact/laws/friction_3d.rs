@@ -1,0 +1,196 @@
+//! Friction in a plane: elastic Coulomb friction of two coupled tangential directions under a normal
+//! load that varies and may vanish.
+//!
+//! With the normal motion y = side a − side b the load is N = max(n₀ − kn·y, 0), which acts on y as
+//! −N. The tangential force f, a vector, is the state:
+//!
+//! > stick f' = kt·x',  slip f' = kt·(x' − γ e) with f = μN e and γ ≥ 0,  open f = 0.
+//!
+//! Slip goes along the force (the circle |f| = μN is the limit, and the slip velocity γ e is normal to
+//! it). The motion between two samples is taken as linear and followed exactly, see
+//! friction_step.rs, so that the force is of second order in the distance of samples and its
+//! derivative is that of the discrete force. Where it sticks through the period, the slider rests
+//! where friction_rest.rs says. The normal force, which remembers nothing, has exact harmonics.
+
+use crate::contact::contact_state::State;
+use crate::contact::hysteretic_law::{Hysteretic, March, Sticking, StuckState};
+use crate::contact::law::{Form, Law, Range};
+use crate::contact::laws::friction_2d::Friction2d;
+use crate::contact::laws::friction_3d_step::{NO_LOAD, step};
+use crate::contact::laws::friction_3d_stuck::{Disc, rest};
+use crate::contact::memoryless_law::automatic_samples;
+use crate::error::Result;
+
+/// Constants of friction in a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Friction3d {
+    /// kt, tangential stiffness of both directions, ≥ 0.
+    pub kt: f64,
+    /// kn, normal stiffness, ≥ 0; without normal motion it has no effect.
+    pub kn: f64,
+    /// μ, friction coefficient, ≥ 0 and finite.
+    pub mu: f64,
+    /// n₀, normal load at y = 0, of any sign; infinite, without normal direction, sticks for ever.
+    pub load: f64,
+    /// Whether the normal motion y is the third direction; if not, the load is constant.
+    pub has_normal: bool,
+}
+
+impl Friction3d {
+    /// n₀ − kn·y, the normal load where it is positive.
+    fn pressure(&self, motion: &[f64]) -> f64 {
+        if self.has_normal && self.kn > 0.0 {
+            self.load - self.kn * motion[2]
+        } else {
+            self.load
+        }
+    }
+}
+
+/// Finer sampling than a law of unknown form gets: the error falls with the square.
+const REFINEMENT: usize = 4;
+
+impl Law for Friction3d {
+    fn directions(&self) -> usize {
+        if self.has_normal { 3 } else { 2 }
+    }
+
+    fn is_odd(&self) -> bool {
+        !self.has_normal
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::Hysteretic(self)
+    }
+
+    /// Under a constant load as for one direction, the diagonal of both for the plane; with a gap at
+    /// rest the closing over the gap.
+    fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
+        match ranges {
+            [x1, x2] => self.kt * f64::hypot(x1.size(), x2.size()) / (self.mu * self.load),
+            ranges => self.kn * (ranges[2].half - ranges[2].mean).max(0.0) / -self.load,
+        }
+    }
+}
+
+impl Hysteretic for Friction3d {
+    fn states(&self) -> usize {
+        2
+    }
+
+    fn uses_velocity(&self) -> bool {
+        false
+    }
+
+    fn samples(&self, highest: usize, asked: usize) -> usize {
+        match asked {
+            0 => automatic_samples(highest).saturating_mul(REFINEMENT),
+            n => n,
+        }
+    }
+
+    fn sticks(&self) -> bool {
+        self.kt > 0.0 && self.mu > 0.0
+    }
+
+    fn normal(&self) -> Option<Friction2d> {
+        // Without tangential stiffness: the normal force alone.
+        self.has_normal.then_some(Friction2d {
+            kt: 0.0,
+            kn: self.kn,
+            mu: self.mu,
+            load: self.load,
+        })
+    }
+
+    fn rest(&self, samples: usize, u: &[f64], out: &mut StuckState) -> Sticking {
+        let d = self.directions();
+        let motion = |j: usize| &u[j * d..(j + 1) * d];
+        if !self.sticks() {
+            return Sticking::Nowhere;
+        }
+        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
+        for motion in u[..samples * d].chunks_exact(d) {
+            let load = self.pressure(motion);
+            (least, most) = (least.min(load), most.max(load));
+        }
+        if least <= NO_LOAD * most.min(f64::MAX) {
+            return Sticking::Nowhere;
+        }
+        // ρ = μN/kt
+        let disc = |j: usize| Disc {
+            centre: [motion(j)[0], motion(j)[1]],
+            radius: self.mu * self.pressure(motion(j)) / self.kt,
+        };
+        let Some(found) = rest(samples, disc) else {
+            return Sticking::Nowhere;
+        };
+        let last = (samples - 1) * d;
+        out.dz_du[..samples * 2 * d].fill(0.0);
+        for i in 0..2 {
+            out.z[i] = self.kt * (u[last + i] - found.at[i]);
+            out.dz_du[2 * last + i * d + i] = self.kt;
+        }
+        for held in found.holding.iter().flatten() {
+            for i in 0..2 {
+                let row = &mut out.dz_du[(2 * held.disc + i) * d..][..d];
+                for (entry, by_centre) in row.iter_mut().zip(held.by_centre[i]) {
+                    *entry -= self.kt * by_centre;
+                }
+                if self.has_normal {
+                    row[2] += self.mu * self.kn * held.by_radius[i];
+                }
+            }
+        }
+        out.virgin = found.holding[0].is_none();
+        if found.is_common {
+            Sticking::Here
+        } else {
+            Sticking::Nearly
+        }
+    }
+
+    fn march(&self, _omega: f64, samples: usize, u: &[f64], _v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {
+        out.clear(samples);
+        let d = self.directions();
+        let mut force = [z0[0], z0[1]];
+        let mut before = &u[(samples - 1) * d..samples * d];
+        let mut load_before = self.pressure(before);
+        for (j, motion) in u[..samples * d].chunks_exact(d).enumerate() {
+            let load = self.pressure(motion);
+            let travel = [motion[0] - before[0], motion[1] - before[1]];
+            let step = step(self.kt, self.mu, force, travel, load_before, load);
+            for i in 0..2 {
+                out.z[2 * j + i] = step.force[i];
+                out.f[d * j + i] = step.force[i];
+                out.df_dz[2 * (d * j + i) + i] = 1.0;
+                let row = d * (2 * j + i);
+                for k in 0..2 {
+                    out.dz_dz[4 * j + 2 * i + k] = step.by_force[i][k];
+                    out.dz_du[row + k] = step.by_travel[i][k];
+                    out.dz_du_before[row + k] = -step.by_travel[i][k];
+                }
+                if self.has_normal {
+                    out.dz_du_before[row + 2] = -self.kn * step.by_load_before[i];
+                    out.dz_du[row + 2] = -self.kn * step.by_load[i];
+                }
+            }
+            if self.has_normal && load > 0.0 {
+                out.f[d * j + 2] = -load;
+                out.df_du[d * d * j + 8] = self.kn;
+            }
+            out.slip[j] = step.slip;
+            out.open[j] = step.open;
+            // Slip, once begun, lasts to the end of a step.
+            out.state[j] = if load <= 0.0 {
+                State::Open
+            } else if step.slip > 0.0 {
+                State::Slip
+            } else {
+                State::Stick
+            };
+            (force, before, load_before) = (step.force, motion, load);
+        }
+        Ok(())
+    }
+}

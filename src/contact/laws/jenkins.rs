@@ -1,0 +1,237 @@
+//! The Jenkins element: a spring of stiffness k in series with a Coulomb slider of limit fc.
+//!
+//! While it sticks, f = k·(x − x(r)) + σ·fc from the turning point r that ended the last slip of sign σ;
+//! while it slips, f = ±fc. A slider that never slips carries f = k·x; where the mean of the motion
+//! alone exceeds its range, it is dragged along just so far (a virgin slider loaded slowly).
+//! The law is a play operator; see Visintin, Differential Models of Hysteresis (1994), and the
+//! exact multi-harmonic friction element of Petrov & Ewins, J. Turbomach. 125 (2003) 364–371,
+//! doi:10.1115/1.1539868.
+
+use crate::contact::contact_state::State;
+use crate::contact::law::{Form, Law, Piece, PiecewiseLinear, Range};
+use crate::fourier::HarmonicSet;
+use crate::fourier::{Extremum, crossing};
+use std::f64::consts::{PI, TAU};
+
+/// Constants of a Jenkins element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jenkins {
+    /// k
+    pub stiffness: f64,
+    /// fc, infinite for a contact that sticks for ever
+    pub limit: f64,
+}
+
+/// The slider between two slips: where the present stick began, and the sign of the slip before.
+struct Stick {
+    start: f64,
+    x: f64,
+    sign: f64,
+}
+
+impl Jenkins {
+    /// No spring or no friction: no force.
+    fn is_inert(&self) -> bool {
+        self.stiffness == 0.0 || self.limit == 0.0
+    }
+
+    /// A motion that stays within the slider's range 2p.
+    fn stuck(&self, end: f64, lowest: (f64, f64), highest: (f64, f64), pieces: &mut Vec<Piece>) {
+        let play = self.limit / self.stiffness;
+        let (anchor, offset) = if highest.1 > play {
+            (Some(highest.0), self.limit)
+        } else if lowest.1 < -play {
+            (Some(lowest.0), -self.limit)
+        } else {
+            (None, 0.0)
+        };
+        pieces.push(Piece {
+            start: 0.0,
+            end,
+            slope: self.stiffness,
+            anchor,
+            offset,
+        });
+    }
+
+    fn push_stick(&self, stick: &Stick, end: f64, pieces: &mut Vec<Piece>) {
+        if end > stick.start {
+            pieces.push(Piece {
+                start: stick.start,
+                end,
+                slope: self.stiffness,
+                anchor: Some(stick.start),
+                offset: stick.sign * self.limit,
+            });
+        }
+    }
+}
+
+impl Law for Jenkins {
+    fn is_odd(&self) -> bool {
+        true
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::PiecewiseLinear(self)
+    }
+
+    fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
+        self.stiffness * ranges[0].half / self.limit
+    }
+}
+
+impl PiecewiseLinear for Jenkins {
+    fn pieces(&self, set: &HarmonicSet, motion: &[f64], turning_points: &[Extremum], pieces: &mut Vec<Piece>) {
+        if self.is_inert() {
+            return;
+        }
+        let turn = if set.is_odd() { PI } else { TAU };
+        let play = self.limit / self.stiffness;
+        let mean = if set.has_mean() { motion[0] } else { 0.0 };
+        let (lowest, highest) = range(set, turning_points).unwrap_or(((0.0, mean), (0.0, mean)));
+        if highest.1 - lowest.1 <= 2.0 * play {
+            self.stuck(turn, lowest, highest, pieces);
+            return;
+        }
+        // The motion is known to slip into its highest value (odd sets: its largest magnitude).
+        let mut first = 0;
+        for (i, e) in turning_points.iter().enumerate() {
+            let larger = if set.is_odd() {
+                e.x.abs() > turning_points[first].x.abs()
+            } else {
+                e.x > turning_points[first].x
+            };
+            if larger {
+                first = i;
+            }
+        }
+        let count = turning_points.len();
+        let begin = turning_points[first];
+        let mut stick = Stick {
+            start: begin.tau,
+            x: begin.x,
+            sign: if set.is_odd() { begin.x.signum() } else { 1.0 },
+        };
+        let mut last = begin;
+        for step in 1..=count {
+            let index = first + step;
+            let mut next = turning_points[index % count];
+            if index >= count {
+                next.tau += turn;
+                if set.is_odd() {
+                    next.x = -next.x;
+                }
+            }
+            let direction = (next.x - last.x).signum();
+            // Slip starts where the force has reached direction·fc.
+            let threshold = stick.x + (direction - stick.sign) * play;
+            if direction * (next.x - threshold) > 0.0 {
+                let slip = if direction * (last.x - threshold) >= 0.0 {
+                    last.tau
+                } else {
+                    crossing(set, motion, last.tau, next.tau, last.x, next.x, threshold)
+                };
+                self.push_stick(&stick, slip, pieces);
+                pieces.push(Piece {
+                    start: slip,
+                    end: next.tau,
+                    slope: 0.0,
+                    anchor: None,
+                    offset: direction * self.limit,
+                });
+                stick = Stick {
+                    start: next.tau,
+                    x: next.x,
+                    sign: direction,
+                };
+            }
+            last = next;
+        }
+        // Only rounding at the very onset of slip leaves a stick open here.
+        if stick.start < last.tau {
+            self.push_stick(&stick, last.tau, pieces);
+        }
+    }
+
+    /// The slider is marched from the highest sample, which it reaches slipping, once around.
+    fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
+        if self.is_inert() {
+            return;
+        }
+        let n = samples.len();
+        let play = self.limit / self.stiffness;
+        let (mut low, mut high) = (0, 0);
+        for j in 1..n {
+            if samples[j] < samples[low] {
+                low = j;
+            }
+            if samples[j] > samples[high] {
+                high = j;
+            }
+        }
+        if samples[high] - samples[low] <= 2.0 * play {
+            let at = |j: usize| (j as f64, samples[j]);
+            self.stuck(n as f64, at(low), at(high), pieces);
+            return;
+        }
+        let mut slider = samples[high] - play;
+        let mut anchor = (high, 1.0);
+        let mut piece = Piece {
+            start: high as f64,
+            end: high as f64,
+            slope: 0.0,
+            anchor: None,
+            offset: self.limit,
+        };
+        for j in high..high + n {
+            let x = samples[j % n];
+            let next = if x - slider >= play {
+                slider = x - play;
+                anchor = (j, 1.0);
+                (0.0, None, self.limit)
+            } else if x - slider <= -play {
+                slider = x + play;
+                anchor = (j, -1.0);
+                (0.0, None, -self.limit)
+            } else {
+                (self.stiffness, Some(anchor.0 as f64), anchor.1 * self.limit)
+            };
+            if next != (piece.slope, piece.anchor, piece.offset) {
+                pieces.push(piece);
+                piece.start = j as f64;
+                (piece.slope, piece.anchor, piece.offset) = next;
+            }
+            piece.end = (j + 1) as f64;
+        }
+        pieces.push(piece);
+    }
+
+    fn state(&self, piece: &Piece) -> State {
+        if piece.slope == 0.0 { State::Slip } else { State::Stick }
+    }
+
+    fn at(&self, _x: f64) -> Option<(f64, State)> {
+        None
+    }
+}
+
+/// Lowest and highest value of a motion, each as (time, value).
+fn range(set: &HarmonicSet, turning_points: &[Extremum]) -> Option<((f64, f64), (f64, f64))> {
+    let first = turning_points.first()?;
+    let (mut low, mut high) = ((first.tau, first.x), (first.tau, first.x));
+    for e in turning_points {
+        if e.x < low.1 {
+            low = (e.tau, e.x);
+        }
+        if e.x > high.1 {
+            high = (e.tau, e.x);
+        }
+    }
+    if set.is_odd() {
+        // The other half of the turn is the mirror image of the one that was scanned.
+        let largest = high.1.max(-low.1);
+        return Some(((0.0, -largest), (0.0, largest)));
+    }
+    Some((low, high))
+}

@@ -1,0 +1,409 @@
+//! Polynomial springs and dampers of one or more directions: fᵢ = Σ c·Π uⱼᵖ·Π vⱼ^q.
+//!
+//! A polynomial of degree P in motions of H harmonics has harmonics up to P·H, and its tangents up
+//! to (P − 1)·H. With N > (P + 1)·H equidistant samples none of them is mistaken for one of the
+//! force (up to H) or of the tangents (up to 2·H) that are wanted: harmonic balance is exact. See
+//! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
+//! doi:10.1007/978-3-030-14023-6, on polynomial forces.
+
+use crate::contact::law::{Form, Law, Range, SMALL};
+use crate::contact::memoryless_law::{Memoryless, Samples};
+use crate::error::{Result, fail, try_push};
+use std::sync::Arc;
+
+/// Highest exponent of a single motion or velocity.
+pub const HIGHEST_EXPONENT: u32 = 15;
+
+/// One product of powers, as a caller tells it.
+#[derive(Clone, Copy, Debug)]
+pub struct Monomial<'a> {
+    /// Direction i of the force that it belongs to.
+    pub direction: usize,
+    /// Its coefficient.
+    pub coefficient: f64,
+    /// Exponents of the d relative motions; empty for none.
+    pub displacements: &'a [u32],
+    /// Exponents of the d velocities; empty for none.
+    pub velocities: &'a [u32],
+}
+
+/// A power of one variable: 0 .. d are the motions, d .. 2d the velocities.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Factor {
+    variable: usize,
+    power: u32,
+}
+
+/// A product of factors, stored one after the other for all terms.
+#[derive(Clone, Copy, Debug)]
+struct Term {
+    direction: usize,
+    coefficient: f64,
+    first: usize,
+    count: usize,
+    degree: u32,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Terms {
+    terms: Vec<Term>,
+    factors: Vec<Factor>,
+}
+
+/// A polynomial law. Copies share the terms.
+#[derive(Clone, Debug)]
+pub struct Polynomial {
+    directions: usize,
+    content: Arc<Terms>,
+    length: f64,
+}
+
+impl Polynomial {
+    /// The sum of monomials in `directions` relative motions. Terms of equal powers are merged, and
+    /// those that vanish left out.
+    ///
+    /// # Errors
+    /// `Argument`, `Index`, `Dimension` or `NotFinite`, naming the monomial by its place, and
+    /// `OutOfMemory`.
+    pub fn new(directions: usize, monomials: &[Monomial<'_>]) -> Result<Self> {
+        let mut collector = Collector::new(directions)?;
+        for (place, monomial) in monomials.iter().enumerate() {
+            check(directions, monomial).map_err(|e| e.at(format_args!("monomial {place}")))?;
+            collector.powers.clear();
+            let (x, v) = (monomial.displacements, monomial.velocities);
+            let variables = x.iter().enumerate();
+            let variables = variables.chain(v.iter().enumerate().map(|(j, power)| (directions + j, power)));
+            for (variable, &power) in variables.filter(|(_, power)| **power > 0) {
+                try_push(&mut collector.powers, Factor { variable, power }, "a polynomial")?;
+            }
+            collector.add(monomial.direction, monomial.coefficient)?;
+        }
+        collector.finish()
+    }
+
+    /// Spring and damper of one motion: f = Σ spring\[k\]·y^(k+1) + Σ damper\[k\]·v^(k+1).
+    ///
+    /// # Errors
+    /// As [`Self::new`] has them, the monomials counted through springs, then dampers.
+    pub fn scalar(spring: &[f64], damper: &[f64]) -> Result<Self> {
+        let mut collector = Collector::new(1)?;
+        for (name, variable, coefficients) in [("spring", 0, spring), ("damper", 1, damper)] {
+            if coefficients.len() > HIGHEST_EXPONENT as usize {
+                return fail!(
+                    Argument,
+                    "{name} has powers up to {}, needs at most {HIGHEST_EXPONENT}",
+                    coefficients.len()
+                );
+            }
+            for (k, &coefficient) in coefficients.iter().enumerate() {
+                if !coefficient.is_finite() {
+                    return fail!(NotFinite, "{name}[{k}] is {coefficient}, needs a finite number");
+                }
+                collector.powers.clear();
+                let power = k as u32 + 1;
+                try_push(&mut collector.powers, Factor { variable, power }, "a polynomial")?;
+                collector.add(0, coefficient)?;
+            }
+        }
+        collector.finish()
+    }
+
+    /// Stiffness tensors of `directions` = d motions: fᵢ = Σ K1ᵢⱼ xⱼ + Σ K2ᵢⱼₖ xⱼ xₖ + Σ K3ᵢⱼₖₗ xⱼ xₖ xₗ.
+    /// Each is dense, the last index running fastest, or empty for none; nothing is taken for
+    /// symmetric.
+    ///
+    /// # Errors
+    /// `Dimension` or `NotFinite`, naming the tensor and the entry; `OutOfMemory`.
+    pub fn tensors(directions: usize, linear: &[f64], quadratic: &[f64], cubic: &[f64]) -> Result<Self> {
+        let mut collector = Collector::new(directions)?;
+        for (name, rank, tensor) in [("linear", 2, linear), ("quadratic", 3, quadratic), ("cubic", 4, cubic)] {
+            let wanted = directions.checked_pow(rank);
+            if !tensor.is_empty() && wanted != Some(tensor.len()) {
+                return fail!(
+                    Dimension,
+                    "the {name} stiffness has {} entries, needs {directions}^{rank}",
+                    tensor.len()
+                );
+            }
+            for (entry, &coefficient) in tensor.iter().enumerate() {
+                if coefficient == 0.0 {
+                    continue;
+                }
+                // Digits of the entry's number to the base d, the last index first.
+                let digit = |place: u32| entry / directions.pow(place) % directions;
+                if !coefficient.is_finite() {
+                    return fail!(
+                        NotFinite,
+                        "{name} stiffness: entry {entry} (row {}) is {coefficient}, needs a finite number",
+                        digit(rank - 1)
+                    );
+                }
+                collector.powers.clear();
+                for place in 0..rank - 1 {
+                    let variable = digit(place);
+                    match collector.powers.iter_mut().find(|f| f.variable == variable) {
+                        Some(factor) => factor.power += 1,
+                        None => try_push(&mut collector.powers, Factor { variable, power: 1 }, "a polynomial")?,
+                    }
+                }
+                // The permutations of an entry's indices are one monomial.
+                collector.powers.sort_unstable();
+                collector.add(digit(rank - 1), coefficient)?;
+            }
+        }
+        collector.finish()
+    }
+
+    /// The law in units of `length` of its present unit: x = length·x̂, f = length·f̂.
+    #[must_use]
+    pub fn in_units(&self, length: f64) -> Self {
+        Self {
+            length: self.length * length,
+            ..self.clone()
+        }
+    }
+
+    /// Highest degree of a term, 0 without any.
+    #[must_use]
+    pub fn degree(&self) -> u32 {
+        self.content.terms.iter().map(|t| t.degree).max().unwrap_or(0)
+    }
+
+    /// Linear stiffness of the force i by the motion j.
+    #[must_use]
+    pub fn stiffness_at_small_motion(&self, i: usize, j: usize) -> f64 {
+        let linear = |t: &&Term| t.degree == 1 && t.direction == i && self.content.factors[t.first].variable == j;
+        self.content.terms.iter().find(linear).map_or(0.0, |t| t.coefficient)
+    }
+}
+
+impl Law for Polynomial {
+    fn directions(&self) -> usize {
+        self.directions
+    }
+
+    fn is_odd(&self) -> bool {
+        self.content.terms.iter().all(|t| t.degree % 2 == 1)
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::Memoryless(self)
+    }
+
+    /// From here on every term of higher degree is small.
+    fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64 {
+        let size = |variable: usize| match variable.checked_sub(self.directions) {
+            None => ranges[variable].size(),
+            Some(j) => ranges[j].speed,
+        };
+        let largest = ranges.iter().fold(0.0_f64, |m, r| m.max(r.size()));
+        let mut factor = 0.0_f64;
+        for term in self.content.terms.iter().filter(|t| t.degree > 1) {
+            let factors = &self.content.factors[term.first..term.first + term.count];
+            let whole = term.coefficient.abs() * power(self.length, term.degree - 1);
+            let force = factors.iter().fold(whole, |p, f| p * power(size(f.variable), f.power));
+            // c·(x/s)ⁿ against SMALL·reference·x/s
+            let share = force / (SMALL * reference * largest);
+            if share > 0.0 {
+                factor = factor.max(share.powf(1.0 / f64::from(term.degree - 1)));
+            }
+        }
+        factor
+    }
+}
+
+impl Memoryless for Polynomial {
+    fn uses_velocity(&self) -> bool {
+        self.content.factors.iter().any(|f| f.variable >= self.directions)
+    }
+
+    fn is_alias_free(&self) -> bool {
+        true
+    }
+
+    /// (P + 1)·H + 1, whatever is asked for; at least the 2·H + 1 of a law, if no term is left.
+    fn samples(&self, highest: usize, _asked: usize) -> usize {
+        (self.degree().max(1) as usize + 1)
+            .saturating_mul(highest)
+            .saturating_add(1)
+    }
+
+    fn evaluate(&self, _omega: f64, samples: usize, u: &[f64], v: &[f64], out: Samples<'_>) -> Result<()> {
+        let d = self.directions;
+        for term in &self.content.terms {
+            let factors = &self.content.factors[term.first..term.first + term.count];
+            let coefficient = term.coefficient * power(self.length, term.degree - 1);
+            let i = term.direction;
+            for j in 0..samples {
+                let at = |f: Factor| {
+                    if f.variable < d {
+                        u[j * d + f.variable]
+                    } else {
+                        v[j * d + f.variable - d]
+                    }
+                };
+                let row = (j * d + i) * d;
+                if let [f] = *factors {
+                    let x = at(f);
+                    let below = coefficient * power(x, f.power - 1);
+                    out.f[j * d + i] += below * x;
+                    let slopes = if f.variable < d {
+                        &mut *out.df_du
+                    } else {
+                        &mut *out.df_dv
+                    };
+                    slopes[row + f.variable % d] += f64::from(f.power) * below;
+                    continue;
+                }
+                let mut whole = coefficient;
+                for (k, f) in factors.iter().enumerate() {
+                    // The others' powers by themselves, not by division: motions pass zero.
+                    let x = at(*f);
+                    let below = power(x, f.power - 1);
+                    let others = factors[k + 1..].iter().fold(whole, |p, f| p * power(at(*f), f.power));
+                    let slopes = if f.variable < d {
+                        &mut *out.df_du
+                    } else {
+                        &mut *out.df_dv
+                    };
+                    slopes[row + f.variable % d] += f64::from(f.power) * below * others;
+                    whole *= below * x;
+                }
+                out.f[j * d + i] += whole;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// xⁿ by repeated squaring.
+fn power(x: f64, n: u32) -> f64 {
+    match n {
+        0 => 1.0,
+        1 => x,
+        2 => x * x,
+        3 => x * x * x,
+        n => {
+            let half = power(x, n / 2);
+            if n % 2 == 0 { half * half } else { half * half * x }
+        }
+    }
+}
+
+fn check(directions: usize, monomial: &Monomial<'_>) -> Result<()> {
+    let (x, v) = (monomial.displacements, monomial.velocities);
+    if monomial.direction >= directions {
+        return fail!(
+            Index,
+            "direction = {}, needs one below {directions}",
+            monomial.direction
+        );
+    }
+    if !monomial.coefficient.is_finite() {
+        return fail!(
+            NotFinite,
+            "coefficient = {}, needs a finite number",
+            monomial.coefficient
+        );
+    }
+    for (name, exponents) in [("displacements", x), ("velocities", v)] {
+        if !exponents.is_empty() && exponents.len() != directions {
+            return fail!(
+                Dimension,
+                "{} exponents of {name}, needs {directions} or none",
+                exponents.len()
+            );
+        }
+        if let Some((j, p)) = exponents.iter().enumerate().find(|(_, p)| **p > HIGHEST_EXPONENT) {
+            return fail!(
+                Argument,
+                "exponent {j} of {name} = {p}, needs at most {HIGHEST_EXPONENT}"
+            );
+        }
+    }
+    if x.iter().chain(v).all(|p| *p == 0) {
+        return fail!(
+            Argument,
+            "all exponents are 0; a constant force is an excitation in harmonic 0"
+        );
+    }
+    Ok(())
+}
+
+/// Gathers terms while a polynomial is made.
+struct Collector {
+    directions: usize,
+    content: Terms,
+    /// Factors of the term at hand, by ascending variable.
+    powers: Vec<Factor>,
+}
+
+impl Collector {
+    fn new(directions: usize) -> Result<Self> {
+        if directions == 0 {
+            return fail!(Argument, "polynomial: directions = 0, needs at least 1");
+        }
+        Ok(Self {
+            directions,
+            content: Terms::default(),
+            powers: Vec::new(),
+        })
+    }
+
+    /// Keeps the term at hand.
+    fn add(&mut self, direction: usize, coefficient: f64) -> Result<()> {
+        let term = Term {
+            direction,
+            coefficient,
+            first: self.content.factors.len(),
+            count: self.powers.len(),
+            degree: self.powers.iter().map(|f| f.power).sum(),
+        };
+        for &factor in &self.powers {
+            try_push(&mut self.content.factors, factor, "a polynomial")?;
+        }
+        try_push(&mut self.content.terms, term, "a polynomial")
+    }
+
+    /// Merges terms of equal powers, in order, and leaves out what vanishes.
+    fn finish(self) -> Result<Polynomial> {
+        let Terms { mut terms, factors } = self.content;
+        let of = |t: &Term| &factors[t.first..t.first + t.count];
+        // In place: a stable sort would ask for memory. Equal terms keep their order by `first`.
+        terms.sort_unstable_by(|a, b| {
+            let key = (a.direction, a.degree).cmp(&(b.direction, b.degree));
+            key.then_with(|| of(a).cmp(of(b))).then(a.first.cmp(&b.first))
+        });
+        terms.dedup_by(|next, kept| {
+            let same = next.direction == kept.direction && of(next) == of(kept);
+            if same {
+                kept.coefficient += next.coefficient;
+            }
+            same
+        });
+        terms.retain(|t| t.coefficient != 0.0);
+        if let Some(term) = terms.iter().find(|t| !t.coefficient.is_finite()) {
+            return fail!(
+                NotFinite,
+                "polynomial: the terms of degree {} in direction {} add up to {}, needs a finite number",
+                term.degree,
+                term.direction,
+                term.coefficient
+            );
+        }
+        // The factors of the terms that are left, in their order.
+        let mut content = Terms::default();
+        for term in &terms {
+            let first = content.factors.len();
+            for &factor in of(term) {
+                try_push(&mut content.factors, factor, "a polynomial")?;
+            }
+            try_push(&mut content.terms, Term { first, ..*term }, "a polynomial")?;
+        }
+        Ok(Polynomial {
+            directions: self.directions,
+            content: Arc::new(content),
+            length: 1.0,
+        })
+    }
+}

@@ -1,0 +1,106 @@
+//! The unilateral spring: pressed when the gap is closed, without force when it is open.
+//!
+//! The closing of the contact is −x, the motion of side b over that of side a. The normal force is
+//! N = max(k·(−x − g), 0), pushing the sides apart, which is f = −N on x; a negative gap g is a
+//! preload −k·g at rest. The law has no memory: with the indicator of the closed times as
+//! stiffness spectrum, F = k·T(S)·X + k·g·ĝ (Petrov & Ewins 2004, doi:10.1115/1.1644557, treat it
+//! as the normal part of a friction contact).
+
+use crate::contact::contact_state::State;
+use crate::contact::law::{Form, Law, Piece, PiecewiseLinear, Range};
+use crate::fourier::HarmonicSet;
+use crate::fourier::{Extremum, crossing};
+use std::f64::consts::TAU;
+
+/// Constants of a unilateral spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unilateral {
+    /// k
+    pub stiffness: f64,
+    /// g, of either sign
+    pub gap: f64,
+}
+
+impl Unilateral {
+    fn push(&self, start: f64, end: f64, closed: bool, pieces: &mut Vec<Piece>) {
+        if end <= start {
+            return;
+        }
+        let (slope, offset) = if closed {
+            (self.stiffness, self.stiffness * self.gap)
+        } else {
+            (0.0, 0.0)
+        };
+        pieces.push(Piece {
+            start,
+            end,
+            slope,
+            anchor: None,
+            offset,
+        });
+    }
+}
+
+impl Law for Unilateral {
+    fn is_odd(&self) -> bool {
+        false
+    }
+
+    fn form(&self) -> Form<'_> {
+        Form::PiecewiseLinear(self)
+    }
+
+    fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
+        (ranges[0].half - ranges[0].mean).max(0.0) / self.gap
+    }
+}
+
+impl PiecewiseLinear for Unilateral {
+    fn pieces(&self, set: &HarmonicSet, motion: &[f64], turning_points: &[Extremum], pieces: &mut Vec<Piece>) {
+        let level = -self.gap;
+        let Some(first) = turning_points.first() else {
+            let rest = if set.has_mean() { motion[0] } else { 0.0 };
+            self.push(0.0, TAU, rest < level, pieces);
+            return;
+        };
+        // From one turning point to the next the motion passes the level once at most.
+        let mut start = first.tau;
+        let mut closed = first.x < level;
+        for (i, from) in turning_points.iter().enumerate() {
+            let mut to = turning_points[(i + 1) % turning_points.len()];
+            if i + 1 == turning_points.len() {
+                to.tau += TAU;
+            }
+            if (to.x < level) != closed {
+                let at = crossing(set, motion, from.tau, to.tau, from.x, to.x, level);
+                self.push(start, at, closed, pieces);
+                start = at;
+                closed = !closed;
+            }
+        }
+        self.push(start, first.tau + TAU, closed, pieces);
+    }
+
+    fn sampled_pieces(&self, samples: &[f64], pieces: &mut Vec<Piece>) {
+        let closed = |x: f64| x < -self.gap;
+        let mut start = 0;
+        for j in 1..=samples.len() {
+            if j == samples.len() || closed(samples[j]) != closed(samples[start]) {
+                self.push(start as f64, j as f64, closed(samples[start]), pieces);
+                start = j;
+            }
+        }
+    }
+
+    fn state(&self, piece: &Piece) -> State {
+        if piece.slope == 0.0 { State::Open } else { State::Stick }
+    }
+
+    fn at(&self, x: f64) -> Option<(f64, State)> {
+        Some(if x < -self.gap {
+            (self.stiffness * (x + self.gap), State::Stick)
+        } else {
+            (0.0, State::Open)
+        })
+    }
+}

@@ -1,0 +1,278 @@
+//! A law of the caller: a callback that is asked for one period at a time, or by integration in time for
+//! one time.
+//!
+//! A force without memory is told sample by sample; one with internal states is marched over them, and
+//! tells the derivatives of its steps as well. It sees motions and velocities in the caller's units
+//! and answers with forces and tangents. What it returns is checked: a code other than 0, and numbers
+//! that are not finite, become errors that keep the code, name the place, and tell whether another
+//! motion may do.
+
+use crate::contact::law::{Form, Law, Range};
+use crate::contact::memoryless_law::{Memoryless, Samples, automatic_samples};
+use crate::error::{Error, Result, Status, fail};
+use std::fmt;
+use std::sync::Arc;
+
+/// A force of the caller.
+pub trait UserForce: Send + Sync {
+    /// Fills the forces and tangents of a call, and the states and derivatives of its steps where it has
+    /// any. The same motion must always have the same force. Returns 0 when done; a number above 0 when it cannot
+    /// at this motion (the solver may try a smaller step); one below 0 when it never will.
+    fn evaluate(&self, call: &mut Call<'_>) -> i32;
+}
+
+/// One period, sample after sample; within a sample direction after direction. All quantities are
+/// in the caller's units.
+#[derive(Debug)]
+pub struct Call<'a> {
+    /// Angular frequency of the period 2π/omega: the times are 2π/(omega·N) apart. A force may need it
+    /// as the time step of its states, in no other way.
+    pub omega: f64,
+    /// Equidistant times N of the period, the first at 0. With states it may be 2; integration in time
+    /// asks about 1, any time.
+    pub samples: usize,
+    /// Relative motions d.
+    pub directions: usize,
+    /// Relative motions, N × d.
+    pub u: &'a [f64],
+    /// Their velocities du/dt, N × d; empty for a force that does not feel them.
+    pub v: &'a [f64],
+    /// Forces, N × d, each to be written: they are NaN before the call.
+    pub f: &'a mut [f64],
+    /// ∂fᵢ/∂uⱼ at the same time and given states, N × d × d, the row i in one piece; 0 before the call.
+    pub df_du: &'a mut [f64],
+    /// ∂fᵢ/∂vⱼ likewise; empty for a force that does not feel the velocity.
+    pub df_dv: &'a mut [f64],
+    /// What belongs to internal states; empty without them.
+    pub states: States<'a>,
+}
+
+/// The internal states of one period, zⱼ = Z(zⱼ₋₁, motion at j − 1 and j), sample after sample. Before
+/// the first sample lies the last, with its motion.
+#[derive(Debug, Default)]
+pub struct States<'a> {
+    /// Number of states s. Where nothing moves and nothing has moved before, they are zero. Their units
+    /// are the caller's; their sizes should be alike, for they count as periodic together.
+    pub count: usize,
+    /// States before the first sample, s.
+    pub z0: &'a [f64],
+    /// States at each sample, N × s, each to be written: they are NaN before the call.
+    pub z: &'a mut [f64],
+    /// ∂zⱼ/∂zⱼ₋₁, N × s × s, rows in one piece; like all that follow 0 before the call.
+    pub dz_dz: &'a mut [f64],
+    /// ∂zⱼ/∂uⱼ₋₁, N × s × d.
+    pub dz_du_before: &'a mut [f64],
+    /// ∂zⱼ/∂uⱼ, N × s × d.
+    pub dz_du: &'a mut [f64],
+    /// ∂zⱼ/∂vⱼ₋₁, N × s × d; empty for a force that does not feel the velocity.
+    pub dz_dv_before: &'a mut [f64],
+    /// ∂zⱼ/∂vⱼ, likewise.
+    pub dz_dv: &'a mut [f64],
+    /// ∂zⱼ/∂omega, N × s, where the time step enters.
+    pub dz_domega: &'a mut [f64],
+    /// ∂fⱼ/∂zⱼ, N × d × s.
+    pub df_dz: &'a mut [f64],
+}
+
+/// A callback as a law.
+#[derive(Clone)]
+pub struct User {
+    /// The callback.
+    pub force: Arc<dyn UserForce>,
+    /// Relative motions d, at least 1.
+    pub directions: usize,
+    /// Internal states s, 0 for a force without memory.
+    pub states: usize,
+    /// Whether the force depends on velocities.
+    pub velocity: bool,
+    /// Whether f(−u, −v) = −f(u, v), on the caller's word: then even harmonics may be left out.
+    pub odd: bool,
+    /// The solver's unit of length in the caller's; forces have the same.
+    pub length: f64,
+    /// Samples per period, at least; 0 takes [`automatic_samples`].
+    pub samples: usize,
+}
+
+impl User {
+    /// A force of `directions` relative motions and their velocities, in the caller's units.
+    ///
+    /// # Errors
+    /// `Argument` without a direction.
+    pub fn new(force: Arc<dyn UserForce>, directions: usize, samples: usize) -> Result<Self> {
+        if directions == 0 {
+            return fail!(Argument, "callback: directions = 0, needs at least 1");
+        }
+        Ok(Self {
+            force,
+            directions,
+            states: 0,
+            velocity: true,
+            odd: false,
+            length: 1.0,
+            samples,
+        })
+    }
+
+    /// The law in units of `length` of its present unit: x = length·x̂, f = length·f̂.
+    #[must_use]
+    pub fn in_units(&self, length: f64) -> Self {
+        Self {
+            length: self.length * length,
+            ..self.clone()
+        }
+    }
+
+    /// The motions `own` in the caller's units, from those of the solver. No caller is asked about a motion
+    /// that is no number.
+    pub(super) fn take_motion(&self, u: &[f64], v: &[f64], own: &mut [f64]) -> Result<()> {
+        for (own, x) in own.iter_mut().zip(u.iter().chain(v)) {
+            *own = self.length * x;
+            if !own.is_finite() {
+                let message = format_args!("a motion that the force callback is asked about is {own}");
+                return Err(Error::new(Status::NotFinite, message).recoverable());
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls the caller and checks its code.
+    pub(super) fn ask(&self, call: &mut Call<'_>) -> Result<()> {
+        let code = self.force.evaluate(call);
+        if code == 0 {
+            return Ok(());
+        }
+        let verdict = if code > 0 {
+            "it cannot at this motion"
+        } else {
+            "it gives up"
+        };
+        let message = format_args!("the force callback returned {code}: {verdict}");
+        Err(Error::from_callback(code, message))
+    }
+
+    /// Takes the forces over into the solver's units.
+    pub(super) fn take_forces(&self, f: &mut [f64]) -> Result<()> {
+        check_filled("f", f, self.directions)?;
+        for f in &mut *f {
+            *f /= self.length;
+        }
+        check_filled("f", f, self.directions)
+    }
+
+    /// Samples per period for motions up to the reduced harmonic `highest`; what the force was given for
+    /// itself goes before what was asked of all.
+    pub(super) fn samples_for(&self, asked: usize, automatic: usize) -> usize {
+        match (self.samples, asked) {
+            (0, 0) => automatic,
+            (0, n) | (n, _) => n,
+        }
+    }
+}
+
+/// Refuses values, `width` per sample, that the caller had to write and that are not finite. Another motion
+/// may do: where a trial step was too long, forces overflow.
+pub(super) fn check_filled(name: &str, values: &[f64], width: usize) -> Result<()> {
+    let Some(at) = values.iter().position(|x| !x.is_finite()) else {
+        return Ok(());
+    };
+    let message = format_args!(
+        "the force callback gave {name}[{},{}] = {}; it must write every one, finite",
+        at / width,
+        at % width,
+        values[at]
+    );
+    Err(Error::new(Status::Callback, message).recoverable())
+}
+
+/// Refuses derivatives, blocks of some `rows` and `columns` per sample, that are not finite.
+pub(super) fn check_block(name: &str, values: &[f64], (rows, columns): (usize, usize)) -> Result<()> {
+    let Some(at) = values.iter().position(|x| !x.is_finite()) else {
+        return Ok(());
+    };
+    let message = format_args!(
+        "the force callback gave {name}[{},{},{}] = {}, needs a finite number",
+        at / (rows * columns),
+        at / columns % rows,
+        at % columns,
+        values[at]
+    );
+    Err(Error::new(Status::Callback, message).recoverable())
+}
+
+impl fmt::Debug for User {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("User")
+            .field("directions", &self.directions)
+            .field("states", &self.states)
+            .field("velocity", &self.velocity)
+            .field("odd", &self.odd)
+            .field("length", &self.length)
+            .field("samples", &self.samples)
+            .finish_non_exhaustive()
+    }
+}
+
+/// A law of which nothing is known is taken for linear at motions this many times smaller.
+const FAR: f64 = 1e6;
+
+impl Law for User {
+    fn directions(&self) -> usize {
+        self.directions
+    }
+
+    fn is_odd(&self) -> bool {
+        self.odd
+    }
+
+    fn form(&self) -> Form<'_> {
+        if self.states == 0 {
+            Form::Memoryless(self)
+        } else {
+            Form::Hysteretic(self)
+        }
+    }
+
+    fn linearisation_scale(&self, _ranges: &[Range], _reference: f64) -> f64 {
+        FAR
+    }
+
+    fn has_known_linear_range(&self) -> bool {
+        false
+    }
+}
+
+impl Memoryless for User {
+    fn uses_velocity(&self) -> bool {
+        self.velocity
+    }
+
+    /// A callback is always asked for a whole period.
+    fn half_period_suffices(&self) -> bool {
+        false
+    }
+
+    fn samples(&self, highest: usize, asked: usize) -> usize {
+        self.samples_for(asked, automatic_samples(highest))
+    }
+
+    fn evaluate(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], out: Samples<'_>) -> Result<()> {
+        self.take_motion(u, v, out.scratch)?;
+        let (own_u, own_v) = out.scratch.split_at_mut(u.len());
+        out.f.fill(f64::NAN);
+        self.ask(&mut Call {
+            omega,
+            samples,
+            directions: self.directions,
+            u: own_u,
+            v: &own_v[..v.len()],
+            f: &mut *out.f,
+            df_du: &mut *out.df_du,
+            df_dv: &mut *out.df_dv,
+            states: States::default(),
+        })?;
+        let d = self.directions;
+        check_block("df_du", out.df_du, (d, d))?;
+        check_block("df_dv", out.df_dv, (d, d))?;
+        self.take_forces(out.f)
+    }
+}

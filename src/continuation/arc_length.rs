@@ -1,0 +1,391 @@
+//! Arc-length continuation of R(u, p) = 0, one accepted point after the other.
+//!
+//! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times
+//! its present size, p in units of the range. A step predicts by the cubic through the last two
+//! points and tangents, corrects in the plane orthogonal to the tangent (Allgower & Georg,
+//! Introduction to Numerical Continuation Methods, 2003, doi:10.1137/1.9780898719154), and is
+//! accepted when the prediction was close and the direction kept.
+
+use crate::continuation::corrector::{Corrector, Outcome};
+pub use crate::continuation::metric::Metric;
+pub use crate::continuation::point::Point;
+use crate::continuation::predictor::Cubic;
+use crate::continuation::step_control::StepControl;
+use crate::error::{Error, Result, Status, try_copy, try_vec};
+use crate::linalg::norm;
+use crate::problem::Problem;
+use num_complex::Complex64;
+
+/// How an attempt to advance ended.
+#[derive(Debug)]
+pub enum Advance {
+    /// With the next point; `last` when it is the end of the range.
+    Accepted {
+        /// The point.
+        point: Point,
+        /// Whether the end of the range was reached.
+        last: bool,
+    },
+    /// The branch turned back and left the range where it began; the point lies there.
+    LeftAtStart {
+        /// The point.
+        point: Point,
+    },
+    /// No further point could be found.
+    Stopped(Status),
+}
+
+/// Bounds and tolerances of a continuation.
+#[derive(Clone, Copy, Debug)]
+pub struct Settings {
+    /// Begin of the parameter range.
+    pub start: f64,
+    /// End of the parameter range.
+    pub end: f64,
+    /// Relative residual wanted.
+    pub tolerance: f64,
+    /// Cap on Newton iterations.
+    pub max_iterations: usize,
+    /// Steps.
+    pub steps: StepControl,
+}
+
+/// A branch being followed.
+pub struct Continuation {
+    pub(super) settings: Settings,
+    pub(super) steps: StepControl,
+    pub(super) corrector: Corrector,
+    pub(super) previous: Option<Point>,
+    pub(super) current: Point,
+    /// Largest motion and amplitude met so far.
+    pub(super) largest: (f64, f64),
+    pub(super) row: Vec<f64>,
+    pub(super) scratch: Vec<f64>,
+}
+
+pub(super) const CONTEXT: &str = "the continuation";
+
+/// Cosine of the largest turn of the branch within one step.
+pub(super) const STRAIGHT: f64 = 0.5;
+
+/// Step below which a failure counts as a corner of the branch.
+pub(super) const CORNER_STEP: f64 = 1e-6;
+
+/// Least cosine between the branch beyond a corner and its direction as predicted there.
+pub(super) const ALONG: f64 = 0.9;
+
+/// Motions below this share of the largest met so far no longer refine the metric.
+pub(super) const FLOOR: f64 = 1e-2;
+
+/// What the corrected prediction of one step came to.
+pub(super) enum Attempt {
+    Good { point: Point, error: f64 },
+    Poor { error: f64 },
+    Failed,
+    Cancelled,
+}
+
+impl Continuation {
+    /// Follows the branch from a solved point at the begin of the range.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(settings: Settings, mut first: Point) -> Result<Self> {
+        let n = first.v.len() - 1;
+        if (settings.end - settings.start) * first.tangent[n] < 0.0 {
+            first.reverse();
+        }
+        Ok(Self {
+            settings,
+            steps: settings.steps,
+            corrector: Corrector::new(n, settings.tolerance, settings.max_iterations)?,
+            largest: (norm(first.unknowns()), first.amplitude.norm()),
+            previous: None,
+            current: first,
+            row: try_vec(n + 1, 0.0, CONTEXT)?,
+            scratch: try_vec(n + 1, 0.0, CONTEXT)?,
+        })
+    }
+
+    /// Goes on from a point in place of the one accepted last, and from `previous` in place of that before, both in
+    /// the unknowns of a problem that may have more or fewer of them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn go_on_from(&mut self, previous: Option<Point>, current: Point) -> Result<()> {
+        let n = current.v.len() - 1;
+        if n + 1 != self.row.len() {
+            self.corrector = Corrector::new(n, self.settings.tolerance, self.settings.max_iterations)?;
+            self.row = try_vec(n + 1, 0.0, CONTEXT)?;
+            self.scratch = try_vec(n + 1, 0.0, CONTEXT)?;
+        }
+        self.largest.0 = self.largest.0.max(norm(current.unknowns()));
+        self.largest.1 = self.largest.1.max(current.amplitude.norm());
+        self.previous = previous;
+        self.current = current;
+        Ok(())
+    }
+
+    /// The point that was accepted last.
+    #[must_use]
+    pub fn current(&self) -> &Point {
+        &self.current
+    }
+
+    /// The point before it.
+    #[must_use]
+    pub fn previous(&self) -> Option<&Point> {
+        self.previous.as_ref()
+    }
+
+    /// Finds the next point. After the end of the range was reported it must not be called again.
+    ///
+    /// # Errors
+    /// What the problem reports; `Callback` where a callback of the caller kept failing at the smallest step.
+    pub fn advance(&mut self, problem: &mut dyn Problem, cancelled: Option<&dyn Fn() -> bool>) -> Result<Advance> {
+        let metric = self.metric();
+        let n = self.row.len() - 1;
+        let order = if self.previous.is_some() { 4.0 } else { 2.0 };
+        loop {
+            let step = self.steps.step();
+            let (v, amplitude) = self.predict(metric, step)?;
+            let (fixed, length) = match self.overshoot(v[n]) {
+                None => (None, step),
+                Some((bound, share)) => (Some(bound), share * step),
+            };
+            let attempt = if let Some(bound) = fixed {
+                // The range ends here: predict just so far, and solve at the end exactly.
+                let (mut v, amplitude) = self.predict(metric, length)?;
+                v[n] = bound;
+                self.try_point(problem, metric, v, amplitude, length, true, cancelled)?
+            } else {
+                self.try_point(problem, metric, v, amplitude, step, false, cancelled)?
+            };
+            match attempt {
+                Attempt::Cancelled => return Ok(Advance::Stopped(Status::StoppedByCaller)),
+                Attempt::Good { point, error } => {
+                    if fixed.is_none() && self.overshoot(point.parameter()).is_some() {
+                        // The correction ran past the end: come back with a shorter step.
+                        if !self.steps.failed() {
+                            return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
+                        }
+                        continue;
+                    }
+                    self.steps.accepted(length, error, order, point.iterations);
+                    return self.accept(point, fixed);
+                }
+                Attempt::Poor { error } => {
+                    if !self.steps.rejected(error, order) {
+                        return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
+                    }
+                }
+                Attempt::Failed => {
+                    // What follows asks the corrector again.
+                    let failure = self.corrector.failure();
+                    if length <= CORNER_STEP
+                        && let Some(point) = self.turn_corner(problem, metric, length, cancelled)?
+                    {
+                        return self.accept(point, None);
+                    }
+                    if !self.steps.failed() {
+                        return too_small(failure);
+                    }
+                }
+            }
+        }
+    }
+
+    /// The next point beyond a corner of the branch that lies within `step`.
+    ///
+    /// Where a contact begins to slip the residual has a kink, and the branch may turn there by any
+    /// angle, back in the parameter too. The Jacobian just beyond gives the new direction, and the
+    /// sign of the bordered determinant, which a path through a piecewise smooth map keeps, its
+    /// sense (Allgower & Georg, ch. 15).
+    pub(super) fn turn_corner(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        step: f64,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>> {
+        let n = self.row.len() - 1;
+        let mut v = try_copy(&self.current.v, CONTEXT)?;
+        metric.unit(&self.current.tangent, &mut self.row);
+        metric.add(&mut v, step, &self.row);
+        let found = self
+            .corrector
+            .direction_at(problem, &v, &self.row, metric, &mut self.scratch)?;
+        let Some(positive) = found else { return Ok(None) };
+        metric.unit(&self.scratch, &mut self.row);
+        if positive != self.current.positive {
+            for r in &mut self.row {
+                *r = -*r;
+            }
+        }
+        for factor in [2.0, 8.0, 32.0] {
+            let length = factor * step;
+            v.copy_from_slice(&self.current.v);
+            metric.add(&mut v, length, &self.row);
+            let outcome = self
+                .corrector
+                .correct(problem, &mut v, &self.row, metric, false, cancelled)?;
+            let Outcome::Converged(corrected) = outcome else {
+                continue;
+            };
+            let mut point = Point::new(try_copy(&v, CONTEXT)?, corrected, length);
+            if point.positive != self.current.positive {
+                point.reverse();
+            }
+            metric.unit(&point.tangent, &mut self.scratch);
+            let along: f64 = self.scratch.iter().zip(&self.row).map(|(a, b)| a * b).sum();
+            let near = metric.distance(&point.v, &self.current.v) <= 3.0 * length;
+            if along >= ALONG && near && self.overshoot(point.v[n]).is_none() {
+                return Ok(Some(point));
+            }
+        }
+        Ok(None)
+    }
+
+    pub(super) fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
+        self.largest.0 = self.largest.0.max(norm(point.unknowns()));
+        self.largest.1 = self.largest.1.max(point.amplitude.norm());
+        self.previous = Some(core::mem::replace(&mut self.current, point.try_clone()?));
+        Ok(match fixed {
+            Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
+            Some(_) => Advance::Accepted { point, last: true },
+            None => Advance::Accepted { point, last: false },
+        })
+    }
+
+    /// Units for the step that starts at the current point.
+    pub(super) fn metric(&self) -> Metric {
+        Metric::along(
+            norm(self.current.unknowns()).max(FLOOR * self.largest.0),
+            &self.settings,
+        )
+    }
+
+    /// Predicted point and amplitude a step ahead; leaves the tangent as the row of the plane.
+    pub(super) fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
+        let here = &self.current;
+        metric.unit(&here.tangent, &mut self.row);
+        let cutoff = step / metric.norm(&here.tangent);
+        let mut tangent = try_copy(&here.v, CONTEXT)?;
+        for (v, t) in tangent.iter_mut().zip(&here.tangent) {
+            *v += cutoff * t;
+        }
+        let straight = (tangent, here.amplitude + here.slope * cutoff);
+        let Some(previous) = &self.previous else {
+            return Ok(straight);
+        };
+        let cubic = Cubic::new(previous, here, metric);
+        if cubic.chord == 0.0 {
+            return Ok(straight);
+        }
+        let s = 1.0 + step / cubic.chord;
+        let mut v = try_copy(&here.v, CONTEXT)?;
+        cubic.at(s, &mut v, &mut self.scratch);
+        if metric.distance(&v, &straight.0) > 0.5 * step {
+            return Ok(straight);
+        }
+        Ok((v, cubic.amplitude(s)))
+    }
+
+    /// The bound of the range that a parameter value lies beyond, and the share of the way to it.
+    pub(super) fn overshoot(&self, p: f64) -> Option<(f64, f64)> {
+        let here = self.current.parameter();
+        let (start, end) = (self.settings.start, self.settings.end);
+        let sense = (end - start).signum();
+        let bound = if sense * (p - end) >= 0.0 {
+            end
+        } else if sense * (p - start) <= 0.0 && sense * (p - here) < 0.0 {
+            start
+        } else {
+            return None;
+        };
+        Some((bound, ((bound - here) / (p - here)).clamp(0.0, 1.0)))
+    }
+
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn try_point(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        mut v: Vec<f64>,
+        amplitude: Complex64,
+        step: f64,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Attempt> {
+        let n = v.len() - 1;
+        let predicted = try_copy(&v, CONTEXT)?;
+        if keep_parameter {
+            self.row.fill(0.0);
+            self.row[n] = 1.0;
+        }
+        let corrected = match self
+            .corrector
+            .correct(problem, &mut v, &self.row, metric, false, cancelled)?
+        {
+            Outcome::Converged(corrected) => corrected,
+            Outcome::Failed => return Ok(Attempt::Failed),
+            Outcome::Cancelled => return Ok(Attempt::Cancelled),
+        };
+        if keep_parameter {
+            v[n] = predicted[n];
+        }
+        let mut point = Point::new(v, corrected, step);
+        let here = &self.current;
+        if metric.dot(&point.tangent, &here.tangent) < 0.0 {
+            point.reverse();
+        }
+        // The direction must be kept by the tangent and by the chord: a branch never turns round
+        // within a step, and never walks back to where it came from.
+        let chord = metric.distance(&point.v, &here.v);
+        let along = metric.dot(&point.v, &here.tangent) - metric.dot(&here.v, &here.tangent);
+        let cosine = |dot: f64, a: f64, b: f64| if a * b > 0.0 { dot / (a * b) } else { 1.0 };
+        let kept = cosine(
+            metric.dot(&point.tangent, &here.tangent),
+            metric.norm(&point.tangent),
+            metric.norm(&here.tangent),
+        );
+        let turned = kept < STRAIGHT;
+        // A change of sense is a jump over corners. Only where other branches cross this one does
+        // it belong to the way straight on, however short the step.
+        let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < ALONG);
+        let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
+        let far = chord > 3.0 * step;
+        let error = self.prediction_error(&predicted, &point, amplitude);
+        if turned || jumped || back || far {
+            return Ok(Attempt::Failed);
+        }
+        if !self.steps.accepts(error) {
+            return Ok(Attempt::Poor { error });
+        }
+        Ok(Attempt::Good { point, error })
+    }
+
+    /// Relative error of the prediction in the motion and in the observed amplitude.
+    pub(super) fn prediction_error(&self, predicted: &[f64], point: &Point, amplitude: Complex64) -> f64 {
+        let relative = |difference: f64, size: f64| if difference == 0.0 { 0.0 } else { difference / size };
+        let n = predicted.len() - 1;
+        let mut difference = 0.0_f64;
+        for (a, b) in predicted[..n].iter().zip(&point.v) {
+            difference = difference.hypot(a - b);
+        }
+        let motion = relative(difference, norm(point.unknowns()).max(FLOOR * self.largest.0));
+        let observed = relative(
+            (amplitude - point.amplitude).norm(),
+            point.amplitude.norm().max(FLOOR * self.largest.1),
+        );
+        motion.max(observed)
+    }
+}
+
+/// No step is small enough: a callback is to blame, or nobody knows.
+pub(super) fn too_small(failure: Option<Error>) -> Result<Advance> {
+    match failure {
+        Some(e) if e.status == Status::Callback => Err(e),
+        _ => Ok(Advance::Stopped(Status::StoppedStepTooSmall)),
+    }
+}

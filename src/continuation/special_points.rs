@@ -1,0 +1,222 @@
+//! What lies between two accepted points: folds, peaks of the observed amplitude, and solutions at
+//! given parameter values, each solved for and not interpolated.
+
+use crate::continuation::corrector::{Corrector, Outcome};
+use crate::continuation::predictor::Cubic;
+use crate::continuation::{Metric, Point, Settings};
+use crate::error::{Result, try_copy, try_vec};
+use crate::linalg::norm;
+use crate::problem::Problem;
+
+/// What is looked for between two points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// The parameter turns: the tangent has no component along it.
+    Fold,
+    /// The observed amplitude is largest: d|z|/ds = 0, falling after.
+    Peak,
+}
+
+impl Event {
+    /// The function whose root is the event; tangents must have length 1.
+    fn function(self, point: &Point, length: f64) -> f64 {
+        match self {
+            Self::Fold => point.tangent[point.tangent.len() - 1] / length,
+            Self::Peak => {
+                let z = point.amplitude;
+                let size = z.norm();
+                if size == 0.0 {
+                    0.0
+                } else {
+                    (z.conj() / size * point.slope).re / length
+                }
+            }
+        }
+    }
+
+    /// Whether the event lies between two neighbouring points.
+    #[must_use]
+    pub fn between(self, a: &Point, b: &Point) -> bool {
+        let (fa, fb) = (self.function(a, 1.0), self.function(b, 1.0));
+        match self {
+            Self::Fold => fa * fb < 0.0,
+            Self::Peak => fa > 0.0 && fb <= 0.0,
+        }
+    }
+}
+
+/// Solves for points between accepted ones.
+pub struct Locator {
+    corrector: Corrector,
+    settings: Settings,
+    row: Vec<f64>,
+    derivative: Vec<f64>,
+}
+
+const CONTEXT: &str = "the search for events";
+
+/// Cap on the evaluations of one search.
+const MAX_EVALUATIONS: usize = 60;
+
+/// Cap on the halvings of an arc in search of a parameter.
+const MAX_HALVINGS: usize = 12;
+
+/// Width of the bracket, as a share of the step, at which an event counts as found.
+const WIDTH: f64 = 1e-11;
+
+impl Locator {
+    /// Memory for `n` unknowns.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize, settings: Settings) -> Result<Self> {
+        Ok(Self {
+            corrector: Corrector::new(n, settings.tolerance, settings.max_iterations)?,
+            settings,
+            row: try_vec(n + 1, 0.0, CONTEXT)?,
+            derivative: try_vec(n + 1, 0.0, CONTEXT)?,
+        })
+    }
+
+    fn metric(&self, a: &Point, b: &Point) -> Metric {
+        Metric::along(norm(a.unknowns()).max(norm(b.unknowns())), &self.settings)
+    }
+
+    /// The event between `a` and `b`, by the Illinois variant of regula falsi on the arc.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn locate(&mut self, problem: &mut dyn Problem, event: Event, a: &Point, b: &Point) -> Result<Option<Point>> {
+        let metric = self.metric(a, b);
+        let value = |point: &Point| event.function(point, metric.norm(&point.tangent));
+        let (mut low, mut high) = ((0.0, value(a)), (1.0, value(b)));
+        let mut best: Option<Point> = None;
+        if high.1 == 0.0 {
+            return Ok(Some(b.try_clone()?));
+        }
+        let mut side = 0;
+        for _ in 0..MAX_EVALUATIONS {
+            let s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+            let s = if s > low.0 && s < high.0 {
+                s
+            } else {
+                0.5 * (low.0 + high.0)
+            };
+            let Some(point) = self.solve_between(problem, metric, a, b, s, None)? else {
+                return Ok(best);
+            };
+            let f = value(&point);
+            best = Some(point);
+            if f == 0.0 || high.0 - low.0 < WIDTH {
+                break;
+            }
+            if (f > 0.0) == (low.1 > 0.0) {
+                if (s - low.0).abs() < WIDTH {
+                    break;
+                }
+                low = (s, f);
+                if side == -1 {
+                    high.1 *= 0.5;
+                }
+                side = -1;
+            } else {
+                if (s - high.0).abs() < WIDTH {
+                    break;
+                }
+                high = (s, f);
+                if side == 1 {
+                    low.1 *= 0.5;
+                }
+                side = 1;
+            }
+        }
+        Ok(best)
+    }
+
+    /// The solution at parameter `p` between `a` and `b`, whose parameters enclose it without a
+    /// fold in between.
+    ///
+    /// # Errors
+    /// What the problem reports.
+    pub fn at_parameter(&mut self, problem: &mut dyn Problem, a: &Point, b: &Point, p: f64) -> Result<Option<Point>> {
+        for end in [a, b] {
+            if end.parameter().to_bits() == p.to_bits() {
+                return Ok(Some(end.try_clone()?));
+            }
+        }
+        // Where the cubic is too poor a guess, a point of the branch near `p` halves the arc.
+        let mut arc = (a.try_clone()?, b.try_clone()?);
+        for _ in 0..MAX_HALVINGS {
+            let (a, b) = (&arc.0, &arc.1);
+            let metric = self.metric(a, b);
+            let s = self.where_at(a, b, metric, p)?;
+            if let Some(found) = self.solve_between(problem, metric, a, b, s, Some(p))? {
+                return Ok(Some(found));
+            }
+            let Some(middle) = self.solve_between(problem, metric, a, b, s.clamp(0.1, 0.9), None)? else {
+                return Ok(None);
+            };
+            let before = (middle.parameter() < p) == (b.parameter() > a.parameter());
+            arc = if before { (middle, arc.1) } else { (arc.0, middle) };
+        }
+        Ok(None)
+    }
+
+    /// Where on the arc from `a` to `b` the cubic has parameter `p`.
+    fn where_at(&mut self, a: &Point, b: &Point, metric: Metric, p: f64) -> Result<f64> {
+        let n = a.v.len() - 1;
+        let cubic = Cubic::new(a, b, metric);
+        let mut v = try_copy(&a.v, CONTEXT)?;
+        let (mut low, mut high) = (0.0, 1.0);
+        let rising = b.parameter() > a.parameter();
+        for _ in 0..50 {
+            let s = 0.5 * (low + high);
+            cubic.at(s, &mut v, &mut self.derivative);
+            if (v[n] < p) == rising {
+                low = s;
+            } else {
+                high = s;
+            }
+        }
+        Ok(0.5 * (low + high))
+    }
+
+    /// Solves in the plane across the cubic at s, or at a fixed parameter.
+    fn solve_between(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        a: &Point,
+        b: &Point,
+        s: f64,
+        fixed: Option<f64>,
+    ) -> Result<Option<Point>> {
+        let n = a.v.len() - 1;
+        let cubic = Cubic::new(a, b, metric);
+        let mut v = try_copy(&a.v, CONTEXT)?;
+        cubic.at(s, &mut v, &mut self.derivative);
+        if let Some(p) = fixed {
+            v[n] = p;
+            self.row.fill(0.0);
+            self.row[n] = 1.0;
+        } else {
+            metric.unit(&self.derivative, &mut self.row);
+        }
+        let guess = try_copy(&v, CONTEXT)?;
+        let outcome = self.corrector.correct(problem, &mut v, &self.row, metric, true, None)?;
+        let Outcome::Converged(corrected) = outcome else {
+            return Ok(None);
+        };
+        if metric.distance(&guess, &v) > cubic.chord {
+            return Ok(None);
+        }
+        if let Some(p) = fixed {
+            v[n] = p;
+        }
+        let mut point = Point::new(v, corrected, 0.0);
+        if metric.dot(&point.tangent, &self.derivative) < 0.0 {
+            point.reverse();
+        }
+        Ok(Some(point))
+    }
+}

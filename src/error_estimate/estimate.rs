@@ -1,0 +1,217 @@
+//! How far a solved point is from the periodic motion that harmonic balance tends to: an estimate of the
+//! error that the harmonics left out make, found with the equations of more harmonics.
+//!
+//! A solution W with harmonics up to H is extended to the reach H₂ of the structure, 2H + 1 at least: Z = (W, 0) is the
+//! start of a damped Newton method on the problem with harmonics up to H₂, which is stopped as soon as
+//! its own next step is small against the way that it went. With the last iterate Z, the simplified
+//! Newton step δ after it and Z* = Z + δ
+//!
+//! > η_W = (‖Z* − W‖ + ‖δ‖)/‖Z*‖,  η_X = (|X(Z*) − X(W)| + |∂X/∂Z δ|)/|X(Z*)|
+//!
+//! with X the response observed. One step would do where the extended harmonics hardly act on each other, kt|G_h| < 1/2
+//! for h > H. Where the structure resonates high among the harmonics, they do, through the stick phases of the
+//! contact, and neighbouring H agree with each other while all of them are wrong.
+//!
+//! The step is that of Deuflhard's natural monotonicity test (Newton Methods for Nonlinear Problems,
+//! 2004, §3.3), which neither the scaling of the equations nor the reference stiffness changes.
+
+use crate::condense::Condensed;
+use crate::error::{Result, Status, try_push, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::linalg::norm;
+use crate::options::{MAX_SAMPLES, SolverOptions};
+use crate::problem::contact_forces::ContactForces;
+use num_complex::Complex64;
+
+pub(super) const CONTEXT: &str = "the error estimate";
+
+/// Share s of the change that the next step may have: 0.1 costs about one step more than 0.3.
+pub(super) const SHARE: f64 = 0.1;
+
+/// Unknowns above which no dense matrix is made.
+pub(super) const MOST_UNKNOWNS: usize = 3000;
+
+/// Unknowns of a extended problem above which no estimate is made.
+pub(super) const MOST_EXTENDED: usize = 30_000;
+
+/// Share of the squared norm beyond the middle of the extended harmonics up to which harmonics beyond a reach that
+/// could not be afforded may be left out.
+pub(super) const CONVERGED_TAIL: f64 = 0.1;
+
+/// Relative size of what the laws bring forth in the extended harmonics that is rounding.
+pub(super) const ROUNDING: f64 = 1e-12;
+
+/// How wrong a solved point is by the harmonics that it leaves out, and in sampled laws by their samples.
+#[derive(Clone, Debug)]
+pub struct Estimate {
+    /// Whether the estimate may be relied on. Where it is not certified, all errors are NaN: unknown.
+    pub certified: bool,
+    /// Whether it is not because the extended problem would be larger than can be afforded, so that more harmonics
+    /// would not help.
+    pub too_large: bool,
+    /// Relative error of the relative motions at the contacts, in norm.
+    pub motion: f64,
+    /// Relative error of the complex fundamental of the response degree of freedom.
+    pub response: f64,
+    /// Relative error of the frequency of a nonlinear mode; 0 for a forced response.
+    pub frequency: f64,
+    /// Error of the damping ratio of a nonlinear mode, in units of it; 0 for a forced response.
+    pub damping: f64,
+    /// Highest harmonic number of the extended problem.
+    pub harmonics: usize,
+    /// Newton steps taken.
+    pub steps: usize,
+    /// ‖Z* − W‖/‖Z*‖
+    pub change: f64,
+    /// Carried harmonics above H with their share ‖Z*_h‖/‖Z*‖.
+    pub tail: Vec<(usize, f64)>,
+    /// The corrected solution.
+    pub corrected: Corrected,
+}
+
+/// A solution with the extended harmonics, one or two Newton steps nearer to the truth.
+#[derive(Clone, Debug)]
+pub struct Corrected {
+    /// The carried harmonics.
+    pub set: HarmonicSet,
+    /// Packed relative motions, coordinate after coordinate, in the caller's unit of length.
+    pub motion: Vec<f64>,
+    /// Fundamental of the response degree of freedom, in that unit.
+    pub response: Complex64,
+    /// Angular frequency.
+    pub omega: f64,
+    /// Damping ratio of a nonlinear mode.
+    pub damping: f64,
+}
+
+/// A solved point.
+#[derive(Clone, Copy)]
+pub struct Solved<'a> {
+    /// The model as it was condensed for the point.
+    pub condensed: &'a Condensed,
+    /// Packed relative motions, in the solver's unit of length.
+    pub motion: &'a [f64],
+    /// Angular frequency.
+    pub omega: f64,
+    /// Fundamental of the response degree of freedom, in the caller's unit of length.
+    pub response: Complex64,
+    /// Whether all contacts stick, where that is known.
+    pub sticks: Option<bool>,
+}
+
+impl Solved<'_> {
+    /// Whether every law is linear at this point, so that no harmonic is missing.
+    pub(super) fn is_linear(&self) -> Result<bool> {
+        if self.condensed.coordinates() == 0 {
+            return Ok(true);
+        }
+        if let Some(sticks) = self.sticks {
+            return Ok(sticks);
+        }
+        // The samples do not matter to a contact that sticks.
+        let mut forces = ContactForces::unchecked(self.condensed, 0)?;
+        match forces.evaluate(self.motion, self.omega) {
+            Err(e) if e.recoverable => Ok(false),
+            Err(e) => Err(e),
+            Ok(()) => Ok(forces.all_stuck()),
+        }
+    }
+
+    /// The estimate of a solution that misses nothing.
+    pub(super) fn exact(&self, damping: f64) -> Result<Estimate> {
+        let length = self.condensed.length();
+        let mut motion = try_vec(self.motion.len(), 0.0, CONTEXT)?;
+        for (to, from) in motion.iter_mut().zip(self.motion) {
+            *to = from * length;
+        }
+        Ok(Estimate {
+            certified: true,
+            too_large: false,
+            motion: 0.0,
+            response: 0.0,
+            frequency: 0.0,
+            damping: 0.0,
+            harmonics: self.condensed.set().numbers().last().copied().unwrap_or(0),
+            steps: 0,
+            change: 0.0,
+            tail: Vec::new(),
+            corrected: Corrected {
+                set: self.condensed.set().try_clone()?,
+                motion,
+                response: self.response,
+                omega: self.omega,
+                damping,
+            },
+        })
+    }
+
+    /// The estimate of a point of which nothing is known.
+    pub(super) fn unknown(&self, damping: f64, too_large: bool) -> Result<Estimate> {
+        Ok(Estimate {
+            certified: false,
+            too_large,
+            motion: f64::NAN,
+            response: f64::NAN,
+            frequency: f64::NAN,
+            damping: f64::NAN,
+            change: f64::NAN,
+            ..self.exact(damping)?
+        })
+    }
+
+    /// The packed motions in the harmonics of a extended model, zero above those of the point.
+    pub(super) fn extended(&self, to: &Condensed, unknowns: usize, factor: f64) -> Result<Vec<f64>> {
+        let factor = factor * self.condensed.length() / to.length();
+        let mut extended = try_vec(unknowns, 0.0, CONTEXT)?;
+        let motions = to.coordinates() * to.set().packed_len();
+        to.set()
+            .transfer(self.condensed.set(), self.motion, factor, &mut extended[..motions]);
+        Ok(extended)
+    }
+}
+
+/// Sizes of the harmonics above those of `below`, relative to the norm of all.
+pub(super) fn tail(set: &HarmonicSet, below: &HarmonicSet, motion: &[f64]) -> Result<Vec<(usize, f64)>> {
+    let size = norm(motion);
+    let highest = below.numbers().last().copied().unwrap_or(0);
+    let mut found = Vec::new();
+    for (i, &h) in set.numbers().iter().enumerate().filter(|&(_, &h)| h > highest) {
+        let of_one = |y: &[f64]| set.get(y, i).norm();
+        let sum = motion.chunks_exact(set.packed_len()).map(of_one).fold(0.0, f64::hypot);
+        try_push(&mut found, (h, sum / size), CONTEXT)?;
+    }
+    Ok(found)
+}
+
+/// Whether a solution has faded out at the end of its harmonics: what is beyond the middle of the tail is
+/// little against the change.
+pub(super) fn has_converged_tail(tail: &[(usize, f64)], change: f64) -> bool {
+    let beyond = tail[tail.len() / 2..].iter().fold(0.0, |s, &(_, x)| f64::hypot(s, x));
+    beyond <= CONVERGED_TAIL * change
+}
+
+/// Options of the extended problem. Samples grow with the harmonics and beyond, so that the estimate sees what
+/// the samples of the point miss.
+pub(super) fn extended_options(options: &SolverOptions, highest: usize) -> SolverOptions {
+    let samples = match options.samples {
+        0 => 0,
+        n => n.saturating_mul(4).max(8 * highest).min(MAX_SAMPLES),
+    };
+    SolverOptions {
+        harmonics: highest,
+        samples,
+        ..*options
+    }
+}
+
+/// An estimate that could not be made is unknown, unless a callback gives up.
+pub(super) fn or_unknown(found: Result<Option<Estimate>>, solved: &Solved<'_>, damping: f64) -> Result<Estimate> {
+    match found {
+        Ok(Some(estimate)) => Ok(estimate),
+        Ok(None) => solved.unknown(damping, false),
+        Err(e) if e.recoverable || matches!(e.status, Status::Singular | Status::OutOfMemory) => {
+            solved.unknown(damping, e.status == Status::OutOfMemory)
+        }
+        Err(e) => Err(e),
+    }
+}

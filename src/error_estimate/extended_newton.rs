@@ -1,0 +1,118 @@
+//! The damped Newton method on the extended problem, stopped by its own next step.
+
+use crate::error::{Result, try_copy, try_vec};
+use crate::error_estimate::estimate::{CONTEXT, SHARE};
+use crate::error_estimate::extended_system::System;
+use crate::linalg::norm;
+
+/// Most Newton steps of a lift.
+const MOST_STEPS: usize = 24;
+
+/// Relative size of a first step that is as good as the last one where the extended harmonics are weak.
+const SHORT: f64 = 0.1;
+
+/// Damping factor below which a step is taken as it is.
+const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
+
+/// Where a lift ended.
+pub(super) struct ExtendedSystem {
+    /// Z, at which the problem was evaluated last.
+    pub at: Vec<f64>,
+    /// δ, the simplified Newton step from there.
+    pub next: Vec<f64>,
+    /// Whether δ is small enough.
+    pub certified: bool,
+    /// Newton steps taken, each with a factorisation.
+    pub steps: usize,
+    /// Share of δ that may still be missing in Z*.
+    pub missing: f64,
+}
+
+impl ExtendedSystem {
+    /// Z* = Z + δ
+    pub fn corrected(&self) -> Result<Vec<f64>> {
+        sum(&self.at, &self.next)
+    }
+}
+
+fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
+    let mut sum = try_copy(a, CONTEXT)?;
+    for (s, b) in sum.iter_mut().zip(b) {
+        *s += b;
+    }
+    Ok(sum)
+}
+
+/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough` says that δ, given after the
+/// change Z + δ − start, is small. `None` where some evaluation or matrix fails.
+///
+/// Where the extended harmonics are known to be `weak`, kt|G_h| < 1/2, and the first step is short, it is taken for δ: the
+/// next one would be shorter by far.
+///
+/// # Errors
+/// What the system reports, but for singular matrices and what another motion may not meet.
+pub(super) fn extend(
+    system: &mut dyn System,
+    start: &[f64],
+    enough: impl Fn(&[f64], &[f64]) -> bool,
+    weak: bool,
+) -> Result<Option<ExtendedSystem>> {
+    let n = start.len();
+    let mut z = try_copy(start, CONTEXT)?;
+    let mut step = try_vec(n, 0.0, CONTEXT)?;
+    let mut next = try_vec(n, 0.0, CONTEXT)?;
+    let mut change = try_vec(n, 0.0, CONTEXT)?;
+    let mut trial = try_vec(n, 0.0, CONTEXT)?;
+    let mut damping = 1.0_f64;
+    for steps in 1..=MOST_STEPS {
+        if !system.factor()? || !system.step(&mut step)? {
+            return Ok(None);
+        }
+        let size = norm(&step);
+        if weak && steps == 1 && size <= SHORT * norm(start) {
+            return Ok(Some(ExtendedSystem {
+                at: z,
+                next: step,
+                certified: true,
+                steps,
+                missing: SHARE,
+            }));
+        }
+        damping = (4.0 * damping).min(1.0);
+        loop {
+            for ((t, z), d) in trial.iter_mut().zip(&z).zip(&step) {
+                *t = z + damping * d;
+            }
+            let last = damping <= SMALLEST_DAMPING;
+            if system.evaluate(&trial)? {
+                if !system.step(&mut next)? {
+                    return Ok(None);
+                }
+                if last || norm(&next) <= (1.0 - 0.25 * damping) * size {
+                    break;
+                }
+            } else if last {
+                return Ok(None);
+            }
+            damping *= 0.5;
+        }
+        z.copy_from_slice(&trial);
+        for (((c, z), d), s) in change.iter_mut().zip(&z).zip(&next).zip(start) {
+            *c = z + d - s;
+        }
+        if !change.iter().all(|x| x.is_finite()) {
+            return Ok(None);
+        }
+        let certified = enough(&change, &next);
+        if certified || steps == MOST_STEPS {
+            return Ok(Some(ExtendedSystem {
+                at: z,
+                next,
+                certified,
+                steps,
+                missing: 1.0,
+            }));
+        }
+    }
+    Ok(None)
+}

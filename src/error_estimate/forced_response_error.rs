@@ -1,0 +1,233 @@
+//! The error of a point of a forced response.
+
+use crate::condense::Condensed;
+use crate::error::{Result, try_vec};
+use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
+use crate::error_estimate::estimate::{
+    CONTEXT, MOST_EXTENDED, MOST_UNKNOWNS, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
+};
+use crate::error_estimate::extended_newton::extend;
+use crate::error_estimate::extended_system::{Core, System};
+use crate::error_estimate::{Corrected, Estimate, ExtendedModels, Solved};
+use crate::fourier::HarmonicSet;
+use crate::linalg::norm;
+use crate::model::Model;
+use crate::options::SolverOptions;
+use crate::problem::Problem;
+use crate::problem::harmonic_balance::HarmonicBalance;
+use num_complex::Complex64;
+
+/// Estimates the errors of points of one model, one after the other.
+pub struct ForcedEstimator<'a> {
+    model: &'a Model,
+    options: SolverOptions,
+    response: usize,
+    cutoff: Option<CutoffHarmonic>,
+    extended_models: &'a ExtendedModels,
+    /// The problem extended last, with its slot on the shelf.
+    extended: Option<(usize, Core<'a>)>,
+}
+
+impl<'a> ForcedEstimator<'a> {
+    /// For solutions of `model` with these options, observing degree of freedom `response`.
+    #[must_use]
+    pub fn new(
+        model: &'a Model,
+        options: &SolverOptions,
+        response: usize,
+        extended_models: &'a ExtendedModels,
+    ) -> Self {
+        Self {
+            model,
+            options: *options,
+            response,
+            cutoff: None,
+            extended_models,
+            extended: None,
+        }
+    }
+
+    /// The estimate at a solved point; not certified where it could not be made.
+    ///
+    /// # Errors
+    /// Those of callbacks that give up.
+    pub fn at(&mut self, solved: &Solved<'_>) -> Result<Estimate> {
+        if solved.is_linear()? {
+            return solved.exact(0.0);
+        }
+        let found = self.extend(solved);
+        or_unknown(found, solved, 0.0)
+    }
+
+    /// How far to lift; none where the problem would be too large.
+    fn extent(&mut self, solved: &Solved<'_>) -> Result<Option<Extent>> {
+        let set = solved.condensed.set();
+        let own = set.numbers().last().copied().unwrap_or(0);
+        let most = cutoff_harmonic::affordable(solved.condensed, MOST_UNKNOWNS);
+        let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
+        if own > most || least > cutoff_harmonic::affordable(solved.condensed, MOST_EXTENDED) {
+            return Ok(None);
+        }
+        if self.cutoff.is_none() {
+            let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
+            let options = extended_options(&self.options, waves);
+            let condensed = Condensed::new(self.model, &options, solved.omega)?;
+            self.cutoff = Some(CutoffHarmonic::new(condensed)?);
+        }
+        let Some(cutoff) = &mut self.cutoff else {
+            return Ok(None);
+        };
+        let core = cutoff.at(solved.omega, set.base(), most)?;
+        Ok(Some(Extent {
+            core,
+            highest: core.max(least),
+            weak: core <= own,
+            short: core >= most,
+        }))
+    }
+
+    fn extend(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
+        let Some(extent) = self.extent(solved)? else {
+            return solved.unknown(0.0, true).map(Some);
+        };
+        let Some(slot) = self.extended_models.slot(extent.highest) else {
+            return solved.unknown(0.0, true).map(Some);
+        };
+        let omega = solved.omega;
+        let condensed = self.extended_models.model(slot, |highest| {
+            Condensed::new(self.model, &extended_options(&self.options, highest), omega)
+        })?;
+        let set = condensed.set();
+        let core = set.numbers().partition_point(|&h| h <= extent.core);
+        let mut system = match self.extended.take() {
+            Some((kept, system)) if kept == slot => system,
+            _ => {
+                let samples = extended_options(&self.options, set.numbers().last().copied().unwrap_or(0)).samples;
+                Core::new(HarmonicBalance::new(
+                    condensed,
+                    self.response,
+                    (omega, omega),
+                    samples,
+                    None,
+                )?)?
+            }
+        };
+        system.aim(omega, core)?;
+        let found = on(&mut system, condensed, solved, extent, self.options.tol_residual);
+        self.extended = Some((slot, system));
+        found
+    }
+}
+
+fn on(
+    system: &mut Core<'_>,
+    condensed: &Condensed,
+    solved: &Solved<'_>,
+    extent: Extent,
+    tolerance: f64,
+) -> Result<Option<Estimate>> {
+    let (omega, set) = (solved.omega, condensed.set());
+    if set.numbers().len() == solved.condensed.set().numbers().len() {
+        // Constant forces alone: nothing vibrates.
+        return solved.exact(0.0).map(Some);
+    }
+    let n = system.problem.size();
+    let start = solved.extended(condensed, n, 1.0)?;
+    if !system.evaluate(&start)? {
+        return Ok(None);
+    }
+    let residual = (&system.at.residual[..], system.at.scale);
+    if misses_nothing(residual, set, solved.condensed.set(), tolerance) {
+        return solved.exact(0.0).map(Some);
+    }
+    let enough = |change: &[f64], next: &[f64]| {
+        let next = norm(next);
+        next <= SHARE * norm(change) || next <= ROUNDING * norm(&start)
+    };
+    let Some(extended) = extend(system, &start, enough, extent.weak)? else {
+        return Ok(None);
+    };
+    let mut z = extended.corrected()?;
+    let size = norm(&z);
+    let mut change = try_vec(n, 0.0, CONTEXT)?;
+    for ((c, z), s) in change.iter_mut().zip(&z).zip(&start) {
+        *c = z - s;
+    }
+    let change = norm(&change) / size;
+    let mut direction = try_vec(n + 1, 0.0, CONTEXT)?;
+    direction[..n].copy_from_slice(&extended.next);
+    let (x, dx) = system.problem.observe(&extended.at, &direction);
+    let length = condensed.length();
+    let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
+    let tail = tail(set, solved.condensed.set(), &z)?;
+    let certified = extended.certified && (!extent.short || has_converged_tail(&tail, change));
+    let known = |x: f64| if certified { x } else { f64::NAN };
+    for z in &mut z {
+        *z *= length;
+    }
+    Ok(Some(Estimate {
+        certified,
+        too_large: !certified && extent.short,
+        motion: known(change + extended.missing * norm(&extended.next) / size),
+        response: known(relative((response - solved.response).norm() + next, response)),
+        frequency: known(0.0),
+        damping: known(0.0),
+        harmonics: set.numbers().last().copied().unwrap_or(0),
+        steps: extended.steps,
+        change,
+        tail,
+        corrected: Corrected {
+            set: set.try_clone()?,
+            motion: z,
+            response,
+            omega,
+            damping: 0.0,
+        },
+    }))
+}
+
+/// How far a point is extended.
+#[derive(Clone, Copy)]
+struct Extent {
+    /// Highest harmonic of the core, in which the structure gives.
+    core: usize,
+    /// Highest harmonic of all.
+    highest: usize,
+    /// Whether the structure gives in none of the harmonics that the point leaves out.
+    weak: bool,
+    /// Whether the structure may give beyond the core, which would be too large.
+    short: bool,
+}
+
+/// A difference relative to a number; 0 where there is none.
+pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
+    if difference == 0.0 {
+        0.0
+    } else {
+        difference / number.norm()
+    }
+}
+
+/// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem as well:
+/// nothing acts above them, and below them more samples change nothing.
+pub(super) fn misses_nothing(
+    (residual, scale): (&[f64], f64),
+    set: &HarmonicSet,
+    below: &HarmonicSet,
+    tolerance: f64,
+) -> bool {
+    above(set, below, residual) <= ROUNDING * scale && norm(residual) <= 10.0 * tolerance * scale
+}
+
+/// Norm of what packed signals of `set` hold above the harmonics of `below`.
+pub(super) fn above(set: &HarmonicSet, below: &HarmonicSet, packed: &[f64]) -> f64 {
+    let highest = below.numbers().last().copied().unwrap_or(0);
+    let first = set.numbers().partition_point(|&h| h <= highest);
+    let from = if first < set.numbers().len() {
+        set.offset(first)
+    } else {
+        set.packed_len()
+    };
+    let signals = packed.chunks_exact(set.packed_len());
+    signals.map(|y| norm(&y[from..])).fold(0.0, f64::hypot)
+}

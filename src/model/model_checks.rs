@@ -1,0 +1,87 @@
+//! What a model asks of a contact or spring before it takes it in: degrees of freedom that exist, none
+//! of them twice, and two different sides.
+
+use crate::contact::Contact;
+use crate::contact::relative_motion::Direction;
+use crate::error::{Result, fail, try_push};
+use crate::model::Model;
+
+impl Model {
+    pub(super) fn check_contact(&self, contact: &Contact) -> Result<()> {
+        contact.check_constants()?;
+        for (name, side) in [("dof_a", &contact.dof_a), ("dof_b", &contact.dof_b)] {
+            let dofs = || side.iter().enumerate().filter_map(|(i, dof)| dof.map(|dof| (i, dof)));
+            dofs().try_for_each(|(i, dof)| self.check_dof(name, i, dof))?;
+            for (i, dof) in dofs() {
+                if let Some((j, _)) = dofs().find(|&(j, other)| j > i && other == dof) {
+                    return twice(name, i, j, dof);
+                }
+            }
+        }
+        self.check_list("dofs", &contact.dofs)?;
+        for k in 0..contact.directions() {
+            self.check_sides("contact", &contact.direction(k), contact.sector_offset)?;
+        }
+        Ok(())
+    }
+
+    /// Entry `i` of a list must be a degree of freedom of the model.
+    fn check_dof(&self, list: &str, i: usize, dof: usize) -> Result<()> {
+        if dof < self.ndof() {
+            return Ok(());
+        }
+        fail!(Index, "contact: {list}[{i}] = {dof}, needs 0 .. {}", self.ndof() - 1)
+    }
+
+    /// A list must name degrees of freedom of the model, each once.
+    fn check_list(&self, list: &str, dofs: &[usize]) -> Result<()> {
+        let mut places = Vec::new();
+        for (i, &dof) in dofs.iter().enumerate() {
+            self.check_dof(list, i, dof)?;
+            try_push(&mut places, (dof, i), "a list of degrees of freedom")?;
+        }
+        // Neighbours in order find a repetition in a long list, too.
+        places.sort_unstable();
+        match places.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            Some(pair) => twice(list, pair[0].1, pair[1].1, pair[0].0),
+            None => Ok(()),
+        }
+    }
+
+    /// Both sides of a contact or spring must exist and differ.
+    pub(super) fn check_sides(&self, what: &str, sides: &Direction, sector_offset: i64) -> Result<()> {
+        let n = self.ndof();
+        for (name, side) in [("dof_a", sides.a), ("dof_b", sides.b)] {
+            if let Some((dof, _)) = side.into_iter().flatten().find(|&(d, _)| d >= n) {
+                return fail!(Index, "{what}: {name} = {dof}, needs 0 .. {}", n - 1);
+            }
+        }
+        let same_sector = self.structure().same_sector(sector_offset);
+        let grounded = sides.a.iter().all(Option::is_none);
+        if sides.a == sides.b && (same_sector || grounded) {
+            return fail!(
+                Argument,
+                "{what}: dof_a and dof_b are both {}; it needs two different sides",
+                if grounded {
+                    "the ground"
+                } else {
+                    "the same degree of freedom"
+                }
+            );
+        }
+        if sector_offset != 0 && self.structure().sectors() == 1 {
+            return fail!(
+                Argument,
+                "{what}: sector_offset = {sector_offset}, needs 0 in a plain structure"
+            );
+        }
+        Ok(())
+    }
+}
+
+fn twice(list: &str, i: usize, j: usize, dof: usize) -> Result<()> {
+    fail!(
+        Argument,
+        "contact: {list}[{i}] and {list}[{j}] are both {dof}, need different degrees of freedom"
+    )
+}

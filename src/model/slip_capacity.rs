@@ -1,0 +1,194 @@
+//! Why a structure may have no bounded response: a resonance without damping, forced beyond what its
+//! contacts can take.
+//!
+//! Let φ be a motion that the structure without its contacts does not resist at hω: φᴴ Z = 0 with
+//! Z = K − h²ω²M + ihωC. Harmonic h of the equation of motion, Z X + Wᴴ f = F, then leaves of itself, whatever the
+//! motion,
+//!
+//! > φᴴ F = Σ conj(w φ) f,
+//!
+//! the sum over the relative motions w of the contacts. A contact force that never exceeds L has no larger
+//! harmonic than that of a square wave, 4L/π, and no larger mean than L. Where |φᴴ F| is above Σ |w φ| 4L/π
+//! nothing bounded solves the equation, in time or in any number of harmonics.
+//!
+//! A resonance is met to rounding only. With r = φᴴ Z and the excess e of the force over the capacity, |r|·|X| ≥ e
+//! for any solution X: a bound of the motion from below, which tells how near is near enough.
+
+use crate::contact::Role;
+use crate::error::{Result, Status, try_copy, try_vec};
+use crate::linalg::factor::Factor;
+use crate::linalg::quadratic::quadratic;
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::spring::{Wave, along, relative_row};
+use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+/// A motion that the structure without its contacts does not resist at a harmonic of the frequency.
+#[derive(Clone, Debug)]
+pub struct Resonance {
+    /// Harmonic number h.
+    pub harmonic: usize,
+    /// The motion φ, its largest component of modulus 1.
+    pub shape: Vec<Complex64>,
+    /// Force on it, |φᴴ F|.
+    pub force: f64,
+    /// The most that the contacts can take of it; infinite where one of them has a force without bound.
+    pub slip_capacity: f64,
+    /// Largest motion that any solution has at least, over that which the force gives to the inertia alone.
+    pub growth: f64,
+}
+
+/// Relative distance of the shift from the frequency squared.
+const SHIFT: f64 = 1e-8;
+
+/// Most steps of the inverse iteration, each of which gains the digits of [`SHIFT`].
+const MAX_STEPS: usize = 6;
+
+/// Rounding of the force and of the capacity, relative to the sizes of their terms.
+const ROUNDING: f64 = 1e-12;
+
+/// Growth that is no motion any more: it asks for more digits of frequency and stiffness than there are.
+const BEYOND: f64 = 1e10;
+
+const CONTEXT: &str = "the resonance";
+
+impl Resonance {
+    /// Whether no bounded motion carries the force.
+    #[must_use]
+    pub fn is_overloaded(&self) -> bool {
+        self.growth >= BEYOND
+    }
+}
+
+impl Model {
+    /// The resonance without damping that keeps the model from a bounded response at the angular frequency `omega`,
+    /// if one is known to do so.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, and those of [`Self::sprung_stiffness`].
+    pub fn overload(&self, omega: f64) -> Result<Option<Resonance>> {
+        let mut last = None;
+        for force in self.excitation().forces() {
+            if last == Some(force.harmonic) || force.value == Complex64::ZERO {
+                continue;
+            }
+            last = Some(force.harmonic);
+            let found = self.resonance(omega, force.harmonic)?;
+            if found.as_ref().is_some_and(Resonance::is_overloaded) {
+                return Ok(found);
+            }
+        }
+        Ok(None)
+    }
+
+    /// The forced motion nearest to one that the structure without its contacts does not resist in `harmonic` of
+    /// `omega`; `None` where inverse iteration finds none.
+    ///
+    /// # Errors
+    /// As [`Self::overload`].
+    pub fn resonance(&self, omega: f64, harmonic: usize) -> Result<Option<Resonance>> {
+        let n = self.ndof();
+        let structure = self.structure();
+        let wave = Wave::Harmonic(harmonic);
+        let springs = self.contacts().iter().filter(|c| c.role() == Role::Spring);
+        let stiffness = self.sprung_stiffness(wave, springs)?;
+        let damping = structure.wave_matrix(MatrixKind::Damping, harmonic)?;
+        let mass = structure.wave_matrix(MatrixKind::Mass, harmonic)?;
+        let w = harmonic as f64 * omega;
+        let square = omega * omega * (harmonic.max(1) as f64).powi(2);
+        let dynamic = |inertia: f64| {
+            let terms = [
+                (Complex64::ONE, &stiffness, Form::Plain),
+                (Complex64::new(0.0, w), &damping, Form::Plain),
+                (inertia.into(), &mass, Form::Plain),
+            ];
+            Csc::sum(n, &terms)
+        };
+        let z = dynamic(-w * w)?;
+        // The force itself begins: of repeated resonances it picks the motion that it works on most.
+        let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        self.excitation().add_to(harmonic, 1.0, &mut forces);
+        let Some(shape) = left_null(&dynamic(-w * w - SHIFT * square)?, &mass, &forces)? else {
+            return Ok(None);
+        };
+        let r = (0..n).map(|j| {
+            let column = z.column(j).map(|(i, v)| shape[i].conj() * v);
+            column.sum::<Complex64>().norm()
+        });
+        let resistance: f64 = r.sum();
+        let work = |(x, f): (&Complex64, &Complex64)| x.conj() * f;
+        let force = shape.iter().zip(&forces).map(work).sum::<Complex64>().norm();
+        let size: f64 = shape.iter().zip(&forces).map(|z| work(z).norm()).sum();
+        let slip_capacity = self.slip_capacity(harmonic, &shape);
+        let excess = force - slip_capacity * (1.0 + ROUNDING) - ROUNDING * size;
+        let inertia = square * quadratic(&mass, &shape);
+        let growth = if excess > 0.0 && inertia > 0.0 {
+            // Without any resistance it is infinite.
+            excess / resistance * (inertia / force)
+        } else {
+            0.0
+        };
+        Ok(Some(Resonance {
+            harmonic,
+            shape,
+            force,
+            slip_capacity,
+            growth,
+        }))
+    }
+
+    /// The most that the contacts can take of a force on the motion φ in a harmonic: Σ |w φ| 4L/π.
+    fn slip_capacity(&self, harmonic: usize, shape: &[Complex64]) -> f64 {
+        let wave = if harmonic == 0 { 1.0 } else { 4.0 / PI };
+        let mut sum = 0.0;
+        for contact in self.contacts().iter().filter(|c| c.role() == Role::Active) {
+            let phase = self.structure().phase(harmonic, contact.sector_offset);
+            for k in 0..contact.directions() {
+                let motion = along(&relative_row(&contact.direction(k), phase), shape).norm();
+                // A contact that the motion leaves alone takes nothing of it, whatever its force.
+                if motion > 0.0 {
+                    sum += wave * contact.largest_force() * motion;
+                }
+            }
+        }
+        sum
+    }
+}
+
+/// φ with φᴴ Z = 0 as nearly as rounding lets it, from the force: inverse iteration φ ← S⁻ᴴ M φ with S = Z − ε M,
+/// whose limit does not depend on ε. `None` where it leads nowhere.
+fn left_null(shifted: &Csc, mass: &Csc, force: &[Complex64]) -> Result<Option<Vec<Complex64>>> {
+    match iterate(shifted, mass, force) {
+        Err(e) if e.status == Status::Singular => Ok(None),
+        outcome => outcome,
+    }
+}
+
+fn iterate(shifted: &Csc, mass: &Csc, force: &[Complex64]) -> Result<Option<Vec<Complex64>>> {
+    let mut factor = Factor::new(shifted, 1)?;
+    factor.factor(shifted)?;
+    let mut x = try_copy(force, CONTEXT)?;
+    let mut load = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
+    for i in 0..MAX_STEPS {
+        if i > 0 {
+            load.fill(Complex64::ZERO);
+            mass.multiply_add(Complex64::ONE, &x, &mut load);
+            x.copy_from_slice(&load);
+        }
+        // S⁻ᴴ b is the conjugate of S⁻ᵀ times the conjugate of b.
+        for x in &mut x {
+            *x = x.conj();
+        }
+        factor.solve(&mut x, true)?;
+        let largest = x.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
+        if largest == 0.0 {
+            return Ok(None);
+        }
+        for x in &mut x {
+            *x = x.conj() / largest;
+        }
+    }
+    Ok(Some(x))
+}

@@ -1,0 +1,351 @@
+//! A nonlinear mode as a [`Problem`]: extended periodic motion, in which an artificial negative
+//! damping balances the losses of the structure and its contacts (Krack 2015,
+//! doi:10.1016/j.compstruc.2015.03.008).
+//!
+//! M ẍ + (C − 2DωM) ẋ + K x + f(x) = 0, or −ζK ẋ with D = ζω/2. With x = a·x̂ unknown are the
+//! packed relative motions ŷ, the frequency ω and the damping ratio D; the parameter is log₁₀ a.
+//! A law sees the amplitude by scaling alone, f̂(ŷ) = f(a ŷ)/a, as it does where it is eased by 1/a;
+//! hence ∂f̂/∂log₁₀a = −ln 10·∂f̂/∂ln s.
+//!
+//! > R = ŷ_h − W x̂_h,  x̂_h = −Z_h(ω, D)⁻¹ Wᴴ (f̂_h − κ ŷ_h),
+//! > L²·x̂₁ᴴ B x̂₁ − 1,  Im x̂₁[reference]/scale
+//!
+//! with B = M, or rᴴr where a contact measures the amplitude.
+
+use crate::condense::Condensed;
+use crate::condense::modal_flexibility::Modal;
+use crate::error::{Result, fail, try_vec};
+use crate::linalg::{inner, norm};
+use crate::model::spring::{Row, along};
+use crate::problem::contact_forces::ContactForces;
+use crate::problem::{InitialGuess, Linearisation, Problem, put};
+use num_complex::Complex64;
+use std::f64::consts::LN_10;
+
+/// Change of ln ω that weighs as much as a change of the motions by their size.
+const OMEGA_UNIT: f64 = 0.05;
+
+/// Change of D that weighs as much.
+const DAMPING_UNIT: f64 = 2e-3;
+
+/// Distance below the onset of slip, in log₁₀, at which contacts surely stick whatever the rounding.
+const ONSET_ROUNDING: f64 = 1e-9;
+
+/// Share of the structure's largest motion that counts as size of the residual. A relative motion is
+/// known to the rounding of the motions that are solved for, which may be thousands of times larger:
+/// a tolerance of 1e-10 then asks for no more than 1e-12 of them.
+const OF_MOTION: f64 = 1e-2;
+
+/// Frequency relative to the linear mode's below which a motion is no vibration. Where a structure
+/// softens until its stiffness is gone, the frequency falls towards zero at an amplitude that stays;
+/// inertia is then lost in the rounding of the stiffness, and D with it.
+const VANISHED: f64 = 1e-5;
+
+/// What fixes amplitude and phase of a mode.
+#[derive(Clone, Debug)]
+pub struct Gauge {
+    /// The relative motion whose fundamental is the amplitude; `None`: the modal amplitude
+    /// (x₁ᴴ M x₁)^½.
+    pub contact: Option<Row>,
+    /// Degree of freedom whose fundamental is real.
+    pub reference_dof: usize,
+}
+
+/// The linear mode from which a nonlinear one starts, at amplitude 1.
+#[derive(Clone, Debug)]
+pub struct LinearMode {
+    /// Angular frequency.
+    pub omega: f64,
+    /// Damping ratio.
+    pub damping: f64,
+    /// Fundamental of all degrees of freedom, in the caller's units.
+    pub shape: Vec<Complex64>,
+}
+
+/// A nonlinear mode of a condensed model.
+pub struct Epmc<'a> {
+    condensed: &'a Condensed,
+    forces: ContactForces<'a>,
+    modal: Modal,
+    gauge: &'a Gauge,
+    linear: &'a LinearMode,
+    /// Fixed log₁₀ a while the parameter is the logarithm of a further factor on the laws.
+    eased_at: Option<f64>,
+    /// x̂ of all carried harmonics, as last evaluated.
+    x: Vec<Complex64>,
+    weighted: Vec<Complex64>,
+    w: Vec<Complex64>,
+    /// One number per coordinate, for a column of the Jacobian.
+    sum: Vec<Complex64>,
+    /// G of one harmonic, column-major.
+    flexibility: Vec<Complex64>,
+}
+
+impl<'a> Epmc<'a> {
+    /// A problem on `condensed`, made by [`Condensed::for_mode`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &'a Condensed, gauge: &'a Gauge, linear: &'a LinearMode, samples: usize) -> Result<Self> {
+        const CONTEXT: &str = "the nonlinear mode";
+        let n = condensed.ndof();
+        Ok(Self {
+            condensed,
+            forces: ContactForces::new(condensed, samples)?,
+            modal: Modal::new(condensed)?,
+            gauge,
+            linear,
+            eased_at: None,
+            x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
+            weighted: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+            sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+            flexibility: try_vec(condensed.coordinates().saturating_pow(2), Complex64::ZERO, CONTEXT)?,
+        })
+    }
+
+    /// Frequency and damping ratio that belong to unknowns.
+    #[must_use]
+    pub fn frequency_and_damping(linear: &LinearMode, u: &[f64]) -> (f64, f64) {
+        let n = u.len();
+        (
+            linear.omega * (OMEGA_UNIT * u[n - 2]).exp(),
+            linear.damping + DAMPING_UNIT * u[n - 1],
+        )
+    }
+
+    /// Sets the unknowns that stand for frequency and damping ratio.
+    pub fn set_frequency_and_damping(linear: &LinearMode, (omega, damping): (f64, f64), u: &mut [f64]) {
+        let n = u.len();
+        u[n - 2] = (omega / linear.omega).ln() / OMEGA_UNIT;
+        u[n - 1] = (damping - linear.damping) / DAMPING_UNIT;
+    }
+
+    /// Change of the damping ratio that belongs to a change of the unknowns.
+    #[must_use]
+    pub fn damping_of_change(change: &[f64]) -> f64 {
+        DAMPING_UNIT * change.last().copied().unwrap_or(0.0)
+    }
+
+    /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic,
+    /// at the point last evaluated, in the solver's units.
+    #[must_use]
+    pub fn shape(&self) -> &[Complex64] {
+        &self.x
+    }
+
+    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    ///
+    /// # Errors
+    /// Those of callbacks that give up.
+    pub fn sampling_error(&mut self, motion: &[f64], omega: f64) -> Result<f64> {
+        self.forces.sampling_error(motion, omega)
+    }
+
+    /// The contact forces at the point last evaluated.
+    #[must_use]
+    pub fn forces(&self) -> &ContactForces<'a> {
+        &self.forces
+    }
+
+    /// The linear mode as unknowns.
+    pub fn linear_start(&self, u: &mut [f64]) {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        u.fill(0.0);
+        let fundamental = self.condensed.set().fundamental();
+        let rows = &self.condensed.blocks()[fundamental].rows;
+        let phase = self.linear.shape[self.gauge.reference_dof];
+        let turn = phase.conj() / (phase.norm() * self.condensed.length());
+        for (c, row) in rows.iter().enumerate() {
+            let y = along(row, &self.linear.shape) * turn;
+            set.set(&mut u[c * m..(c + 1) * m], fundamental, y);
+        }
+    }
+
+    /// log₁₀ of the amplitudes up to which all laws are linear, −∞ where one of them never is, and up
+    /// to which they nearly are, so that the linear mode is a sure start. Where a law does not know, that
+    /// is judged from `first`, the log₁₀ of the first amplitude wanted.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
+        let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
+        self.linear_start(&mut u);
+        let motion = &u[..u.len() - 2];
+        let nearly = -self.forces.linearisation_scale(motion, self.linear.omega)?.log10();
+        if !self.forces.have_known_linear_range() {
+            return Ok((f64::NEG_INFINITY, first.min(0.0) + nearly));
+        }
+        self.forces.set_scale(10f64.powf(ONSET_ROUNDING - nearly));
+        self.forces.evaluate(motion, self.linear.omega)?;
+        let exactly = if self.forces.all_stuck() {
+            nearly
+        } else {
+            f64::NEG_INFINITY
+        };
+        Ok((exactly, nearly))
+    }
+
+    /// B x̂ of the fundamental, times L².
+    fn weigh(&mut self) {
+        let i = self.condensed.set().fundamental();
+        let x = self.modal.x();
+        let length = self.condensed.length();
+        self.weighted.fill(Complex64::ZERO);
+        if let Some(row) = &self.gauge.contact {
+            let y = along(row, x);
+            for &(p, a) in row.iter().flatten() {
+                self.weighted[p] += a.conj() * y;
+            }
+        } else {
+            self.condensed.blocks()[i].multiply_mass(x, &mut self.weighted);
+        }
+        for z in &mut self.weighted {
+            *z *= length * length;
+        }
+    }
+
+    /// Amplitude and phase, with their derivatives, in the last two rows of the system.
+    fn fix_gauge(&mut self, rates: (f64, f64), by_parameter: f64, out: &mut Linearisation) {
+        self.weigh();
+        let n = out.residual.len();
+        let (amplitude, phase) = (n - 2, n - 1);
+        let i = self.condensed.set().fundamental();
+        let dof = self.gauge.reference_dof;
+        let scale = self.condensed.length() / self.linear.shape[dof].norm();
+        let x = self.modal.x();
+        out.residual[amplitude] = inner(&self.weighted, x).re - 1.0;
+        out.residual[phase] = scale * x[dof].im;
+        for c in 0..self.condensed.coordinates() {
+            let column = self.modal.column(c);
+            // x̂ changes by −column·dw; Im z = Re(−i z).
+            let size = -2.0 * inner(&self.weighted, column);
+            let turn = Complex64::I * scale * column[dof];
+            let eased = self.forces.d_ln_scale(c, i) * by_parameter;
+            for (row, g) in [(amplitude, size), (phase, turn)] {
+                self.forces.couple_scalar(i, (row, c), g, &mut out.jacobian, n);
+                out.d_parameter[row] += (g * eased).re;
+                out.jacobian[(n - 2) * n + row] += rates.0 * (g * self.forces.by_omega(c, i)).re;
+            }
+        }
+        for (column, rate, dx) in [
+            (n - 2, rates.0, self.modal.by_omega()),
+            (n - 1, rates.1, self.modal.by_damping()),
+        ] {
+            out.jacobian[column * n + amplitude] += 2.0 * rate * inner(&self.weighted, dx).re;
+            out.jacobian[column * n + phase] += rate * scale * dx[dof].im;
+        }
+    }
+}
+
+impl Problem for Epmc<'_> {
+    fn size(&self) -> usize {
+        self.condensed.coordinates() * self.condensed.set().packed_len() + 2
+    }
+
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
+        // f̂ depends on the parameter through ln s: s = 1/a, or s = e^p/a in a homotopy.
+        let by_parameter = match self.eased_at {
+            None => {
+                self.forces.set_scale(10f64.powf(-p));
+                -LN_10
+            }
+            Some(log10) => {
+                self.forces.set_scale(10f64.powf(-log10) * p.exp());
+                1.0
+            }
+        };
+        let n = u.len();
+        let motion = &u[..n - 2];
+        let (omega, damping) = Self::frequency_and_damping(self.linear, u);
+        if !(omega >= VANISHED * self.linear.omega && omega.is_finite()) {
+            return fail!(Singular, "the angular frequency became {omega}: no vibration is left");
+        }
+        let rates = (OMEGA_UNIT * omega, DAMPING_UNIT);
+        self.forces.evaluate(motion, omega)?;
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let coordinates = self.condensed.coordinates();
+        out.residual[..n - 2].copy_from_slice(motion);
+        out.d_parameter.fill(0.0);
+        out.jacobian.fill(0.0);
+        out.active.fill(true);
+        for k in 0..n - 2 {
+            out.jacobian[k * n + k] = 1.0;
+        }
+        let dofs = self.condensed.ndof();
+        let mut largest = 0.0_f64;
+        for (i, block) in self.condensed.blocks().iter().enumerate() {
+            let mean = block.number == 0;
+            let at = set.offset(i);
+            for (c, w) in self.w.iter_mut().enumerate() {
+                *w = self.forces.minus_reference(motion, c, i);
+            }
+            self.modal.solve(self.condensed, i, omega, damping, &self.w)?;
+            self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.modal.x());
+            largest = self.modal.x().iter().fold(largest, |m, z| m.max(z.norm()));
+            for (r, row) in block.rows.iter().enumerate() {
+                let position = r * m + at;
+                put(&mut out.residual, position, mean, -along(row, self.modal.x()));
+                for (column, rate, dx) in [
+                    (n - 2, rates.0, self.modal.by_omega()),
+                    (n - 1, rates.1, self.modal.by_damping()),
+                ] {
+                    put(&mut out.jacobian[column * n..], position, mean, -rate * along(row, dx));
+                }
+                for c in 0..coordinates {
+                    let g = along(row, self.modal.column(c));
+                    self.flexibility[c * coordinates + r] = g;
+                    let eased = self.forces.d_ln_scale(c, i) * by_parameter;
+                    put(&mut out.d_parameter, position, mean, g * eased);
+                    let column = &mut out.jacobian[(n - 2) * n..];
+                    put(column, position, mean, rates.0 * g * self.forces.by_omega(c, i));
+                }
+            }
+            for (k, column) in out.jacobian.chunks_exact_mut(n).take(n - 2).enumerate() {
+                let flexibility = (|_| &self.flexibility[..], coordinates);
+                let column = &mut column[..n - 2];
+                self.forces
+                    .couple(i..i + 1, (k / m, k % m), flexibility, &mut self.sum, column);
+            }
+            if block.number == 1 {
+                self.fix_gauge(rates, by_parameter, out);
+            }
+        }
+        // Each coordinate adds its rounding.
+        out.scale = 1.0 + norm(motion) + OF_MOTION * largest * (coordinates as f64).sqrt();
+        Ok(())
+    }
+
+    /// 1 plus the damping ratio above that of the linear mode, in units that count.
+    fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
+        let n = u.len();
+        ((1.0 + u[n - 1]).into(), direction[n - 1].into())
+    }
+
+    fn start(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
+        if kind != InitialGuess::Stuck {
+            return Ok(false);
+        }
+        self.linear_start(u);
+        Ok(true)
+    }
+
+    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
+        let mut factor = self.forces.linearisation_scale(&u[..u.len() - 2], self.linear.omega)?;
+        if self.forces.have_known_linear_range() {
+            factor *= 10f64.powf(p);
+        }
+        let start = (1.01 * factor).ln();
+        if !(start > 0.0 && start.is_finite()) {
+            return Ok(None);
+        }
+        self.eased_at = Some(p);
+        Ok(Some((start, 0.0)))
+    }
+
+    fn end_homotopy(&mut self) {
+        self.eased_at = None;
+    }
+}

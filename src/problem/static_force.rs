@@ -1,0 +1,48 @@
+//! Whether a law pushes where nothing moves: known of the library's own laws, asked of the caller's.
+
+use crate::aft::{Evaluation, Evaluator};
+use crate::condense::Condensed;
+use crate::contact::{Form, Law};
+use crate::error::{Result, fail, try_push, try_vec};
+use crate::fourier::HarmonicSet;
+
+/// The first contact with a force at rest, at the angular frequency `omega`. A law that cannot tell its
+/// force just there is passed over.
+///
+/// # Errors
+/// `Argument` for a law that is said to be odd and has a force at rest; those of callbacks.
+pub fn static_force(condensed: &Condensed, omega: f64, samples: usize) -> Result<Option<usize>> {
+    // Laws in pieces tell by themselves, see `Contact::is_preloaded`.
+    let asked = |law: &dyn Law| matches!(law.form(), Form::Memoryless(_) | Form::Hysteretic(_));
+    let set = HarmonicSet::all(0)?;
+    let laws = || condensed.laws().iter().filter(|assembled| asked(&*assembled.law));
+    let mut evaluator = Evaluator::new(&set, samples, laws().map(|assembled| &*assembled.law))?;
+    let mut found: Vec<Evaluation> = Vec::new();
+    for assembled in laws() {
+        let d = assembled.law.directions();
+        let at = if let Some(at) = found.iter().position(|e| e.directions == d) {
+            at
+        } else {
+            try_push(&mut found, Evaluation::new(&set, d)?, "the contact forces")?;
+            found.len() - 1
+        };
+        let rest = try_vec(d, 0.0, "the contact forces")?;
+        let contact = assembled.contact;
+        match evaluator.evaluate(&*assembled.law, &set, &rest, omega, &mut found[at]) {
+            Err(e) if e.recoverable => continue,
+            Err(e) => return Err(e.at(format_args!("contact {contact} at rest"))),
+            Ok(()) => {}
+        }
+        if let Some(force) = found[at].force.iter().find(|f| **f != 0.0) {
+            if assembled.law.is_odd() {
+                return fail!(
+                    Argument,
+                    "contact {contact}: its force is said to be odd, but is {} at rest",
+                    force * condensed.length()
+                );
+            }
+            return Ok(Some(contact));
+        }
+    }
+    Ok(None)
+}

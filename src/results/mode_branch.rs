@@ -1,0 +1,201 @@
+//! What a nonlinear mode holds beside the points that every branch has.
+
+use crate::error::{Error, Result, try_extend, try_push};
+use crate::model::repeated_modes::Multiple;
+use crate::options::Amplitude;
+use crate::problem::epmc::{Gauge, LinearMode};
+use crate::results::Branch;
+use std::f64::consts::PI;
+
+/// Where a nonlinear mode started.
+#[derive(Clone, Debug)]
+pub struct ModeInfo {
+    /// Number of the linear mode, from 0 by rising frequency with the contacts at rest.
+    pub index: usize,
+    /// Its angular frequency without damping.
+    pub omega: f64,
+    /// How many modes share that frequency.
+    pub multiplicity: usize,
+    /// How one of them was chosen.
+    pub multiple: Multiple,
+    /// Degree of freedom whose fundamental is real.
+    pub reference_dof: usize,
+    /// Waves per turn of the fundamental: the signed engine order that it was computed for.
+    pub engine_order: i64,
+    /// What the parameter measures.
+    pub amplitude: Amplitude,
+    /// log₁₀ of the amplitude up to which all contacts stick; −∞ where a law is never linear.
+    pub linear_up_to: f64,
+    /// Natural frequencies of the wave with the contacts at rest, as far as they were found.
+    pub stuck: Vec<f64>,
+    /// The same with the contacts removed.
+    pub free: Vec<f64>,
+}
+
+/// Numbers of one point of a mode, in the caller's units; energies are of one sector.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ModePoint {
+    /// log₁₀ of the amplitude, the parameter.
+    pub log10_amplitude: f64,
+    /// Modal amplitude (X₁ᴴ M X₁)^½ of one sector.
+    pub modal_amplitude: f64,
+    /// Damping ratio D.
+    pub damping_ratio: f64,
+    /// T = Σ ½(hω)² X_hᴴ M X_h, twice the mean kinetic energy.
+    pub energy: f64,
+    /// The fundamental's share of it.
+    pub fundamental_share: f64,
+    /// Work of friction per cycle.
+    pub friction_loss: f64,
+    /// Work of the structure's damping per cycle.
+    pub structural_loss: f64,
+    /// Mass-weighted assurance |X₁ᴴ M Y₁|²/(X₁ᴴMX₁·Y₁ᴴMY₁) with the point before; 1 for the first.
+    pub assurance: f64,
+}
+
+impl ModePoint {
+    /// All losses over 4πT. With artificial damping of mass form the balance of work makes it
+    /// equal to the damping ratio, whatever the number of harmonics.
+    #[must_use]
+    pub fn energy_damping_ratio(&self) -> f64 {
+        (self.friction_loss + self.structural_loss) / (4.0 * PI * self.energy)
+    }
+}
+
+/// The mode's part of a branch.
+#[derive(Debug)]
+pub(crate) struct ModeData {
+    pub info: ModeInfo,
+    pub linear: LinearMode,
+    pub gauge: Gauge,
+    /// The range of log₁₀ amplitude.
+    pub range: (f64, f64),
+    /// The numbers of all stored points, an array for each of them, so that they can be borrowed.
+    fields: [Vec<f64>; FIELDS],
+    /// Unknowns and parameter of each point of the curve, then its tangent.
+    states: Vec<f64>,
+    /// Where the state of each point begins.
+    begins: Vec<usize>,
+}
+
+/// Numbers of a [`ModePoint`].
+const FIELDS: usize = 8;
+
+impl ModeData {
+    pub fn new(info: ModeInfo, linear: LinearMode, gauge: Gauge, range: (f64, f64)) -> Self {
+        Self {
+            info,
+            linear,
+            gauge,
+            range,
+            fields: Default::default(),
+            states: Vec::new(),
+            begins: Vec::new(),
+        }
+    }
+
+    /// Stores a point; nothing is stored where memory ends.
+    pub fn push(&mut self, point: ModePoint) -> Result<()> {
+        const CONTEXT: &str = "the points of the mode";
+        for field in &mut self.fields {
+            field.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+        }
+        let values = [
+            point.log10_amplitude,
+            point.modal_amplitude,
+            point.damping_ratio,
+            point.energy,
+            point.friction_loss,
+            point.structural_loss,
+            point.assurance,
+            point.fundamental_share,
+        ];
+        for (field, value) in self.fields.iter_mut().zip(values) {
+            field.push(value);
+        }
+        Ok(())
+    }
+
+    /// Keeps the state of a point of the curve.
+    pub fn push_state(&mut self, v: &[f64], tangent: &[f64]) -> Result<()> {
+        try_push(&mut self.begins, self.states.len(), "the points of the mode")?;
+        try_extend(&mut self.states, v, "the points of the mode")?;
+        try_extend(&mut self.states, tangent, "the points of the mode")
+    }
+
+    /// Unknowns with parameter, and tangent, of a point of the curve.
+    pub fn state(&self, point: usize) -> Option<(&[f64], &[f64])> {
+        let begin = *self.begins.get(point)?;
+        let end = self.begins.get(point + 1).copied().unwrap_or(self.states.len());
+        let both = self.states.get(begin..end)?;
+        Some(both.split_at(both.len() / 2))
+    }
+
+    pub fn point(&self, point: usize) -> Option<ModePoint> {
+        let at = |field: ModeField| self.fields[field as usize].get(point).copied();
+        Some(ModePoint {
+            log10_amplitude: at(ModeField::Log10Amplitude)?,
+            modal_amplitude: at(ModeField::ModalAmplitude)?,
+            damping_ratio: at(ModeField::DampingRatio)?,
+            energy: at(ModeField::Energy)?,
+            fundamental_share: at(ModeField::FundamentalShare)?,
+            friction_loss: at(ModeField::FrictionLoss)?,
+            structural_loss: at(ModeField::StructuralLoss)?,
+            assurance: at(ModeField::Assurance)?,
+        })
+    }
+}
+
+/// Fields of a mode that can be borrowed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ModeField {
+    /// [`ModePoint::log10_amplitude`]
+    Log10Amplitude,
+    /// [`ModePoint::modal_amplitude`]
+    ModalAmplitude,
+    /// [`ModePoint::damping_ratio`]
+    DampingRatio,
+    /// [`ModePoint::energy`]
+    Energy,
+    /// [`ModePoint::friction_loss`]
+    FrictionLoss,
+    /// [`ModePoint::structural_loss`]
+    StructuralLoss,
+    /// [`ModePoint::assurance`]
+    Assurance,
+    /// [`ModePoint::fundamental_share`]
+    FundamentalShare,
+}
+
+impl Branch {
+    /// Where the mode started; `None` for a forced response.
+    #[must_use]
+    pub fn mode(&self) -> Option<&ModeInfo> {
+        self.mode.as_ref().map(|m| &m.info)
+    }
+
+    /// A field of the mode at each point of the curve; `None` for a forced response.
+    #[must_use]
+    pub fn mode_field(&self, field: ModeField) -> Option<&[f64]> {
+        self.mode.as_ref().map(|m| &m.fields[field as usize][..self.points()])
+    }
+
+    /// The mode's numbers at a stored point, special ones included.
+    #[must_use]
+    pub fn mode_at(&self, point: usize) -> Option<ModePoint> {
+        self.mode.as_ref().and_then(|m| m.point(point))
+    }
+
+    /// Damping ratio at a stored point; 0 for a forced response.
+    pub(super) fn damping_at(&self, point: usize) -> f64 {
+        self.mode_at(point).map_or(0.0, |p| p.damping_ratio)
+    }
+
+    pub(crate) fn mode_data(&self) -> Option<&ModeData> {
+        self.mode.as_ref()
+    }
+
+    pub(crate) fn mode_data_mut(&mut self) -> Option<&mut ModeData> {
+        self.mode.as_mut()
+    }
+}

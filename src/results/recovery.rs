@@ -1,0 +1,90 @@
+//! The motion of all degrees of freedom at a stored point, from the relative motions of the contacts.
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::Workspace;
+use crate::error::{Result, try_vec};
+use crate::problem::contact_forces::ContactForces;
+use crate::results::{Branch, Resolution};
+use num_complex::Complex64;
+
+/// Recovers one point after the other.
+pub(crate) struct Recovery<'a> {
+    branch: &'a Branch,
+    level: usize,
+    condensed: &'a Condensed,
+    workspace: Workspace,
+    point: usize,
+    forces: ContactForces<'a>,
+    w: Vec<Complex64>,
+}
+
+const CONTEXT: &str = "the harmonics";
+
+impl<'a> Recovery<'a> {
+    /// Memory for the points of a branch, gone to a stored one; see [`Self::go_to`].
+    ///
+    /// # Errors
+    /// `Index` for an unknown point, `OutOfMemory`; those of callbacks.
+    pub fn at(branch: &'a Branch, point: usize) -> Result<Self> {
+        branch.carried_of(point)?;
+        let level = branch.places[point].level;
+        let Resolution { condensed, samples } = &branch.levels[level];
+        let mut recovery = Self {
+            branch,
+            level,
+            condensed,
+            workspace: Workspace::new(condensed, None)?,
+            point,
+            forces: ContactForces::unchecked(condensed, *samples)?,
+            w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+        };
+        recovery.go_to(point)?;
+        Ok(recovery)
+    }
+
+    fn motion(&self) -> &'a [f64] {
+        self.branch.motion_at(self.point).unwrap_or(&[])
+    }
+
+    /// Evaluates the contact forces at a stored point.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; those of callbacks.
+    pub fn go_to(&mut self, point: usize) -> Result<()> {
+        if self.branch.places[point].level != self.level {
+            *self = Self::at(self.branch, point)?;
+            return Ok(());
+        }
+        self.point = point;
+        self.workspace.set_damping(self.branch.damping_at(point));
+        let motion = self.motion();
+        self.forces.evaluate(motion, self.branch.omega[point])
+    }
+
+    /// Packed contact forces per coordinate at the point, in the solver's units.
+    pub fn forces(&self) -> &[f64] {
+        self.forces.forces()
+    }
+
+    /// Motion of all degrees of freedom in the i-th carried harmonic, in the caller's unit.
+    ///
+    /// # Errors
+    /// `Singular` at an undamped resonance that no contact feels.
+    pub fn harmonic(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
+        let condensed = self.condensed;
+        let set = condensed.set();
+        let motion = self.motion();
+        for (c, w) in self.w.iter_mut().enumerate() {
+            *w = self.forces.minus_reference(motion, c, i);
+        }
+        let omega = self.branch.omega[self.point];
+        self.workspace.recover(condensed, i, omega, &self.w, x)?;
+        for z in x.iter_mut() {
+            *z *= condensed.length();
+            if set.numbers()[i] == 0 {
+                z.im = 0.0;
+            }
+        }
+        Ok(())
+    }
+}

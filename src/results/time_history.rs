@@ -1,0 +1,227 @@
+//! Motion against time at a stored point, and what happens inside its contacts.
+
+use crate::contact::Contact;
+use crate::contact::contact_state::State;
+use crate::error::{Result, fail, try_extend, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::fourier::jet;
+use crate::model::spring::along;
+use crate::results::contact_loops::Orbit;
+use crate::results::{Branch, Recovery};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// Most times of a loop or a history.
+pub const MOST_TIMES: usize = 1 << 24;
+
+/// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ContactLoop {
+    /// Relative motions d of the contact.
+    pub directions: usize,
+    /// Relative motions of the sides, a minus b, n × d, time after time.
+    pub motion: Vec<f64>,
+    /// Forces f, n × d, which stand in the rows of side a as +f and in those of side b as −f. They are
+    /// the whole forces of the law, not their carried harmonics; along a normal f = −N.
+    pub force: Vec<f64>,
+    /// What the contact does, n. One that is linear at any motion or without force sticks, and so do
+    /// laws without states.
+    pub state: Vec<State>,
+}
+
+/// Directions of which a summary tells; laws of more have the others in [`ContactLoop`] alone.
+pub const SUMMARISED: usize = 3;
+
+/// Numbers of one contact over one period, in the caller's units.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct ContactSummary {
+    /// Relative motions d of the contact.
+    pub directions: usize,
+    /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for friction
+    /// that does not slip and for laws of one motion that feel no velocity.
+    pub work: f64,
+    /// Share of the period that it slips; not that it is open.
+    pub slip_share: f64,
+    /// Share of the period that it is open.
+    pub open_share: f64,
+    /// Half the range of each relative motion, (max − min)/2; 0 beyond d.
+    pub half_range: [f64; SUMMARISED],
+    /// Smallest relative motions, side a minus side b.
+    pub motion_min: [f64; SUMMARISED],
+    /// Largest relative motions.
+    pub motion_max: [f64; SUMMARISED],
+    /// Smallest normal load. Friction under a constant load has the one given; springs that cannot open,
+    /// and laws of the caller, have none: 0.
+    pub load_min: f64,
+    /// Largest normal load.
+    pub load_max: f64,
+}
+
+impl Branch {
+    /// Motion of a degree of freedom at a stored point, at ωt = 2πj/n for j = 0 .. n, in the
+    /// caller's unit.
+    ///
+    /// # Errors
+    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..=
+    /// [`MOST_TIMES`], `OutOfMemory`; `Singular` at an undamped resonance that no contact feels.
+    pub fn time_history(&self, point: usize, dof: usize, n: usize) -> Result<Vec<f64>> {
+        self.check_point(point)?;
+        if dof >= self.ndof() {
+            return fail!(Index, "dof = {dof}, needs 0 .. {}", self.ndof());
+        }
+        check_times(n)?;
+        let (set, packed) = self.recover(point, 1, |_, _, x| x[dof])?;
+        let mut history = try_vec(n, 0.0, "a time history")?;
+        for (j, x) in history.iter_mut().enumerate() {
+            *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
+        }
+        Ok(history)
+    }
+
+    /// Relative motions, forces and state of a contact at a stored point, at ωt = 2πj/n for j = 0 .. n.
+    ///
+    /// The force is that of this contact alone, at the motion found. Friction in one direction and
+    /// unilateral, tabulated and cubic springs are exact, where the branch was computed by samples, too.
+    /// A law of the caller is called with the n times. Friction in a plane is marched over a multiple of
+    /// n samples, at least as many as it takes in the solution. Of a cyclic model it is the contact of
+    /// sector 0. Contacts that are linear at any motion have no coordinate of their own, and the
+    /// whole structure is recovered for them.
+    ///
+    /// # Errors
+    /// As [`Self::time_history`], with `Index` for an unknown contact; `Callback` for a law of the caller
+    /// that fails, `NoConvergence` where marched friction does not become periodic.
+    pub fn contact_loop(&self, point: usize, contact: usize, n: usize) -> Result<ContactLoop> {
+        self.check_contact(point, contact)?;
+        check_times(n)?;
+        self.with_orbit(point, contact, |orbit, length| {
+            let mut found = orbit.times(n)?;
+            for value in found.motion.iter_mut().chain(&mut found.force) {
+                *value *= length;
+            }
+            Ok(ContactLoop {
+                directions: orbit.directions(),
+                motion: found.motion,
+                force: found.force,
+                state: found.state,
+            })
+        })
+    }
+
+    /// Work, shares of the period and ranges of a contact at a stored point; see [`Self::contact_loop`].
+    ///
+    /// Ranges are exact for the motion found, and so are work and shares of friction in one direction and
+    /// of springs. Those of friction in a plane, and the work of laws of velocities or of several motions,
+    /// are as good as the samples of the branch, like the branch itself. The work of all contacts makes
+    /// up [`Energy::friction_loss`](crate::results::Energy::friction_loss), up to the error of sampling where laws
+    /// that are exact here were sampled there, or where a law of the caller has a potential.
+    ///
+    /// # Errors
+    /// As [`Self::contact_loop`].
+    pub fn contact_summary(&self, point: usize, contact: usize) -> Result<ContactSummary> {
+        let kept = self.check_contact(point, contact)?;
+        self.with_orbit(point, contact, |orbit, length| {
+            let account = orbit.account()?;
+            let ranges = orbit.ranges()?;
+            let mut summary = ContactSummary {
+                directions: orbit.directions(),
+                work: account.work * length * length,
+                slip_share: account.slip,
+                open_share: account.open,
+                ..ContactSummary::default()
+            };
+            for (k, (low, high)) in ranges.iter().take(SUMMARISED).enumerate() {
+                (summary.motion_min[k], summary.motion_max[k]) = (low * length, high * length);
+                summary.half_range[k] = 0.5 * (high - low) * length;
+            }
+            // A contact that opens is pressed most where side a is lowest.
+            let (low, high) = kept.normal_direction().map_or((0.0, 0.0), |k| ranges[k]);
+            summary.load_min = kept.normal_load(high * length);
+            summary.load_max = kept.normal_load(low * length);
+            Ok(summary)
+        })
+    }
+
+    /// Number of relative motions of a contact, of which [`Self::contact_loop`] tells.
+    #[must_use]
+    pub fn contact_directions(&self, contact: usize) -> Option<usize> {
+        let kept = self.levels[0].condensed.contact_classes().contacts().get(contact)?;
+        Some(kept.directions())
+    }
+
+    fn check_point(&self, point: usize) -> Result<()> {
+        self.carried_of(point).map(|_| ())
+    }
+
+    fn check_contact(&self, point: usize, contact: usize) -> Result<&Contact> {
+        self.check_point(point)?;
+        match self.levels[0].condensed.contact_classes().contacts().get(contact) {
+            Some(kept) => Ok(kept),
+            None => fail!(Index, "contact = {contact}, needs 0 .. {}", self.contacts()),
+        }
+    }
+
+    /// Lets `use_it` look at a contact over the period, in units of the length that it is given.
+    fn with_orbit<T>(
+        &self,
+        point: usize,
+        contact: usize,
+        use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
+    ) -> Result<T> {
+        let condensed = self.level_at(point);
+        let contact_classes = condensed.contact_classes();
+        if let Some(at) = contact_classes.linear(contact) {
+            let kept = &contact_classes.contacts()[contact];
+            let row = |i: usize, k: usize| &condensed.blocks()[i].linear_rows[at + k];
+            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| along(row(i, k), x))?;
+            let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
+            return use_it(&orbit, 1.0);
+        }
+        let laws = condensed.laws();
+        let Ok(found) = laws.binary_search_by_key(&contact, |assembled| assembled.contact) else {
+            return fail!(Internal, "contact {contact} has no law");
+        };
+        let assembled = &laws[found];
+        let set = condensed.set();
+        let m = set.packed_len();
+        let mut motion = Vec::new();
+        for c in &assembled.coordinates {
+            let all = self.motion_at(point).unwrap_or(&[]);
+            try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
+        }
+        let orbit = Orbit::new(set, &motion, &*assembled.law, self.omega[point], self.samples_at(point));
+        use_it(&orbit, condensed.length())
+    }
+
+    /// Packed harmonics of a number of signals, one after the other; `of` is the k-th of them in the i-th
+    /// carried harmonic of all degrees of freedom, in the caller's unit. Carried harmonics of linear models
+    /// have no common step: the set has all.
+    fn recover(
+        &self,
+        point: usize,
+        signals: usize,
+        of: impl Fn(usize, usize, &[Complex64]) -> Complex64,
+    ) -> Result<(HarmonicSet, Vec<f64>)> {
+        const CONTEXT: &str = "the harmonics";
+        let carried = self.carried_of(point)?;
+        let highest = carried.last().copied().unwrap_or(0);
+        let set = HarmonicSet::all(highest)?;
+        let m = set.packed_len();
+        let mut packed = try_vec(signals.saturating_mul(m), 0.0, CONTEXT)?;
+        let mut x = try_vec(self.ndof(), Complex64::ZERO, CONTEXT)?;
+        let mut recovery = Recovery::at(self, point)?;
+        for (i, &h) in carried.iter().enumerate() {
+            recovery.harmonic(i, &mut x)?;
+            for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
+                set.set(signal, h, of(i, k, &x));
+            }
+        }
+        Ok((set, packed))
+    }
+}
+
+fn check_times(n: usize) -> Result<()> {
+    if (1..=MOST_TIMES).contains(&n) {
+        return Ok(());
+    }
+    fail!(Dimension, "n = {n}, needs 1 .. {MOST_TIMES} times")
+}

@@ -1,0 +1,349 @@
+//! From event to event through one lapse, the part of the period after which the wave has moved on by
+//! some sectors.
+
+use crate::error::{Result, fail, try_copy, try_vec};
+use crate::time_integration::contacts_in_time::{Element, Mode, Piece, Zeros, along};
+use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
+use crate::time_integration::implicit_step::Implicit;
+use crate::time_integration::linear_step::Taylor;
+use crate::time_integration::slider_events::Slider;
+use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial, first_fall};
+use crate::time_integration::unrolled_structure::System;
+
+const CONTEXT: &str = "the motion in time";
+
+/// Steps of one lapse before it is given up: a structure so stiff against its period is none for
+/// integration in time.
+const MOST_STEPS: usize = 20_000_000;
+
+/// Events without progress in time, per contact, before it is given up.
+const MOST_AT_ONCE: usize = 50;
+
+/// Parts of a step within which events count as simultaneous.
+const SIMULTANEOUS: f64 = 1e-13;
+
+/// Steps between two looks at the cancel flag.
+const BETWEEN_LOOKS: usize = 256;
+
+/// Displacements, velocities and the stretches of the sliders' springs.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub x: Vec<f64>,
+    pub v: Vec<f64>,
+    pub e: Vec<f64>,
+}
+
+impl State {
+    /// Rest.
+    pub fn rest(system: &System) -> Result<Self> {
+        Ok(Self {
+            x: try_vec(system.order(), 0.0, CONTEXT)?,
+            v: try_vec(system.order(), 0.0, CONTEXT)?,
+            e: try_vec(system.elements.len(), 0.0, CONTEXT)?,
+        })
+    }
+
+    /// A copy whose memory is asked for fallibly.
+    pub fn try_clone(&self) -> Result<Self> {
+        Ok(Self {
+            x: try_copy(&self.x, CONTEXT)?,
+            v: try_copy(&self.v, CONTEXT)?,
+            e: try_copy(&self.e, CONTEXT)?,
+        })
+    }
+
+    /// Takes the values of another.
+    pub fn set(&mut self, other: &Self) {
+        self.x.copy_from_slice(&other.x);
+        self.v.copy_from_slice(&other.v);
+        self.e.copy_from_slice(&other.e);
+    }
+
+    /// Numbers in it.
+    pub fn len(&self) -> usize {
+        self.x.len() + self.v.len() + self.e.len()
+    }
+}
+
+/// Derivatives of a state by the state that it began with, column by column: (δx, δv, δe), on the way with
+/// the sliders' δu = r·δx − δe in place of δe, which do not change while they rest.
+pub(super) struct Sensitivity {
+    pub columns: Vec<f64>,
+}
+
+impl Sensitivity {
+    /// Memory for the states of `system`.
+    pub fn new(state: &State) -> Result<Self> {
+        let m = state.len();
+        Ok(Self {
+            columns: try_vec(m.saturating_mul(m), 0.0, "the monodromy matrix")?,
+        })
+    }
+}
+
+/// What a lapse was like.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Travel {
+    /// Changes of piece.
+    pub events: usize,
+    /// Largest displacement and velocity at the ends of the steps.
+    pub largest: (f64, f64),
+    /// Whether the caller asked to stop before the end.
+    pub cancelled: bool,
+}
+
+impl Travel {
+    fn see(&mut self, state: &State) {
+        for (largest, values) in [(&mut self.largest.0, &state.x), (&mut self.largest.1, &state.v)] {
+            *largest = values.iter().fold(*largest, |m, x| m.max(x.abs()));
+        }
+    }
+}
+
+enum Stepper {
+    Taylor(Box<Taylor>),
+    Implicit(Box<Implicit>),
+}
+
+/// Memory of the integration.
+pub(super) struct EventLoop {
+    stepper: Stepper,
+    segment: StepPolynomial,
+    modes: Vec<Mode>,
+    pieces: Vec<Piece>,
+    /// Zeros by construction of the margins at the begin of the step.
+    zeros: Vec<Zeros>,
+    /// Next event of each contact within the step: (θ, margin).
+    falls: Vec<Option<(f64, usize)>>,
+    /// Modes that tell of sliders where the motion puts them at the begin.
+    slaved: Vec<Option<Mode>>,
+    /// Sliders that have moved in some lapse since [`Self::forget`].
+    pub moved: Vec<bool>,
+}
+
+impl EventLoop {
+    /// Memory for `system`; `tolerance` bounds the local error where a law is smooth.
+    pub fn new(system: &System, tolerance: f64) -> Result<Self> {
+        let count = system.elements.len();
+        let stepper = if system.is_piecewise_linear() {
+            Stepper::Taylor(Box::new(Taylor::new(system)?))
+        } else {
+            Stepper::Implicit(Box::new(Implicit::new(system, tolerance)?))
+        };
+        Ok(Self {
+            stepper,
+            segment: StepPolynomial::new(system.order())?,
+            modes: try_vec(count, Mode::Stick, CONTEXT)?,
+            pieces: try_vec(count, Piece::default(), CONTEXT)?,
+            zeros: try_vec(count, Zeros::default(), CONTEXT)?,
+            falls: try_vec(count, None, CONTEXT)?,
+            slaved: try_vec(count, None, CONTEXT)?,
+            moved: try_vec(count, false, CONTEXT)?,
+        })
+    }
+
+    /// Forgets which sliders have moved.
+    pub fn forget(&mut self) {
+        self.moved.fill(false);
+    }
+
+    /// Carries a state from time 0 over one lapse, and with it what is asked for besides.
+    pub fn run(
+        &mut self,
+        system: &mut System,
+        state: &mut State,
+        mut sensitivity: Option<&mut Sensitivity>,
+        mut recorder: Option<&mut HarmonicAnalysis>,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Travel> {
+        let end = system.lapse();
+        let mut travel = Travel::default();
+        travel.see(state);
+        system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.slaved);
+        self.zeros.fill(Zeros::default());
+        if let Some(s) = sensitivity.as_deref_mut() {
+            self.identity(system, state, s);
+        }
+        for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
+            *moved |= Slider::moves(*mode);
+        }
+        let mut t = 0.0;
+        let (mut steps, mut at_once) = (0, 0);
+        while t < end {
+            if steps % BETWEEN_LOOKS == 0 && cancelled.is_some_and(|f| f()) {
+                travel.cancelled = true;
+                return Ok(travel);
+            }
+            steps += 1;
+            if steps > MOST_STEPS {
+                return fail!(
+                    NoConvergence,
+                    "a period takes more than {MOST_STEPS} time steps; the structure is too stiff for omega = {}",
+                    system.omega
+                );
+            }
+            for (i, e) in system.elements.iter().enumerate() {
+                if let Some(law) = e.events() {
+                    self.pieces[i] = law.piece(self.modes[i], e.relative(&state.x), state.e[i]);
+                }
+            }
+            self.step(system, state, t, end - t)?;
+            let theta = self.next_event(system, state);
+            let h = self.segment.length;
+            if let Some(r) = recorder.as_deref_mut() {
+                r.add(&self.segment, theta);
+            }
+            if theta > 0.0 {
+                if let Some(s) = sensitivity.as_deref_mut() {
+                    self.transfer(system, theta, s)?;
+                }
+                self.segment.at(theta, &mut state.x, &mut state.v);
+                for (i, e) in system.elements.iter().enumerate() {
+                    if let Some(slider) = e.slider() {
+                        let growth = self.segment.growth(&e.rows[0], theta);
+                        let [_, y] = e.relative(&state.x);
+                        slider.stretch(self.modes[i], growth, y, &mut state.e[i]);
+                    }
+                }
+                travel.see(state);
+                self.zeros.fill(Zeros::default());
+            }
+            let happened = self.switch(system, state, sensitivity.as_deref_mut());
+            travel.events += happened;
+            at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
+            if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {
+                return fail!(NoConvergence, "contacts change without end at time {t} of the period");
+            }
+            t = if theta >= 1.0 && h >= end - t {
+                end
+            } else {
+                t + theta * h
+            };
+        }
+        if let Some(s) = sensitivity {
+            // A slider that still moves is where the motion puts it.
+            for (i, e) in system.elements.iter().enumerate() {
+                enslave(e, i, (self.modes[i], self.modes[i]), state, s);
+            }
+            exchange(system, state, s);
+        }
+        Ok(travel)
+    }
+
+    fn step(&mut self, system: &mut System, state: &State, t: f64, longest: f64) -> Result<()> {
+        let (pieces, segment) = (&self.pieces, &mut self.segment);
+        match &mut self.stepper {
+            Stepper::Taylor(s) => s.step(system, pieces, &state.x, &state.v, t, longest, segment),
+            Stepper::Implicit(s) => s.step(system, pieces, &state.x, &state.v, t, longest, segment),
+        }
+    }
+
+    /// The first θ at which a contact leaves its piece, 1 where none does; `falls` notes those that leave
+    /// theirs by then.
+    fn next_event(&mut self, system: &System, state: &State) -> f64 {
+        let mut first = f64::INFINITY;
+        for (i, e) in system.elements.iter().enumerate() {
+            self.falls[i] = None;
+            let Some(law) = e.events() else { continue };
+            let mode = self.modes[i];
+            let used = self.segment.degree + 1;
+            let mut motion = [[0.0; DEGREE + 1]; 2];
+            for (motion, row) in motion.iter_mut().zip(&e.rows) {
+                self.segment.relative(row, motion);
+            }
+            let [x, y] = &motion;
+            for which in 0..law.margins(mode) {
+                let mut margin = [0.0; DEGREE + 1];
+                law.margin(mode, which, state.e[i], &x[..used], &y[..used], &mut margin[..used]);
+                if let Some(theta) = first_fall(&margin[..used], self.zeros[i][which])
+                    && self.falls[i].is_none_or(|(before, _)| theta < before)
+                {
+                    self.falls[i] = Some((theta, which));
+                }
+            }
+            if let Some((theta, _)) = self.falls[i] {
+                first = first.min(theta);
+            }
+        }
+        let until = first + SIMULTANEOUS;
+        for fall in &mut self.falls {
+            *fall = fall.filter(|(theta, _)| *theta <= until);
+        }
+        first.min(1.0)
+    }
+
+    /// Takes the contacts whose piece has ended into the next one; their number.
+    fn switch(&mut self, system: &System, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
+        let mut happened = 0;
+        for (i, e) in system.elements.iter().enumerate() {
+            let (Some(law), Some((_, which))) = (e.events(), self.falls[i]) else {
+                continue;
+            };
+            let before = self.modes[i];
+            let at = e.instant(&state.x, &state.v);
+            (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
+            self.moved[i] |= Slider::moves(self.modes[i]);
+            if let Some(s) = sensitivity.as_deref_mut() {
+                enslave(e, i, (before, self.modes[i]), state, s);
+            }
+            happened += 1;
+        }
+        happened
+    }
+
+    fn identity(&self, system: &System, state: &State, s: &mut Sensitivity) {
+        let m = state.len();
+        s.columns.fill(0.0);
+        for i in 0..m {
+            s.columns[i * m + i] = 1.0;
+        }
+        exchange(system, state, s);
+        for (i, e) in system.elements.iter().enumerate() {
+            if let Some(mode) = self.slaved[i] {
+                enslave(e, i, (mode, mode), state, s);
+            }
+        }
+    }
+
+    fn transfer(&mut self, system: &mut System, theta: f64, s: &mut Sensitivity) -> Result<()> {
+        let h = self.segment.length;
+        let n = system.order();
+        let m = 2 * n + system.elements.len();
+        if let Stepper::Implicit(stepper) = &mut self.stepper {
+            stepper.prepare(system, &self.pieces, h)?;
+        }
+        for column in s.columns.chunks_exact_mut(m) {
+            let (x, rest) = column.split_at_mut(n);
+            let (v, u) = rest.split_at_mut(n);
+            match &mut self.stepper {
+                Stepper::Taylor(stepper) => stepper.transfer(system, &self.pieces, theta * h, x, v, u)?,
+                Stepper::Implicit(stepper) => stepper.transfer(system, &self.pieces, h, theta, x, v, u),
+            }
+        }
+        Ok(())
+    }
+}
+
+/// At the end of a mode, before the next one, a slider that has moved has the sensitivity of the motion.
+fn enslave(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s: &mut Sensitivity) {
+    let Some(slider) = e.slider().filter(|_| Slider::moves(mode)) else {
+        return;
+    };
+    let (m, at) = (state.len(), 2 * state.x.len() + i);
+    let share = slider.follows(mode, after, e.relative(&state.v));
+    for column in s.columns.chunks_exact_mut(m) {
+        let [x, y] = e.relative(column);
+        column[at] = x + share * y;
+    }
+}
+
+/// Between the stretches' sensitivities and the sliders', which is the same step both ways:
+/// δu = r·δx − δe, δe = r·δx − δu.
+fn exchange(system: &System, state: &State, s: &mut Sensitivity) {
+    let (m, first) = (state.len(), 2 * state.x.len());
+    for column in s.columns.chunks_exact_mut(m) {
+        for (i, e) in system.elements.iter().enumerate() {
+            column[first + i] = along(&e.rows[0], column) - column[first + i];
+        }
+    }
+}

@@ -1,0 +1,17 @@
+//! Periodic responses by integration in time from event to event, without a harmonic series.
+
+mod contacts_in_time;
+mod event_loop;
+mod gauss;
+mod harmonic_analysis;
+mod implicit_step;
+mod linear_step;
+mod periodic_response;
+mod shooting;
+mod slider_events;
+mod smooth_laws;
+mod spring_events;
+mod step_polynomial;
+mod unrolled_structure;
+
+pub use periodic_response::{TimeResponse, solve};

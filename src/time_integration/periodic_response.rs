@@ -1,0 +1,121 @@
+//! The truth in time: a periodic response by integration from event to event, without a harmonic series.
+//!
+//! `system` holds the structure, unrolled to as many sectors as a travelling wave needs; `contacts` says
+//! what laws with events tell, `slider` and `springs` what each of them does, `smooth` asks the laws without;
+//! `piecewise` makes exact steps where all laws are linear between
+//! events, `implicit` adaptive ones where a law is smooth; `segment` locates events within a step;
+//! `flow` goes from event to event through a lapse; `steady` closes the period; `record` turns the motion
+//! into harmonics, free of the truncation of harmonic balance.
+
+use crate::error::{Result, Status, try_vec};
+use crate::hooks::{Hooks, LogLevel};
+use crate::model::Model;
+use crate::options::TimeOptions;
+use crate::time_integration::event_loop::{EventLoop, State};
+use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
+use crate::time_integration::shooting::Search;
+use crate::time_integration::unrolled_structure::System;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+/// A periodic response found by integration in time.
+#[derive(Clone, Debug)]
+pub struct TimeResponse {
+    /// `Ok`, or `StoppedByCaller`: then the harmonics are those of the last period, which is not steady.
+    pub status: Status,
+    /// T = 2π/ω
+    pub period: f64,
+    /// Largest change of a displacement, velocity or slider over one period, relative to the largest
+    /// displacement or velocity. In a travelling wave it is compared already after the part of the period
+    /// in which another sector comes to do the same. Infinite where the caller stopped before.
+    pub residual: f64,
+    /// Periods that were integrated, rounded up.
+    pub periods: usize,
+    /// Whether periods were marched: with shooting, where Newton's method did not converge from the start.
+    /// Marching leaves an unstable solution.
+    pub marched: bool,
+    /// Changes of a contact between stick, slip, open and closed, or between the lines of a table, in one
+    /// period, all contacts of one sector together.
+    pub events: usize,
+    /// Degrees of freedom of one sector.
+    pub ndof: usize,
+    /// Coefficients 0 ..= H of every degree of freedom (of sector 1), harmonic by harmonic, from the
+    /// motion itself.
+    pub harmonics: Vec<Complex64>,
+    /// Displacements at equidistant times from 0 on, time by time.
+    pub samples: Vec<f64>,
+}
+
+/// Integrates the response of a model to its forces until it is periodic.
+///
+/// # Errors
+/// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence` where no
+/// steady state was found, `NoBoundedSolution` where the motion grows without end, `OutOfMemory`.
+pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
+    let mut system = System::new(model, options.omega)?;
+    let mut flow = EventLoop::new(&system, options.tolerance)?;
+    let start = match options.start {
+        Some(harmonics) => state_of(model, &system, harmonics)?,
+        None => State::rest(&system)?,
+    };
+    hooks.log(LogLevel::Info, "the structure in time is set up");
+    let mut steady = Search::new(&mut system, &mut flow, options, hooks, start)?.run()?;
+    let mut recorder = HarmonicAnalysis::new(&system, options.harmonics, options.samples)?;
+    let travel = flow.run(&mut system, &mut steady.state, None, Some(&mut recorder), None)?;
+    let (harmonics, samples) = recorder.finish(&system)?;
+    Ok(TimeResponse {
+        status: steady.status,
+        period: TAU / options.omega,
+        residual: steady.residual,
+        periods: steady.periods,
+        marched: steady.marched,
+        // All sectors during a lapse do what one of them does in a period.
+        events: travel.events,
+        ndof: system.ndof,
+        harmonics,
+        samples,
+    })
+}
+
+/// Times per period of the highest harmonic at which a start drags its sliders along.
+pub(super) const POINTS_PER_WAVE: usize = 64;
+
+/// The state at time 0 of a periodic motion, with the sliders where a virgin one would be after two
+/// periods of it.
+pub(super) fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) -> Result<State> {
+    const CONTEXT: &str = "the start of the motion in time";
+    let mut state = State::rest(system)?;
+    let (ndof, n) = (system.ndof, system.order());
+    let mut all = try_vec(harmonics.len().saturating_mul(system.sectors), Complex64::ZERO, CONTEXT)?;
+    for (h, (all, x)) in all.chunks_exact_mut(n).zip(harmonics.chunks_exact(ndof)).enumerate() {
+        for s in 0..system.sectors {
+            let phase = model.structure().phase(h, s as i64);
+            for (dof, x) in x.iter().enumerate() {
+                let x = if h == 0 { x.re.into() } else { x * phase };
+                all[s * ndof + dof] = x;
+                state.x[s * ndof + dof] += x.re;
+                state.v[s * ndof + dof] -= h as f64 * system.omega * x.im;
+            }
+        }
+    }
+    let times = POINTS_PER_WAVE * (all.len() / n);
+    let mut part = try_vec(n, 0.0, CONTEXT)?;
+    for i in 0..=2 * times {
+        part.fill(0.0);
+        for (h, x) in all.chunks_exact(n).enumerate() {
+            let turn = Complex64::cis(TAU * ((h * i) % times) as f64 / times as f64);
+            for (part, x) in part.iter_mut().zip(x) {
+                *part += (x * turn).re;
+            }
+        }
+        for (stretch, e) in state.e.iter_mut().zip(&system.elements) {
+            if let Some(slider) = e.slider() {
+                // Its place is kept until the end, where the spring spans from it to x.
+                let motion = e.relative(&part);
+                let place = slider.drag(motion, *stretch);
+                *stretch = if i < 2 * times { place } else { motion[0] - place };
+            }
+        }
+    }
+    Ok(state)
+}

@@ -1,0 +1,328 @@
+//! The steady state in time: shooting by Newton's method, with marching where it fails.
+//!
+//! Unknown is the state z at the begin of a lapse, the equation S G(z) = z with the flow G over the lapse
+//! and the shift S that gives every sector the motion of the one it follows. The monodromy ∂G/∂z is
+//! carried along piece by piece and is exact, since the field is continuous at events. A slider that
+//! never moves may rest anywhere: its equation is void, and it stays where the start has put it.
+
+use crate::error::{Result, Status, fail, try_vec};
+use crate::hooks::{Hooks, Progress};
+use crate::linalg::least_squares::LeastSquares;
+use crate::options::{SteadyMethod, TimeOptions};
+use crate::time_integration::event_loop::{EventLoop, Sensitivity, State, Travel};
+use crate::time_integration::unrolled_structure::System;
+
+/// Newton iterations before marching takes over.
+const MOST_ITERATIONS: usize = 30;
+
+/// Smallest share of a Newton step that is tried.
+const SHORTEST: f64 = 1.0 / 64.0;
+
+/// Directions whose monodromy is this near to 1 are left alone, such as the free rotation of a ring that
+/// friction alone holds: the whole motion may be shifted along them.
+const NEUTRAL: f64 = 1e-9;
+
+/// Periods that are marched when Newton's method has failed for the first time; each time twice as many.
+const FIRST_MARCH: usize = 8;
+
+/// Where a search has led.
+pub(super) struct Steady {
+    /// The state at time 0.
+    pub state: State,
+    /// Largest change over a lapse, relative to the largest displacement and velocity.
+    pub residual: f64,
+    /// Periods that were integrated, rounded up.
+    pub periods: usize,
+    /// `Ok` or `StoppedByCaller`.
+    pub status: Status,
+    /// Whether periods were marched.
+    pub marched: bool,
+}
+
+enum Outcome {
+    Found,
+    Failed,
+    Stopped,
+}
+
+/// Memory of a search.
+pub(super) struct Search<'a, 'h> {
+    system: &'a mut System,
+    flow: &'a mut EventLoop,
+    options: &'a TimeOptions<'a>,
+    hooks: &'a mut Hooks<'h>,
+    state: State,
+    /// Where a lapse leads from `state`, and the same with the sectors shifted.
+    image: State,
+    shifted: State,
+    scale: (f64, f64),
+    residual: f64,
+    laps: usize,
+    most_laps: usize,
+}
+
+impl<'a, 'h> Search<'a, 'h> {
+    /// A search from `start`.
+    pub fn new(
+        system: &'a mut System,
+        flow: &'a mut EventLoop,
+        options: &'a TimeOptions<'a>,
+        hooks: &'a mut Hooks<'h>,
+        start: State,
+    ) -> Result<Self> {
+        Ok(Self {
+            image: start.try_clone()?,
+            shifted: start.try_clone()?,
+            state: start,
+            most_laps: options.max_periods.saturating_mul(system.sectors),
+            system,
+            flow,
+            options,
+            hooks,
+            scale: (0.0, 0.0),
+            residual: f64::INFINITY,
+            laps: 0,
+        })
+    }
+
+    /// Looks for the steady state.
+    pub fn run(mut self) -> Result<Steady> {
+        let mut march = FIRST_MARCH;
+        let mut marched = false;
+        loop {
+            let mut outcome = Outcome::Failed;
+            if self.options.method == SteadyMethod::Shooting {
+                let before = self.state.try_clone()?;
+                outcome = self.shoot()?;
+                if matches!(outcome, Outcome::Failed) {
+                    self.state.set(&before);
+                }
+            }
+            if matches!(outcome, Outcome::Failed) {
+                marched = true;
+                outcome = self.march(march.saturating_mul(self.system.sectors))?;
+                march *= 2;
+            }
+            let status = match outcome {
+                Outcome::Found => Status::Ok,
+                Outcome::Stopped => Status::StoppedByCaller,
+                Outcome::Failed => continue,
+            };
+            return Ok(Steady {
+                periods: self.laps.div_ceil(self.system.sectors),
+                state: self.state,
+                residual: self.residual,
+                status,
+                marched,
+            });
+        }
+    }
+
+    /// One lapse from the state, whose image is shifted and compared; `true`: the caller wants to stop.
+    fn lap(&mut self, sensitivity: Option<&mut Sensitivity>) -> Result<bool> {
+        if self.laps >= self.most_laps {
+            return fail!(
+                NoConvergence,
+                "no steady state within max_periods = {}: the last change over a period is {:.1e} of the motion; raise max_periods, start nearer, or the motion has another period",
+                self.options.max_periods,
+                self.residual
+            );
+        }
+        self.laps += 1;
+        self.image.set(&self.state);
+        let travel = self
+            .flow
+            .run(self.system, &mut self.image, sensitivity, None, self.hooks.cancelled)?;
+        if travel.cancelled {
+            return Ok(true);
+        }
+        self.compare(&travel);
+        if self.residual.is_nan() {
+            return fail!(NoBoundedSolution, "the motion in time grows beyond all bounds");
+        }
+        let progress = Progress {
+            point: self.laps,
+            parameter: self.system.omega,
+            amplitude: travel.largest.0,
+            residual: self.residual,
+            ..Progress::default()
+        };
+        Ok(self.hooks.report(&progress))
+    }
+
+    /// Shifts the image and measures what has changed.
+    fn compare(&mut self, travel: &Travel) {
+        let system = &*self.system;
+        shift(system, system.ndof, &self.image.x, &mut self.shifted.x);
+        shift(system, system.ndof, &self.image.v, &mut self.shifted.v);
+        shift(system, 1, &self.image.e, &mut self.shifted.e);
+        let unit = |x: f64| if x > 0.0 { x } else { 1.0 };
+        self.scale = (unit(travel.largest.0), unit(travel.largest.1));
+        self.residual = 0.0;
+        for (a, b, scale) in [
+            (&self.shifted.x, &self.state.x, self.scale.0),
+            (&self.shifted.v, &self.state.v, self.scale.1),
+            (&self.shifted.e, &self.state.e, self.scale.0),
+        ] {
+            for (a, b) in a.iter().zip(b) {
+                let gap = (a - b).abs() / scale;
+                self.residual = if gap.is_nan() { gap } else { self.residual.max(gap) };
+            }
+        }
+    }
+
+    /// Goes on period by period until nothing changes.
+    fn march(&mut self, laps: usize) -> Result<Outcome> {
+        for _ in 0..laps {
+            if self.lap(None)? {
+                return Ok(Outcome::Stopped);
+            }
+            self.state.set(&self.shifted);
+            if self.residual <= self.options.tolerance {
+                return Ok(Outcome::Found);
+            }
+        }
+        Ok(Outcome::Failed)
+    }
+
+    /// Newton's method with halved steps where a whole one makes things worse.
+    fn shoot(&mut self) -> Result<Outcome> {
+        let m = self.state.len();
+        let mut sensitivity = Sensitivity::new(&self.state)?;
+        let mut equations = LeastSquares::new(m)?;
+        let mut step = try_vec(m, 0.0, "Newton's method in time")?;
+        let mut base = self.state.try_clone()?;
+        for _ in 0..MOST_ITERATIONS {
+            self.flow.forget();
+            if self.lap(Some(&mut sensitivity))? {
+                return Ok(Outcome::Stopped);
+            }
+            let residual = self.residual;
+            let converged = residual <= self.options.tolerance;
+            if !self.correction(&sensitivity, &mut equations, &mut step) {
+                return Ok(if converged { Outcome::Found } else { Outcome::Failed });
+            }
+            base.set(&self.state);
+            let mut share = 1.0;
+            loop {
+                self.advance(&base, &step, share);
+                match self.lap(None) {
+                    Ok(false) => {}
+                    Ok(true) => return Ok(Outcome::Stopped),
+                    // A step far too long may lead to where nothing can be integrated.
+                    Err(e)
+                        if !(e.recoverable
+                            || matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence)) =>
+                    {
+                        return Err(e);
+                    }
+                    Err(e) if self.laps >= self.most_laps => return Err(e),
+                    Err(_) => self.residual = f64::INFINITY,
+                }
+                if converged {
+                    // The last correction; rounding may keep it from being one.
+                    if self.residual > self.options.tolerance {
+                        self.state.set(&base);
+                        self.residual = residual;
+                    }
+                    return Ok(Outcome::Found);
+                }
+                if self.residual < residual {
+                    break;
+                }
+                share *= 0.5;
+                if share < SHORTEST {
+                    return Ok(Outcome::Failed);
+                }
+            }
+        }
+        Ok(Outcome::Failed)
+    }
+
+    /// Solves (I − S ∂G/∂z) step = S G(z) − z; `false`: it has no solution.
+    fn correction(&mut self, s: &Sensitivity, equations: &mut LeastSquares, step: &mut [f64]) -> bool {
+        let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
+        // Velocities are measured in displacements, so that pivots compare.
+        let unit = |i: usize| {
+            if (n..2 * n).contains(&i) {
+                self.scale.1 / self.scale.0
+            } else {
+                1.0
+            }
+        };
+        // A slider that rests in all sectors keeps its place.
+        let rests = |i: usize| {
+            i >= 2 * n
+                && system.elements.iter().zip(&self.flow.moved).all(|(e, &moved)| {
+                    e.family != system.elements[i - 2 * n].family || !(moved && e.slider().is_some())
+                })
+        };
+        let source = |i: usize| {
+            if i < n {
+                shifted_from(system, system.ndof, i)
+            } else if i < 2 * n {
+                n + shifted_from(system, system.ndof, i - n)
+            } else {
+                2 * n + shifted_from(system, 1, i - 2 * n)
+            }
+        };
+        let matrix = equations.matrix();
+        matrix.fill(0.0);
+        for i in 0..m {
+            let (void, from) = (rests(i), source(i));
+            for j in 0..m {
+                let image = if void { 0.0 } else { s.columns[j * m + from] };
+                matrix[j * m + i] = f64::from(u8::from(i == j)) - image * unit(j) / unit(i);
+            }
+            step[i] = match i {
+                _ if void => 0.0,
+                i if i < n => self.shifted.x[i] - self.state.x[i],
+                i if i < 2 * n => (self.shifted.v[i - n] - self.state.v[i - n]) / unit(i),
+                i => self.shifted.e[i - 2 * n] - self.state.e[i - 2 * n],
+            };
+        }
+        // Where the slider rests its spring follows the motion: δe = r·δx.
+        for (i, e) in system.elements.iter().enumerate() {
+            if rests(2 * n + i) && e.slider().is_some() {
+                for &(dof, a) in e.rows[0].iter().flatten() {
+                    matrix[dof * m + 2 * n + i] -= a;
+                }
+            }
+        }
+        equations.solve(step, NEUTRAL);
+        for (i, step) in step.iter_mut().enumerate() {
+            *step *= unit(i);
+        }
+        step.iter().all(|x| x.is_finite())
+    }
+
+    /// state = base + share·step
+    fn advance(&mut self, base: &State, step: &[f64], share: f64) {
+        let n = base.x.len();
+        let (x, rest) = step.split_at(n);
+        let (v, e) = rest.split_at(n);
+        for (to, from, step) in [
+            (&mut self.state.x, &base.x, x),
+            (&mut self.state.v, &base.v, v),
+            (&mut self.state.e, &base.e, e),
+        ] {
+            for ((to, from), step) in to.iter_mut().zip(from).zip(step) {
+                *to = from + share * step;
+            }
+        }
+    }
+}
+
+/// Where the entry `i` of a shifted vector comes from, with `block` entries per sector.
+fn shifted_from(system: &System, block: usize, i: usize) -> usize {
+    let (sector, within) = (i / block % system.sectors, i % block);
+    let group = i - sector * block - within;
+    group + system.after_lapse(sector) * block + within
+}
+
+/// Gives every sector the values of the one that does the same a lapse later.
+fn shift(system: &System, block: usize, from: &[f64], to: &mut [f64]) {
+    for (i, to) in to.iter_mut().enumerate() {
+        *to = from[shifted_from(system, block, i)];
+    }
+}

@@ -1,0 +1,256 @@
+//! The structure in time: M ẍ + C ẋ + K x + f = F(t) for all sectors that the wave needs, with its
+//! loads, springs and contacts.
+
+use crate::contact::relative_motion::Direction;
+use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::linalg::factor::Factor;
+use crate::linalg::sparse::Csc;
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
+use crate::time_integration::contacts_in_time::{Element, Mode, Tie, row, unroll};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+const CONTEXT: &str = "the structure in time";
+
+/// A real sparse matrix, column by column.
+pub(super) struct Sparse {
+    starts: Vec<usize>,
+    rows: Vec<usize>,
+    values: Vec<f64>,
+}
+
+impl Sparse {
+    fn new(a: &Csc) -> Result<Self> {
+        let mut real = Self {
+            starts: try_vec(a.col_ptr.len(), 0, CONTEXT)?,
+            rows: try_vec(a.row_idx.len(), 0, CONTEXT)?,
+            values: try_vec(a.values.len(), 0.0, CONTEXT)?,
+        };
+        real.starts.copy_from_slice(&a.col_ptr);
+        real.rows.copy_from_slice(&a.row_idx);
+        for (real, v) in real.values.iter_mut().zip(&a.values) {
+            *real = v.re;
+        }
+        Ok(real)
+    }
+
+    /// y += s·A x
+    pub fn multiply_add(&self, s: f64, x: &[f64], y: &mut [f64]) {
+        for (j, &x) in x.iter().enumerate() {
+            let sx = s * x;
+            if sx != 0.0 {
+                for k in self.starts[j]..self.starts[j + 1] {
+                    y[self.rows[k]] += self.values[k] * sx;
+                }
+            }
+        }
+    }
+
+    /// Adds s·A to a dense block: `put(row, column, value)`.
+    pub fn each(&self, mut put: impl FnMut(usize, usize, f64)) {
+        for j in 0..self.starts.len() - 1 {
+            for k in self.starts[j]..self.starts[j + 1] {
+                put(self.rows[k], j, self.values[k]);
+            }
+        }
+    }
+}
+
+/// Factors of the mass matrix.
+enum Mass {
+    /// 1/mᵢᵢ of a diagonal one.
+    Diagonal(Vec<f64>),
+    General {
+        factor: Box<Factor>,
+        buffer: Vec<Complex64>,
+    },
+}
+
+/// A force Re(value·e^{i·harmonic·ωt}).
+pub(super) struct Load {
+    pub dof: usize,
+    pub harmonic: usize,
+    pub value: Complex64,
+}
+
+/// See the module.
+pub(super) struct System {
+    /// Degrees of freedom of a sector.
+    pub ndof: usize,
+    /// Sectors that are carried.
+    pub sectors: usize,
+    /// x_{s+j}(t + T/sectors) = x_s(t) with this j.
+    pub follower: usize,
+    /// Angular frequency of harmonic 1.
+    pub omega: f64,
+    mass: Mass,
+    /// M
+    pub inertia: Sparse,
+    /// C
+    pub damping: Sparse,
+    /// K with springs and contacts that stick for ever.
+    pub stiffness: Sparse,
+    pub loads: Vec<Load>,
+    /// Contacts with events or smooth laws, all sectors of one contact after the other.
+    pub elements: Vec<Element>,
+}
+
+impl System {
+    /// The structure of a model at angular frequency `omega`.
+    pub fn new(model: &Model, omega: f64) -> Result<Self> {
+        let structure = model.structure();
+        let (ndof, sectors) = (model.ndof(), structure.repeating_sectors());
+        let place = |dof: usize, s: usize| s * ndof + dof;
+        let (mut ties, mut elements) = (Vec::new(), Vec::new());
+        for spring in model.springs() {
+            let between = Direction::between(spring.dof_a, spring.dof_b);
+            for s in 0..sectors {
+                let other = (s as i64 + spring.sector_offset).rem_euclid(sectors as i64) as usize;
+                let tie = Tie {
+                    row: row(&between, (s, other), place),
+                    stiffness: spring.stiffness,
+                };
+                try_push(&mut ties, tie, CONTEXT)?;
+            }
+        }
+        unroll(model.contacts(), sectors, place, &mut ties, &mut elements)?;
+        let inertia = structure.unrolled(MatrixKind::Mass)?;
+        let damping = structure.unrolled(MatrixKind::Damping)?;
+        let stiffness = tied(&structure.unrolled(MatrixKind::Stiffness)?, &ties)?;
+        let mut loads = Vec::new();
+        for force in model.excitation().forces() {
+            for s in 0..sectors {
+                let load = Load {
+                    dof: s * ndof + force.dof,
+                    harmonic: force.harmonic,
+                    value: force.value * structure.phase(force.harmonic, s as i64),
+                };
+                try_push(&mut loads, load, CONTEXT)?;
+            }
+        }
+        Ok(Self {
+            ndof,
+            sectors,
+            follower: structure.sectors_per_part(),
+            omega,
+            mass: Mass::new(&inertia, ndof)?,
+            inertia: Sparse::new(&inertia)?,
+            damping: Sparse::new(&damping)?,
+            stiffness: Sparse::new(&stiffness)?,
+            loads,
+            elements,
+        })
+    }
+
+    /// Degrees of freedom of all carried sectors.
+    pub fn order(&self) -> usize {
+        self.ndof * self.sectors
+    }
+
+    /// The part of the period after which every sector does what another one did before.
+    pub fn lapse(&self) -> f64 {
+        TAU / self.omega / self.sectors as f64
+    }
+
+    /// The sector whose motion after a lapse is that of sector `s` now.
+    pub fn after_lapse(&self, s: usize) -> usize {
+        (s + self.follower) % self.sectors
+    }
+
+    /// Whether every law is linear between events.
+    pub fn is_piecewise_linear(&self) -> bool {
+        !self.elements.iter().any(|e| e.smooth().is_some())
+    }
+
+    /// a ← M⁻¹ a
+    pub fn accelerate(&mut self, a: &mut [f64]) -> Result<()> {
+        match &mut self.mass {
+            Mass::Diagonal(inverse) => {
+                for (a, m) in a.iter_mut().zip(inverse) {
+                    *a *= *m;
+                }
+            }
+            Mass::General { factor, buffer } => {
+                for (z, a) in buffer.iter_mut().zip(a.iter()) {
+                    *z = (*a).into();
+                }
+                factor.solve(buffer, false)?;
+                for (a, z) in a.iter_mut().zip(buffer.iter()) {
+                    *a = z.re;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the loads at time t to `f`.
+    pub fn load(&self, t: f64, f: &mut [f64]) {
+        for load in &self.loads {
+            f[load.dof] += (load.value * Complex64::cis(load.harmonic as f64 * self.omega * t)).re;
+        }
+    }
+
+    /// Modes at a state; stretches come within their range. `slaved` notes the modes that tell of sliders
+    /// where the motion puts them.
+    pub fn begin(&self, x: &[f64], v: &[f64], stretch: &mut [f64], modes: &mut [Mode], slaved: &mut [Option<Mode>]) {
+        for (i, e) in self.elements.iter().enumerate() {
+            (modes[i], slaved[i]) = match e.events() {
+                Some(law) => law.begin(&e.instant(x, v), &mut stretch[i]),
+                None => (Mode::Smooth, None),
+            };
+        }
+    }
+}
+
+/// K with springs added.
+fn tied(stiffness: &Csc, ties: &[Tie]) -> Result<Csc> {
+    let n = stiffness.rows;
+    let mut entries = Vec::new();
+    for j in 0..n {
+        for (i, v) in stiffness.column(j) {
+            try_push(&mut entries, (i, j, v), CONTEXT)?;
+        }
+    }
+    for tie in ties {
+        for &(i, a) in tie.row.iter().flatten() {
+            for &(j, b) in tie.row.iter().flatten() {
+                try_push(&mut entries, (i, j, (tie.stiffness * a * b).into()), CONTEXT)?;
+            }
+        }
+    }
+    Csc::from_triplets(n, n, entries)
+}
+
+impl Mass {
+    fn new(m: &Csc, ndof: usize) -> Result<Self> {
+        if let Some(i) = (0..m.cols).find(|&i| m.get(i, i).re <= 0.0) {
+            return fail!(
+                Unsupported,
+                "degree of freedom {} has no mass: its motion in time has no differential equation; give it mass or remove it",
+                i % ndof
+            );
+        }
+        if (0..m.cols).all(|j| m.column(j).all(|(i, v)| i == j || v.re == 0.0)) {
+            let mut inverse = try_vec(m.cols, 0.0, CONTEXT)?;
+            for (i, d) in inverse.iter_mut().enumerate() {
+                *d = 1.0 / m.get(i, i).re;
+            }
+            return Ok(Self::Diagonal(inverse));
+        }
+        let mut factor = Box::new(Factor::new(m, 1)?);
+        if let Err(e) = factor.factor(m) {
+            return match e.status {
+                Status::Singular => fail!(
+                    Unsupported,
+                    "the mass matrix is singular: some motion in time has no differential equation; give it mass"
+                ),
+                _ => Err(e),
+            };
+        }
+        Ok(Self::General {
+            factor,
+            buffer: try_vec(m.cols, Complex64::ZERO, CONTEXT)?,
+        })
+    }
+}
