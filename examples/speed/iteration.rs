@@ -8,10 +8,11 @@ use hbvib::condense::Condensed;
 use hbvib::continuation::Metric;
 use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::linalg::bordered::Bordered;
+use hbvib::linalg::linear_system::Jacobian;
 use hbvib::linalg::norm;
 use hbvib::options::SolverOptions;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Linearisation, Problem};
+use hbvib::problem::{InitialGuess, Problem, Residual};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -78,7 +79,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     let n = problem.size();
     let mut v = vec![0.0; n + 1];
     v[n] = omega;
-    problem.start(InitialGuess::Stuck, omega, &mut v[..n])?;
+    problem.initial_guess(InitialGuess::Stuck, omega, &mut v[..n])?;
     let mut row = vec![0.0; n + 1];
     row[n] = 1.0;
     let mut corrector = Corrector::new(n, 1e-10, 50)?;
@@ -109,19 +110,24 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
         Ok(())
     })?;
     let law = time(|| Ok(evaluator.evaluate(law, set, black_box(u), omega, &mut out)?))?;
-    let mut at = Linearisation::new(n)?;
+    let mut at = Residual::new(n)?;
+    let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
     let mut turn = false;
     // Another frequency each time, as in continuation: the flexibility is part of an iteration.
     let mut other = || {
         turn = !turn;
         if turn { omega } else { omega * (1.0 + 1e-9) }
     };
-    let residual = time(|| Ok(problem.evaluate_residual(u, other(), &mut at)?))?;
-    let matrix = time(|| Ok(problem.evaluate(u, other(), &mut at)?))?;
+    let residual = time(|| Ok(problem.evaluate(u, other(), &mut at)?))?;
+    let matrix = time(|| {
+        problem.evaluate(u, other(), &mut at)?;
+        problem.fill(&mut jacobian, &mut active);
+        Ok(())
+    })?;
     let mut bordered = Bordered::new(n)?;
     let mut b = vec![1.0; n + 1];
     let dense = time(|| {
-        bordered.factor(&at.jacobian, &at.d_parameter, &at.active, (metric.u, metric.p), &row)?;
+        bordered.factor(&jacobian, &at.d_parameter, &active, (metric.u, metric.p), &row)?;
         bordered.solve(black_box(&mut b));
         Ok(())
     })?;

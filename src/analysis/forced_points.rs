@@ -32,7 +32,7 @@ impl<'a> AtResolution<'a> {
         let range = (settings.start, settings.end);
         let problem = HarmonicBalance::new(&level.condensed, response, range, level.samples, given)?;
         Ok(Self {
-            corrector: Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?,
+            corrector: Corrector::new(problem.unknowns(), settings.tolerance, settings.max_iterations)?,
             response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, "the response")?,
             problem,
             level,

@@ -7,6 +7,7 @@ pub mod factor;
 pub mod gmres;
 pub mod lanczos;
 pub mod least_squares;
+pub mod linear_system;
 pub mod lu;
 pub mod matrix_view;
 pub mod quadratic;

@@ -8,8 +8,9 @@ use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
 use crate::linalg::inner;
+use crate::linalg::linear_system::Jacobian;
 use crate::problem::epmc::Epmc;
-use crate::problem::{Linearisation, Problem};
+use crate::problem::{Problem, Residual};
 use crate::results::Branch;
 use crate::results::energy::balance;
 use crate::results::mode_branch::{ModeData, ModePoint};
@@ -38,7 +39,7 @@ struct Solver<'a> {
     condensed: &'a Condensed,
     problem: Epmc<'a>,
     locator: Locator,
-    at: Linearisation,
+    at: Residual,
 }
 
 impl<'a> Solver<'a> {
@@ -56,7 +57,7 @@ impl<'a> Solver<'a> {
         Ok(Self {
             level: branch.level_number(point),
             condensed,
-            at: Linearisation::new(n)?,
+            at: Residual::new(n)?,
             locator: Locator::new(n, settings)?,
             problem,
         })
