@@ -35,5 +35,5 @@ pub mod postprocess;
 pub mod problem;
 pub mod time_response;
 
-#[doc = include_str!("when_it_does_not_converge.md")]
+#[doc = include_str!("../docs/statuses.md")]
 pub mod when_it_does_not_converge {}
