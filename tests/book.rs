@@ -271,7 +271,7 @@ fn names<'a>(text: &'a str, prefix: &str) -> BTreeSet<&'a str> {
 }
 
 #[test]
-fn the_page_on_statuses_tells_of_every_one() {
+fn the_page_on_statuses_explains_every_one() {
     let header = read(Path::new("include/hbvib.h"));
     let page = read(Path::new("docs/statuses.md"));
     let mut all: BTreeSet<&str> = names(&header, "HBVIB_E_");
