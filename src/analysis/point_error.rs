@@ -50,7 +50,7 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
         );
     }
     let solver = &SolverOptions { samples, ..*solver };
-    let condensed = branch.level_at(point);
+    let condensed = branch.condensed_at(point);
     let solved = Solved {
         condensed,
         motion,

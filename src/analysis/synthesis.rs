@@ -12,6 +12,7 @@
 mod oscillator;
 mod resonance;
 
+pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
@@ -21,21 +22,6 @@ use crate::options::SynthesisOptions;
 use crate::results::mode_branch::ModeData;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
-
-/// A synthesised response at one frequency.
-#[derive(Clone, Copy, Debug)]
-pub struct SynthesisPoint {
-    /// Angular frequency Ω of the force.
-    pub omega: f64,
-    /// Fundamental of the branch's response degree of freedom, with the phase against the force.
-    pub response: Complex64,
-    /// Modal amplitude.
-    pub modal_amplitude: f64,
-    /// Natural angular frequency ω₀ at this amplitude.
-    pub natural_omega: f64,
-    /// Damping ratio at this amplitude, with what the options add.
-    pub damping_ratio: f64,
-}
 
 /// Where the synthesis may mislead.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -134,7 +120,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     let mut x = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
     for point in 0..branch.points() {
         recovery.go_to(point)?;
-        recovery.harmonic(branch.level_at(point).set().fundamental(), &mut x)?;
+        recovery.harmonic(branch.condensed_at(point).set().fundamental(), &mut x)?;
         let Some(numbers) = data.point(point) else {
             return fail!(Internal, "point {point} of the mode has no numbers");
         };

@@ -4,7 +4,8 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, Wave, relative_row};
+use crate::model::spring::{Row, relative_row};
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 

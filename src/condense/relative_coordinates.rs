@@ -3,13 +3,14 @@
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::Model;
-use crate::model::spring::{Wave, along, relative_row};
+use crate::model::spring::{along, relative_row};
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// A direction of an active contact, and its relative coordinate.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct AssembledLaw {
+pub(super) struct AssembledDirection {
     pub contact: usize,
     pub direction: usize,
     pub coordinate: usize,
@@ -20,13 +21,13 @@ pub(super) type Pick = (usize, usize);
 
 /// Gathers the directions of active contacts on unique relative coordinates. They are returned contact
 /// after contact, then per coordinate the (contact, direction) that stands for it.
-pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<AssembledLaw>, Vec<Pick>)> {
+pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<AssembledDirection>, Vec<Pick>)> {
     const CONTEXT: &str = "the contacts";
     let sectors = model.structure().sectors() as i128;
     let mut assembled = Vec::new();
     for &contact in active {
         for direction in 0..model.contacts()[contact].directions() {
-            let new = AssembledLaw {
+            let new = AssembledDirection {
                 contact,
                 direction,
                 coordinate: 0,
@@ -34,7 +35,7 @@ pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<AssembledLa
             try_push(&mut assembled, new, CONTEXT)?;
         }
     }
-    let key = |p: AssembledLaw| {
+    let key = |p: AssembledDirection| {
         let c = &model.contacts()[p.contact];
         let sector = i128::from(c.sector_offset).rem_euclid(sectors);
         (c.direction(p.direction).key(), sector)
@@ -66,10 +67,10 @@ pub(super) fn raise_for_springs(
     omega: f64,
     set: &HarmonicSet,
     never_slipping: &[usize],
-    assembled: &[AssembledLaw],
+    assembled: &[AssembledDirection],
     stiffness: &mut [f64],
 ) -> Result<()> {
-    let is_spring = |p: &&AssembledLaw| model.contacts()[p.contact].is_spring();
+    let is_spring = |p: &&AssembledDirection| model.contacts()[p.contact].is_spring();
     if !assembled.iter().any(|p| is_spring(&p)) {
         return Ok(());
     }

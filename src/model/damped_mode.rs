@@ -11,8 +11,8 @@ use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
-use crate::model::mode_selection::{SelectedMode, times};
-use crate::model::spring::Wave;
+use crate::model::mode_selection::SelectedMode;
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use crate::options::DampingForm;
 use num_complex::Complex64;
@@ -187,7 +187,7 @@ impl Damped {
             shape: try_copy(&start.shape, CONTEXT)?,
             ..*start
         };
-        let v = times(&self.mass, &start.shape)?;
+        let v = self.mass.times(&start.shape, CONTEXT)?;
         let project = |z: &[Complex64]| -> Complex64 { v.iter().zip(z).map(|(v, z)| v.conj() * z).sum() };
         let mut factor = Factor::new(&self.matrix(mode.omega, 0.0)?, 3)?;
         let mut last = f64::INFINITY;

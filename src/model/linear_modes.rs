@@ -8,7 +8,7 @@ use crate::linalg::lanczos;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::spring::Wave;
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;

@@ -1,15 +1,14 @@
 //! The linear mode, contacts stuck, that a nonlinear mode starts from, in the wave of the model's
 //! engine order.
 
-use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec};
+use crate::error::{Result, Status, fail, try_copy, try_extend, try_push};
 use crate::linalg::definite;
 use crate::linalg::inner;
 use crate::linalg::quadratic::quadratic;
-use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
 use crate::model::repeated_modes::{self, Multiple};
-use crate::model::spring::Wave;
+use crate::model::spring_stiffness::Wave;
 use crate::options::ModeChoice;
 use num_complex::Complex64;
 use std::ops::Range;
@@ -201,7 +200,7 @@ impl<'a> Known<'a> {
             *z /= size;
         }
         let mass = quadratic(&self.pencil.mass, &scaled);
-        let weighted = times(&self.pencil.mass, &scaled)?;
+        let weighted = self.pencil.mass.times(&scaled, CONTEXT)?;
         let mut parts = Vec::new();
         for mode in self.modes.shapes.chunks_exact(n) {
             let part = inner(mode, &weighted);
@@ -275,11 +274,4 @@ fn sharpened(pencil: &Pencil, count: usize) -> Result<LinearModes> {
         try_extend(&mut shapes, &modes.shapes[i * n..(i + 1) * n], CONTEXT)?;
     }
     Ok(LinearModes { omega, shapes })
-}
-
-/// A x
-pub(super) fn times(a: &Csc, x: &[Complex64]) -> Result<Vec<Complex64>> {
-    let mut y = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
-    a.multiply_add(Complex64::ONE, x, &mut y);
-    Ok(y)
 }

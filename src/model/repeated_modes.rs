@@ -4,7 +4,6 @@
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::quadratic::quadratic;
 use crate::model::linear_modes::Pencil;
-use crate::model::mode_selection::times;
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -112,7 +111,7 @@ fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>>
         }
     }
     let first = take_longest(pencil, &mut candidates);
-    let weighted = times(&pencil.mass, &first)?;
+    let weighted = pencil.mass.times(&first, CONTEXT)?;
     for _ in 0..2 {
         for x in &mut candidates {
             let part: f64 = x.iter().zip(&weighted).map(|(x, w)| x.re * w.re).sum();

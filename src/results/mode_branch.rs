@@ -4,7 +4,6 @@ use crate::error::{Error, Result, try_extend, try_push};
 use crate::model::repeated_modes::Multiple;
 use crate::options::Amplitude;
 use crate::problem::epmc::{Gauge, LinearMode};
-use crate::results::Branch;
 use std::f64::consts::PI;
 
 /// Where a nonlinear mode started.
@@ -131,6 +130,12 @@ impl ModeData {
         Some(both.split_at(both.len() / 2))
     }
 
+    /// A field at each stored point.
+    pub fn field(&self, field: ModeField) -> &[f64] {
+        &self.fields[field as usize]
+    }
+
+    /// The numbers of a stored point.
     pub fn point(&self, point: usize) -> Option<ModePoint> {
         let at = |field: ModeField| self.fields[field as usize].get(point).copied();
         Some(ModePoint {
@@ -165,37 +170,4 @@ pub enum ModeField {
     Assurance,
     /// [`ModePoint::fundamental_share`]
     FundamentalShare,
-}
-
-impl Branch {
-    /// Where the mode started; `None` for a forced response.
-    #[must_use]
-    pub fn mode(&self) -> Option<&ModeInfo> {
-        self.mode.as_ref().map(|m| &m.info)
-    }
-
-    /// A field of the mode at each point of the curve; `None` for a forced response.
-    #[must_use]
-    pub fn mode_field(&self, field: ModeField) -> Option<&[f64]> {
-        self.mode.as_ref().map(|m| &m.fields[field as usize][..self.points()])
-    }
-
-    /// The mode's numbers at a stored point, special ones included.
-    #[must_use]
-    pub fn mode_at(&self, point: usize) -> Option<ModePoint> {
-        self.mode.as_ref().and_then(|m| m.point(point))
-    }
-
-    /// Damping ratio at a stored point; 0 for a forced response.
-    pub(super) fn damping_at(&self, point: usize) -> f64 {
-        self.mode_at(point).map_or(0.0, |p| p.damping_ratio)
-    }
-
-    pub(crate) fn mode_data(&self) -> Option<&ModeData> {
-        self.mode.as_ref()
-    }
-
-    pub(crate) fn mode_data_mut(&mut self) -> Option<&mut ModeData> {
-        self.mode.as_mut()
-    }
 }

@@ -42,7 +42,7 @@ impl Branch {
     pub fn energy_at(&self, point: usize) -> Result<Energy> {
         const CONTEXT: &str = "the energies";
         let carried = self.carried_of(point)?.len();
-        let condensed = self.level_at(point);
+        let condensed = self.condensed_at(point);
         let (n, length, omega) = (condensed.ndof(), condensed.length(), self.omega[point]);
         let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, CONTEXT)?;
         let mut recovery = Recovery::at(self, point)?;

@@ -4,13 +4,14 @@ use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_vec};
 use crate::problem::contact_forces::ContactForces;
-use crate::results::{Branch, Resolution};
+use crate::results::branch::Branch;
+use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 
 /// Recovers one point after the other.
 pub(crate) struct Recovery<'a> {
     branch: &'a Branch,
-    level: usize,
+    resolution: usize,
     condensed: &'a Condensed,
     workspace: Workspace,
     point: usize,
@@ -27,11 +28,11 @@ impl<'a> Recovery<'a> {
     /// `Index` for an unknown point, `OutOfMemory`; those of callbacks.
     pub fn at(branch: &'a Branch, point: usize) -> Result<Self> {
         branch.carried_of(point)?;
-        let level = branch.places[point].level;
-        let Resolution { condensed, samples } = &branch.levels[level];
+        let resolution = branch.places[point].resolution;
+        let Resolution { condensed, samples } = &branch.resolutions[resolution];
         let mut recovery = Self {
             branch,
-            level,
+            resolution,
             condensed,
             workspace: Workspace::new(condensed, None)?,
             point,
@@ -51,7 +52,7 @@ impl<'a> Recovery<'a> {
     /// # Errors
     /// `OutOfMemory`; those of callbacks.
     pub fn go_to(&mut self, point: usize) -> Result<()> {
-        if self.branch.places[point].level != self.level {
+        if self.branch.places[point].resolution != self.resolution {
             *self = Self::at(self.branch, point)?;
             return Ok(());
         }

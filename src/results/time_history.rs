@@ -144,7 +144,11 @@ impl Branch {
     /// Number of relative motions of a contact, of which [`Self::contact_loop`] tells.
     #[must_use]
     pub fn contact_directions(&self, contact: usize) -> Option<usize> {
-        let kept = self.levels[0].condensed.contact_classes().contacts().get(contact)?;
+        let kept = self.resolutions[0]
+            .condensed
+            .contact_classes()
+            .contacts()
+            .get(contact)?;
         Some(kept.directions())
     }
 
@@ -154,7 +158,7 @@ impl Branch {
 
     fn check_contact(&self, point: usize, contact: usize) -> Result<&Contact> {
         self.check_point(point)?;
-        match self.levels[0].condensed.contact_classes().contacts().get(contact) {
+        match self.resolutions[0].condensed.contact_classes().contacts().get(contact) {
             Some(kept) => Ok(kept),
             None => fail!(Index, "contact = {contact}, needs 0 .. {}", self.contacts()),
         }
@@ -167,7 +171,7 @@ impl Branch {
         contact: usize,
         use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
     ) -> Result<T> {
-        let condensed = self.level_at(point);
+        let condensed = self.condensed_at(point);
         let contact_classes = condensed.contact_classes();
         if let Some(at) = contact_classes.linear(contact) {
             let kept = &contact_classes.contacts()[contact];

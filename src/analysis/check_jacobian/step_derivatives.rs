@@ -1,7 +1,8 @@
 //! The derivatives of the steps of a law with states. A force at given states is what the change of the
 //! states does not explain of its own.
 
-use crate::analysis::check_jacobian::{CONTEXT, JacobianGap, Motion, SAMPLES, Tangent, sizes, step_of};
+use crate::analysis::check_jacobian::jacobian_gap::{JacobianGap, Tangent};
+use crate::analysis::check_jacobian::test_motion::{CONTEXT, Motion, SAMPLES, sizes, step_of};
 use crate::contact::hysteretic_law::{Hysteretic, March};
 use crate::contact::laws::user_law::User;
 use crate::error::{Result, try_vec};

@@ -1,10 +1,24 @@
 //! The mode at one amplitude as an oscillator under a force.
 
-use crate::analysis::synthesis::SynthesisPoint;
 use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
 use crate::results::mode_branch::ModePoint;
 use num_complex::Complex64;
+
+/// A synthesised response at one frequency.
+#[derive(Clone, Copy, Debug)]
+pub struct SynthesisPoint {
+    /// Angular frequency Ω of the force.
+    pub omega: f64,
+    /// Fundamental of the branch's response degree of freedom, with the phase against the force.
+    pub response: Complex64,
+    /// Modal amplitude.
+    pub modal_amplitude: f64,
+    /// Natural angular frequency ω₀ at this amplitude.
+    pub natural_omega: f64,
+    /// Damping ratio at this amplitude, with what the options add.
+    pub damping_ratio: f64,
+}
 
 /// What acts on the mode.
 pub(super) struct Load {
