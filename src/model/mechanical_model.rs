@@ -11,10 +11,10 @@ use crate::model::spring::Spring;
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
-/// What memory is asked for.
+/// Purpose of the memory, named in an error.
 const CONTACTS: &str = "the contacts";
 
-/// A copy whose memory is asked for fallibly.
+/// A copy, allocated fallibly.
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -60,7 +60,7 @@ impl Model {
         })
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy, allocated fallibly.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -79,9 +79,9 @@ impl Model {
         })
     }
 
-    /// Sets the (sector's own) mass, damping or stiffness matrix, ndof × ndof. M must be symmetric
-    /// or Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General).
-    /// Complex entries act on all harmonics above zero; the mean sees the real part.
+    /// Sets the mass, damping or stiffness matrix (of the sector itself), ndof × ndof. M must be symmetric or
+    /// Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
+    /// on all harmonics above zero; the mean sees the real part.
     ///
     /// # Errors
     /// Those of [`MatrixView::copy_in`]; `NotPositiveDefinite` for a negative diagonal mass.
@@ -118,8 +118,7 @@ impl Model {
     /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N, 0 ≤ diameter ≤ N/2.
     ///
     /// # Errors
-    /// As [`Self::set_matrix`]; `Argument` for a diameter out of range or a matrix kind that was
-    /// given by sector blocks.
+    /// As [`Self::set_matrix`]; `Argument` for a diameter out of range or a matrix that was given by sector blocks.
     pub fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
         self.structure.set_diameter(which, diameter, a)
     }
@@ -157,8 +156,8 @@ impl Model {
         self.append(copies)
     }
 
-    /// Adds the node pairs of a patch as contacts, whose numbers follow each other, and returns the
-    /// first. All of them are checked before any is added.
+    /// Adds the node pairs of a patch as contacts with consecutive numbers, and returns the first. All of them are
+    /// checked before any is added.
     ///
     /// # Errors
     /// Those of [`Patch::contacts`] and [`Self::add_contact`], naming the entry.
@@ -181,8 +180,8 @@ impl Model {
         Ok(first)
     }
 
-    /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts, whose numbers
-    /// follow each other, and returns the first.
+    /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts with consecutive numbers,
+    /// and returns the first.
     ///
     /// # Errors
     /// Those of [`Iwan::elements`] and [`Self::add_contact`].

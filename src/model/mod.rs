@@ -1,4 +1,4 @@
-//! The model: structure, contacts, excitation. Matrices and contact data go in here.
+//! The model: structure, contacts, excitation. The analyses take their matrices and contact data from here.
 
 pub mod cyclic;
 pub mod damped_mode;

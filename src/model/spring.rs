@@ -3,7 +3,7 @@
 use crate::contact::relative_motion::Direction;
 use num_complex::Complex64;
 
-/// A linear spring. It takes no part in Rayleigh damping.
+/// A linear spring. Rayleigh damping excludes it.
 #[derive(Clone, Copy, Debug)]
 pub struct Spring {
     /// Degree of freedom on side a; `None` is the ground.
@@ -16,7 +16,7 @@ pub struct Spring {
     pub stiffness: f64,
 }
 
-/// Row of a relative motion, at most three entries a side as (degree of freedom, coefficient).
+/// Row of a relative motion: at most three entries per side, each (degree of freedom, coefficient).
 pub type Row = [Option<(usize, Complex64)>; 6];
 
 /// Row r of the relative motion y = r·x in a direction: side a minus side b, where `phase` is the

@@ -1,4 +1,4 @@
-//! Stiffness that springs and stuck contacts add to a wave.
+//! Stiffness of a wave with springs and stuck contacts.
 
 use crate::contact::Contact;
 use crate::contact::relative_motion::Direction;
@@ -9,7 +9,7 @@ use crate::model::spring::{Row, relative_row};
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
-/// A wave on the structure: how a sector offset turns the phase, and its stiffness matrix.
+/// A wave on the structure, which determines the phase of a sector offset and the stiffness matrix.
 #[derive(Clone, Copy, Debug)]
 pub enum Wave {
     /// Harmonic of the engine-order wave.
