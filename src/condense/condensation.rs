@@ -1,19 +1,21 @@
 //! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
 //!
-//! With y = W x and any reference stiffness κ, harmonic h of M ẍ + C ẋ + K x + Wᴴ f = F obeys
+//! With y = W x and any reference stiffness κ, harmonic h of M ẍ + C ẋ + K x + Wᴴ f = F satisfies
 //!
 //! > y_h − y_lin,h + G_h (f_h − κ y_h) = 0,  G = W Z_κ⁻¹ Wᴴ,  y_lin = W Z_κ⁻¹ F,
 //! > Z_κ = K − h²ω²M + ihωC + Wᴴ κ W,
 //!
-//! exactly. κ = kt(1 + i)/2 (kt/2 for the mean) keeps every pole off the real axis for modes that
-//! move the contact, so that neither the free nor the stuck resonances of an undamped structure
-//! are singular. The whole motion follows as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
+//! exactly. With κ = kt(1 + i)/2 (kt/2 for the mean) no mode that moves the contact has a pole on the real axis, so
+//! that neither the free nor the stuck resonances of an undamped structure are singular. The whole motion follows
+//! as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
 
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
 use crate::condense::harmonic_block::{Artificial, harmonic_block};
-use crate::condense::relative_coordinates::{AssembledDirection, gather, give, raise_for_springs};
+use crate::condense::relative_coordinates::{
+    AssembledDirection, assign_coordinates, raise_for_springs, relative_share,
+};
 use crate::contact::Contact;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
@@ -24,7 +26,7 @@ use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, SolverOptions};
 use num_complex::Complex64;
 
-/// Unknowns above which it pays to look at the contacts from the stuck structure.
+/// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;
 
 impl Condensed {
@@ -46,7 +48,7 @@ impl Condensed {
         forced.sort_unstable();
         forced.dedup();
         if forced.is_empty() {
-            // Without forces nothing moves; the fundamental carries the zero solution.
+            // Without forces the solution is zero, and the fundamental carries it.
             forced.push(usize::from(options.harmonics > 0));
         }
         let (mut condensed, assembled) = Self::unscaled(model, options, &forced, omega, None)?;
@@ -77,9 +79,9 @@ impl Condensed {
         Ok(condensed)
     }
 
-    /// Condenses a model without its forces for a nonlinear mode with artificial damping of the
-    /// given form, starting from a linear mode of the given shape. Returns the largest relative
-    /// motion of that shape at an active contact as well, in whose size lengths are measured.
+    /// Condenses a model without its forces for a nonlinear mode with artificial damping of the given form,
+    /// starting from a linear mode of the given shape. Also returns the largest relative motion of that shape at an
+    /// active contact, which sets the unit of lengths.
     ///
     /// # Errors
     /// As [`Self::new`].
@@ -89,7 +91,7 @@ impl Condensed {
         form: DampingForm,
         shape: &[Complex64],
     ) -> Result<(Self, f64)> {
-        // A mode has a linear frequency, so the structure holds its springs by stiffness.
+        // A mode has a linear frequency, so that the stiffness of the structure alone sets the scale.
         let (mut condensed, assembled) = Self::unscaled(model, options, &[1], 0.0, Some((form, shape)))?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
@@ -98,8 +100,8 @@ impl Condensed {
         Ok((condensed, motion))
     }
 
-    /// All but the scale of lengths: no forces and no laws yet; `omega` tells the size of inertia. Returns the
-    /// coordinates of the active contacts as well.
+    /// The condensed model without its scale of lengths: no forces and no laws yet; `omega` sets the size of
+    /// inertia. Also returns the coordinates of the active contacts.
     pub(super) fn unscaled(
         model: &Model,
         options: &SolverOptions,
@@ -120,13 +122,13 @@ impl Condensed {
             odd,
             options.keep_even_harmonics,
         )?;
-        let (assembled, representatives) = gather(model, active)?;
-        let mut drops = try_vec(representatives.len(), true, "the contacts")?;
+        let (assembled, representatives) = assign_coordinates(model, active)?;
+        let mut can_stick = try_vec(representatives.len(), true, "the contacts")?;
         let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
         for at in &assembled {
             let contact = &model.contacts()[at.contact];
             stiffness[at.coordinate] += contact.stiffness(at.direction);
-            drops[at.coordinate] &= contact.may_stick();
+            can_stick[at.coordinate] &= contact.may_stick();
         }
         raise_for_springs(
             model,
@@ -146,7 +148,7 @@ impl Condensed {
         let mut share = try_vec(representatives.len(), 1.0, "the contacts")?;
         if let Some((_, shape)) = mode {
             for (share, &contact) in share.iter_mut().zip(&representatives) {
-                *share = give(model, contact, shape);
+                *share = relative_share(model, contact, shape);
             }
         }
         let mut blocks = Vec::new();
@@ -170,7 +172,7 @@ impl Condensed {
             blocks,
             laws: Vec::new(),
             stiffness,
-            drops,
+            can_stick,
             preloaded: model.contacts().iter().any(Contact::is_preloaded),
             reference,
             share,
@@ -181,7 +183,7 @@ impl Condensed {
         Ok((condensed, assembled))
     }
 
-    /// Sets the unit of lengths, and the laws in it.
+    /// Sets the unit of lengths, and the laws in this unit.
     pub(super) fn set_length(&mut self, model: &Model, length: f64, assembled: &[AssembledDirection]) -> Result<()> {
         const CONTEXT: &str = "the contacts";
         self.length = length;

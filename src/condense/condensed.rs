@@ -10,10 +10,10 @@ use std::sync::Arc;
 /// The reference stiffness κ of the contacts. Solutions do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reference {
-    /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, damped structure or not.
+    /// kt(1 + i)/2, kt/2 for the mean: no pole on the real axis, with or without damping.
     Complex,
-    /// kt: contacts that stick drop out of Newton's method. The poles are the resonances of the
-    /// stuck structure, so this is for damped structures. Springs never drop out.
+    /// kt: stuck contacts are eliminated from Newton's equations. The poles are the resonances of the stuck
+    /// structure, so that this is for damped structures. Springs are never eliminated.
     Stuck,
 }
 
@@ -34,7 +34,7 @@ pub struct AssembledLaw {
     pub coordinates: Vec<usize>,
     /// Number of the contact in the model.
     pub contact: usize,
-    /// Which direction of the law is its normal, if it has one.
+    /// Normal direction of the law, if it has one.
     pub normal: Option<usize>,
     /// The law in the solver's units.
     pub law: Arc<dyn Law>,
@@ -49,11 +49,11 @@ pub struct Condensed {
     pub(super) length: f64,
     pub(super) blocks: Vec<HarmonicBlock>,
     pub(super) laws: Vec<AssembledLaw>,
-    /// Stiffness per coordinate from which κ is made: the sum of kt of its contacts, or more where
-    /// one is a spring whose stiffness grows.
+    /// Stiffness per coordinate that defines κ: the sum of kt of its contacts, or more if one is a spring with
+    /// growing stiffness.
     pub(super) stiffness: Vec<f64>,
-    /// Whether all laws of a coordinate may stick, as friction does.
-    pub(super) drops: Vec<bool>,
+    /// All laws of a coordinate can stick, as friction does.
+    pub(super) can_stick: Vec<bool>,
     pub(super) preloaded: bool,
     pub(super) reference: Reference,
     /// Share of the reference stiffness that the fundamental takes, per coordinate.
@@ -100,7 +100,7 @@ impl Condensed {
         self.stiffness.len()
     }
 
-    /// Packed relative motions that are solved for.
+    /// Number of unknowns: the packed relative motions.
     #[must_use]
     pub fn unknowns(&self) -> usize {
         self.coordinates() * self.set.packed_len()
@@ -112,7 +112,7 @@ impl Condensed {
         self.contact_classes.contacts().len()
     }
 
-    /// The contacts in the model, as they were.
+    /// The contacts of the model at the time of its condensation.
     #[must_use]
     pub fn contact_classes(&self) -> &ContactClasses {
         &self.contact_classes
@@ -138,26 +138,28 @@ impl Condensed {
         self.reference.kappa(self.stiffness[coordinate], number) * share
     }
 
-    /// Stiffness of a coordinate from which κ is made.
+    /// Stiffness of a coordinate that defines κ.
     #[must_use]
     pub fn stiffness(&self, coordinate: usize) -> f64 {
         self.stiffness[coordinate]
     }
 
-    /// Whether a coordinate leaves Newton's equations while it sticks, or along a normal is closed: its
-    /// reference stiffness is then that of the contact.
+    /// Whether a coordinate is eliminated from Newton's equations while it sticks, or along a normal while it is
+    /// closed.
+    ///
+    /// Its reference stiffness is then that of the contact.
     #[must_use]
     pub fn may_be_eliminated(&self, coordinate: usize) -> bool {
-        self.drops[coordinate] && self.reference == Reference::Stuck
+        self.can_stick[coordinate] && self.reference == Reference::Stuck
     }
 
-    /// Whether a contact presses at rest, so that the static solution is not zero.
+    /// Whether a contact has a static force, so that the static solution is not zero.
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
         self.preloaded
     }
 
-    /// The reference stiffness that was chosen.
+    /// The chosen reference stiffness.
     #[must_use]
     pub fn reference(&self) -> Reference {
         self.reference

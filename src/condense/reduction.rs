@@ -1,18 +1,18 @@
-//! What the condensation removed from the problem.
+//! The parts of the problem that the condensation removed.
 
 use crate::condense::Condensed;
 use crate::error::Result;
 use crate::model::Model;
 use crate::options::SolverOptions;
 
-/// What the condensation removed from the problem, for the user to see.
+/// The parts of the problem that the condensation removed, for the user.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Reduction {
-    /// Sectors of the wheel; all but one are removed.
+    /// Number of sectors of the wheel; all but one are removed.
     pub sectors: usize,
     /// Degrees of freedom of one sector.
     pub degrees_of_freedom: usize,
-    /// Relative coordinates that remain of them.
+    /// Relative coordinates that remain.
     pub coordinates: usize,
     /// Contacts in the model.
     pub contacts: usize,
@@ -20,23 +20,23 @@ pub struct Reduction {
     pub never_slipping: usize,
     /// Contacts without force (no stiffness, or no slip limit).
     pub inert: usize,
-    /// Highest harmonic number of which the points tell: that asked for or, where a tolerance decided, the highest
-    /// that one of them carries.
+    /// Highest harmonic number of the points: the requested one or, where a tolerance chose, the highest that a
+    /// point carries.
     pub harmonics_asked: usize,
-    /// Harmonics carried, where most are.
+    /// Number of carried harmonics, the largest over the points.
     pub harmonics_carried: usize,
     /// Whether the mean is carried.
     pub mean_carried: bool,
-    /// Whether the even harmonics were left out because law and forcing are odd.
+    /// Whether the even harmonics were removed because laws and force are odd.
     pub even_removed: bool,
-    /// Real unknowns of the nonlinear problem, where there are most.
+    /// Number of real unknowns of the nonlinear problem, the largest over the points.
     pub unknowns: usize,
     /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
     pub held_by_contacts: usize,
 }
 
 impl Condensed {
-    /// What was removed.
+    /// The parts of the problem that were removed.
     ///
     /// # Errors
     /// Those of [`Model::rigid_modes`].
