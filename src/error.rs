@@ -117,7 +117,7 @@ impl Status {
             Self::StoppedLeftRange => {
                 "the branch turned back and left the range where it began for good; all points are kept; start elsewhere or from the other end"
             }
-            Self::StoppedCallback => "a callback of the host failed; the points found so far are kept",
+            Self::StoppedCallback => "a callback of the caller failed; the points found so far are kept",
             _ => "",
         }
     }

@@ -1,5 +1,5 @@
-//! The tangents of a law of the caller against central differences on a test motion: where a solve does not
-//! converge, a wrong one is the first suspect.
+//! Check of the tangents of a law of the caller against central differences on a test motion. A wrong tangent is a
+//! frequent reason why a solve does not converge.
 
 mod jacobian_gap;
 mod step_derivatives;
@@ -14,13 +14,13 @@ use crate::contact::memoryless_law::{Memoryless, Samples};
 use crate::error::{Error, Result, fail, try_copy, try_vec};
 use crate::model::Model;
 
-/// Compares all tangents of the law of the caller that is contact `contact` with central differences, on a
-/// built-in motion with a mean and the harmonics 1 and 3 whose directions reach about `amplitudes`, at
-/// the angular frequency `omega`.
+/// Compares all tangents of the law of the caller that is contact `contact` with central differences, on a built-in
+/// motion with a mean and the harmonics 1 and 3, of about `amplitudes` in each direction, at the angular frequency
+/// `omega`.
 ///
 /// # Errors
-/// `Index` for an unknown contact, `Argument` where it is none of the caller's and for bad numbers,
-/// `Dimension` for another number of amplitudes; those of the callback.
+/// `Index` for an unknown contact, `Argument` for a contact that is no law of the caller and for numbers out of
+/// range, `Dimension` for a wrong number of amplitudes; those of the callback.
 pub fn check_jacobian(model: &Model, contact: usize, omega: f64, amplitudes: &[f64]) -> Result<JacobianGap> {
     let Some(kept) = model.contacts().get(contact) else {
         return fail!(Index, "contact = {contact}, needs 0 .. {}", model.contacts().len());
@@ -59,14 +59,14 @@ pub fn check_jacobian(model: &Model, contact: usize, omega: f64, amplitudes: &[f
 }
 
 /// Force and tangents of a law without memory.
-struct Told {
+struct ForceAndTangents {
     f: Vec<f64>,
     df_du: Vec<f64>,
     df_dv: Vec<f64>,
     scratch: Vec<f64>,
 }
 
-impl Told {
+impl ForceAndTangents {
     fn new(motion: &Motion) -> Result<Self> {
         let (signals, d) = (motion.u.len(), motion.amplitudes.len());
         Ok(Self {
@@ -77,7 +77,7 @@ impl Told {
         })
     }
 
-    fn ask(&mut self, law: &User, omega: f64, u: &[f64], v: &[f64]) -> Result<()> {
+    fn evaluate(&mut self, law: &User, omega: f64, u: &[f64], v: &[f64]) -> Result<()> {
         self.df_du.fill(0.0);
         self.df_dv.fill(0.0);
         let out = Samples {
@@ -90,13 +90,16 @@ impl Told {
     }
 }
 
-/// Each direction is moved at all samples at once, so that a force which does not follow from its own time
-/// alone shows too.
+/// Perturbs each direction at all samples at once, so that a force that depends on other times is detected as well.
 fn without_memory(law: &User, motion: &Motion) -> Result<JacobianGap> {
     let d = law.directions;
     let mut worst = JacobianGap::default();
-    let (mut reported, mut up, mut down) = (Told::new(motion)?, Told::new(motion)?, Told::new(motion)?);
-    reported.ask(law, motion.omega, &motion.u, &motion.v)?;
+    let (mut reported, mut up, mut down) = (
+        ForceAndTangents::new(motion)?,
+        ForceAndTangents::new(motion)?,
+        ForceAndTangents::new(motion)?,
+    );
+    reported.evaluate(law, motion.omega, &motion.u, &motion.v)?;
     let changed = sizes(&reported.f, d)?;
     for of_velocity in [false, true] {
         if of_velocity && !law.velocity {
@@ -109,7 +112,7 @@ fn without_memory(law: &User, motion: &Motion) -> Result<JacobianGap> {
                 let (mut u, mut v) = (try_copy(&motion.u, CONTEXT)?, try_copy(&motion.v, CONTEXT)?);
                 let signal = if of_velocity { &mut v } else { &mut u };
                 signal.iter_mut().skip(k).step_by(d).for_each(|x| *x += shift);
-                out.ask(law, motion.omega, &u, &v)?;
+                out.evaluate(law, motion.omega, &u, &v)?;
             }
             let block = if of_velocity { &reported.df_dv } else { &reported.df_du };
             for (at, (a, b)) in up.f.iter().zip(&down.f).enumerate() {
@@ -126,7 +129,7 @@ fn without_memory(law: &User, motion: &Motion) -> Result<JacobianGap> {
                     given: block[at * d + k],
                     difference: (a - b) / (2.0 * h),
                 };
-                worst.worse(moved, changed[at % d], entry);
+                worst.keep_worst(moved, changed[at % d], entry);
             }
         }
     }

@@ -1,5 +1,5 @@
 //! The result of an analysis: points along a branch, its peaks and folds, solutions at requested parameter values,
-//! and what was removed from the problem.
+//! and the removed parts of the problem.
 
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
@@ -7,7 +7,7 @@ use crate::results::mode_branch::ModeData;
 use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 
-/// A solution beside the curve: a peak, a fold, or one at a parameter value asked for.
+/// A solution beside the curve: a peak, a fold, or one at a requested parameter value.
 #[derive(Clone, Copy, Debug)]
 pub struct Special {
     /// Number of the point; it continues the numbering of the curve.
@@ -20,12 +20,12 @@ pub struct Special {
 
 /// A branch of solutions.
 ///
-/// Points 0 .. [`Self::points`] form the curve in the order in which it was followed. Peaks,
-/// folds and the solutions asked for have the numbers after that.
+/// Points 0 .. [`Self::points`] form the curve in the order in which it was followed. Peaks, folds and the
+/// requested solutions have the numbers after that.
 #[derive(Debug)]
 pub struct Branch {
     pub(super) resolutions: Vec<Resolution>,
-    /// Where each stored point lies.
+    /// Place of each stored point.
     pub(super) places: Vec<Place>,
     pub(super) reduction: Reduction,
     pub(super) harmonics: usize,
@@ -51,7 +51,7 @@ pub struct Branch {
     pub(super) mode: Option<ModeData>,
 }
 
-/// Where a stored point lies: its resolution, and the begin of its motion and of its response.
+/// Place of a stored point: the number of its resolution, and the offsets of its motion and of its response.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub(super) resolution: usize,
@@ -60,14 +60,14 @@ pub(super) struct Place {
 }
 
 impl Branch {
-    /// [`Status::Ok`] when the whole range was covered, else why the branch ends early.
+    /// [`Status::Ok`] when the whole range was covered, else the reason why the branch ended early.
     #[must_use]
     pub fn status(&self) -> Status {
         self.status
     }
 
-    /// What ended the branch early, where the status alone does not say it: the failure of a callback, or a frequency
-    /// at which there is no bounded solution.
+    /// The error that ended the branch early, where the status alone does not identify it: the failure of a
+    /// callback, or a frequency without bounded solution.
     #[must_use]
     pub fn reason(&self) -> Option<&Error> {
         self.reason.as_ref()
@@ -121,9 +121,9 @@ impl Branch {
         &self.harmonics_used[..self.curve]
     }
 
-    /// Share of the period that each contact slips: points × contacts, a point after the other.
-    /// Time that it is open is not slip: 0 is a contact that sticks or opens, and what springs,
-    /// unilateral ones among them, laws without states and contacts without force report.
+    /// Share of the period that each contact slips: points × contacts, point after point. Time in the open state
+    /// does not count: the value is 0 for a contact that only sticks or opens, for springs including unilateral
+    /// ones, for laws without states and for contacts without force.
     #[must_use]
     pub fn slip_fraction(&self) -> &[f64] {
         &self.slip_fraction[..self.curve * self.contacts()]
@@ -148,7 +148,7 @@ impl Branch {
         &self.folds
     }
 
-    /// Every solution found at the i-th frequency (in a nonlinear mode: amplitude) asked for.
+    /// Every solution found at the i-th requested frequency (in a nonlinear mode: amplitude).
     #[must_use]
     pub fn at(&self, i: usize) -> &[Special] {
         self.at.get(i).map_or(&[], Vec::as_slice)
@@ -166,8 +166,8 @@ impl Branch {
         self.resolutions[0].condensed.ndof()
     }
 
-    /// Highest harmonic number H of which the points tell: the one that was asked for, or, where a tolerance
-    /// decided, the highest that a stored point carries.
+    /// Highest harmonic number H of the results: the requested one or, where a tolerance chose, the highest that a
+    /// stored point carries.
     #[must_use]
     pub fn harmonics(&self) -> usize {
         self.harmonics
@@ -179,20 +179,20 @@ impl Branch {
         Some(self.resolution_at(point)?.condensed.set().numbers())
     }
 
-    /// The degree of freedom whose amplitude was followed.
+    /// The response degree of freedom, which defines the amplitude.
     #[must_use]
     pub fn response_dof(&self) -> usize {
         self.response_dof
     }
 
-    /// What was removed from the problem.
+    /// The parts of the problem that the condensation removed.
     #[must_use]
     pub fn reduction(&self) -> &Reduction {
         &self.reduction
     }
 
-    /// Harmonics of the response degree of freedom at a stored point, one per number in
-    /// [`Self::carried_at`]; they are at hand without recovering the whole structure.
+    /// Harmonics of the response degree of freedom at a stored point, one per number in [`Self::carried_at`]. They
+    /// are stored, so that the whole structure need not be recovered.
     #[must_use]
     pub fn response_at(&self, point: usize) -> Option<&[Complex64]> {
         let place = self.places.get(point)?;

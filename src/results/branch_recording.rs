@@ -8,10 +8,10 @@ use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 use std::sync::Arc;
 
-/// Numbers that belong to one point.
+/// Numbers of one point.
 #[derive(Clone, Copy, Debug)]
 pub struct Record<'a> {
-    /// The harmonics that it was solved with.
+    /// Resolution with which the point was solved.
     pub resolution: &'a Resolution,
     /// Angular frequency.
     pub omega: f64,
@@ -27,14 +27,14 @@ pub struct Record<'a> {
     pub iterations: usize,
     /// Share of the period that each law slips.
     pub slip_fractions: &'a [f64],
-    /// How much sampling matters, 0 where all laws are exact.
+    /// Estimated error by sampling, 0 where all laws are exact.
     pub sampling_error: f64,
-    /// Estimated relative error of the response amplitude, or of a mode's frequency, and error of its damping
-    /// ratio; NaN where they are unknown.
+    /// Estimated relative error of the response amplitude, or of the frequency of a mode, and the error of its
+    /// damping ratio; NaN if unknown.
     pub errors: (f64, f64),
 }
 
-/// Which list a special point belongs to.
+/// List to which a special point belongs.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum SpecialKind {
     Peak,
@@ -49,7 +49,7 @@ impl SpecialKind {
 }
 
 impl Branch {
-    /// An empty branch of a condensed model, whose points tell of the harmonics up to `harmonics`, or up to the
+    /// An empty branch of a condensed model, whose points have the harmonics up to `harmonics`, or up to the
     /// highest that one of them carries.
     ///
     /// # Errors
@@ -121,7 +121,7 @@ impl Branch {
             .try_reserve(record.response.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
         try_extend(&mut self.motion, record.motion, CONTEXT)?;
-        // The frequency goes last: it counts the points.
+        // The frequency is stored last: its length is the number of points.
         try_push(&mut self.omega, record.omega, CONTEXT)?;
         self.places.push(place);
         let condensed = &*record.resolution.condensed;
@@ -163,7 +163,7 @@ impl Branch {
             SpecialKind::Fold => &mut self.folds,
             SpecialKind::At(i) => {
                 while self.at.len() <= i {
-                    try_push(&mut self.at, Vec::new(), "the solutions asked for")?;
+                    try_push(&mut self.at, Vec::new(), "the requested solutions")?;
                 }
                 &mut self.at[i]
             }
@@ -178,8 +178,8 @@ impl Branch {
         };
     }
 
-    /// `stalled` says whether round-off stopped some point above the tolerance of the residual, `missed` whether the
-    /// error of some point misses that which chooses the harmonics.
+    /// Sets the status of the branch. `stalled`: round-off stopped some point above the tolerance of the residual;
+    /// `missed`: the error of some point exceeds the tolerance that chooses the harmonics.
     pub(crate) fn set_ending(&mut self, status: Status, reason: Option<Error>, (stalled, missed): (bool, bool)) {
         self.status = match status {
             Status::Ok if missed => Status::StoppedMaxHarmonics,
@@ -189,7 +189,7 @@ impl Branch {
         self.reason = reason;
     }
 
-    /// Number of a resolution, which is kept if it is new.
+    /// Number of a resolution, which is stored if it is new.
     pub(super) fn resolution_of(&mut self, resolution: &Resolution) -> Result<usize> {
         let known = |kept: &Resolution| Arc::ptr_eq(&kept.condensed, &resolution.condensed);
         if let Some(found) = self.resolutions.iter().position(known) {

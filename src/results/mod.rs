@@ -1,4 +1,4 @@
-//! Results: the stored points of a branch, and the numbers that follow from them.
+//! Results: the stored points of a branch, and the quantities derived from them.
 
 mod branch;
 mod branch_recording;

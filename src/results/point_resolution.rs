@@ -1,13 +1,14 @@
-//! The harmonics that a point of a branch was solved with: those of all points, or more where a tolerance required it.
+//! The harmonics that a point of a branch was solved with: those of all points, or more where a tolerance required
+//! it.
 
 use crate::condense::Condensed;
 use std::sync::Arc;
 
-/// A model condensed to some harmonics.
+/// A model condensed to a set of harmonics.
 #[derive(Clone, Debug)]
 pub struct Resolution {
-    /// The model.
+    /// The condensed model.
     pub condensed: Arc<Condensed>,
-    /// Samples per period of laws that are sampled; 0: exact events.
+    /// Samples per period of the sampled laws; 0: exact events.
     pub samples: usize,
 }

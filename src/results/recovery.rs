@@ -8,7 +8,7 @@ use crate::results::branch::Branch;
 use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 
-/// Recovers one point after the other.
+/// Recovers the motion of stored points, one at a time.
 pub(crate) struct Recovery<'a> {
     branch: &'a Branch,
     resolution: usize,
@@ -22,7 +22,7 @@ pub(crate) struct Recovery<'a> {
 const CONTEXT: &str = "the harmonics";
 
 impl<'a> Recovery<'a> {
-    /// Memory for the points of a branch, gone to a stored one; see [`Self::go_to`].
+    /// Memory for the points of a branch, with a stored point selected; see [`Self::go_to`].
     ///
     /// # Errors
     /// `Index` for an unknown point, `OutOfMemory`; those of callbacks.
@@ -47,7 +47,7 @@ impl<'a> Recovery<'a> {
         self.branch.motion_at(self.point).unwrap_or(&[])
     }
 
-    /// Evaluates the contact forces at a stored point.
+    /// Selects a stored point and evaluates its contact forces.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks.
@@ -70,7 +70,7 @@ impl<'a> Recovery<'a> {
     /// Motion of all degrees of freedom in the i-th carried harmonic, in the caller's unit.
     ///
     /// # Errors
-    /// `Singular` at an undamped resonance that no contact feels.
+    /// `Singular` at an undamped resonance that moves no contact.
     pub fn harmonic(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
         let condensed = self.condensed;
         let set = condensed.set();

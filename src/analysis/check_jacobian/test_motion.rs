@@ -8,8 +8,8 @@ pub(super) const SAMPLES: usize = 64;
 
 pub(super) const CONTEXT: &str = "the test of a Jacobian";
 
-/// Step of a central difference relative to what is moved: its error, of second order, and rounding
-/// meet at the cube root of the precision.
+/// Step of a central difference relative to the perturbed variable: at the cube root of the precision its error, of
+/// second order, equals rounding.
 pub(super) fn step_of(size: f64) -> f64 {
     f64::EPSILON.cbrt() * size
 }
@@ -17,7 +17,7 @@ pub(super) fn step_of(size: f64) -> f64 {
 /// The test motion.
 pub(super) struct Motion {
     pub omega: f64,
-    /// Motions and velocities, samples × d; no velocities for a force that does not feel them.
+    /// Motions and velocities, samples × d; no velocities for a force that does not depend on them.
     pub u: Vec<f64>,
     pub v: Vec<f64>,
     /// Sizes of the motions.
@@ -46,7 +46,7 @@ impl Motion {
         })
     }
 
-    /// The size of motion k, or of its velocity.
+    /// Size of motion k, or of its velocity.
     pub fn size(&self, k: usize, of_velocity: bool) -> f64 {
         self.amplitudes[k] * if of_velocity { self.omega } else { 1.0 }
     }

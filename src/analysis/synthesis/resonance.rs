@@ -20,7 +20,7 @@ const CONTEXT: &str = "the synthesised response";
 /// Relative accuracy of the amplitude of a resonance.
 const WIDTH: f64 = 1e-12;
 
-/// Most evaluations for one resonance.
+/// Largest number of evaluations for one resonance.
 const MAX_EVALUATIONS: usize = 60;
 
 /// Solves the mode between two points of its branch.
@@ -74,8 +74,8 @@ impl<'a> Refinement<'a> {
         })
     }
 
-    /// The state without excess between points k and k + 1, whose excesses are given, by the
-    /// Illinois variant of regula falsi in log₁₀ a.
+    /// The state of zero excess between points k and k + 1, whose excesses are given, by the Illinois variant of
+    /// regula falsi in log₁₀ a.
     pub fn between(&mut self, k: usize, first: f64, last: f64) -> Result<Option<State>> {
         let carried = |point: usize| self.branch.condensed_at(point).set().numbers().len();
         let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
@@ -114,7 +114,7 @@ impl<'a> Refinement<'a> {
         Ok(found)
     }
 
-    /// A point of the curve as the continuation left it, in the harmonics at hand.
+    /// A point of the curve as the continuation stored it, transferred to the current harmonics.
     fn point(&self, k: usize) -> Result<Option<Point>> {
         let Some((v, tangent)) = self.data.state(k) else {
             return Ok(None);
