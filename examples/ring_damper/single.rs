@@ -89,7 +89,7 @@ impl Request {
         let mut bar = Bar::new("Response, percent", 100);
         let model = self.parameters.model()?;
         let response = Response::follow(&model, &self.solver, &self.range, &REPORTED_DOFS, |share| {
-            bar.set(share)
+            bar.set(share);
         })?;
         bar.finish();
         if response.stalled {

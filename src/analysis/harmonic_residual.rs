@@ -16,9 +16,9 @@ use num_complex::Complex64;
 /// Residual R_h = Z_h x_h + Wᴴ f_h − F_h of harmonic balance with harmonics 0 ..= H of all degrees
 /// of freedom, with its Jacobian and frequency derivative.
 ///
-/// `x` and `r` are (H + 1) × ndof, harmonic by harmonic. `jacobian`, if given, is real, column-major, of order 2(H
-/// + 1)·ndof over the pairs (Re, Im); `d_omega` is ∂R/∂ω. The imaginary part of the mean is no unknown: its rows
-/// read Im x₀ = 0.
+/// `x` and `r` are (H + 1) × ndof, harmonic by harmonic. `jacobian`, if given, is real, column-major, of order
+/// 2(H + 1)·ndof over the pairs (Re, Im); `d_omega` is ∂R/∂ω. The imaginary part of the mean is no unknown: its
+/// rows read Im x₀ = 0.
 ///
 /// # Errors
 /// `Dimension` and `NotFinite`, naming the array; those of the model's matrices.

@@ -144,8 +144,7 @@ impl Condensed {
         self.stiffness[coordinate]
     }
 
-    /// Whether a coordinate is eliminated from Newton's equations while it sticks, or along a normal while it is
-    /// closed.
+    /// Whether a coordinate is eliminated from Newton's equations in its stuck or closed state.
     ///
     /// Its reference stiffness is then that of the contact.
     #[must_use]

@@ -36,8 +36,9 @@ pub fn check_mass(m: &Csc) -> Result<()> {
     first_bad_pivot(m, margin)?.map_or(Ok(()), negative)
 }
 
-/// Whether a Hermitian stiffness matrix resists every motion, by a Cholesky factorisation of
-/// K − 1e-10 diag(K).
+/// Whether a Hermitian stiffness matrix resists every motion.
+///
+/// The test is a Cholesky factorisation of K − 1e-10 diag(K).
 ///
 /// # Errors
 /// `OutOfMemory`.

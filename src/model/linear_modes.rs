@@ -41,7 +41,7 @@ const RIGID_MODES: usize = 6;
 /// Largest ω² of a rigid motion, relative to that of the stiffest degree of freedom alone.
 const RIGID: f64 = 1e-10;
 
-/// Most square matrices that [`eigen::generalised`] holds at a time.
+/// Largest number of square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
 
 /// K and M of a wave, checked to be Hermitian.

@@ -81,7 +81,7 @@ impl Model {
 
     /// Sets the mass, damping or stiffness matrix (of the sector itself), ndof × ndof. M must be symmetric or
     /// Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
-    /// on all harmonics above zero; the mean sees the real part.
+    /// on all harmonics above zero; the mean has the real part.
     ///
     /// # Errors
     /// Those of [`MatrixView::copy_in`]; `NotPositiveDefinite` for a negative diagonal mass.

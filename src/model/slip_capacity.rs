@@ -10,7 +10,7 @@
 //! harmonic than that of a square wave, 4L/π, and no larger mean than L. Where |φᴴ F| is above Σ |w φ| 4L/π
 //! nothing bounded solves the equation, in time or in any number of harmonics.
 //!
-//! A frequency meets a resonance up to rounding only. With r = φᴴ Z and the excess e of the force over the
+//! A frequency coincides with a resonance up to rounding only. With r = φᴴ Z and the excess e of the force over the
 //! capacity, |r|·|X| ≥ e for any solution X. This lower bound of the motion decides whether the frequency is close
 //! enough.
 

@@ -69,7 +69,7 @@ impl Default for SolverOptions {
 /// Highest harmonic number that is accepted; beyond it index arithmetic may overflow and run times are excessive.
 pub const MAX_HARMONIC: usize = 100_000;
 
-/// Most samples per period that are accepted.
+/// Largest accepted number of samples per period.
 pub const MAX_SAMPLES: usize = 1 << 24;
 
 impl SolverOptions {
