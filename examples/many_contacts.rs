@@ -1,10 +1,10 @@
-//! What a Newton iteration costs with many contacts in three directions.
+//! Cost of a Newton iteration with many contacts in three directions.
 //!
-//! A clamped plate of bricks rubs with its whole underside on a lining: 200 contacts of friction in a
-//! plane with separation, 600 relative motions, 6600 real unknowns at H = 5. At one frequency Newton's
-//! method is followed from the linear solution, and every iteration is shown with the time of its parts:
-//! contact laws, assembly (the coupling of their Jacobians by the flexibility of the plate),
-//! factorisation, and the solution for the step. `-- --help` lists the flags.
+//! A clamped plate of bricks rubs with its whole underside on a lining: 200 contacts of friction in a plane with
+//! separation, 600 relative motions, 6600 real unknowns at H = 5. At one frequency Newton's method starts from the
+//! linear solution, and every iteration is shown with the time of its parts: contact laws, assembly (the coupling
+//! of their Jacobians by the flexibility of the plate), factorisation, and the solution for the step. `-- --help`
+//! lists the flags.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -40,13 +40,13 @@ const FLAGS: [Flag; 6] = [
     Flag::new("--help", "", "show this text"),
 ];
 
-/// Newton iterations at most.
+/// Largest number of Newton iterations.
 const ITERATIONS: usize = 12;
 
 /// Relative residual at which the iteration ends.
 const TOLERANCE: f64 = 1e-10;
 
-/// The vertical share of the force, enough for parts of the plate to lift off.
+/// Vertical share of the force, large enough for parts of the plate to lift off.
 const LIFT: f64 = 0.5;
 
 struct Request {
@@ -100,7 +100,7 @@ impl Request {
         let mut row = vec![0.0; n + 1];
         row[n] = 1.0;
         let mut step = vec![0.0; n + 1];
-        // The flexibility at this frequency belongs to the start: it stays the same here.
+        // The flexibility at this frequency is evaluated once: it stays the same here.
         problem.initial_guess(InitialGuess::Reference, omega, &mut u)?;
         writeln!(
             screen,

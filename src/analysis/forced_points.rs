@@ -303,7 +303,7 @@ fn record<'a>(
     (sampling_error, error): (f64, f64),
 ) -> Record<'a> {
     Record {
-        level,
+        resolution: level,
         omega: point.parameter(),
         motion: point.unknowns(),
         amplitude: point.amplitude,
