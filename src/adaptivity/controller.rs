@@ -1,22 +1,21 @@
-//! As many harmonics as the error wanted asks for: more where a point misses it, fewer where they carry little.
+//! Harmonics from a tolerance: more where the error of a point misses it, fewer where they carry little.
 //!
 //! A solution W whose error η is too large is solved again from its corrected solution Z*, see
-//! [`crate::error_estimate`], with the lowest harmonics H′ beyond which that has faded:
+//! [`crate::error_estimate`], with the lowest harmonics H′ beyond which Z* has converged:
 //!
 //! > 3/2 A t(H′) ≤ ½ tolerance,  t(h) = ‖Z*_{>h}‖/‖Z*‖,  A = η/t(H)
 //!
 //! and the branch goes on with H′. The factor 3/2 allows for the error of the estimate. Harmonics fall only where the
-//! error is far below the tolerance, so that they do not flutter.
+//! error is far below the tolerance, so that they do not alternate.
 
-use crate::adaptivity::branch_tracer::Keeper;
+use crate::adaptivity::discretised::{Assessment, Discretised};
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
 use crate::linalg::norm;
 use crate::results::SpecialKind;
-use core::cmp::Ordering;
 
-/// How far the error may be above its estimate.
+/// Largest ratio of an error to its estimate that is allowed for.
 const MARGIN: f64 = 1.5;
 
 /// Share of the tolerance that is aimed at.
@@ -28,43 +27,50 @@ const RAISE: f64 = 0.7;
 /// Share of the tolerance below which the next point gets fewer.
 const DROP: f64 = 0.08;
 
-/// Points for which a branch does not fall to a resolution on which one missed the tolerance.
+/// Points for which a branch does not fall to a level at which one missed the tolerance.
 const PATIENCE: usize = 10;
 
-/// Least size of a harmonic that carries something.
-const NOTHING: f64 = 1e-13;
+/// Relative size of a harmonic that is round-off.
+const ROUND_OFF: f64 = 1e-13;
 
-/// Resolutions that a branch climbs where a point was stuck.
+/// Levels by which a point is refined from which the next one was not found with the harmonics that it needs.
 const BACKTRACK: usize = 3;
 
-/// Most resolutions that one point may climb.
+/// Most refinements of one point.
 const MOST_REFINEMENTS: usize = 12;
 
-/// An estimate with the error that the tolerance bounds; NaN where it is unknown.
-pub(crate) struct Assessment {
-    pub error: f64,
-    pub estimate: Estimate,
+/// Cancel flag of a caller.
+type Cancelled<'c> = Option<&'c dyn Fn() -> bool>;
+
+/// A point with its resolution.
+pub(crate) type PointAt<'p> = (&'p Point, usize);
+
+/// A point with the harmonics that its error requires, at the current resolution.
+pub(crate) struct Refined {
+    pub point: Point,
+    /// Whether it misses the tolerance and was not found with more harmonics, though there are some.
+    pub stuck: bool,
 }
 
-/// How harmonics are chosen.
+/// Chooses the harmonics of each point of a branch.
 pub(crate) struct AdaptivityController {
     tolerance: f64,
-    /// Estimates made that were more than a look at contacts that stick.
-    pub estimates: usize,
-    /// Error and harmonics wanted of the last point.
+    /// Estimates made that were more than a check of contacts that stick.
+    estimates: usize,
+    /// Error of the last point that met the tolerance, and the harmonics that it should have.
     last: Option<(f64, usize)>,
-    /// Lowest resolution to which the branch may fall, and for how many points more: one above that where a point missed
+    /// Lowest level to which the branch may fall, and for how many points more: one above that where a point missed
     /// the tolerance.
     floor: (usize, usize),
-    /// The highest resolution so far. The branch falls no further than to half its harmonics.
+    /// The highest level so far. The branch falls no further than to half its harmonics.
     highest: usize,
-    /// Whether it had a fold. Then it does not fall at all, where something is nonlinear: with fewer harmonics it may
-    /// fold elsewhere, and turn round.
-    pub folded: bool,
+    /// Whether the branch had a fold. Then it does not fall at all where something is nonlinear: with fewer harmonics
+    /// it may fold elsewhere, and turn round.
+    folded: bool,
 }
 
 impl AdaptivityController {
-    /// For an error wanted.
+    /// A controller for a tolerance.
     pub fn new(tolerance: f64) -> Self {
         Self {
             tolerance,
@@ -76,14 +82,14 @@ impl AdaptivityController {
         }
     }
 
-    /// Whether an error that is told is above the tolerance, or unknown.
-    pub fn is_missed_by(&self, error: f64) -> bool {
-        // An unknown error is no number.
-        self.tolerance > 0.0
-            && !matches!(
-                error.partial_cmp(&self.tolerance),
-                Some(Ordering::Less | Ordering::Equal)
-            )
+    /// Number of estimates made.
+    pub fn estimates(&self) -> usize {
+        self.estimates
+    }
+
+    /// Notes a special point of the branch.
+    pub fn note_special(&mut self, kind: SpecialKind) {
+        self.folded |= kind.is_fold();
     }
 
     fn accepts(&self, error: f64) -> bool {
@@ -95,8 +101,142 @@ impl AdaptivityController {
         self.estimates += usize::from(!found.estimate.certified || found.estimate.steps > 0);
     }
 
-    /// Highest harmonic that the solution should have; 0 where nothing is known.
-    fn wanted(&self, found: &Assessment) -> usize {
+    /// The point with the harmonics that its error requires. One that misses the tolerance at the last refinement is
+    /// returned all the same.
+    pub fn refine(
+        &mut self,
+        equations: &mut dyn Discretised,
+        mut point: Point,
+        keep_parameter: bool,
+        cancelled: Cancelled<'_>,
+    ) -> Result<Refined> {
+        let done = |point| Ok(Refined { point, stuck: false });
+        if !equations.levels().is_automatic() {
+            return done(point);
+        }
+        for refinements in 0..=MOST_REFINEMENTS {
+            let level = equations.resolution();
+            let Some(found) = equations.estimate(&point)? else {
+                return done(point);
+            };
+            self.count(&found);
+            let accepted = self.accepts(found.error);
+            let required = self.required_harmonics(&found);
+            self.last = accepted.then_some((found.error, required));
+            if !accepted {
+                self.floor = (level + 1, PATIENCE);
+            }
+            let next = if accepted {
+                // Harmonics without content are dropped at once.
+                if found.error > 0.0 {
+                    return done(point);
+                }
+                equations.levels().level_with(required)
+            } else {
+                equations.levels().level_with(required).max(level + 1)
+            };
+            let last = equations.levels().last();
+            let next = next.min(last);
+            let may_refine = !accepted && next > level && !found.estimate.too_large && refinements < MOST_REFINEMENTS;
+            let better = if accepted && next < level {
+                resolve_at(equations, (&point, level), next, keep_parameter, cancelled)?
+            } else if may_refine {
+                refine_to(equations, &point, &found.estimate, next, keep_parameter, cancelled)?
+            } else {
+                None
+            };
+            let Some(better) = better else {
+                return Ok(Refined {
+                    point,
+                    stuck: may_refine,
+                });
+            };
+            point = better;
+        }
+        done(point)
+    }
+
+    /// The point from which the next one was stuck, with more harmonics; none where that is not found either.
+    pub fn backtrack(
+        equations: &mut dyn Discretised,
+        (point, level): PointAt<'_>,
+        cancelled: Cancelled<'_>,
+    ) -> Result<Option<Point>> {
+        let to = (level.max(equations.resolution()) + BACKTRACK).min(equations.levels().last());
+        resolve_at(equations, (point, level), to, true, cancelled)
+    }
+
+    /// Whether a point beside the curve meets the tolerance; if not, the resolution has been raised, and the point is to
+    /// be located again. A fold always does: at its parameter no solution is isolated, and its error is undefined.
+    pub fn meets_tolerance(
+        &mut self,
+        equations: &mut dyn Discretised,
+        kind: SpecialKind,
+        point: &Point,
+    ) -> Result<bool> {
+        if !equations.levels().is_automatic() || kind.is_fold() {
+            return Ok(true);
+        }
+        let level = equations.resolution();
+        let Some(found) = equations.estimate(point)? else {
+            return Ok(true);
+        };
+        self.count(&found);
+        if self.accepts(found.error) {
+            return Ok(true);
+        }
+        let required = self.required_harmonics(&found);
+        let last = equations.levels().last();
+        let next = equations.levels().level_with(required).max(level + 1).min(last);
+        if next <= level || found.estimate.too_large {
+            return Ok(true);
+        }
+        equations.select(next)?;
+        Ok(false)
+    }
+
+    /// The point recorded last with the harmonics with which the branch goes on: where they change, solved once more.
+    pub fn adjust(&mut self, equations: &mut dyn Discretised, point: Point, cancelled: Cancelled<'_>) -> Result<Point> {
+        let level = equations.resolution();
+        let Some((error, required)) = self.last else {
+            return Ok(point);
+        };
+        let share = MARGIN * error / self.tolerance;
+        self.floor.1 = self.floor.1.saturating_sub(1);
+        self.highest = self.highest.max(level);
+        let floor = self.lowest_level(equations, error, level);
+        let last = equations.levels().last();
+        let next = equations.levels().level_with(required).max(floor).min(last);
+        if !((share > RAISE && next > level) || (share < DROP && next < level)) {
+            return Ok(point);
+        }
+        // At its parameter, so that nothing lies between the point recorded and the one that the branch goes on from.
+        let Some(found) = resolve_at(equations, (&point, level), next, true, cancelled)? else {
+            return Ok(point);
+        };
+        let before = equations.transfer(&point, level)?;
+        if (found.amplitude - before.amplitude).norm() > self.tolerance * before.amplitude.norm() {
+            // The error with fewer harmonics is larger than its estimate, as near a fold.
+            equations.select(level)?;
+            return Ok(point);
+        }
+        Ok(found)
+    }
+
+    /// Lowest level to which the branch may fall from a point of this error.
+    fn lowest_level(&self, equations: &dyn Discretised, error: f64, level: usize) -> usize {
+        if error == 0.0 {
+            return 0;
+        }
+        if self.folded {
+            return level;
+        }
+        let half = equations.levels().level_of_half(self.highest);
+        if self.floor.1 > 0 { half.max(self.floor.0) } else { half }
+    }
+
+    /// Highest harmonic that the solution should have; 0 if the error is unknown.
+    fn required_harmonics(&self, found: &Assessment) -> usize {
         if !found.estimate.certified {
             return 0;
         }
@@ -105,11 +245,11 @@ impl AdaptivityController {
             .tail
             .iter()
             .fold(0.0, |s, &(_, share)| f64::hypot(s, share));
-        // Of a solution that misses nothing all is kept that is not rounding.
+        // If the estimated error is zero, keep every harmonic above round-off.
         let bound = if found.error > 0.0 && left_out > 0.0 {
             AIM * self.tolerance * left_out / (MARGIN * found.error)
         } else {
-            NOTHING
+            ROUND_OFF
         };
         let corrected = &found.estimate.corrected;
         let set = &corrected.set;
@@ -126,201 +266,57 @@ impl AdaptivityController {
     }
 }
 
-/// A point with as many harmonics as its error asks for, on whose resolution the keeper is.
-pub(crate) struct Refined {
-    pub point: Point,
-    /// Whether it misses the tolerance and was not found with more harmonics, though there are some.
-    pub stuck: bool,
-}
-
-/// The point with as many harmonics as its error asks for. One that misses the tolerance for all that could be done is
-/// returned all the same.
-pub(crate) fn refine(
-    keeper: &mut dyn Keeper,
-    mut point: Point,
-    keep_parameter: bool,
-    cancelled: Option<&dyn Fn() -> bool>,
-) -> Result<Refined> {
-    let done = |point| Ok(Refined { point, stuck: false });
-    if !keeper.harmonic_levels().is_automatic() {
-        return done(point);
-    }
-    for refinements in 0..=MOST_REFINEMENTS {
-        let resolution = keeper.resolution();
-        let Some(found) = keeper.assess(&point)? else {
-            return done(point);
-        };
-        let choice = keeper.choice();
-        choice.count(&found);
-        let accepted = choice.accepts(found.error);
-        let wanted = choice.wanted(&found);
-        choice.last = accepted.then_some((found.error, wanted));
-        if !accepted {
-            choice.floor = (resolution + 1, PATIENCE);
-        }
-        let next = if accepted {
-            // What carries nothing is not carried.
-            if found.error > 0.0 {
-                return done(point);
-            }
-            keeper.harmonic_levels().resolution_with(wanted)
-        } else {
-            keeper.harmonic_levels().resolution_with(wanted).max(resolution + 1)
-        };
-        let last = keeper.harmonic_levels().last();
-        let next = next.min(last);
-        let may_climb = !accepted && next > resolution && !found.estimate.too_large && refinements < MOST_REFINEMENTS;
-        let raised = if accepted && next < resolution {
-            select(keeper, (&point, resolution), next, keep_parameter, cancelled)?
-        } else if may_climb {
-            refine_to(keeper, &point, &found.estimate, next, keep_parameter, cancelled)?
-        } else {
-            None
-        };
-        let Some(better) = raised else {
-            return Ok(Refined {
-                point,
-                stuck: may_climb,
-            });
-        };
-        point = better;
-    }
-    done(point)
-}
-
-/// The point of a resolution from which the next one was stuck, with more harmonics; none where that is not found either.
-pub(crate) fn backtrack(
-    keeper: &mut dyn Keeper,
-    (point, resolution): (&Point, usize),
-    cancelled: Option<&dyn Fn() -> bool>,
-) -> Result<Option<Point>> {
-    let to = (resolution.max(keeper.resolution()) + BACKTRACK).min(keeper.harmonic_levels().last());
-    select(keeper, (point, resolution), to, true, cancelled)
-}
-
-/// Whether a point beside the curve may be kept; if not, the keeper has climbed, and it is to be found again. A fold
-/// always may: at its parameter no solution is isolated, and errors there are none of its own.
-pub(crate) fn meets_tolerance(keeper: &mut dyn Keeper, kind: SpecialKind, point: &Point) -> Result<bool> {
-    if !keeper.harmonic_levels().is_automatic() || kind.is_fold() {
-        return Ok(true);
-    }
-    let resolution = keeper.resolution();
-    let Some(found) = keeper.assess(point)? else {
-        return Ok(true);
-    };
-    let choice = keeper.choice();
-    choice.count(&found);
-    if choice.accepts(found.error) {
-        return Ok(true);
-    }
-    let wanted = choice.wanted(&found);
-    let last = keeper.harmonic_levels().last();
-    let next = keeper
-        .harmonic_levels()
-        .resolution_with(wanted)
-        .max(resolution + 1)
-        .min(last);
-    if next <= resolution || found.estimate.too_large {
-        return Ok(true);
-    }
-    keeper.go_to(next)?;
-    Ok(false)
-}
-
-/// The point stored last with the harmonics with which the branch goes on: where they change, solved once more.
-pub(crate) fn coarsen_or_refine(
-    keeper: &mut dyn Keeper,
-    point: Point,
-    cancelled: Option<&dyn Fn() -> bool>,
-) -> Result<Point> {
-    let resolution = keeper.resolution();
-    let choice = keeper.choice();
-    let Some((error, wanted)) = choice.last else {
-        return Ok(point);
-    };
-    let share = MARGIN * error / choice.tolerance;
-    choice.floor.1 = choice.floor.1.saturating_sub(1);
-    choice.highest = choice.highest.max(resolution);
-    let (highest, recent) = (choice.highest, choice.floor);
-    let mut floor = 0;
-    if error > 0.0 && choice.folded {
-        floor = resolution;
-    } else if error > 0.0 {
-        floor = keeper.harmonic_levels().resolution_of_half(highest);
-        if recent.1 > 0 {
-            floor = floor.max(recent.0);
-        }
-    }
-    let last = keeper.harmonic_levels().last();
-    let next = keeper.harmonic_levels().resolution_with(wanted).max(floor).min(last);
-    if !((share > RAISE && next > resolution) || (share < DROP && next < resolution)) {
-        return Ok(point);
-    }
-    // At its parameter, so that nothing lies between the point stored and the one that the branch goes on from.
-    let Some(found) = select(keeper, (&point, resolution), next, true, cancelled)? else {
-        return Ok(point);
-    };
-    let before = keeper.transfer(&point, resolution)?;
-    let tolerance = keeper.choice().tolerance;
-    if (found.amplitude - before.amplitude).norm() > tolerance * before.amplitude.norm() {
-        // Fewer harmonics than thought would do, as near a fold.
-        keeper.go_to(resolution)?;
-        return Ok(point);
-    }
-    Ok(found)
-}
-
-/// Solves near a point of a resolution with the harmonics of another one; the keeper stays where it is if that fails.
-fn select(
-    keeper: &mut dyn Keeper,
-    (point, resolution): (&Point, usize),
+/// Solves near a point with the harmonics of another level; the resolution stays as it is if that fails.
+fn resolve_at(
+    equations: &mut dyn Discretised,
+    (point, level): PointAt<'_>,
     to: usize,
     keep_parameter: bool,
-    cancelled: Option<&dyn Fn() -> bool>,
+    cancelled: Cancelled<'_>,
 ) -> Result<Option<Point>> {
-    let from = keeper.resolution();
-    keeper.go_to(to)?;
-    let start = keeper.transfer(point, resolution)?;
-    let found = keeper.resolve(&start, keep_parameter, cancelled)?;
+    let from = equations.resolution();
+    equations.select(to)?;
+    let start = equations.transfer(point, level)?;
+    let found = equations.resolve(&start, keep_parameter, cancelled)?;
     if found.is_none() {
-        keeper.go_to(from)?;
+        equations.select(from)?;
     }
     Ok(found)
 }
 
-/// Solves with the harmonics of a higher resolution, from the corrected solution or resolution by resolution; the keeper stays where
+/// Solves with the harmonics of a higher level, from the corrected solution or level by level; the resolution stays as
 /// it is if both fail.
 fn refine_to(
-    keeper: &mut dyn Keeper,
+    equations: &mut dyn Discretised,
     point: &Point,
     estimate: &Estimate,
     to: usize,
     keep_parameter: bool,
-    cancelled: Option<&dyn Fn() -> bool>,
+    cancelled: Cancelled<'_>,
 ) -> Result<Option<Point>> {
-    let from = keeper.resolution();
-    keeper.go_to(to)?;
+    let from = equations.resolution();
+    equations.select(to)?;
     if estimate.certified {
         // Where the plane across the branch has no solution near, a fixed parameter may have one.
         for fixed in [keep_parameter, true] {
-            let start = keeper.corrected(point, from, estimate)?;
-            if let Some(found) = keeper.resolve(&start, fixed, cancelled)? {
+            let start = equations.transfer_corrected(point, from, estimate)?;
+            if let Some(found) = equations.resolve(&start, fixed, cancelled)? {
                 return Ok(Some(found));
             }
         }
     }
     let mut reached = point.try_clone()?;
-    for resolution in from + 1..=to {
-        keeper.go_to(resolution)?;
-        let start = keeper.transfer(&reached, resolution - 1)?;
-        match keeper.resolve(&start, keep_parameter, cancelled)? {
+    for level in from + 1..=to {
+        equations.select(level)?;
+        let start = equations.transfer(&reached, level - 1)?;
+        match equations.resolve(&start, keep_parameter, cancelled)? {
             Some(found) => reached = found,
-            None if resolution == from + 1 => {
-                keeper.go_to(from)?;
+            None if level == from + 1 => {
+                equations.select(from)?;
                 return Ok(None);
             }
             None => {
-                keeper.go_to(resolution - 1)?;
+                equations.select(level - 1)?;
                 break;
             }
         }

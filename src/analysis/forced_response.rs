@@ -1,16 +1,17 @@
 //! Forced response over a range of frequency.
 
-use crate::adaptivity::branch_tracer::{BranchTracer, Ending, Keeper};
+use crate::adaptivity::branch_recorder::Ending;
+use crate::adaptivity::branch_tracer::{BranchTracer, Course};
+use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::analysis::forced_points::{ForcedPoints, relative_motion};
+use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
 use crate::analysis::unbounded_response;
-use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
+use crate::condense::{Condensed, ModelCache};
 use crate::continuation::Settings;
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
-use crate::error_estimate::ExtendedModels;
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
@@ -38,19 +39,19 @@ pub fn forced_response(
     if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
-    let harmonic_levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
+    let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::new(model, &options, range.omega_start)
     })?;
-    let resolution = harmonic_levels.first(solver.harmonics);
-    let level = harmonic_levels.level(resolution)?;
-    let response = match solver.response_dof {
+    let level = levels.first(solver.harmonics);
+    let resolution = levels.at(level)?;
+    let response_dof = match solver.response_dof {
         Some(dof) => dof,
         // At the lower end, so that both directions follow the same one.
-        None => forced_dof_that_moves_most(model, &level.condensed, range.omega_start.min(range.omega_stop))?,
+        None => forced_dof_that_moves_most(model, &resolution.condensed, range.omega_start.min(range.omega_stop))?,
     };
     let given = match range.guess {
-        Some(guess) => Some(relative_motion(level, model.ndof(), guess)?),
+        Some(guess) => Some(relative_motion(resolution, model.ndof(), guess)?),
         None => None,
     };
     let settings = Settings {
@@ -60,22 +61,16 @@ pub fn forced_response(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let extended_models = ExtendedModels::new()?;
-    let mut points = ForcedPoints::new(
-        model,
-        solver,
-        settings,
-        (&harmonic_levels, &extended_models),
-        (resolution, given),
-        response,
-    )?;
-    let held = points.branch().reduction().held_by_contacts;
-    let first = match first(&mut points, &settings, resolution, hooks) {
+    let extended = ModelCache::for_estimates()?;
+    let models = (&levels, &extended);
+    let mut response = ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof)?;
+    let held = response.branch().reduction().held_by_contacts;
+    let first = match first_point(&mut response, &settings, hooks) {
         Ok(First::Found(point, way)) => Some((point, way)),
         Ok(First::Cancelled) => None,
-        Err(e) => return Err(with_reason(e, model, range.omega_start, &level.condensed, held)),
+        Err(e) => return Err(with_reason(e, model, range.omega_start, &resolution.condensed, held)),
     };
-    let task = BranchTracer {
+    let course = Course {
         settings,
         range: (range.omega_start, range.omega_stop),
         at: range.at,
@@ -83,29 +78,29 @@ pub fn forced_response(
         // As far again as the range is long, but never near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
+    let mut tracer = BranchTracer::new(course, solver.tolerance);
     let outcome = match first {
         Some((first, way)) => {
             hooks.log(LogLevel::Info, way.sentence());
-            task.run(&mut points, first, hooks)
+            tracer.trace(&mut response, first, hooks)
         }
         None => Ok(Status::StoppedByCaller),
     };
-    let mut ending = Ending::of(outcome, points.branch())?;
+    let mut ending = Ending::of(outcome, response.branch())?;
     if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
-        let last = points.branch().omega().last();
+        let last = response.branch().omega().last();
         ending.reason = last.and_then(|&omega| unbounded_response::reason(model, omega));
     }
-    let reduction = points.reduction(model, solver)?;
-    points.finish(&ending, reduction)
+    response.finish(model, solver, &ending, tracer.estimates())
 }
 
-/// The first point, with the harmonics at hand or, where that fails and a tolerance chooses them, with the fewest.
-fn first(points: &mut ForcedPoints<'_>, settings: &Settings, resolution: usize, hooks: &Hooks<'_>) -> Result<First> {
-    let found = initial_point::solve(points.problem(), settings, hooks.cancelled);
+/// The first point, with the current harmonics or, where that fails and a tolerance chooses them, with the fewest.
+fn first_point(response: &mut ForcedDiscretised<'_>, settings: &Settings, hooks: &Hooks<'_>) -> Result<First> {
+    let found = initial_point::solve(response.problem(), settings, hooks.cancelled);
     match found {
-        Err(e) if e.status == Status::NoConvergence && resolution > 0 => {
-            points.go_to(0)?;
-            initial_point::solve(points.problem(), settings, hooks.cancelled).map_err(|_| e)
+        Err(e) if e.status == Status::NoConvergence && response.resolution() > 0 => {
+            response.select(0)?;
+            initial_point::solve(response.problem(), settings, hooks.cancelled).map_err(|_| e)
         }
         found => found,
     }

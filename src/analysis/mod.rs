@@ -1,11 +1,11 @@
 //! The crate's public face: each analysis puts the layers together.
 
 pub mod check_jacobian;
-mod forced_points;
+mod forced_discretised;
 pub mod forced_response;
 pub mod harmonic_residual;
-mod mode_points;
-mod mode_resolution;
+mod mode_discretised;
+mod mode_equations;
 pub mod nonlinear_mode;
 pub mod point_error;
 pub mod synthesis;

@@ -1,10 +1,12 @@
 //! A nonlinear mode over a range of amplitude: its frequency and damping from contacts that stick to
 //! contacts that slide.
 
-use crate::adaptivity::branch_tracer::{BranchTracer, Ending, Keeper};
+use crate::adaptivity::branch_recorder::Ending;
+use crate::adaptivity::branch_tracer::{BranchTracer, Course};
+use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::analysis::mode_points::ModePoints;
-use crate::analysis::mode_resolution::InitialGuess;
+use crate::analysis::mode_discretised::ModeDiscretised;
+use crate::analysis::mode_equations::LinearStart;
 use crate::condense::Condensed;
 use crate::contact::Contact;
 use crate::continuation::initial_point::{self, First, Way};
@@ -95,13 +97,13 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         shape: damped.shape,
     };
     let gauge = gauge(model, range, &mut linear)?;
-    let harmonic_levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
+    let levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Ok(Condensed::for_mode(model, &options, range.damping_form, &linear.shape)?.0)
     })?;
-    let resolution = harmonic_levels.first(solver.harmonics);
-    let level = harmonic_levels.level(resolution)?;
-    let condensed = &level.condensed;
+    let level = levels.first(solver.harmonics);
+    let resolution = levels.at(level)?;
+    let condensed = &resolution.condensed;
     let i = condensed.set().fundamental();
     let moved = condensed.blocks()[i]
         .rows
@@ -117,21 +119,17 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
             chosen.omega
         );
     }
-    if let Some(id) = static_force(condensed, linear.omega, level.samples)? {
+    if let Some(id) = static_force(condensed, linear.omega, resolution.samples)? {
         return fail!(
             Unsupported,
             "contact {id} has a force at rest; nonlinear modes under constant forces are not provided yet"
         );
     }
     let response = solver.response_dof.unwrap_or(gauge.reference_dof);
-    let reported = if harmonic_levels.is_automatic() {
-        0
-    } else {
-        solver.harmonics
-    };
-    let branch = Branch::new(level, condensed.reduction(model, solver)?, reported, response)?;
+    let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
+    let branch = Branch::new(resolution, condensed.reduction(model, solver)?, reported, response)?;
     let start = (&linear, &gauge);
-    let estimates = solver.estimate_error || harmonic_levels.is_automatic();
+    let estimates = solver.estimate_error || levels.is_automatic();
     let estimator = estimates.then(|| ModeEstimator::new(model, solver, range.damping_form, start, response));
     let settings = Settings {
         start: range.log10_start,
@@ -140,20 +138,13 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let begin = InitialGuess {
+    let begin = LinearStart {
         linear: &linear,
         gauge: &gauge,
     };
-    let mut points = ModePoints::new(
-        begin,
-        solver,
-        settings,
-        (&harmonic_levels, resolution),
-        branch,
-        estimator,
-    )?;
-    let (linear_up_to, nearly) = points.linear_up_to(range.log10_start)?;
-    points.set_mode(ModeData::new(
+    let mut mode = ModeDiscretised::new(begin, solver, settings, (&levels, level), branch, estimator)?;
+    let (linear_up_to, nearly) = mode.linear_up_to(range.log10_start)?;
+    mode.set_mode(ModeData::new(
         ModeInfo {
             index: chosen.index,
             omega: chosen.omega,
@@ -170,10 +161,12 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
         gauge.clone(),
         (range.log10_start, range.log10_stop),
     ));
-    let outcome = run(&mut points, solver, (range, settings), (linear_up_to, nearly), hooks);
-    let ending = Ending::of(outcome, points.branch())?;
-    let reduction = points.reduction(model, solver)?;
-    points.finish(&ending, reduction)
+    let onset = Onset { linear_up_to, nearly };
+    let (course, settings) = course(solver, range, settings, onset);
+    let mut tracer = BranchTracer::new(course, solver.tolerance);
+    let outcome = trace(&mut mode, &mut tracer, settings, onset, hooks);
+    let ending = Ending::of(outcome, mode.branch())?;
+    mode.finish(model, solver, &ending, tracer.estimates())
 }
 
 /// Chooses the phase's degree of freedom and gives the linear mode amplitude 1.
@@ -217,16 +210,30 @@ fn gauge(model: &Model, range: &ModeOptions<'_>, linear: &mut LinearMode) -> Res
     Ok(Gauge { contact, reference_dof })
 }
 
-fn run(
-    points: &mut ModePoints<'_>,
+/// log₁₀ of the amplitudes up to which the mode is linear, and up to which it nearly is.
+#[derive(Clone, Copy)]
+struct Onset {
+    linear_up_to: f64,
+    nearly: f64,
+}
+
+impl Onset {
+    /// Amplitude just beyond the onset of slip.
+    fn beyond(self) -> f64 {
+        self.linear_up_to + BEYOND_ONSET.log10()
+    }
+}
+
+/// The course of the nonlinear part of the branch, and the settings of its first point.
+fn course<'a>(
     solver: &SolverOptions,
-    (range, settings): (&ModeOptions<'_>, Settings),
-    (linear_up_to, nearly): (f64, f64),
-    hooks: &mut Hooks<'_>,
-) -> Result<Status> {
+    range: &ModeOptions<'a>,
+    settings: Settings,
+    onset: Onset,
+) -> (Course<'a>, Settings) {
     let (start, end) = (range.log10_start, range.log10_stop);
-    let from = if start <= linear_up_to {
-        (linear_up_to + BEYOND_ONSET.log10()).min(end)
+    let from = if start <= onset.linear_up_to {
+        onset.beyond().min(end)
     } else {
         start
     };
@@ -234,11 +241,10 @@ fn run(
         start: from,
         ..settings
     };
-    // The branch may come back to amplitudes below the onset, slipping.
-    let followed = if from < end { start } else { from };
-    let task = BranchTracer {
+    let course = Course {
         settings: Settings {
-            start: followed,
+            // The branch may come back to amplitudes below the onset, slipping.
+            start: if from < end { start } else { from },
             ..settings
         },
         range: (start, end),
@@ -246,74 +252,92 @@ fn run(
         max_points: solver.max_points,
         before: None,
     };
-    let resolution = points.resolution();
+    (course, settings)
+}
+
+fn trace(
+    mode: &mut ModeDiscretised<'_>,
+    tracer: &mut BranchTracer<'_>,
+    settings: Settings,
+    onset: Onset,
+    hooks: &mut Hooks<'_>,
+) -> Result<Status> {
+    let (start, end) = tracer.course().range;
+    let max_points = tracer.course().max_points;
+    let linear_up_to = onset.linear_up_to;
+    let level = mode.resolution();
     if start <= linear_up_to {
         // Nothing moves there but the fundamental.
-        if points.harmonic_levels().is_automatic() {
-            points.go_to(0)?;
+        if mode.levels().is_automatic() {
+            mode.select(0)?;
         }
-        if let Some(status) = linear_range(points, &task, linear_up_to.min(end), hooks)? {
+        if let Some(status) = linear_range(mode, tracer, linear_up_to.min(end), hooks)? {
             return Ok(status);
         }
-        for (i, &p) in range.at.iter().enumerate() {
-            if p <= linear_up_to {
-                let point = points.linear_point(p)?;
-                points.keep_special(SpecialKind::At(i), point, false)?;
-            } else if p < from {
-                points.go_to(resolution)?;
-                let at_it = Settings { start: p, ..settings };
-                loop {
-                    match initial_point::solve(points.problem(), &at_it, hooks.cancelled)? {
-                        // Else it asks for more harmonics.
-                        First::Found(point, _) => {
-                            if points.keep_special(SpecialKind::At(i), point, false)? {
-                                break;
-                            }
-                        }
-                        First::Cancelled => return Ok(Status::StoppedByCaller),
-                    }
-                }
-            }
+        if let Some(status) = requested_below(mode, tracer, (settings, level), linear_up_to, hooks)? {
+            return Ok(status);
         }
         if end <= linear_up_to {
             return Ok(Status::Ok);
         }
-        if points.branch().points() >= solver.max_points {
+        if mode.branch().points() >= max_points {
             return Ok(Status::StoppedMaxPoints);
         }
     }
-    points.go_to(resolution)?;
-    let onset = if linear_up_to.is_finite() {
-        Some(points.linear_point(linear_up_to)?)
+    mode.select(level)?;
+    let corner = if linear_up_to.is_finite() {
+        Some(mode.linear_point(linear_up_to)?)
     } else {
         None
     };
-    let near = match &onset {
-        Some(_) => linear_up_to + BEYOND_ONSET.log10(),
-        None => nearly,
-    };
-    match first_nonlinear(
-        points.problem(),
-        &settings,
-        near,
-        onset.as_ref(),
-        solver.max_points,
-        hooks,
-    ) {
+    let near = if corner.is_some() { onset.beyond() } else { onset.nearly };
+    match first_nonlinear(mode.problem(), &settings, near, corner.as_ref(), max_points, hooks) {
         Ok(First::Found(first, _)) => {
             hooks.log(LogLevel::Info, "first point with slip or a nonlinear force solved");
-            task.run(points, first, hooks)
+            tracer.trace(mode, first, hooks)
         }
         Ok(First::Cancelled) => Ok(Status::StoppedByCaller),
-        Err(e) => match onset {
+        Err(e) => match corner {
             // The amplitude turns as soon as contacts slip: the way leads round the corner.
-            Some(onset) if e.status == Status::NoConvergence && start <= linear_up_to => {
+            Some(corner) if e.status == Status::NoConvergence && start <= linear_up_to => {
                 hooks.log(LogLevel::Info, "the amplitude turns at the onset of slip");
-                task.go_on(points, onset, hooks)
+                tracer.trace_from(mode, corner, hooks)
             }
             _ => Err(e),
         },
     }
+}
+
+/// Solutions at the requested amplitudes of the linear range, and of the gap between it and the first point beyond.
+fn requested_below(
+    mode: &mut ModeDiscretised<'_>,
+    tracer: &mut BranchTracer<'_>,
+    (settings, level): (Settings, usize),
+    linear_up_to: f64,
+    hooks: &mut Hooks<'_>,
+) -> Result<Option<Status>> {
+    let requested = tracer.course().at;
+    for (i, &p) in requested.iter().enumerate() {
+        if p <= linear_up_to {
+            let point = mode.linear_point(p)?;
+            tracer.record_special(mode, SpecialKind::At(i), &point)?;
+        } else if p < settings.start {
+            mode.select(level)?;
+            let at_it = Settings { start: p, ..settings };
+            loop {
+                match initial_point::solve(mode.problem(), &at_it, hooks.cancelled)? {
+                    // Until the point requires no more harmonics.
+                    First::Found(point, _) => {
+                        if tracer.record_special(mode, SpecialKind::At(i), &point)? {
+                            break;
+                        }
+                    }
+                    First::Cancelled => return Ok(Some(Status::StoppedByCaller)),
+                }
+            }
+        }
+    }
+    Ok(None)
 }
 
 /// The point at `settings.start`, beyond the linear range. Newton's method from a linear mode far
@@ -368,17 +392,18 @@ fn first_nonlinear(
 /// Points from the start of the range to `end`, below which all contacts stick: nothing has to
 /// be solved there. They are as dense as the largest steps of the continuation.
 fn linear_range(
-    points: &mut ModePoints<'_>,
-    task: &BranchTracer<'_>,
+    mode: &mut ModeDiscretised<'_>,
+    tracer: &BranchTracer<'_>,
     end: f64,
     hooks: &mut Hooks<'_>,
 ) -> Result<Option<Status>> {
-    let (start, stop) = task.range;
-    let spacing = task.settings.steps.largest() * (stop - start);
+    let course = tracer.course();
+    let (start, stop) = course.range;
+    let spacing = course.settings.steps.largest() * (stop - start);
     let steps = ((end - start) / spacing).ceil().max(1.0);
     let count = if end > start { steps as usize + 1 } else { 1 };
     for k in 0..count {
-        if points.branch().points() >= task.max_points {
+        if mode.branch().points() >= course.max_points {
             return Ok(Some(Status::StoppedMaxPoints));
         }
         let p = if k + 1 == count && count > 1 {
@@ -386,9 +411,9 @@ fn linear_range(
         } else {
             start + (end - start) * (k as f64 / steps)
         };
-        let point = points.linear_point(p)?;
-        points.keep(&point)?;
-        if task.report(points, hooks, &point) || hooks.cancelled.is_some_and(|f| f()) {
+        let point = mode.linear_point(p)?;
+        mode.record(&point)?;
+        if tracer.report(mode, hooks, &point) || hooks.cancelled.is_some_and(|f| f()) {
             return Ok(Some(Status::StoppedByCaller));
         }
     }

@@ -1,10 +1,10 @@
 //! Error of stored points, see [`crate::error_estimate`].
 
-use crate::condense::{Artificial, Condensed};
+use crate::condense::{Artificial, Condensed, ModelCache};
 use crate::error::{Result, fail};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::mode_error::ModeEstimator;
-use crate::error_estimate::{Estimate, ExtendedModels, Solved};
+use crate::error_estimate::{Estimate, Solved};
 use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
 use crate::results::Branch;
@@ -63,8 +63,8 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
         sticks: None,
     };
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
-        let extended_models = ExtendedModels::new()?;
-        return ForcedEstimator::new(model, solver, branch.response_dof(), &extended_models).at(&solved);
+        let models = ModelCache::for_estimates()?;
+        return ForcedEstimator::new(model, solver, branch.response_dof(), &models).at(&solved);
     };
     let wave;
     let model = if model.structure().engine_order() == data.info.engine_order {

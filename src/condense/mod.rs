@@ -9,10 +9,14 @@ pub mod frequency_cache;
 pub mod frequency_interpolation;
 pub mod harmonic_block;
 pub mod modal_flexibility;
+mod model_cache;
 mod reduction;
 mod relative_coordinates;
+mod resolution;
 pub mod resonance_poles;
 
 pub use condensed::{Condensed, Reference};
 pub use harmonic_block::{Artificial, HarmonicBlock};
+pub use model_cache::ModelCache;
 pub use reduction::Reduction;
+pub use resolution::Resolution;

@@ -1,6 +1,6 @@
 //! The error of a point of a forced response.
 
-use crate::condense::Condensed;
+use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::estimate::{
@@ -8,7 +8,7 @@ use crate::error_estimate::estimate::{
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::ExtendedSystem;
-use crate::error_estimate::{Corrected, Estimate, ExtendedModels, Solved};
+use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
 use crate::linalg::norm;
 use crate::model::Model;
@@ -16,6 +16,7 @@ use crate::options::SolverOptions;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Estimates the errors of points of one model, one after the other.
 pub struct ForcedEstimator<'a> {
@@ -23,26 +24,21 @@ pub struct ForcedEstimator<'a> {
     options: SolverOptions,
     response: usize,
     cutoff: Option<CutoffHarmonic>,
-    extended_models: &'a ExtendedModels,
-    /// The problem extended last, with its slot on the shelf.
+    models: &'a ModelCache,
+    /// The problem extended last, with its slot in the cache.
     extended: Option<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
 }
 
 impl<'a> ForcedEstimator<'a> {
     /// For solutions of `model` with these options, observing degree of freedom `response`.
     #[must_use]
-    pub fn new(
-        model: &'a Model,
-        options: &SolverOptions,
-        response: usize,
-        extended_models: &'a ExtendedModels,
-    ) -> Self {
+    pub fn new(model: &'a Model, options: &SolverOptions, response: usize, models: &'a ModelCache) -> Self {
         Self {
             model,
             options: *options,
             response,
             cutoff: None,
-            extended_models,
+            models,
             extended: None,
         }
     }
@@ -90,13 +86,21 @@ impl<'a> ForcedEstimator<'a> {
         let Some(extent) = self.extent(solved)? else {
             return solved.unknown(0.0, true).map(Some);
         };
-        let Some(slot) = self.extended_models.slot(extent.highest) else {
+        let slot = self.models.slot_with(extent.highest);
+        if slot == self.models.slots() {
             return solved.unknown(0.0, true).map(Some);
-        };
+        }
         let omega = solved.omega;
-        let condensed = self.extended_models.model(slot, |highest| {
-            Condensed::new(self.model, &extended_options(&self.options, highest), omega)
+        let resolution = self.models.model(slot, |highest| {
+            let options = extended_options(&self.options, highest);
+            let condensed = Condensed::new(self.model, &options, omega)?;
+            let carried = condensed.set().numbers().last().copied().unwrap_or(0);
+            Ok(Resolution {
+                samples: extended_options(&self.options, carried).samples,
+                condensed: Arc::new(condensed),
+            })
         })?;
+        let condensed = &*resolution.condensed;
         let set = condensed.set();
         let core = set.numbers().partition_point(|&h| h <= extent.core);
         let mut system = match self.extended.take() {
@@ -105,8 +109,8 @@ impl<'a> ForcedEstimator<'a> {
                 system
             }
             _ => {
-                let samples = extended_options(&self.options, set.numbers().last().copied().unwrap_or(0)).samples;
-                let problem = HarmonicBalance::new(condensed, self.response, (omega, omega), samples, None)?;
+                let range = (omega, omega);
+                let problem = HarmonicBalance::new(condensed, self.response, range, resolution.samples, None)?;
                 ExtendedSystem::iterative(problem, omega, core)?
             }
         };

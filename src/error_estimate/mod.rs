@@ -2,7 +2,6 @@
 
 pub mod cutoff_harmonic;
 mod estimate;
-mod extended_models;
 mod extended_newton;
 mod extended_system;
 pub mod forced_response_error;
@@ -10,4 +9,3 @@ pub mod mode_error;
 
 pub(crate) use cutoff_harmonic::affordable;
 pub use estimate::{Corrected, Estimate, Solved};
-pub use extended_models::ExtendedModels;

@@ -1,10 +1,10 @@
 //! The result of an analysis: points along a branch, its peaks and folds, solutions at requested parameter values,
 //! and the removed parts of the problem.
 
+use crate::condense::Resolution;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
 use crate::results::mode_branch::ModeData;
-use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 
 /// A solution beside the curve: a peak, a fold, or one at a requested parameter value.

@@ -1,10 +1,10 @@
 //! Storing the points of a branch.
 
 use crate::condense::Reduction;
+use crate::condense::Resolution;
 use crate::error::{Error, Result, Status, try_extend, try_push};
 use crate::results::branch::{Branch, Place, Special};
 use crate::results::mode_branch::ModeData;
-use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 use std::sync::Arc;
 

@@ -9,14 +9,13 @@ mod mode_fields;
 mod point_energy;
 mod point_error_fields;
 mod point_harmonics;
-mod point_resolution;
 mod recovery;
 mod time_history;
 
+pub use crate::condense::Resolution;
 pub use branch::{Branch, Special};
 pub use branch_recording::Record;
 pub(crate) use branch_recording::SpecialKind;
 pub use point_energy::Energy;
-pub use point_resolution::Resolution;
 pub(crate) use recovery::Recovery;
 pub use time_history::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};

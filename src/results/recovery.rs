@@ -1,11 +1,11 @@
 //! The motion of all degrees of freedom at a stored point, from the relative motions of the contacts.
 
 use crate::condense::Condensed;
+use crate::condense::Resolution;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_vec};
 use crate::problem::contact_forces::ContactForces;
 use crate::results::branch::Branch;
-use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 
 /// Recovers the motion of stored points, one at a time.

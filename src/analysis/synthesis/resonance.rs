@@ -1,6 +1,6 @@
 //! The resonance between two points of a mode's branch, solved on the mode's equations.
 
-use crate::adaptivity::harmonic_levels::carried;
+use crate::adaptivity::transfer::transferred;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
 use crate::continuation::special_points::Locator;
@@ -122,7 +122,7 @@ impl<'a> Refinement<'a> {
         };
         let to = self.solver.condensed;
         let from = self.branch.condensed_at(k);
-        let transfer = |v: &[f64]| carried(from, to, v, v.len() - from.unknowns(), 1.0);
+        let transfer = |v: &[f64]| transferred(from, to, v, v.len() - from.unknowns(), 1.0);
         Ok(Some(Point {
             v: transfer(v)?,
             tangent: transfer(tangent)?,

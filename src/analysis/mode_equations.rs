@@ -1,4 +1,4 @@
-//! The equations of a nonlinear mode with one number of harmonics, and what is measured of a point there.
+//! The equations of a nonlinear mode at one resolution, and the measured quantities of a point.
 
 use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
@@ -14,16 +14,16 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the nonlinear mode";
 
-/// What a mode starts from.
+/// The linear mode from which a nonlinear one starts, with its normalisation.
 #[derive(Clone, Copy)]
-pub(super) struct InitialGuess<'a> {
+pub(super) struct LinearStart<'a> {
     pub linear: &'a LinearMode,
     pub gauge: &'a Gauge,
 }
 
-/// The equations with the harmonics of one resolution.
-pub(super) struct AtResolution<'a> {
-    pub level: &'a Resolution,
+/// The equations at one resolution.
+pub(super) struct Equations<'a> {
+    pub resolution: &'a Resolution,
     pub problem: Epmc<'a>,
     pub corrector: Corrector,
     at: Residual,
@@ -35,20 +35,21 @@ pub(super) struct AtResolution<'a> {
     weighted: Vec<Complex64>,
 }
 
-impl<'a> AtResolution<'a> {
+impl<'a> Equations<'a> {
     /// Memory for a resolution.
-    pub fn new(level: &'a Resolution, data: &InitialGuess<'a>, settings: &Settings) -> Result<Self> {
-        let problem = Epmc::new(&level.condensed, data.gauge, data.linear, level.samples)?;
+    pub fn new(resolution: &'a Resolution, start: &LinearStart<'a>, settings: &Settings) -> Result<Self> {
+        let condensed = &*resolution.condensed;
+        let problem = Epmc::new(condensed, start.gauge, start.linear, resolution.samples)?;
         let unknowns = problem.size();
         Ok(Self {
             corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,
             at: Residual::new(unknowns)?,
             motion: try_vec(unknowns - 2, 0.0, CONTEXT)?,
             forces: try_vec(unknowns - 2, 0.0, CONTEXT)?,
-            weighted: try_vec(level.condensed.ndof(), Complex64::ZERO, CONTEXT)?,
-            response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, CONTEXT)?,
+            weighted: try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?,
+            response: try_vec(condensed.blocks().len(), Complex64::ZERO, CONTEXT)?,
             problem,
-            level,
+            resolution,
         })
     }
 
@@ -84,16 +85,24 @@ impl<'a> AtResolution<'a> {
         for (m, u) in self.motion.iter_mut().zip(u) {
             *m = a * u;
         }
-        let dofs = self.level.condensed.ndof();
+        let dofs = self.resolution.condensed.ndof();
         for (r, x) in self.response.iter_mut().zip(self.problem.shape().chunks_exact(dofs)) {
             *r = a * x[dof];
         }
         Ok(())
     }
 
-    /// What is stored of the point evaluated last; `before` is the fundamental of the point before, if there is one.
+    /// Fundamental of all degrees of freedom per unit of amplitude at the point evaluated last.
+    pub fn fundamental(&self) -> &[Complex64] {
+        let condensed = &self.resolution.condensed;
+        let (i, dofs) = (condensed.set().fundamental(), condensed.ndof());
+        &self.problem.shape()[i * dofs..(i + 1) * dofs]
+    }
+
+    /// Numbers of the mode at the point evaluated last; `before` is the fundamental of the point before, empty if there
+    /// is none.
     pub fn measure(&mut self, point: &Point, linear: &LinearMode, before: &[Complex64]) -> ModePoint {
-        let condensed = &*self.level.condensed;
+        let condensed = &*self.resolution.condensed;
         let n = point.unknowns().len();
         let (u, p) = (point.unknowns(), point.parameter());
         let (omega, damping_ratio) = Epmc::frequency_and_damping(linear, u);

@@ -1,7 +1,6 @@
-//! The harmonics that a point of a branch was solved with: those of all points, or more where a tolerance required
-//! it.
+//! The resolution of a point: the model condensed to a set of harmonics, and the samples of its sampled laws.
 
-use crate::condense::Condensed;
+use crate::condense::condensed::Condensed;
 use std::sync::Arc;
 
 /// A model condensed to a set of harmonics.

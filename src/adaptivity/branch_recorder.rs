@@ -1,0 +1,152 @@
+//! Storage of the points of a run: the curve as it is followed, special points until it is complete.
+
+use crate::condense::{Reduction, Resolution};
+use crate::error::{Error, Result, Status, try_copy, try_push};
+use crate::results::mode_branch::ModePoint;
+use crate::results::{Branch, Record, SpecialKind};
+use core::cmp::Ordering;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the special points";
+
+/// The end of a run.
+pub(crate) struct Ending {
+    pub status: Status,
+    /// The failure of a law that ended it.
+    pub reason: Option<Error>,
+}
+
+impl Ending {
+    /// The end of a run that has recorded `branch` so far: a law that failed ends it and keeps the points.
+    pub fn of(outcome: Result<Status>, branch: &Branch) -> Result<Self> {
+        match outcome {
+            Ok(status) => Ok(Self { status, reason: None }),
+            Err(e) if e.status == Status::Callback && branch.points() > 0 => Ok(Self {
+                status: Status::StoppedCallback,
+                reason: Some(e),
+            }),
+            // A law with states that found none at a point beside the curve.
+            Err(e) if e.recoverable && branch.points() > 0 => Ok(Self {
+                status: Status::StoppedStepTooSmall,
+                reason: Some(e),
+            }),
+            Err(e) => Err(e),
+        }
+    }
+}
+
+/// A special point until the curve is complete.
+struct SpecialRecord<'a> {
+    kind: SpecialKind,
+    resolution: &'a Resolution,
+    omega: f64,
+    motion: Vec<f64>,
+    amplitude: Complex64,
+    response: Vec<Complex64>,
+    residual: f64,
+    iterations: usize,
+    slip_fractions: Vec<f64>,
+    sampling_error: f64,
+    errors: (f64, f64),
+    mode: Option<ModePoint>,
+}
+
+/// Collects the points of one run.
+pub(crate) struct BranchRecorder<'a> {
+    branch: Branch,
+    specials: Vec<SpecialRecord<'a>>,
+    tolerance: f64,
+    /// Whether the error of some point misses the tolerance, and whether round-off stopped some residual above its own.
+    missed: bool,
+    stalled: bool,
+}
+
+impl<'a> BranchRecorder<'a> {
+    /// An empty branch whose points may miss a tolerance.
+    pub fn new(branch: Branch, tolerance: f64) -> Self {
+        Self {
+            branch,
+            specials: Vec::new(),
+            tolerance,
+            missed: false,
+            stalled: false,
+        }
+    }
+
+    /// The points that were recorded.
+    pub fn branch(&self) -> &Branch {
+        &self.branch
+    }
+
+    /// The same, for the data of a mode.
+    pub fn branch_mut(&mut self) -> &mut Branch {
+        &mut self.branch
+    }
+
+    /// Notes the error that the tolerance bounds, NaN if unknown, of a point that is no fold.
+    pub fn note_error(&mut self, error: f64) {
+        let meets = matches!(
+            error.partial_cmp(&self.tolerance),
+            Some(Ordering::Less | Ordering::Equal)
+        );
+        self.missed |= self.tolerance > 0.0 && !meets;
+    }
+
+    /// Stores a point of the curve.
+    pub fn record(&mut self, record: &Record<'_>, stalled: bool) -> Result<()> {
+        self.stalled |= stalled;
+        self.branch.push_curve(record)
+    }
+
+    /// Keeps a special point.
+    pub fn record_special(
+        &mut self,
+        kind: SpecialKind,
+        resolution: &'a Resolution,
+        record: &Record<'_>,
+        mode: Option<ModePoint>,
+    ) -> Result<()> {
+        let special = SpecialRecord {
+            kind,
+            resolution,
+            omega: record.omega,
+            motion: try_copy(record.motion, CONTEXT)?,
+            amplitude: record.amplitude,
+            response: try_copy(record.response, CONTEXT)?,
+            residual: record.residual,
+            iterations: record.iterations,
+            slip_fractions: try_copy(record.slip_fractions, CONTEXT)?,
+            sampling_error: record.sampling_error,
+            errors: record.errors,
+            mode,
+        };
+        try_push(&mut self.specials, special, CONTEXT)
+    }
+
+    /// The complete branch, its special points numbered after the curve.
+    pub fn finish(mut self, ending: &Ending, reduction: Reduction, estimates: usize) -> Result<Branch> {
+        for special in &self.specials {
+            let record = Record {
+                resolution: special.resolution,
+                omega: special.omega,
+                motion: &special.motion,
+                amplitude: special.amplitude,
+                response: &special.response,
+                residual: special.residual,
+                iterations: special.iterations,
+                slip_fractions: &special.slip_fractions,
+                sampling_error: special.sampling_error,
+                errors: special.errors,
+            };
+            self.branch.push_special(special.kind, &record)?;
+            if let (Some(mode), Some(data)) = (special.mode, self.branch.mode_data_mut()) {
+                data.push(mode)?;
+            }
+        }
+        self.branch.set_reduction(reduction);
+        self.branch.set_estimates(estimates);
+        self.branch
+            .set_ending(ending.status, ending.reason, (self.stalled, self.missed));
+        Ok(self.branch)
+    }
+}

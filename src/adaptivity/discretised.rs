@@ -1,0 +1,66 @@
+//! The two traits through which an analysis takes part in following a branch.
+
+use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::continuation::Point;
+use crate::error::Result;
+use crate::error_estimate::Estimate;
+use crate::problem::Problem;
+use crate::results::{Branch, SpecialKind};
+
+/// An estimate with the error that the tolerance bounds; NaN if unknown.
+pub(crate) struct Assessment {
+    pub error: f64,
+    pub estimate: Estimate,
+}
+
+/// The equations of an analysis at its current resolution.
+pub(crate) trait Discretised {
+    /// The problem that is solved.
+    fn problem(&mut self) -> &mut dyn Problem;
+
+    /// The resolutions to choose from.
+    fn levels(&self) -> &HarmonicLevels<'_>;
+
+    /// The current resolution.
+    fn resolution(&self) -> usize;
+
+    /// Makes a resolution the current one.
+    fn select(&mut self, resolution: usize) -> Result<()>;
+
+    /// A point of another resolution in the current harmonics, of which it need not be a solution.
+    fn transfer(&self, point: &Point, from: usize) -> Result<Point>;
+
+    /// The same with the motions of the corrected solution of its error estimate.
+    fn transfer_corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point>;
+
+    /// Solves near a point with the current harmonics, see [`crate::continuation::resolve`].
+    fn resolve(
+        &mut self,
+        near: &Point,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>>;
+
+    /// Estimates the error of a solved point of the current resolution; none unless requested.
+    fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>>;
+}
+
+/// Storage of the points of an analysis.
+pub(crate) trait Recorder {
+    /// Records a solved point of the current resolution as the next one of the curve.
+    fn record(&mut self, point: &Point) -> Result<()>;
+
+    /// Solves a point beside the curve as accurately as can be, and leaves the problem evaluated there.
+    fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()>;
+
+    /// Records a sharpened point beside the curve.
+    fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()>;
+
+    /// The points that were recorded.
+    fn branch(&self) -> &Branch;
+}
+
+/// An analysis that can be followed along its branch.
+pub(crate) trait Traceable: Discretised + Recorder {}
+
+impl<T: Discretised + Recorder> Traceable for T {}

@@ -1,0 +1,276 @@
+//! A forced response as its branch is followed: the equations at each resolution, and the records of its points.
+
+use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
+use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
+use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::adaptivity::resolution::Resolutions;
+use crate::analysis::point_error::observed;
+use crate::condense::ModelCache;
+use crate::continuation::corrector::Corrector;
+use crate::continuation::resolve::resolve;
+use crate::continuation::{Point, Settings};
+use crate::error::{Result, try_vec};
+use crate::error_estimate::forced_response_error::ForcedEstimator;
+use crate::error_estimate::{Estimate, Solved};
+use crate::model::Model;
+use crate::model::spring::along;
+use crate::options::SolverOptions;
+use crate::problem::Problem;
+use crate::problem::harmonic_balance::HarmonicBalance;
+use crate::results::{Branch, Record, Resolution, SpecialKind};
+use num_complex::Complex64;
+
+/// The equations at one resolution.
+struct Equations<'a> {
+    resolution: &'a Resolution,
+    problem: HarmonicBalance<'a>,
+    corrector: Corrector,
+    response: Vec<Complex64>,
+}
+
+impl<'a> Equations<'a> {
+    fn new(resolution: &'a Resolution, settings: &Settings, response: usize, given: Option<Vec<f64>>) -> Result<Self> {
+        let (condensed, samples) = (&*resolution.condensed, resolution.samples);
+        let range = (settings.start, settings.end);
+        let problem = HarmonicBalance::new(condensed, response, range, samples, given)?;
+        Ok(Self {
+            corrector: Corrector::new(problem.unknowns(), settings.tolerance, settings.max_iterations)?,
+            response: try_vec(condensed.blocks().len(), Complex64::ZERO, "the response")?,
+            problem,
+            resolution,
+        })
+    }
+
+    /// The record of the point that the problem was evaluated at last.
+    fn record<'b>(&'b mut self, point: &'b Point, error: f64) -> Result<Record<'b>> {
+        let (u, omega) = (point.unknowns(), point.parameter());
+        self.problem.response(u, &mut self.response);
+        let sampling_error = self.problem.sampling_error(u, omega)?;
+        Ok(Record {
+            resolution: self.resolution,
+            omega,
+            motion: u,
+            amplitude: point.amplitude,
+            response: &self.response,
+            residual: point.residual,
+            iterations: point.iterations,
+            slip_fractions: self.problem.slip_fractions(),
+            sampling_error,
+            errors: (error, f64::NAN),
+        })
+    }
+}
+
+/// A forced response that can be followed along its branch.
+pub(super) struct ForcedDiscretised<'a> {
+    settings: Settings,
+    resolutions: Resolutions<'a, Equations<'a>>,
+    recorder: BranchRecorder<'a>,
+    estimator: Option<ForcedEstimator<'a>>,
+    /// Whether the current problem may have been evaluated elsewhere than at the current point.
+    stale: bool,
+    /// Error of the point estimated last, until it is recorded.
+    estimated: Option<f64>,
+}
+
+impl<'a> ForcedDiscretised<'a> {
+    /// An empty response at a resolution, whose problem may have an initial guess.
+    pub fn new(
+        model: &'a Model,
+        solver: &SolverOptions,
+        settings: Settings,
+        (levels, extended): (&'a HarmonicLevels<'a>, &'a ModelCache),
+        (level, guess): (usize, Option<Vec<f64>>),
+        response: usize,
+    ) -> Result<Self> {
+        let resolution = levels.at(level)?;
+        let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
+        let reduction = resolution.condensed.reduction(model, solver)?;
+        let branch = Branch::new(resolution, reduction, reported, response)?;
+        let estimates = solver.estimate_error || levels.is_automatic();
+        let equations = Equations::new(resolution, &settings, response, guess)?;
+        Ok(Self {
+            recorder: BranchRecorder::new(branch, solver.tolerance),
+            resolutions: Resolutions::new(levels, level, equations)?,
+            settings,
+            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended)),
+            stale: false,
+            estimated: None,
+        })
+    }
+
+    /// The complete branch.
+    pub fn finish(self, model: &Model, solver: &SolverOptions, ending: &Ending, estimates: usize) -> Result<Branch> {
+        let reduction = self.resolutions.reduction(model, solver)?;
+        self.recorder.finish(ending, reduction, estimates)
+    }
+
+    /// Evaluates the problem at a point, unless it was evaluated there last.
+    fn refresh(&mut self, point: &Point) -> Result<()> {
+        if self.stale {
+            let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+            corrector.evaluate(problem, &point.v)?;
+            self.stale = false;
+        }
+        Ok(())
+    }
+
+    /// Estimate of a point that was evaluated last.
+    fn estimate_error(&mut self, point: &Point) -> Result<Option<Estimate>> {
+        let Some(estimator) = &mut self.estimator else {
+            return Ok(None);
+        };
+        let Equations {
+            resolution,
+            problem,
+            response,
+            ..
+        } = &mut self.resolutions.current;
+        let condensed = &resolution.condensed;
+        problem.response(point.unknowns(), response);
+        let solved = Solved {
+            condensed,
+            motion: point.unknowns(),
+            omega: point.parameter(),
+            response: response[observed(condensed)] * condensed.length(),
+            sticks: Some(problem.forces().all_stuck()),
+        };
+        estimator.at(&solved).map(Some)
+    }
+
+    /// Estimated relative error of the response amplitude; NaN if unknown or not requested.
+    fn error(&mut self, point: &Point) -> Result<f64> {
+        match self.estimated.take() {
+            Some(error) => Ok(error),
+            None => Ok(self.estimate_error(point)?.map_or(f64::NAN, |e| e.response)),
+        }
+    }
+}
+
+impl Discretised for ForcedDiscretised<'_> {
+    fn problem(&mut self) -> &mut dyn Problem {
+        &mut self.resolutions.current.problem
+    }
+
+    fn levels(&self) -> &HarmonicLevels<'_> {
+        self.resolutions.levels
+    }
+
+    fn resolution(&self) -> usize {
+        self.resolutions.index()
+    }
+
+    fn select(&mut self, resolution: usize) -> Result<()> {
+        self.stale |= resolution != self.resolutions.index();
+        let (settings, response) = (&self.settings, self.recorder.branch().response_dof());
+        self.resolutions
+            .select(resolution, |level| Equations::new(level, settings, response, None))
+    }
+
+    fn transfer(&self, point: &Point, from: usize) -> Result<Point> {
+        self.resolutions.transfer(point, from, 1, true)
+    }
+
+    fn transfer_corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
+        let to = &self.resolutions.current.resolution.condensed;
+        let mut start = self.transfer(point, from)?;
+        let n = to.unknowns();
+        let corrected = &estimate.corrected;
+        to.set()
+            .transfer(&corrected.set, &corrected.motion, 1.0 / to.length(), &mut start.v[..n]);
+        Ok(start)
+    }
+
+    fn resolve(
+        &mut self,
+        near: &Point,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>> {
+        let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+        let found = resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)?;
+        self.stale = found.is_none();
+        Ok(found)
+    }
+
+    fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {
+        self.estimated = None;
+        self.refresh(point)?;
+        let Some(estimate) = self.estimate_error(point)? else {
+            return Ok(None);
+        };
+        self.estimated = Some(estimate.response);
+        Ok(Some(Assessment {
+            error: estimate.response,
+            estimate,
+        }))
+    }
+}
+
+impl Recorder for ForcedDiscretised<'_> {
+    fn record(&mut self, point: &Point) -> Result<()> {
+        self.refresh(point)?;
+        let error = self.error(point)?;
+        self.recorder.note_error(error);
+        let record = self.resolutions.current.record(point, error)?;
+        self.recorder.record(&record, point.stalled)?;
+        self.resolutions.note_recorded();
+        Ok(())
+    }
+
+    /// The point is solved once more at its frequency with the flexibility factorised there: along the sweep it may
+    /// have been interpolated. At a fold the solution at a fixed frequency is not isolated.
+    fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()> {
+        self.stale = false;
+        let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+        let mut found = None;
+        if !kind.is_fold() {
+            problem.set_pointwise(true);
+            let resolved = resolve(problem, corrector, &self.settings, point, true, None);
+            problem.set_pointwise(false);
+            found = resolved?;
+        }
+        if let Some(found) = found {
+            point.v = found.v;
+            point.amplitude = found.amplitude;
+            point.residual = found.residual;
+            return Ok(());
+        }
+        corrector.evaluate(problem, &point.v)
+    }
+
+    fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
+        let mut error = f64::NAN;
+        if !kind.is_fold() {
+            error = self.error(point)?;
+            self.recorder.note_error(error);
+        }
+        let resolution = self.resolutions.current.resolution;
+        let record = self.resolutions.current.record(point, error)?;
+        self.recorder.record_special(kind, resolution, &record, None)?;
+        self.resolutions.note_recorded();
+        Ok(())
+    }
+
+    fn branch(&self) -> &Branch {
+        self.recorder.branch()
+    }
+}
+
+/// Packed relative motions of a guess given for all degrees of freedom.
+pub(super) fn relative_motion(resolution: &Resolution, ndof: usize, guess: &[Complex64]) -> Result<Vec<f64>> {
+    let condensed = &resolution.condensed;
+    let set = condensed.set();
+    let m = set.packed_len();
+    let mut packed = try_vec(condensed.unknowns(), 0.0, "the guess")?;
+    for (i, block) in condensed.blocks().iter().enumerate() {
+        let Some(x) = guess.chunks_exact(ndof).nth(block.number) else {
+            continue;
+        };
+        for (c, row) in block.rows.iter().enumerate() {
+            let y = along(row, x);
+            set.set(&mut packed[c * m..(c + 1) * m], i, y / condensed.length());
+        }
+    }
+    Ok(packed)
+}

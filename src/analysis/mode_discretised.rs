@@ -1,0 +1,268 @@
+//! A nonlinear mode as its branch is followed: the equations at each resolution, and the records of its points.
+
+use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
+use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
+use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::adaptivity::resolution::Resolutions;
+use crate::analysis::mode_equations::{Equations, LinearStart};
+use crate::continuation::resolve::resolve;
+use crate::continuation::{Point, Settings};
+use crate::error::{Result, try_copy};
+use crate::error_estimate::mode_error::ModeEstimator;
+use crate::error_estimate::{Estimate, Solved};
+use crate::model::Model;
+use crate::options::SolverOptions;
+use crate::problem::Problem;
+use crate::problem::epmc::Epmc;
+use crate::results::mode_branch::{ModeData, ModePoint};
+use crate::results::{Branch, Record, SpecialKind};
+use num_complex::Complex64;
+
+/// A nonlinear mode that can be followed along its branch.
+pub(super) struct ModeDiscretised<'a> {
+    start: LinearStart<'a>,
+    settings: Settings,
+    resolutions: Resolutions<'a, Equations<'a>>,
+    recorder: BranchRecorder<'a>,
+    estimator: Option<ModeEstimator<'a>>,
+    /// Errors of the point estimated last, until it is recorded.
+    estimated: Option<(f64, f64)>,
+    /// Largest magnitude of the damping ratio so far.
+    damping: f64,
+    /// Fundamental of the previous point of the curve.
+    before: Vec<Complex64>,
+}
+
+/// Numbers of a point beside its motion.
+struct Numbers {
+    mode: ModePoint,
+    omega: f64,
+    amplitude: Complex64,
+    sampling_error: f64,
+    errors: (f64, f64),
+}
+
+impl<'a> ModeDiscretised<'a> {
+    /// An empty mode at a resolution.
+    pub fn new(
+        start: LinearStart<'a>,
+        solver: &SolverOptions,
+        settings: Settings,
+        (levels, level): (&'a HarmonicLevels<'a>, usize),
+        branch: Branch,
+        estimator: Option<ModeEstimator<'a>>,
+    ) -> Result<Self> {
+        let equations = Equations::new(levels.at(level)?, &start, &settings)?;
+        Ok(Self {
+            resolutions: Resolutions::new(levels, level, equations)?,
+            recorder: BranchRecorder::new(branch, solver.tolerance),
+            start,
+            settings,
+            estimator,
+            estimated: None,
+            damping: start.linear.damping.abs(),
+            before: Vec::new(),
+        })
+    }
+
+    /// Gives the branch the data of its mode.
+    pub fn set_mode(&mut self, data: ModeData) {
+        self.recorder.branch_mut().set_mode(data);
+    }
+
+    /// log₁₀ of the amplitudes up to which the mode is linear, see [`Epmc::linear_up_to`].
+    pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
+        self.resolutions.current.problem.linear_up_to(first)
+    }
+
+    /// The linear mode as a point of the branch.
+    pub fn linear_point(&mut self, p: f64) -> Result<Point> {
+        self.resolutions.current.linear_point(p)
+    }
+
+    /// The complete branch.
+    pub fn finish(self, model: &Model, solver: &SolverOptions, ending: &Ending, estimates: usize) -> Result<Branch> {
+        let reduction = self.resolutions.reduction(model, solver)?;
+        self.recorder.finish(ending, reduction, estimates)
+    }
+
+    /// Evaluates the problem at a point.
+    fn evaluate(&mut self, point: &Point) -> Result<()> {
+        let response_dof = self.branch().response_dof();
+        self.resolutions.current.evaluate(point, response_dof)
+    }
+
+    /// Estimate of the point evaluated last.
+    fn estimate_error(&mut self, point: &Point) -> Result<Option<Estimate>> {
+        let Some(estimator) = &mut self.estimator else {
+            return Ok(None);
+        };
+        let equations = &self.resolutions.current;
+        let condensed = &equations.resolution.condensed;
+        let (omega, damping) = Epmc::frequency_and_damping(self.start.linear, point.unknowns());
+        let solved = Solved {
+            condensed,
+            motion: &equations.motion,
+            omega,
+            response: equations.response[condensed.set().fundamental()] * condensed.length(),
+            sticks: Some(equations.problem.forces().all_stuck()),
+        };
+        estimator.at(&solved, point.parameter(), damping).map(Some)
+    }
+
+    /// Numbers of the point evaluated last. Its errors are unknown at a fold, where no solution is isolated.
+    fn measure(&mut self, point: &Point, is_fold: bool) -> Result<Numbers> {
+        let mode = self.resolutions.current.measure(point, self.start.linear, &self.before);
+        let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).0;
+        let equations = &mut self.resolutions.current;
+        let amplitude = equations.response[equations.resolution.condensed.set().fundamental()];
+        let sampling_error = equations.problem.sampling_error(&equations.motion, omega)?;
+        let errors = match self.estimated.take() {
+            _ if is_fold => (f64::NAN, f64::NAN),
+            Some(errors) => errors,
+            None => self
+                .estimate_error(point)?
+                .map_or((f64::NAN, f64::NAN), |e| (e.frequency, e.damping)),
+        };
+        if !is_fold {
+            let error = self.bounded_error(errors, mode.damping_ratio);
+            self.recorder.note_error(error);
+        }
+        Ok(Numbers {
+            mode,
+            omega,
+            amplitude,
+            sampling_error,
+            errors,
+        })
+    }
+
+    /// The error that the tolerance bounds: that of the frequency, relative, or of the damping ratio, over the largest
+    /// one so far. NaN if either is unknown.
+    fn bounded_error(&self, (of_frequency, of_damping): (f64, f64), damping: f64) -> f64 {
+        let of_damping = if of_damping == 0.0 {
+            0.0
+        } else {
+            of_damping / self.damping.max(damping.abs())
+        };
+        if of_frequency.is_nan() || of_damping.is_nan() {
+            return f64::NAN;
+        }
+        of_damping.max(of_frequency)
+    }
+}
+
+impl Discretised for ModeDiscretised<'_> {
+    fn problem(&mut self) -> &mut dyn Problem {
+        &mut self.resolutions.current.problem
+    }
+
+    fn levels(&self) -> &HarmonicLevels<'_> {
+        self.resolutions.levels
+    }
+
+    fn resolution(&self) -> usize {
+        self.resolutions.index()
+    }
+
+    fn select(&mut self, resolution: usize) -> Result<()> {
+        let (start, settings) = (&self.start, &self.settings);
+        self.resolutions
+            .select(resolution, |level| Equations::new(level, start, settings))
+    }
+
+    fn transfer(&self, point: &Point, from: usize) -> Result<Point> {
+        self.resolutions.transfer(point, from, 3, false)
+    }
+
+    fn transfer_corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point> {
+        let to = &self.resolutions.current.resolution.condensed;
+        let mut start = self.transfer(point, from)?;
+        let n = to.unknowns();
+        let corrected = &estimate.corrected;
+        let unit = 10f64.powf(point.parameter()) * to.length();
+        to.set()
+            .transfer(&corrected.set, &corrected.motion, 1.0 / unit, &mut start.v[..n]);
+        let both = (corrected.omega, corrected.damping);
+        Epmc::set_frequency_and_damping(self.start.linear, both, &mut start.v[..n + 2]);
+        Ok(start)
+    }
+
+    fn resolve(
+        &mut self,
+        near: &Point,
+        keep_parameter: bool,
+        cancelled: Option<&dyn Fn() -> bool>,
+    ) -> Result<Option<Point>> {
+        let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+        resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)
+    }
+
+    fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {
+        self.estimated = None;
+        self.evaluate(point)?;
+        let Some(estimate) = self.estimate_error(point)? else {
+            return Ok(None);
+        };
+        let errors = (estimate.frequency, estimate.damping);
+        self.estimated = Some(errors);
+        let damping = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).1;
+        Ok(Some(Assessment {
+            error: self.bounded_error(errors, damping),
+            estimate,
+        }))
+    }
+}
+
+impl Recorder for ModeDiscretised<'_> {
+    fn record(&mut self, point: &Point) -> Result<()> {
+        self.evaluate(point)?;
+        // All that may fail comes before anything is stored.
+        let numbers = self.measure(point, false)?;
+        self.damping = self.damping.max(numbers.mode.damping_ratio.abs());
+        if let Some(data) = self.recorder.branch_mut().mode_data_mut() {
+            data.push_state(&point.v, &point.tangent)?;
+            data.push(numbers.mode)?;
+        }
+        let equations = &self.resolutions.current;
+        let record = record(equations, point, &numbers);
+        self.recorder.record(&record, point.stalled)?;
+        self.before = try_copy(equations.fundamental(), "the nonlinear mode")?;
+        self.resolutions.note_recorded();
+        Ok(())
+    }
+
+    /// Modes are factorised at each point of the curve: there is nothing more accurate.
+    fn sharpen(&mut self, _kind: SpecialKind, point: &mut Point) -> Result<()> {
+        self.evaluate(point)
+    }
+
+    fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
+        let numbers = self.measure(point, kind.is_fold())?;
+        let equations = &self.resolutions.current;
+        let record = record(equations, point, &numbers);
+        self.recorder
+            .record_special(kind, equations.resolution, &record, Some(numbers.mode))?;
+        self.resolutions.note_recorded();
+        Ok(())
+    }
+
+    fn branch(&self) -> &Branch {
+        self.recorder.branch()
+    }
+}
+
+fn record<'b>(equations: &'b Equations<'_>, point: &Point, numbers: &Numbers) -> Record<'b> {
+    Record {
+        resolution: equations.resolution,
+        omega: numbers.omega,
+        motion: &equations.motion,
+        amplitude: numbers.amplitude,
+        response: &equations.response,
+        residual: point.residual,
+        iterations: point.iterations,
+        slip_fractions: equations.problem.forces().slip_fractions(),
+        sampling_error: numbers.sampling_error,
+        errors: numbers.errors,
+    }
+}
