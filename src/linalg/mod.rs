@@ -12,61 +12,6 @@ pub mod lu;
 pub mod matrix_view;
 pub mod quadratic;
 pub mod sparse;
+mod vectors;
 
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
-use num_complex::Complex64;
-
-/// aᴴ b
-#[must_use]
-pub fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
-}
-
-/// Euclidean norm that neither overflows nor underflows.
-#[must_use]
-pub fn norm(v: &[f64]) -> f64 {
-    let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-    if largest == 0.0 || !largest.is_finite() {
-        return if v.iter().any(|x| x.is_nan()) {
-            f64::NAN
-        } else {
-            largest
-        };
-    }
-    largest * v.iter().map(|x| (x / largest).powi(2)).sum::<f64>().sqrt()
-}
-
-/// The power of two nearest below `x`, for scaling without rounding; 1 where `x` is 0 or not finite.
-#[must_use]
-pub fn power_of_two(x: f64) -> f64 {
-    if x > 0.0 && x.is_finite() {
-        x.log2().floor().clamp(-1020.0, 1020.0).exp2()
-    } else {
-        1.0
-    }
-}
-
-/// Order up to which plain loops multiply as fast as vector instructions chosen at run time.
-const LOOPS_UP_TO: usize = 32;
-
-/// out += factor·A x for a column-major A with `out.len()` rows.
-pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
-    let rows = out.len();
-    if rows > LOOPS_UP_TO {
-        matmul(
-            MatMut::from_column_major_slice_mut(out, rows, 1),
-            Accum::Add,
-            MatRef::from_column_major_slice(a, rows, x.len()),
-            MatRef::from_column_major_slice(x, x.len(), 1),
-            factor,
-            Par::Seq,
-        );
-        return;
-    }
-    for (column, x) in a.chunks_exact(rows.max(1)).zip(x) {
-        for (out, a) in out.iter_mut().zip(column) {
-            *out += factor * a * x;
-        }
-    }
-}
+pub use vectors::{add_product, inner, norm, power_of_two};
