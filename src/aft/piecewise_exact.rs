@@ -4,9 +4,10 @@
 //! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices;
 //! the other half repeats it with opposite sign and doubles every integral that is used.
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
-use crate::contact::law::{Piece, PiecewiseLinear};
+use crate::contact::law::PiecewiseLinear;
+use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};

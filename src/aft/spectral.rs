@@ -8,7 +8,7 @@
 //! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
 use crate::contact::law::Spectral;
 use crate::fourier::HarmonicSet;

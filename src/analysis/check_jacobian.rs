@@ -3,9 +3,9 @@
 
 mod step_derivatives;
 
-use crate::contact::ContactKind;
+use crate::contact::law::Memoryless;
 use crate::contact::laws::user_law::User;
-use crate::contact::memoryless_law::{Memoryless, Samples};
+use crate::contact::samples::Samples;
 use crate::error::{Error, Result, fail, try_copy, try_vec};
 use crate::model::Model;
 use std::f64::consts::TAU;
@@ -77,7 +77,7 @@ pub fn check_jacobian(model: &Model, contact: usize, omega: f64, amplitudes: &[f
     let Some(kept) = model.contacts().get(contact) else {
         return fail!(Index, "contact = {contact}, needs 0 .. {}", model.contacts().len());
     };
-    let ContactKind::User(law) = &kept.kind else {
+    let Some(law) = kept.kind.user() else {
         return fail!(
             Argument,
             "contact {contact} is no law of the host; its tangents are the library's"

@@ -1,4 +1,4 @@
-//! The sides of a contact: which degrees of freedom a relative motion compares.
+//! The relative motions of a contact: the degrees of freedom of its two sides.
 
 use crate::error::{Result, fail};
 
@@ -22,7 +22,7 @@ impl Direction {
         Self { a: side(a), b: side(b) }
     }
 
-    /// What tells two directions apart, in an order.
+    /// A key that differs between different directions, and orders them.
     #[must_use]
     pub fn key(&self) -> [Option<(usize, u64)>; 6] {
         let mut key = [None; 6];
@@ -68,7 +68,7 @@ impl Frame {
             axis[far] = 1.0;
             axis
         };
-        // What is left of the tangent beside the normal.
+        // The part of the tangent orthogonal to the normal.
         let along = dot(t, n);
         let t1 = unit(
             "tangent",

@@ -1,28 +1,28 @@
 //! From event to event through one lapse, the part of the period after which the wave has moved on by
 //! some sectors.
 
+use crate::contact::time_piece::{Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
-use crate::time_integration::contacts_in_time::{Element, Mode, Piece, Zeros, along};
+use crate::time_integration::event_law::{Element, along};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::implicit_step::Implicit;
 use crate::time_integration::linear_step::Taylor;
-use crate::time_integration::slider_events::Slider;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial, first_fall};
 use crate::time_integration::unrolled_structure::System;
 
 const CONTEXT: &str = "the motion in time";
 
-/// Steps of one lapse before it is given up: a structure so stiff against its period is none for
-/// integration in time.
+/// Steps of one lapse before the integration stops with an error: the structure is then too stiff against its
+/// period for integration in time.
 const MOST_STEPS: usize = 20_000_000;
 
-/// Events without progress in time, per contact, before it is given up.
+/// Events without progress in time, per contact, before the integration stops with an error.
 const MOST_AT_ONCE: usize = 50;
 
 /// Parts of a step within which events count as simultaneous.
 const SIMULTANEOUS: f64 = 1e-13;
 
-/// Steps between two looks at the cancel flag.
+/// Steps between two checks of the cancel flag.
 const BETWEEN_LOOKS: usize = 256;
 
 /// Displacements, velocities and the stretches of the sliders' springs.
@@ -43,7 +43,7 @@ impl State {
         })
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy whose memory is reserved fallibly.
     pub fn try_clone(&self) -> Result<Self> {
         Ok(Self {
             x: try_copy(&self.x, CONTEXT)?,
@@ -52,7 +52,7 @@ impl State {
         })
     }
 
-    /// Takes the values of another.
+    /// Copies the values of another.
     pub fn set(&mut self, other: &Self) {
         self.x.copy_from_slice(&other.x);
         self.v.copy_from_slice(&other.v);
@@ -81,7 +81,7 @@ impl Sensitivity {
     }
 }
 
-/// What a lapse was like.
+/// Summary of a lapse.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Travel {
     /// Changes of piece.
@@ -110,12 +110,12 @@ pub(super) struct EventLoop {
     stepper: Stepper,
     segment: StepPolynomial,
     modes: Vec<Mode>,
-    pieces: Vec<Piece>,
+    pieces: Vec<TimePiece>,
     /// Zeros by construction of the margins at the begin of the step.
     zeros: Vec<Zeros>,
     /// Next event of each contact within the step: (θ, margin).
     falls: Vec<Option<(f64, usize)>>,
-    /// Modes that tell of sliders where the motion puts them at the begin.
+    /// Modes of the sliders whose place at the begin follows from the motion.
     slaved: Vec<Option<Mode>>,
     /// Sliders that have moved in some lapse since [`Self::forget`].
     pub moved: Vec<bool>,
@@ -134,7 +134,7 @@ impl EventLoop {
             stepper,
             segment: StepPolynomial::new(system.order())?,
             modes: try_vec(count, Mode::Stick, CONTEXT)?,
-            pieces: try_vec(count, Piece::default(), CONTEXT)?,
+            pieces: try_vec(count, TimePiece::default(), CONTEXT)?,
             zeros: try_vec(count, Zeros::default(), CONTEXT)?,
             falls: try_vec(count, None, CONTEXT)?,
             slaved: try_vec(count, None, CONTEXT)?,
@@ -147,7 +147,7 @@ impl EventLoop {
         self.moved.fill(false);
     }
 
-    /// Carries a state from time 0 over one lapse, and with it what is asked for besides.
+    /// Integrates a state from time 0 over one lapse, and with it the sensitivity and the analysis requested.
     pub fn run(
         &mut self,
         system: &mut System,
@@ -165,7 +165,7 @@ impl EventLoop {
             self.identity(system, state, s);
         }
         for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
-            *moved |= Slider::moves(*mode);
+            *moved |= mode.moves_slider();
         }
         let mut t = 0.0;
         let (mut steps, mut at_once) = (0, 0);
@@ -221,7 +221,7 @@ impl EventLoop {
             };
         }
         if let Some(s) = sensitivity {
-            // A slider that still moves is where the motion puts it.
+            // The place of a slider that still moves follows from the motion.
             for (i, e) in system.elements.iter().enumerate() {
                 enslave(e, i, (self.modes[i], self.modes[i]), state, s);
             }
@@ -272,7 +272,7 @@ impl EventLoop {
         first.min(1.0)
     }
 
-    /// Takes the contacts whose piece has ended into the next one; their number.
+    /// Switches the contacts whose piece has ended to the next one. Returns their number.
     fn switch(&mut self, system: &System, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
         let mut happened = 0;
         for (i, e) in system.elements.iter().enumerate() {
@@ -282,7 +282,7 @@ impl EventLoop {
             let before = self.modes[i];
             let at = e.instant(&state.x, &state.v);
             (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
-            self.moved[i] |= Slider::moves(self.modes[i]);
+            self.moved[i] |= self.modes[i].moves_slider();
             if let Some(s) = sensitivity.as_deref_mut() {
                 enslave(e, i, (before, self.modes[i]), state, s);
             }
@@ -326,7 +326,7 @@ impl EventLoop {
 
 /// At the end of a mode, before the next one, a slider that has moved has the sensitivity of the motion.
 fn enslave(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s: &mut Sensitivity) {
-    let Some(slider) = e.slider().filter(|_| Slider::moves(mode)) else {
+    let Some(slider) = e.slider().filter(|_| mode.moves_slider()) else {
         return;
     };
     let (m, at) = (state.len(), 2 * state.x.len() + i);

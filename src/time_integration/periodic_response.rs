@@ -1,11 +1,12 @@
-//! The truth in time: a periodic response by integration from event to event, without a harmonic series.
+//! A reference solution in time: a periodic response by integration from event to event, without a harmonic
+//! series.
 //!
-//! `system` holds the structure, unrolled to as many sectors as a travelling wave needs; `contacts` says
-//! what laws with events tell, `slider` and `springs` what each of them does, `smooth` asks the laws without;
-//! `piecewise` makes exact steps where all laws are linear between
-//! events, `implicit` adaptive ones where a law is smooth; `segment` locates events within a step;
-//! `flow` goes from event to event through a lapse; `steady` closes the period; `record` turns the motion
-//! into harmonics, free of the truncation of harmonic balance.
+//! `unrolled_structure` holds the structure with as many sectors as a travelling wave needs, `event_law` its
+//! contacts, whose events come from their laws, `smooth_laws` the evaluation of laws without events;
+//! `linear_step` makes exact steps where all laws are linear between events, `implicit_step` adaptive ones where
+//! a law is smooth; `step_polynomial` locates events within a step; `event_loop` runs from event to event
+//! through a lapse; `shooting` closes the period; `harmonic_analysis` turns the motion into harmonics, free of
+//! the truncation of harmonic balance.
 
 use crate::error::{Result, Status, try_vec};
 use crate::hooks::{Hooks, LogLevel};

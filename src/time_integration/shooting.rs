@@ -250,7 +250,7 @@ impl<'a, 'h> Search<'a, 'h> {
                 1.0
             }
         };
-        // A slider that rests in all sectors keeps its place.
+        // A slider that rests in all sectors has a fixed place.
         let rests = |i: usize| {
             i >= 2 * n
                 && system.elements.iter().zip(&self.flow.moved).all(|(e, &moved)| {

@@ -1,11 +1,11 @@
 //! Smooth laws at the nodes of an implicit step: their forces, and their tangents by motions and
 //! velocities.
 //!
-//! A law answers for one time, as it does for the samples of a period in harmonic balance.
+//! A law is evaluated at one time as at the samples of a period in harmonic balance.
 
-use crate::contact::memoryless_law::Samples;
+use crate::contact::samples::Samples;
 use crate::error::{Result, try_vec};
-use crate::time_integration::contacts_in_time::along;
+use crate::time_integration::event_law::along;
 use crate::time_integration::unrolled_structure::System;
 
 const CONTEXT: &str = "the contacts at a time";
@@ -18,7 +18,7 @@ pub(super) struct Smooth {
     tangents: Vec<f64>,
     /// Numbers of a node.
     per_node: usize,
-    /// Relative motions, velocities and forces of one element, and what a law needs besides.
+    /// Relative motions, velocities and forces of one element, and memory for the law's own use.
     u: Vec<f64>,
     v: Vec<f64>,
     f: Vec<f64>,
@@ -49,7 +49,7 @@ impl Smooth {
         })
     }
 
-    /// r += Rᵀ f(R x, R v), and keeps the tangents.
+    /// r += Rᵀ f(R x, R v); the tangents are stored.
     ///
     /// # Errors
     /// Those of a callback.
@@ -82,7 +82,7 @@ impl Smooth {
         Ok(())
     }
 
-    /// Takes the tangents of the first node for all.
+    /// Copies the tangents of the first node to all.
     pub fn repeat(&mut self) {
         let mut nodes = self.tangents.chunks_exact_mut(self.per_node.max(1));
         if let Some(first) = nodes.next() {

@@ -2,8 +2,9 @@
 //! states does not explain of its own.
 
 use crate::analysis::check_jacobian::{CONTEXT, JacobianGap, Motion, SAMPLES, Tangent, sizes, step_of};
-use crate::contact::hysteretic_law::{Hysteretic, March};
+use crate::contact::law::Hysteretic;
 use crate::contact::laws::user_law::User;
+use crate::contact::march::March;
 use crate::error::{Result, try_vec};
 
 /// One step of a law with states: a period of two samples, of which the first is looked at and the second
