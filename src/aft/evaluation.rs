@@ -14,13 +14,13 @@ pub struct Evaluation {
     pub force: Vec<f64>,
     /// ∂F/∂X, (d·m)², column-major.
     pub jacobian: Vec<f64>,
-    /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law as seen at a motion s times smaller.
+    /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law at a motion s times smaller.
     pub offset: Vec<f64>,
     /// ∂F/∂ω at fixed X; zero unless the law depends on velocities.
     pub by_omega: Vec<f64>,
-    /// Share of the period that is spent slipping, 0 for a stuck contact.
+    /// Share of the period in slip, 0 for a stuck contact.
     pub slip_fraction: f64,
-    /// Share of the period that is spent open.
+    /// Share of the period in which the contact is open.
     pub open_fraction: f64,
     /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed
     /// throughout, where the normal load varies). Never so for a smooth law.
@@ -46,7 +46,7 @@ impl Evaluation {
         })
     }
 
-    /// Counts a share of the period that is spent in a state.
+    /// Adds a share of the period in a state.
     pub(super) fn count(&mut self, state: State, share: f64) {
         match state {
             State::Stick => {}
@@ -71,7 +71,7 @@ impl Evaluation {
     }
 }
 
-/// Whether a share of the period is all of it, but for rounding.
+/// Whether a share of the period is the whole period, but for rounding.
 pub(super) fn is_whole(share: f64) -> bool {
     share > 1.0 - 1e-12
 }

@@ -1,4 +1,4 @@
-//! The evaluator: one entry to all ways of evaluating laws, selected by their form.
+//! The evaluator of laws: selects the way of evaluation by the form of the law.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::hysteretic::HystereticEvaluator;
@@ -30,7 +30,7 @@ pub struct Evaluator {
 struct Sampling {
     /// Samples requested; 0 for the number that suits the law.
     requested: usize,
-    /// Whether to take half of them, or twice as many where half are too few.
+    /// Whether half of them are taken, or twice as many where half are too few.
     other: bool,
 }
 

@@ -5,8 +5,7 @@
 //! period selects one of many. Other states follow by Newton's method, from a near state that the law provides
 //! or from the virgin one, loaded from rest straight to the motion of the last sample, so that the
 //! result depends on the motion alone; where the slip of a law without such knowledge ends the marched
-//! state is kept. With the
-//! basis bⱼ at sample j the derivatives of the states follow from those of the steps,
+//! state is kept. With the basis bⱼ at sample j the derivatives of the states follow from those of the steps,
 //!
 //! > Sⱼ = Aⱼ Sⱼ₋₁ + Bⱼ⁻ bⱼ₋₁ + Bⱼ bⱼ,  ∂F/∂X = Σ w ⊗ bⱼ ⊗ (∂f/∂z Sⱼ + ∂f/∂u bⱼ)
 //!
@@ -22,10 +21,10 @@ use crate::contact::march::{March, Sticking, StuckState};
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::fourier::HarmonicSet;
 
-/// Marches that may end in a step of Newton's method.
+/// Largest number of marches that may end in a step of Newton's method.
 const NEWTON_MARCHES: usize = 100;
 
-/// Marches in all; the others only march on.
+/// Largest number of marches; those beyond [`NEWTON_MARCHES`] begin where the march before ended.
 const MARCHES: usize = 300;
 
 /// Marches from a stuck state, which returns but for rounding.
@@ -95,7 +94,7 @@ impl HystereticEvaluator {
         })
     }
 
-    /// Whether this was made for laws like `law` at so many samples.
+    /// Whether the memory suits `law` at this number of samples.
     #[must_use]
     pub fn suits(&self, law: &dyn Hysteretic, samples: usize) -> bool {
         self.signals.directions == law.directions()

@@ -115,7 +115,7 @@ fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
 /// Derivatives of states and forces by (X, ω), in rows of d·m + 1.
 pub(super) struct Sensitivity {
     states: usize,
-    /// Directions whose forces are followed: the first ones.
+    /// Number of directions whose forces are differentiated: the first ones.
     forces: usize,
     width: usize,
     /// Derivatives of the states at the start of the period.

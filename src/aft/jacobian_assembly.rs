@@ -1,4 +1,4 @@
-//! Force and Jacobian of a law on one relative motion from the pieces of its force; see [`super`].
+//! Force and Jacobian of a law on one relative motion from the pieces of its force; see [`crate::aft`].
 
 use crate::aft::evaluation::{Evaluation, is_whole};
 use crate::aft::jacobian_block::{add_stiffness, apply, pack};
@@ -9,7 +9,7 @@ use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 
-/// Products g ⊗ c that wait for one pass over the Jacobian, which at many harmonics fits no near cache.
+/// Products g ⊗ c that wait for one pass over the Jacobian, which at many harmonics exceeds the caches.
 const WAITING: usize = 4;
 
 /// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
@@ -22,7 +22,7 @@ pub(super) struct Assembly {
     /// Packed bases c(r) at their anchors times −k.
     anchors: Vec<f64>,
     waiting: usize,
-    /// In place of a product where none waits.
+    /// Stand-in for a product where none waits.
     zeros: Vec<f64>,
     /// Whether the Jacobian holds products already.
     begun: bool,

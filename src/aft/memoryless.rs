@@ -93,7 +93,7 @@ impl MemorylessEvaluator {
         })
     }
 
-    /// Whether this was made for laws like `law` at so many samples.
+    /// Whether the memory suits `law` at this number of samples.
     #[must_use]
     pub fn suits(&self, law: &dyn Memoryless, requested: usize) -> bool {
         self.directions == law.directions()
@@ -103,7 +103,7 @@ impl MemorylessEvaluator {
     }
 
     /// Force and derivatives of `law` at a motion, d·m numbers, direction after direction. `law` is
-    /// the one that this was made for, or the same in other units.
+    /// the one that the memory was made for, or the same in other units.
     ///
     /// # Errors
     /// Those of the law; then `out` is of no use.

@@ -63,7 +63,7 @@ impl Sampled {
         0.5 * (high - low)
     }
 
-    /// Force and Jacobian of `law` for the prepared motion; see [`super`].
+    /// Force and Jacobian of `law` for the prepared motion; see [`crate::aft`].
     pub fn evaluate(&mut self, law: &dyn PiecewiseLinear, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
         self.pieces.clear();
         law.sampled_pieces(&self.samples, &mut self.pieces);

@@ -80,7 +80,7 @@ pub fn check_jacobian(model: &Model, contact: usize, omega: f64, amplitudes: &[f
     let Some(law) = kept.kind.user() else {
         return fail!(
             Argument,
-            "contact {contact} is no law of the host; its tangents are the library's"
+            "contact {contact} is no law of the caller; its tangents are the library's"
         );
     };
     if !(omega > 0.0 && omega.is_finite()) {

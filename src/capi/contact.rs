@@ -13,6 +13,7 @@ use crate::error::{Result, Status, fail};
 use crate::model::Model;
 
 const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
+
 unsafe impl Described for hbvib_contact {
     const NAME: &'static str = "hbvib_contact";
     const FIRST: usize = 104;

@@ -22,7 +22,7 @@ pub struct Constants {
 }
 
 impl Constants {
-    /// Slip limit μN₀; zero without friction, whatever the load.
+    /// Slip limit μN₀; zero without friction under any load.
     #[must_use]
     pub fn slip_limit(&self) -> f64 {
         if self.mu == 0.0 { 0.0 } else { self.mu * self.preload }

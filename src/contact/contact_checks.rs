@@ -60,7 +60,7 @@ impl Contact {
         self.check_places(kind)
     }
 
-    /// Degrees of freedom along directions in which the law does not act are a mistake.
+    /// Refuses degrees of freedom along directions in which the law does not act.
     fn check_places(&self, kind: &str) -> Result<()> {
         if self.frame.is_some() {
             return Ok(());

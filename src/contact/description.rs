@@ -91,7 +91,7 @@ impl Contact {
         self.constants().load()
     }
 
-    /// Slip limit μN₀; zero without friction, whatever the load.
+    /// Slip limit μN₀; zero without friction under any load.
     #[must_use]
     pub fn slip_limit(&self) -> f64 {
         self.constants().slip_limit()

@@ -1,5 +1,4 @@
-//! A contact patch: many node pairs between two surfaces, each with the share of area that it stands
-//! for.
+//! A contact patch: many node pairs between two surfaces, each with its share of the area.
 
 use crate::contact::description::Contact;
 use crate::contact::relative_motion::Frame;
@@ -64,7 +63,7 @@ impl Patch<'_> {
         Ok(contacts)
     }
 
-    /// Checks the law by itself, so that its errors are not reported of an entry.
+    /// Checks the law by itself, so that its errors do not name an entry.
     fn check_law(&self) -> Result<()> {
         let law = self.law;
         let (per_area, kind) = law.ask(|law| (law.is_per_area(), law.name()));

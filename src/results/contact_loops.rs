@@ -33,7 +33,7 @@ pub use period::{Account, Times};
 #[derive(Clone, Copy)]
 enum Maker<'a> {
     Law(&'a dyn Law),
-    /// A linear spring of that stiffness in every direction.
+    /// A linear spring of this stiffness in every direction.
     Spring(f64),
 }
 

@@ -59,7 +59,7 @@ pub(super) fn along(row: &Row, x: &[f64]) -> f64 {
     row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
 }
 
-/// Sorts the contacts of a sector, all sectors around, into springs and elements.
+/// Sorts the contacts of all sectors into springs and elements.
 ///
 /// `place` is the number of a degree of freedom in a sector (of any number) of the ring.
 pub(super) fn unroll(

@@ -1,4 +1,4 @@
-//! Harmonics and samples of a motion that comes in polynomial steps.
+//! Harmonics and samples of a motion given in polynomial steps.
 //!
 //! X_h = (2 − δ₀ₕ)/T ∫ x e^{−ihωt} dt over the period, step by step with the moments
 //! ∫ θᵏ e^{−iαθ} dθ, which Gauss's quadrature computes to rounding on parts of at most four radians. A lapse
@@ -76,7 +76,7 @@ impl HarmonicAnalysis {
         })
     }
 
-    /// Notes the part of a step up to θ.
+    /// Adds the part of a step up to θ.
     pub fn add(&mut self, step: &StepPolynomial, theta: f64) {
         if theta <= 0.0 {
             return;

@@ -275,7 +275,7 @@ impl Implicit {
         self.factor(system, pieces, h)
     }
 
-    /// Carries one sensitivity (δx, δv) with the sliders' δu over the part θ of the step of length h.
+    /// Integrates one sensitivity (δx, δv) with the sliders' δu over the part θ of the step of length h.
     #[allow(clippy::too_many_arguments)]
     pub fn transfer(
         &mut self,

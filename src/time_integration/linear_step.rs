@@ -2,8 +2,8 @@
 //!
 //! Between events z′ = A z + g(t) with constant A and harmonic g, whose solution is a matrix exponential.
 //! Its series is summed in the displacements alone, xₖ being their Taylor coefficients:
-//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative motions y for k > 0. The step is so
-//! long that the last terms are below rounding, which needs |A|h of about 2; a step is then exact, and
+//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative
+//! motions y for k > 0. The step is so long that the last terms are below rounding, which needs |A|h of about 2; a step is then exact, and
 //! a polynomial as well (Moler & Van Loan 2003, doi:10.1137/S00361445024180, method 1 with short
 //! steps; Jorba & Zou 2005, doi:10.1080/10586458.2005.10128904, for the choice of h).
 
@@ -164,7 +164,7 @@ impl Taylor {
         ratio
     }
 
-    /// Carries one sensitivity (δx, δv) with the sliders' δu over a time h within the pieces.
+    /// Integrates one sensitivity (δx, δv) with the sliders' δu over a time h within the pieces.
     pub fn transfer(
         &mut self,
         system: &mut System,

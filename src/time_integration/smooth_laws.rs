@@ -12,11 +12,11 @@ const CONTEXT: &str = "the contacts at a time";
 
 /// Memory of the laws at the nodes.
 pub(super) struct Smooth {
-    /// Where the tangents of each element begin within those of a node.
+    /// Begin of the tangents of each element within those of a node.
     starts: Vec<usize>,
     /// Tangents by motions, d × d, and by velocities, d × d, of every element; node after node.
     tangents: Vec<f64>,
-    /// Numbers of a node.
+    /// Count of numbers per node.
     per_node: usize,
     /// Relative motions, velocities and forces of one element, and memory for the law's own use.
     u: Vec<f64>,

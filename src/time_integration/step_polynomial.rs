@@ -82,7 +82,7 @@ impl StepPolynomial {
 /// Width of an interval of θ in which two roots cannot be distinguished.
 const FINEST: f64 = 1e-14;
 
-/// A margin that is this small against its terms stands at zero.
+/// A margin this small against its terms counts as zero.
 const ZERO: f64 = 4.0 * f64::EPSILON;
 
 /// The first θ in [0, 1] at which a margin m(θ) = Σ cₖθᵏ falls below zero; `None`: it does not.

@@ -93,7 +93,7 @@ impl Law for Cubic {
         Form::Spectral(self)
     }
 
-    /// From here on the cubic term is small against `reference`.
+    /// From this scale on the cubic term is small against `reference`.
     fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64 {
         ranges[0].size() * (self.cubic.abs() / (SMALL * reference)).sqrt()
     }

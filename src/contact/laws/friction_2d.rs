@@ -3,8 +3,8 @@
 //!
 //! With the relative motions x along the surface and y along its normal, side a minus side b, the
 //! normal load is N = max(n₀ − kn·y, 0) and the normal force on y is −N. The tangential force is
-//! f = kt·(x − w) with the slider at w: it sticks (w at rest) while |f| ≤ μN, slips with f = ±μN, and is
-//! zero while the contact is open. At closing it begins from f = 0.
+//! f = kt·(x − w) with the slider at w. The contact sticks (w at rest) while |f| ≤ μN, slips with f = ±μN, and
+//! has no force while it is open. At closing it begins from f = 0.
 //!
 //! In terms of s = kt·w the slider is a play between two moving bounds,
 //!
@@ -17,8 +17,8 @@
 //!
 //! The period map of the slider is s ↦ clamp(s), so that the state after any slip or opening does not depend on
 //! the state before: a walk that begins there has the periodic state at once. A slider that never slips nor
-//! opens is loaded slowly from s = 0 and dragged along just so far as its bounds need. See Petrov & Ewins, J. Turbomach. 125 (2003)
-//! 364–371, doi:10.1115/1.1539868, for the friction element whose harmonics these are.
+//! opens is loaded slowly from s = 0 and dragged along just so far as its bounds need. See Petrov & Ewins,
+//! J. Turbomach. 125 (2003) 364–371, doi:10.1115/1.1539868, for the friction element whose harmonics these are.
 
 use crate::contact::constants::{Constants, Role};
 use crate::contact::coupled_search::{Bound, CoupledSearch, find};
@@ -282,7 +282,7 @@ fn always_closed(walk: &mut Walk<'_>) {
 /// Walks every closed time from its closing on; the open times between them carry no force.
 fn closed_times(normal: &[Piece], walk: &mut Walk<'_>) {
     let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(Piece::is_closed));
-    // The turn of the normal pieces begins anywhere; a closed time that it cuts is one all the same.
+    // The turn of the normal pieces begins anywhere; a closed time across its begin counts as one.
     let cut = closed_ends == [true, true] && normal.len() > 1;
     for (i, piece) in normal.iter().enumerate().skip(usize::from(cut)) {
         let end = if cut && i + 1 == normal.len() {

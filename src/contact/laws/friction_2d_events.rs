@@ -7,7 +7,7 @@
 //! from zero, sticking if and only if kt·|x′| ≤ μ·|N′|: the limit then grows faster than the force.
 //!
 //! Sensitivities follow the slider. δw = 0 while it sticks. In slip and while open its place follows from the
-//! motion, δw = δx + a·δy with a = σ·μkn/kt and a = 0. A closing at the time r leaves it at w = x(r); y(r) being given,
+//! motion, δw = δx + a·δy with a = σ·μkn/kt and a = 0. A closing at the time r leaves it at w = x(r); with y(r) given
 //! the time moves by δr = −δy/y′, so that a = −x′/y′ (the rate of w jumps there, unlike that of the motion).
 
 use crate::contact::law::{EventLaw, SliderLaw};

@@ -1,7 +1,7 @@
 //! The walk of a friction slider between its two moving bounds, from one event to the next.
 //!
-//! See [`crate::contact::laws::friction_2d`] for the bounds. Between neighbouring turning points of the two signals both
-//! bounds are monotone and q₊ ≤ q₋, so at most one event lies there: where the bound that comes
+//! See [`crate::contact::laws::friction_2d`] for the bounds. Between neighbouring turning points of the two
+//! signals both bounds are monotone and q₊ ≤ q₋, so at most one event lies there: where the bound that comes
 //! towards a slider at rest is beyond it at the end of the interval, slip begins at the one time
 //! that it passes; and slip ends where the bound that drags the slider turns back.
 
@@ -99,7 +99,7 @@ struct Instant {
 }
 
 impl Walk<'_> {
-    /// How the slider begins at the time r of closing, where s = kt·x(r). The bounds open by
+    /// Phase of the slider from the time r of closing on, where s = kt·x(r). The bounds open by
     /// q±′ = kt·x′ ∓ μN′ with N′ = −kn·y′; it sticks if neither comes towards it.
     pub(super) fn closing(&self, r: f64) -> Phase {
         let (x, y) = (jet(self.set, self.motion.0, r), jet(self.set, self.motion.1, r));
@@ -209,7 +209,7 @@ impl<'a> Cursor<'a> {
             .map_or(f64::INFINITY, |e| e.tau + self.turns * TAU)
     }
 
-    /// Leaves the turning points up to a time behind.
+    /// Passes the turning points up to a time.
     fn pass(&mut self, time: f64) {
         while self.tau() <= time {
             self.next += 1;

@@ -136,7 +136,7 @@ fn closing(kt: f64, mu: f64, d: [f64; 2], before: f64, after: f64) -> Step {
     out
 }
 
-/// The force in units of the limit, drawn back to it where it lies beyond, and whether it is there.
+/// The force in units of the limit, reduced to it where it lies beyond; `true` if it is at the limit.
 fn relative(force: [f64; 2], r: f64) -> ([f64; 2], bool) {
     let f = scaled(force, 1.0 / r);
     let length = f[0].hypot(f[1]);
@@ -183,7 +183,7 @@ fn closed(kt: f64, mu: f64, force: [f64; 2], d: [f64; 2], before: f64, after: f6
         let size = force[0].hypot(force[1]);
         let (f, at_limit) = relative(force, r);
         if size > r * (1.0 + AT_LIMIT) {
-            // No state of this motion: the nearest one is.
+            // Not a state of this motion: replaced by the nearest one.
             start = scaled(f, r);
             let n = left(f);
             for i in 0..2 {
@@ -269,7 +269,7 @@ fn inverse_mean(r: f64, r_end: f64) -> (f64, f64, f64) {
     (q, (r / r_end - q) / growth, (q - 1.0) / growth)
 }
 
-/// Where a unit vector has turned to.
+/// A unit vector after a turn.
 struct Turned {
     e: [f64; 2],
     /// Derivative of its angle by the angle at the start.

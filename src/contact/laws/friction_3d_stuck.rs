@@ -16,7 +16,7 @@
 //! period begins.
 //!
 //! The point is found as in other problems of low dimension (Sharir & Welzl 1992): at most two discs hold
-//! it; the one most violated is added, and those are found that hold the point of the three. Every round
+//! it; the most violated one is added, and of the three those that hold the new point are found. Every round
 //! moves the point further out, so that their number is finite.
 
 /// A disc |w − centre| ≤ radius.
@@ -48,7 +48,7 @@ pub(super) struct StuckSlider {
 /// Violations below this, relative to the current lengths, are rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Discs that may be added; beyond it rounding turns in circles. A few are the rule.
+/// Largest number of discs that are added; a few suffice but for a cycle by rounding.
 const ROUNDS: usize = 200;
 
 impl Disc {

@@ -109,7 +109,7 @@ pub struct Jenkins {
     pub limit: f64,
 }
 
-/// The slider between two slips: where the present stick began, and the sign of the slip before.
+/// The slider between two slips: where the current stick began, and the sign of the slip before.
 struct Stick {
     start: f64,
     x: f64,
@@ -235,7 +235,7 @@ impl PiecewiseLinear for Jenkins {
             }
             last = next;
         }
-        // Only rounding at the very onset of slip leaves a stick open here.
+        // A stick ends here only by rounding at the very onset of slip.
         if stick.start < last.tau {
             self.push_stick(&stick, last.tau, pieces);
         }

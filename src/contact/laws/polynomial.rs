@@ -193,7 +193,7 @@ impl Law for Polynomial {
         Form::Memoryless(self)
     }
 
-    /// From here on every term of higher degree is small.
+    /// From this scale on every term of higher degree is small.
     fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64 {
         let size = |variable: usize| match variable.checked_sub(self.directions) {
             None => ranges[variable].size(),

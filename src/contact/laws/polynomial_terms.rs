@@ -139,7 +139,7 @@ impl Collector {
     pub(super) fn finish(self) -> Result<Terms> {
         let Terms { mut terms, factors } = self.content;
         let of = |t: &Term| &factors[t.first..t.first + t.count];
-        // In place: a stable sort would ask for memory. Equal terms keep their order by `first`.
+        // In place: a stable sort would need memory. Equal terms keep their order by `first`.
         terms.sort_unstable_by(|a, b| {
             let key = (a.direction, a.degree).cmp(&(b.direction, b.degree));
             key.then_with(|| of(a).cmp(of(b))).then(a.first.cmp(&b.first))

@@ -238,7 +238,7 @@ impl Law for Table {
         Form::PiecewiseLinear(self)
     }
 
-    /// From here on the motion stays on the line at rest.
+    /// From this scale on the motion stays on the line at rest.
     fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
         let nearest = self.levels().fold(f64::INFINITY, |near, x| near.min(x.abs()));
         ranges[0].size() / nearest

@@ -217,7 +217,7 @@ const FAR: f64 = 1e6;
 
 impl ContactLaw for User {
     fn name(&self) -> &'static str {
-        "law of the host"
+        "law of the caller"
     }
 
     fn motions(&self) -> Option<usize> {
@@ -243,7 +243,7 @@ impl ContactLaw for User {
 
     fn in_time(&self) -> Result<LawInTime> {
         if self.states > 0 {
-            return fail!(Unsupported, "a law of the host with states is not integrated in time");
+            return fail!(Unsupported, "a law of the caller with states is not integrated in time");
         }
         Ok(LawInTime::smooth(self.law(1.0)?))
     }

@@ -48,12 +48,12 @@ pub struct Account {
 }
 
 /// Sample j of n over the period, as a sample of the turn of τ, which is shorter where only multiples of a
-/// harmonic are carried. Whole numbers cost no digit.
+/// harmonic are carried. Whole numbers are exact.
 pub(super) fn sample(set: &HarmonicSet, j: usize, n: usize) -> usize {
     (set.base() as u128 * j as u128 % n.max(1) as u128) as usize
 }
 
-/// Its τ in [0, 2π).
+/// The time τ in [0, 2π) of sample j.
 pub(super) fn time(set: &HarmonicSet, j: usize, n: usize) -> f64 {
     TAU * sample(set, j, n) as f64 / n.max(1) as f64
 }
