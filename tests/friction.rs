@@ -8,9 +8,10 @@ use friction::{March, Random, distance, evaluate, pieces, slipping_at_closing};
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::contact::Law;
 use hbvib::contact::contact_state::State;
-use hbvib::contact::laws::friction_2d::{CoupledPiece, Friction2d};
+use hbvib::contact::laws::friction_2d::Friction2d;
 use hbvib::contact::laws::jenkins::Jenkins;
 use hbvib::contact::laws::unilateral::Unilateral;
+use hbvib::contact::piece::CoupledPiece;
 use hbvib::fourier::HarmonicSet;
 use std::f64::consts::{PI, TAU};
 

@@ -4,9 +4,10 @@
 mod plane;
 
 use hbvib::aft::Evaluation;
-use hbvib::contact::hysteretic_law::{Hysteretic, March};
+use hbvib::contact::law::Hysteretic;
 use hbvib::contact::law::Law;
 use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::contact::march::March;
 use hbvib::fourier::HarmonicSet;
 use plane::{OMEGA, Random, evaluate, largest, law};
 use std::f64::consts::PI;

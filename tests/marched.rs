@@ -6,8 +6,10 @@ mod plane;
 
 use hbvib::aft::Evaluation;
 use hbvib::aft::hysteretic::HystereticEvaluator;
-use hbvib::contact::hysteretic_law::{Hysteretic, March};
-use hbvib::contact::law::{Form, Law, Range};
+use hbvib::contact::law::Hysteretic;
+use hbvib::contact::law::{Form, Law};
+use hbvib::contact::linearisation::Range;
+use hbvib::contact::march::March;
 use hbvib::error::Result;
 use hbvib::fourier::HarmonicSet;
 use num_complex::Complex64;

@@ -7,10 +7,10 @@ mod pointwise;
 mod stencil;
 
 use hbvib::aft::memoryless::MemorylessEvaluator;
+use hbvib::contact::law::Memoryless;
 use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::laws::regularised::TanhFriction;
 use hbvib::contact::laws::user_law::User;
-use hbvib::contact::memoryless_law::Memoryless;
 use hbvib::error::Status;
 use hbvib::fourier::HarmonicSet;
 use pointwise::{

@@ -4,8 +4,8 @@
 mod pointwise;
 
 use hbvib::aft::{Evaluation, Evaluator};
+use hbvib::contact::law::Memoryless;
 use hbvib::contact::laws::polynomial::Polynomial;
-use hbvib::contact::memoryless_law::Memoryless;
 use hbvib::contact::{Contact, Law};
 use hbvib::fourier::HarmonicSet;
 use pointwise::{

@@ -8,8 +8,9 @@ use hbvib::aft::piecewise_exact::Exact;
 use hbvib::aft::piecewise_sampled::Sampled;
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::contact::Contact;
-use hbvib::contact::law::{Law, Piece, PiecewiseLinear};
+use hbvib::contact::law::{Law, PiecewiseLinear};
 use hbvib::contact::laws::table::Table;
+use hbvib::contact::piece::Piece;
 use hbvib::error::Status;
 use hbvib::fourier::HarmonicSet;
 use hbvib::fourier::TurningPoints;
@@ -222,12 +223,12 @@ fn a_symmetric_table_is_odd_and_half_a_turn_tells_it() {
 
 #[test]
 fn constants_at_rest_and_at_large() {
-    assert!(play().stiffness_at_small_motion().abs() < 1e-15);
+    assert!(play().slope_at_rest().abs() < 1e-15);
     assert!((play().largest_stiffness() - 5.0).abs() < 1e-12);
     assert!((crooked().largest_stiffness() - 6.5).abs() < 1e-12);
     // A point at zero: the mean of both slopes, which a small motion about it feels.
     let kink = Table::new(&[-1.0, 0.0, 1.0], &[-3.0, 0.0, 1.0]).unwrap();
-    assert!((kink.stiffness_at_small_motion() - 2.0).abs() < 1e-15);
+    assert!((kink.slope_at_rest() - 2.0).abs() < 1e-15);
     let set = HarmonicSet::excited(&[1], 1, true, false, false).unwrap();
     let out = evaluate(&kink, &set, &[0.0, 0.3, 0.4]);
     assert!((out.force[1] - 0.6).abs() < 1e-14 && (out.force[2] - 0.8).abs() < 1e-14);

@@ -5,9 +5,10 @@ mod pointwise;
 
 use hbvib::aft::Evaluation;
 use hbvib::aft::memoryless::MemorylessEvaluator;
+use hbvib::contact::law::Memoryless;
 use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::memoryless_law::{Memoryless, automatic_samples};
+use hbvib::contact::samples::automatic_samples;
 use hbvib::error::Status;
 use hbvib::fourier::HarmonicSet;
 use pointwise::{Pendulum, dense, evaluate, gap, motion, pendulum, refused};

@@ -454,5 +454,5 @@ fn differences_find_the_wrong_tangent_and_no_other() {
     }
     let library = self::model(&polynomial(), 0.0);
     let e = check_jacobian(&library, 0, 2.0, &[1.0]).unwrap_err();
-    assert!(e.status == Status::Argument && e.message().contains("no law of the host"));
+    assert!(e.status == Status::Argument && e.message().contains("no law of the caller"));
 }

@@ -1,34 +1,34 @@
-//! Harmonics of a law with states that is marched over samples: periodic states, force, and the exact
+//! Harmonics of a law with states, marched over samples: periodic states, force, and the exact
 //! derivative of the discrete force.
 //!
 //! The states at the start of the period are those that return after it. A law that can stick through the
-//! period knows which of many it is. Others are sought by Newton's method, from a state that the law knows to
-//! be near or from the virgin one, loaded from rest straight to the motion of the last sample, so that the
-//! result depends on the motion alone; where slip of a law that knows nothing comes to an end the marched
-//! state is kept. With the
-//! basis bⱼ at sample j the derivatives of the states follow from those of the steps,
+//! period selects one of many. Other states follow by Newton's method, from a near state that the law provides
+//! or from the virgin one, loaded from rest straight to the motion of the last sample, so that the
+//! result depends on the motion alone; where the slip of a law without such knowledge ends the marched
+//! state is kept. With the basis bⱼ at sample j the derivatives of the states follow from those of the steps,
 //!
 //! > Sⱼ = Aⱼ Sⱼ₋₁ + Bⱼ⁻ bⱼ₋₁ + Bⱼ bⱼ,  ∂F/∂X = Σ w ⊗ bⱼ ⊗ (∂f/∂z Sⱼ + ∂f/∂u bⱼ)
 //!
-//! (velocities alike), begun with the derivative of the periodic start; see periodic.rs. Force
+//! (velocities alike), begun with the derivative of the periodic start; see periodic_state.rs. Force
 //! and derivative are those of the sampled law: as good as the samples, but exact as a pair.
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::hysteretic_derivatives::{Sensitivity, Signals};
 use crate::aft::normal_force::Normal;
 use crate::aft::periodic_state::{ReturnMap, largest};
-use crate::contact::hysteretic_law::{Hysteretic, March, Sticking, StuckState};
+use crate::contact::law::Hysteretic;
+use crate::contact::march::{March, Sticking, StuckState};
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::fourier::HarmonicSet;
 
-/// Marches that may end in a step of Newton's method.
+/// Largest number of marches that may end in a step of Newton's method.
 const NEWTON_MARCHES: usize = 100;
 
-/// Marches in all; the others only march on.
+/// Largest number of marches; those beyond [`NEWTON_MARCHES`] begin where the march before ended.
 const MARCHES: usize = 300;
 
-/// Marches from a start at rest, which returns but for rounding.
-const REST_MARCHES: usize = 4;
+/// Marches from a stuck state, which returns but for rounding.
+const STUCK_MARCHES: usize = 4;
 
 /// Tables and memory for marching one law over motions of one harmonic set.
 pub struct HystereticEvaluator {
@@ -42,9 +42,9 @@ pub struct HystereticEvaluator {
     load_u: Vec<f64>,
     load_v: Vec<f64>,
     march: March,
-    rest: StuckState,
-    /// Whether the last start was at rest.
-    rests: bool,
+    stuck: StuckState,
+    /// Whether the last start was a stuck state.
+    starts_stuck: bool,
     map: ReturnMap,
     sensitivity: Sensitivity,
     normal: Option<Normal>,
@@ -82,8 +82,8 @@ impl HystereticEvaluator {
             load_u: memory(2 * d)?,
             load_v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
             march: March::new(d, s, samples)?,
-            rest: StuckState::new(d, s, samples)?,
-            rests: false,
+            stuck: StuckState::new(d, s, samples)?,
+            starts_stuck: false,
             map: ReturnMap::new(s)?,
             sensitivity: Sensitivity::new(d, s, d - usize::from(law.normal().is_some()), set.packed_len())?,
             normal: law.normal().map(|_| Normal::new(set)).transpose()?,
@@ -94,7 +94,7 @@ impl HystereticEvaluator {
         })
     }
 
-    /// Whether this was made for laws like `law` at so many samples.
+    /// Whether the memory suits `law` at this number of samples.
     #[must_use]
     pub fn suits(&self, law: &dyn Hysteretic, samples: usize) -> bool {
         self.signals.directions == law.directions()
@@ -124,7 +124,7 @@ impl HystereticEvaluator {
     /// Those of the law; `NoConvergence` when its states do not become periodic, `NotFinite` when they
     /// do not stay finite.
     pub fn evaluate(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64], out: &mut Evaluation) -> Result<()> {
-        let virgin = self.coarsen_or_refine(law, omega, motion)?;
+        let virgin = self.find_periodic_states(law, omega, motion)?;
         let omega = self.base * omega;
         self.differentiate_start(law, omega)?;
         for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
@@ -134,7 +134,7 @@ impl HystereticEvaluator {
             .pass(&self.march, &self.signals, omega, Some(&mut *out));
         self.finish(motion, out);
         if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
-            normal.evaluate(&law, motion, out);
+            normal.evaluate(law, motion, out);
         }
         let n = self.signals.samples as f64;
         out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
@@ -143,13 +143,13 @@ impl HystereticEvaluator {
         Ok(())
     }
 
-    /// Finds the periodic states alone, as [`Self::evaluate`] does first; [`Self::march`] then has the forces
-    /// and states. Whether the law is as it was loaded from rest.
+    /// Finds the periodic states alone, the first step of [`Self::evaluate`]; [`Self::march`] then has the forces
+    /// and states. Returns `true` if the law is as it was loaded from rest.
     ///
     /// # Errors
     /// As [`Self::evaluate`].
-    pub fn coarsen_or_refine(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64]) -> Result<bool> {
-        // The law sees the period 2π/(gω) of the set.
+    pub fn find_periodic_states(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64]) -> Result<bool> {
+        // The period of the law is 2π/(gω), that of the set.
         let omega = self.base * omega;
         self.signals.fill(omega, motion);
         self.find_period(law, omega)
@@ -184,7 +184,7 @@ impl HystereticEvaluator {
     }
 
     /// The virgin law, loaded from rest straight to the motion of the last sample: the first start and
-    /// its derivative. Whether it neither slipped nor was open on the way.
+    /// its derivative. Returns `true` if it neither slipped nor was open on the way.
     fn load(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
         let Signals {
             samples,
@@ -205,33 +205,33 @@ impl HystereticEvaluator {
         Ok(self.march.slip[0] == 0.0 && self.march.open[0] == 0.0)
     }
 
-    /// Finds states that return. Whether the law is as it was loaded.
+    /// Finds states that return. Returns `true` if the law is as it was loaded.
     ///
-    /// Where the law does not know when it can stick: a state that is kept although slip led to it lies on the
-    /// border of those that need no slip; where on it, the slip of the marches before has decided, and
-    /// Newton's method has only guessed. Then the law is marched from the load on, as long as that takes no
-    /// more than [`MARCHES`].
+    /// Some laws cannot decide whether they can stick ([`Sticking::Unknown`]). A state that is kept although slip
+    /// led to it then lies on the border of those that need no slip; its place there depends on the slip of the
+    /// marches before, which a step of Newton's method does not follow. The law is then marched from the load on,
+    /// if that takes no more than [`MARCHES`].
     fn find_period(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
         let Signals { samples, u, .. } = &self.signals;
-        let rests = law.rest(*samples, u, &mut self.rest);
-        self.rests = rests == Sticking::Here;
-        if self.rests || rests == Sticking::Nearly {
-            self.starts[..self.states].copy_from_slice(&self.rest.z);
-            self.sensitivity.rest(&self.rest, &self.signals, omega);
-            let defect = if self.rests {
-                self.search(law, omega, 0, REST_MARCHES)?
+        let sticking = law.stuck_state(*samples, u, &mut self.stuck);
+        self.starts_stuck = sticking == Sticking::Here;
+        if self.starts_stuck || sticking == Sticking::Nearly {
+            self.starts[..self.states].copy_from_slice(&self.stuck.z);
+            self.sensitivity.stuck(&self.stuck, &self.signals, omega);
+            let defect = if self.starts_stuck {
+                self.search(law, omega, 0, STUCK_MARCHES)?
             } else {
                 self.search(law, omega, NEWTON_MARCHES, NEWTON_MARCHES)?
             };
             if defect == 0.0 {
-                return Ok(self.rests && self.rest.virgin);
+                return Ok(self.starts_stuck && self.stuck.virgin);
             }
-            self.rests = false;
+            self.starts_stuck = false;
         }
         let virgin = self.load(law, omega)?;
         let mut defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
-        // A law that rests nowhere slips and forgets: whatever finds its one periodic state.
-        let guessed = rests == Sticking::Unknown && self.by_newton[..self.marches - 1].contains(&true);
+        // A law that cannot stick slips, and has one periodic state, however it is found.
+        let guessed = sticking == Sticking::Unknown && self.by_newton[..self.marches - 1].contains(&true);
         if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0, MARCHES)? > 0.0 {
             defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
         }
@@ -248,7 +248,7 @@ impl HystereticEvaluator {
     }
 
     /// Marches from the first start until the states return to within rounding, with Newton's method
-    /// up to the march `newton_until`. What is left of their difference at the last march, 0 if they return.
+    /// up to the march `newton_until`. Returns their difference at the last march, 0 if they return.
     fn search(&mut self, law: &dyn Hysteretic, omega: f64, newton_until: usize, most: usize) -> Result<f64> {
         let (s, n) = (self.states, self.signals.samples);
         let tolerance = f64::EPSILON * (64.0 + 4.0 * (n as f64).sqrt());
@@ -272,7 +272,7 @@ impl HystereticEvaluator {
             if k + 1 == most {
                 return Ok(defect);
             }
-            // Two marches show whether slip goes on at all; a defect that grew asks for a plain march.
+            // Newton's method begins after two marches, in which slip may end; a defect that grew needs a plain march.
             let mut by_newton = k > 0 && k < newton_until && defect < before;
             before = defect;
             if by_newton {
@@ -297,9 +297,9 @@ impl HystereticEvaluator {
     }
 
     /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part
-    /// remembers the marches that led to it; their derivatives are then followed from the load on.
+    /// depends on the marches that led to it; their derivatives are then followed from the load on.
     fn differentiate_start(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<()> {
-        if self.rests {
+        if self.starts_stuck {
             return Ok(());
         }
         let last = self.marches - 1;

@@ -1,9 +1,9 @@
 //! Derivatives of marched states and of the Fourier sums of their force by the harmonics of the motion
 //! and by the circular frequency ω of the period; see [`crate::aft::hysteretic`].
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::periodic_state::ReturnMap;
-use crate::contact::hysteretic_law::{March, StuckState};
+use crate::contact::march::{March, StuckState};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use std::f64::consts::TAU;
@@ -63,7 +63,7 @@ impl Signals {
         })
     }
 
-    /// Takes a packed motion in.
+    /// Samples a packed motion and its velocity.
     pub fn fill(&mut self, omega: f64, motion: &[f64]) {
         let m = self.length;
         let value = |row: &[f64], signal: &[f64]| row.iter().zip(signal).map(|(b, x)| b * x).sum::<f64>();
@@ -115,17 +115,17 @@ fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
 /// Derivatives of states and forces by (X, ω), in rows of d·m + 1.
 pub(super) struct Sensitivity {
     states: usize,
-    /// Directions whose forces are followed: the first ones.
+    /// Number of directions whose forces are differentiated: the first ones.
     forces: usize,
     width: usize,
-    /// Of the states at the start of the period.
+    /// Derivatives of the states at the start of the period.
     start: Vec<f64>,
-    /// Of the start that was marched from.
+    /// Derivatives of the start of the march before.
     before: Vec<f64>,
-    /// Of the states at the sample at hand, and at the next.
+    /// Derivatives of the states at the current sample, and at the next.
     now: Vec<f64>,
     next: Vec<f64>,
-    /// Of the forces at the samples of a batch.
+    /// Derivatives of the forces at the samples of a batch.
     force: Vec<f64>,
     column: Vec<f64>,
 }
@@ -158,13 +158,13 @@ impl Sensitivity {
         }
     }
 
-    /// The start at rest.
-    pub fn rest(&mut self, rest: &StuckState, signals: &Signals, omega: f64) {
+    /// The start of a law that sticks.
+    pub fn stuck(&mut self, stuck: &StuckState, signals: &Signals, omega: f64) {
         self.start.fill(0.0);
         let d = signals.directions;
         for j in 0..signals.samples {
             for (a, row) in self.start.chunks_exact_mut(self.width).enumerate() {
-                let by_u = &rest.dz_du[(j * self.states + a) * d..][..d];
+                let by_u = &stuck.dz_du[(j * self.states + a) * d..][..d];
                 signals.add(j, omega, by_u, &[], row);
             }
         }

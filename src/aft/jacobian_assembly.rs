@@ -1,15 +1,15 @@
-//! Force and Jacobian of a law on one relative motion from the pieces of its force; see [`super`].
+//! Force and Jacobian of a law on one relative motion from the pieces of its force; see [`crate::aft`].
 
+use crate::aft::evaluation::{Evaluation, is_whole};
 use crate::aft::jacobian_block::{add_stiffness, apply, pack};
 use crate::aft::toeplitz::Toeplitz;
-use crate::aft::{Evaluation, is_whole};
-use crate::contact::Piece;
 use crate::contact::contact_state::State;
+use crate::contact::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 
-/// Products g ⊗ c that wait for one pass over the Jacobian, which at many harmonics fits no near cache.
+/// Products g ⊗ c that wait for one pass over the Jacobian, which at many harmonics exceeds the caches.
 const WAITING: usize = 4;
 
 /// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
@@ -17,12 +17,12 @@ pub(super) struct Assembly {
     /// Sₙ for n = 0 ..= 2·(highest reduced harmonic).
     pub(super) spectrum: Vec<Complex64>,
     toeplitz: Toeplitz,
-    /// Packed g of the pieces whose products wait, and of the piece at hand.
+    /// Packed g of the pieces whose products wait, and of the current piece.
     g: Vec<f64>,
     /// Packed bases c(r) at their anchors times −k.
     anchors: Vec<f64>,
     waiting: usize,
-    /// In place of a product where none waits.
+    /// Stand-in for a product where none waits.
     zeros: Vec<f64>,
     /// Whether the Jacobian holds products already.
     begun: bool,
@@ -43,7 +43,7 @@ impl Assembly {
         })
     }
 
-    /// Clears what the last evaluation left, but for the Jacobian, which [`Self::finish`] writes.
+    /// Clears the results of the last evaluation, but for the Jacobian, which [`Self::finish`] writes.
     pub(super) fn start(&mut self, out: &mut Evaluation) {
         self.spectrum.fill(Complex64::ZERO);
         self.waiting = 0;
@@ -100,7 +100,7 @@ impl Assembly {
         self.waiting = 0;
     }
 
-    /// What waits for column `j`, as (cⱼ, g).
+    /// The waiting products of column `j`, as (cⱼ, g).
     fn products(&self, m: usize, j: usize) -> impl Iterator<Item = (f64, &[f64])> {
         let pairs = self.anchors.chunks_exact(m).zip(self.g.chunks_exact(m));
         pairs.take(self.waiting).map(move |(c, g)| (c[j], g))

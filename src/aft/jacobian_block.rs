@@ -1,4 +1,4 @@
-//! Blocks of a Jacobian: what Fourier coefficients of a piece or of a tangent stiffness add to the
+//! Blocks of a Jacobian: contributions of the Fourier coefficients of a piece or of a tangent stiffness to the
 //! derivative of one direction's force by one direction's motion.
 
 use crate::aft::toeplitz::Toeplitz;

@@ -9,9 +9,10 @@
 //! Both are the exact derivatives of the sampled F, however few the samples, because the samples of
 //! a motion are linear in its harmonics.
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::toeplitz::Toeplitz;
-use crate::contact::memoryless_law::{Memoryless, Samples};
+use crate::contact::law::Memoryless;
+use crate::contact::samples::Samples;
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::transform::{Half, Lane, Transform};
@@ -23,8 +24,8 @@ pub struct MemorylessEvaluator {
     directions: usize,
     velocity: bool,
     half_suffices: bool,
-    /// Samples per period asked for.
-    wanted: usize,
+    /// Samples per period requested.
+    requested: usize,
     transform: Transform,
     /// Motions and velocities, samples × d.
     u: Vec<f64>,
@@ -34,7 +35,7 @@ pub struct MemorylessEvaluator {
     df_du: Vec<f64>,
     df_dv: Vec<f64>,
     scratch: Vec<f64>,
-    /// Harmonics 0 ..= 2·highest of what is being transformed.
+    /// Harmonics 0 ..= 2·highest of the current transform.
     spectrum: Vec<Complex64>,
     toeplitz: Toeplitz,
     /// ih·X, d·m.
@@ -46,26 +47,26 @@ pub struct MemorylessEvaluator {
 }
 
 impl MemorylessEvaluator {
-    /// Memory for `law` on motions of `set` at `wanted` samples per period or a few more.
+    /// Memory for `law` on motions of `set` at `requested` samples per period or a few more.
     ///
     /// # Errors
-    /// `Argument` for a law without directions, and where it asks for fewer samples than tell the
-    /// harmonics apart; `OutOfMemory`.
-    pub fn new(set: &HarmonicSet, law: &dyn Memoryless, wanted: usize) -> Result<Self> {
+    /// `Argument` for a law without directions, and for fewer samples than distinguish the
+    /// harmonics; `OutOfMemory`.
+    pub fn new(set: &HarmonicSet, law: &dyn Memoryless, requested: usize) -> Result<Self> {
         let (d, m) = (law.directions(), set.packed_len());
         let highest = set.highest_reduced();
         if d == 0 {
             return fail!(Argument, "directions = 0 of a contact law, needs at least 1");
         }
-        if wanted <= 2 * highest {
+        if requested <= 2 * highest {
             return fail!(
                 Argument,
-                "samples = {wanted} of a contact law, needs at least {} for {highest} harmonics",
+                "samples = {requested} of a contact law, needs at least {} for {highest} harmonics",
                 2 * highest + 1
             );
         }
         let half = set.is_odd() && law.half_period_suffices();
-        let transform = Transform::new(set, wanted, half)?;
+        let transform = Transform::new(set, requested, half)?;
         let n = transform.held();
         let velocity = law.uses_velocity();
         let feels = usize::from(velocity);
@@ -76,7 +77,7 @@ impl MemorylessEvaluator {
             directions: d,
             velocity,
             half_suffices: law.half_period_suffices(),
-            wanted,
+            requested,
             transform,
             u: samples(signals)?,
             v: samples(feels * signals)?,
@@ -92,17 +93,17 @@ impl MemorylessEvaluator {
         })
     }
 
-    /// Whether this was made for laws like `law` at so many samples.
+    /// Whether the memory suits `law` at this number of samples.
     #[must_use]
-    pub fn suits(&self, law: &dyn Memoryless, wanted: usize) -> bool {
+    pub fn suits(&self, law: &dyn Memoryless, requested: usize) -> bool {
         self.directions == law.directions()
             && self.velocity == law.uses_velocity()
             && self.half_suffices == law.half_period_suffices()
-            && self.wanted == wanted
+            && self.requested == requested
     }
 
     /// Force and derivatives of `law` at a motion, d·m numbers, direction after direction. `law` is
-    /// the one that this was made for, or the same in other units.
+    /// the one that the memory was made for, or the same in other units.
     ///
     /// # Errors
     /// Those of the law; then `out` is of no use.

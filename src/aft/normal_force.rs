@@ -1,21 +1,21 @@
-//! Exact harmonics of the normal force of a law that is marched.
+//! Exact harmonics of the normal force of a law with states.
 //!
-//! Such a force remembers nothing: N = max(n₀ − kn·y, 0) has closings and openings that are located and
+//! Such a force has no memory: N = max(n₀ − kn·y, 0) has closings and openings that are located and
 //! integrals in closed form, as under friction in one direction. Its harmonics are then a smooth function
-//! of the motion. Sampled ones have a corner wherever a closing passes a sample, and a stiff contact makes
-//! so many of them that Newton's method finds no way between them.
+//! of the motion. Sampled harmonics have a corner wherever a closing passes a sample, and a stiff contact makes
+//! so many of them that Newton's method does not converge.
 
-use crate::aft::Evaluation;
-use crate::aft::varying_normal_load::Coupled;
-use crate::contact::laws::friction_2d::Friction2d;
+use crate::aft::evaluation::Evaluation;
+use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
+use crate::contact::law::VaryingNormalLoad;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 
 /// Tables and memory for normal forces.
 pub(super) struct Normal {
     set: HarmonicSet,
-    way: Coupled,
-    /// In a tangential direction without force, and in the normal one.
+    way: VaryingNormalLoadEvaluator,
+    /// Result in a tangential direction without force, and in the normal one.
     found: Evaluation,
 }
 
@@ -23,13 +23,13 @@ impl Normal {
     pub fn new(set: &HarmonicSet) -> Result<Self> {
         Ok(Self {
             set: set.try_clone()?,
-            way: Coupled::new(set)?,
+            way: VaryingNormalLoadEvaluator::new(set)?,
             found: Evaluation::new(set, 2)?,
         })
     }
 
     /// Writes force, Jacobian and offset of the last of several motions.
-    pub fn evaluate(&mut self, law: &Friction2d, motion: &[f64], out: &mut Evaluation) {
+    pub fn evaluate(&mut self, law: &dyn VaryingNormalLoad, motion: &[f64], out: &mut Evaluation) {
         let (n, m) = (motion.len(), self.set.packed_len());
         self.way.evaluate(law, &self.set, &motion[n - 2 * m..], &mut self.found);
         out.force[n - m..].copy_from_slice(&self.found.force[m..]);

@@ -1,9 +1,9 @@
 //! The start of a marched period that returns to itself.
 //!
 //! One march maps the states z at the start to those at the end, with the derivative P, the product of
-//! the derivatives of the steps. Where a load wipes memory, P shrinks, and Newton's step solves
+//! the derivatives of the steps. Where a load erases memory, P shrinks, and Newton's step solves
 //! (I − P) δ = z_end − z. Where nothing slips P = I: any state returns, and the marched one is kept.
-//! Between them lies a projector Π onto what P leaves alone, P Π = Π P = Π; then
+//! Between them lies the projector Π onto the part that P does not change, P Π = Π P = Π; then
 //!
 //! > (I − P + Π) δ = z_end − z
 //!
@@ -11,12 +11,12 @@
 //! the periodic start: (I − P + Π) S = q + Π S_before with q the derivative of the march at a fixed start
 //! and S_before that of the start marched from.
 
-use crate::contact::hysteretic_law::March;
+use crate::contact::march::March;
 use crate::error::Result;
 use crate::error::try_vec;
 use crate::linalg::lu::Lu;
 
-/// Squarings in the search for Π; what decays by less than 1e-10 per period counts as kept in part.
+/// Squarings in the search for Π; a part that decays by less than 1e-10 per period counts as kept.
 const SQUARINGS: usize = 40;
 
 /// Entries of Π below this are no projection.

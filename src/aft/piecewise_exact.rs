@@ -1,12 +1,13 @@
 //! Exact evaluation: turning points and slip times located, Fourier integrals in closed form.
 //!
-//! It knows no law by name: [`PiecewiseLinear::pieces`] returns intervals, and each contributes
+//! No law is named here: [`PiecewiseLinear::pieces`] returns intervals, and each contributes
 //! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices;
 //! the other half repeats it with opposite sign and doubles every integral that is used.
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
-use crate::contact::law::{Piece, PiecewiseLinear};
+use crate::contact::law::PiecewiseLinear;
+use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
@@ -73,7 +74,7 @@ impl Exact {
         }
     }
 
-    /// Force and Jacobian of `law` for the prepared motion; see [`super`].
+    /// Force and Jacobian of `law` for the prepared motion; see [`crate::aft`].
     pub fn evaluate(&mut self, law: &dyn PiecewiseLinear, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
         self.pieces.clear();
         law.pieces(set, motion, &self.extrema, &mut self.pieces);

@@ -2,9 +2,10 @@
 //! integrals. The force is O(N⁻²) accurate, the Jacobian O(N⁻¹); it serves for cross-checks and
 //! for laws without exact events. Smooth laws are not sampled: their harmonics are exact.
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
-use crate::contact::law::{Piece, PiecewiseLinear};
+use crate::contact::law::PiecewiseLinear;
+use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
@@ -54,7 +55,7 @@ impl Sampled {
         }
     }
 
-    /// Half the range of the prepared motion, as far as the samples show it.
+    /// Half the range of the samples of the prepared motion.
     #[must_use]
     pub fn half_range(&self) -> f64 {
         let high = self.samples.iter().fold(f64::NEG_INFINITY, |m, &x| m.max(x));
@@ -62,7 +63,7 @@ impl Sampled {
         0.5 * (high - low)
     }
 
-    /// Force and Jacobian of `law` for the prepared motion; see [`super`].
+    /// Force and Jacobian of `law` for the prepared motion; see [`crate::aft`].
     pub fn evaluate(&mut self, law: &dyn PiecewiseLinear, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
         self.pieces.clear();
         law.sampled_pieces(&self.samples, &mut self.pieces);

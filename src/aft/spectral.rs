@@ -4,11 +4,11 @@
 //! > ∂F/∂X = k + T(S),  F = k X + T(S)·X/d,  F − ∂F/∂X · X = (1 − d)/d · T(S)·X
 //!
 //! by Euler's theorem on homogeneous functions, exactly for the carried harmonics: T(S) needs S up
-//! to twice the highest of them. Nothing is sampled, whichever way of evaluating was chosen. See
+//! to twice the highest of them. Nothing is sampled, also where samples are requested. See
 //! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
-use crate::aft::Evaluation;
+use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
 use crate::contact::law::Spectral;
 use crate::fourier::HarmonicSet;

@@ -20,7 +20,7 @@ pub(super) struct Toeplitz {
     sums: [Vec<f64>; 2],
     /// The row of the mean.
     row: Vec<f64>,
-    /// 2·Sₕ, the column of the mean, and what is added to it.
+    /// 2·Sₕ, the column of the mean, and zeros, its second part.
     column: [Vec<f64>; 2],
 }
 
@@ -51,7 +51,7 @@ impl Toeplitz {
         })
     }
 
-    /// Takes S in, given for n from 0 to twice the highest reduced harmonic.
+    /// Sets S, given for n from 0 to twice the highest reduced harmonic.
     pub(super) fn set(&mut self, set: &HarmonicSet, s: &[Complex64]) {
         let stride = set.stride();
         for k in 0..(2 * self.order).saturating_sub(1) {
@@ -147,7 +147,7 @@ mod tests {
             let mut found = vec![0.0; m * leading];
             toeplitz.add(&mut found, leading);
             let (count, mut basis) = (64, vec![0.0; m]);
-            let mut wanted = vec![0.0; m * m];
+            let mut expected = vec![0.0; m * m];
             for t in 0..count {
                 let tau = std::f64::consts::TAU * f64::from(t) / f64::from(count);
                 set.basis(tau, &mut basis);
@@ -158,13 +158,13 @@ mod tests {
                 for (j, x) in basis.iter().enumerate() {
                     for (i, c) in basis.iter().enumerate() {
                         let weight = if set.has_mean() && i == 0 { 1.0 } else { 2.0 };
-                        wanted[j * m + i] += weight / f64::from(count) * c * stiffness * x;
+                        expected[j * m + i] += weight / f64::from(count) * c * stiffness * x;
                     }
                 }
             }
             for j in 0..m {
                 for i in 0..m {
-                    let gap = (found[j * leading + i] - wanted[j * m + i]).abs();
+                    let gap = (found[j * leading + i] - expected[j * m + i]).abs();
                     assert!(gap < 1e-13, "H {highest}, ({i}, {j}): {gap:e}");
                 }
                 assert!(found[j * leading + m..(j + 1) * leading].iter().all(|x| *x == 0.0));

@@ -6,28 +6,30 @@
 //!
 //! > ∂Fₜ/∂X = T(Sᵃ) + Σ a_r g ⊗ c(r),  ∂Fₜ/∂Y = T(Sᵇ) + Σ (b_r + m) g ⊗ c(r),
 //!
-//! where m·dy(r) is what a time of closing r that moves with the normal motion adds. The normal
+//! where m·dy(r) is the contribution of a time of closing r that moves with the normal motion. The normal
 //! force is that of a unilateral spring and does not depend on x. m belongs to the derivative alone,
 //! so Fₜ = ∂Fₜ/∂X · X + ∂Fₜ/∂Y · Y + Σ (o − m·y(r)) g.
 
+use crate::aft::evaluation::{Evaluation, is_whole};
+use crate::aft::jacobian_block::{Block, add_stiffness, apply, pack};
 use crate::aft::piecewise_exact::transform;
 use crate::aft::toeplitz::Toeplitz;
-use crate::aft::{Block, Evaluation, add_stiffness, apply, is_whole, pack};
-use crate::contact::Piece;
 use crate::contact::contact_state::State;
-use crate::contact::laws::friction_2d::{CoupledPiece, Friction2d, Scratch, is_closed, piece_lists};
+use crate::contact::coupled_search::{CoupledSearch, piece_lists};
+use crate::contact::law::VaryingNormalLoad;
+use crate::contact::piece::{CoupledPiece, Piece};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// Tables and memory of the evaluation for one harmonic set.
-pub struct Coupled {
-    scratch: Scratch,
+pub struct VaryingNormalLoadEvaluator {
+    search: CoupledSearch,
     normal: Vec<Piece>,
     tangential: Vec<CoupledPiece>,
     transform: Vec<Complex64>,
-    /// Of ∂Fₜ/∂X, ∂Fₜ/∂Y and ∂Fₙ/∂Y.
+    /// Spectra of ∂Fₜ/∂X, ∂Fₜ/∂Y and ∂Fₙ/∂Y.
     spectra: [Vec<Complex64>; 3],
     toeplitz: Toeplitz,
     g: Vec<f64>,
@@ -37,7 +39,7 @@ pub struct Coupled {
 /// Force's and motion's direction of each spectrum.
 const BLOCKS: [[usize; 2]; 3] = [[0, 0], [0, 1], [1, 1]];
 
-impl Coupled {
+impl VaryingNormalLoadEvaluator {
     /// Memory for motions of `set`.
     ///
     /// # Errors
@@ -46,7 +48,7 @@ impl Coupled {
         let (normal, tangential) = piece_lists(set)?;
         let spectrum = || try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, "a stiffness spectrum");
         Ok(Self {
-            scratch: Scratch::new(set)?,
+            search: CoupledSearch::new(set)?,
             normal,
             tangential,
             transform: spectrum()?,
@@ -70,8 +72,8 @@ impl Coupled {
     }
 
     /// Force and Jacobian of `law` at the packed x, then the packed y, in `out` of two directions.
-    pub fn evaluate(&mut self, law: &Friction2d, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        law.pieces(set, motion, &mut self.scratch, &mut self.normal, &mut self.tangential);
+    pub fn evaluate(&mut self, law: &dyn VaryingNormalLoad, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+        law.coupled_pieces(set, motion, &mut self.search, &mut self.normal, &mut self.tangential);
         out.clear();
         for spectrum in &mut self.spectra {
             spectrum.fill(Complex64::ZERO);
@@ -90,7 +92,7 @@ impl Coupled {
         let m = set.packed_len();
         for piece in &self.normal {
             transform([piece.start, piece.end], TAU.recip(), TAU, &mut self.transform);
-            if !is_closed(piece) {
+            if !piece.is_closed() {
                 out.open_fraction += self.transform[0].re;
                 continue;
             }

@@ -8,9 +8,9 @@ mod test_motion;
 pub use crate::analysis::check_jacobian::jacobian_gap::{JacobianGap, Tangent};
 use crate::analysis::check_jacobian::step_derivatives::with_states;
 use crate::analysis::check_jacobian::test_motion::{CONTEXT, Motion, SAMPLES, sizes, step_of};
-use crate::contact::ContactKind;
+use crate::contact::law::Memoryless;
 use crate::contact::laws::user_law::User;
-use crate::contact::memoryless_law::{Memoryless, Samples};
+use crate::contact::samples::Samples;
 use crate::error::{Error, Result, fail, try_copy, try_vec};
 use crate::model::Model;
 
@@ -25,10 +25,10 @@ pub fn check_jacobian(model: &Model, contact: usize, omega: f64, amplitudes: &[f
     let Some(kept) = model.contacts().get(contact) else {
         return fail!(Index, "contact = {contact}, needs 0 .. {}", model.contacts().len());
     };
-    let ContactKind::User(law) = &kept.kind else {
+    let Some(law) = kept.kind.user() else {
         return fail!(
             Argument,
-            "contact {contact} is no law of the host; its tangents are the library's"
+            "contact {contact} is no law of the caller; its tangents are the library's"
         );
     };
     if !(omega > 0.0 && omega.is_finite()) {

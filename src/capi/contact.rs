@@ -1,7 +1,7 @@
 //! Contacts of a model, and a law on a motion of the caller's.
 
 use super::boundary::{Blame, Range, call, check_pointer, count, disjoint, index, input, output};
-use super::contact_types::{hbvib_contact, hbvib_contact_kind};
+use super::contact_types::{hbvib_contact, kind};
 use super::handles::write;
 use super::sized::{Described, init, load};
 use super::tables;
@@ -13,30 +13,6 @@ use crate::error::{Result, Status, fail};
 use crate::model::Model;
 
 const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
-/// The kinds of the header.
-fn kind(number: i32) -> Result<ContactKind> {
-    use hbvib_contact_kind as known;
-    const JENKINS: i32 = known::HBVIB_JENKINS as i32;
-    const FRICTION_2D: i32 = known::HBVIB_FRICTION_2D as i32;
-    const FRICTION_3D: i32 = known::HBVIB_FRICTION_3D as i32;
-    const UNILATERAL: i32 = known::HBVIB_UNILATERAL as i32;
-    const CUBIC: i32 = known::HBVIB_CUBIC as i32;
-    const REGULARISED: i32 = known::HBVIB_REGULARISED as i32;
-    Ok(match number {
-        JENKINS => ContactKind::Jenkins,
-        FRICTION_2D => ContactKind::Friction2d,
-        FRICTION_3D => ContactKind::Friction3d,
-        UNILATERAL => ContactKind::Unilateral,
-        CUBIC => ContactKind::Cubic,
-        REGULARISED => ContactKind::Regularised,
-        other => {
-            return fail!(
-                Argument,
-                "hbvib_contact: kind = {other}, needs {JENKINS} .. {REGULARISED} = HBVIB_JENKINS .. HBVIB_REGULARISED"
-            );
-        }
-    })
-}
 
 unsafe impl Described for hbvib_contact {
     const NAME: &'static str = "hbvib_contact";

@@ -1,6 +1,9 @@
 //! What the C interface says of a contact.
 #![allow(non_camel_case_types)]
 
+use crate::contact::ContactKind;
+use crate::error::{Result, fail};
+
 /// Contact laws.
 #[repr(C)]
 pub enum hbvib_contact_kind {
@@ -22,6 +25,31 @@ pub enum hbvib_contact_kind {
     /// Friction with Coulomb's jump smoothed, in one direction:
     /// f = mu * preload * tanh(y' / velocity).
     HBVIB_REGULARISED = 6,
+}
+
+/// The kind of a contact by its number in the header.
+pub(super) fn kind(number: i32) -> Result<ContactKind> {
+    use hbvib_contact_kind as known;
+    const JENKINS: i32 = known::HBVIB_JENKINS as i32;
+    const FRICTION_2D: i32 = known::HBVIB_FRICTION_2D as i32;
+    const FRICTION_3D: i32 = known::HBVIB_FRICTION_3D as i32;
+    const UNILATERAL: i32 = known::HBVIB_UNILATERAL as i32;
+    const CUBIC: i32 = known::HBVIB_CUBIC as i32;
+    const REGULARISED: i32 = known::HBVIB_REGULARISED as i32;
+    Ok(match number {
+        JENKINS => ContactKind::Jenkins,
+        FRICTION_2D => ContactKind::Friction2d,
+        FRICTION_3D => ContactKind::Friction3d,
+        UNILATERAL => ContactKind::Unilateral,
+        CUBIC => ContactKind::Cubic,
+        REGULARISED => ContactKind::Regularised,
+        other => {
+            return fail!(
+                Argument,
+                "hbvib_contact: kind = {other}, needs {JENKINS} .. {REGULARISED} = HBVIB_JENKINS .. HBVIB_REGULARISED"
+            );
+        }
+    })
 }
 
 /// A contact between two degrees of freedom, or between one and the ground. Fill it by

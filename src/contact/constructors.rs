@@ -1,13 +1,14 @@
 //! Contacts of each law by their degrees of freedom and constants.
 
-use crate::contact::{Contact, ContactKind};
+use crate::contact::description::Contact;
+use crate::contact::laws::registry::{ContactKind, kinds};
 
 impl Contact {
     /// A Jenkins contact between degree of freedom `a` and `b` (or the ground).
     #[must_use]
     pub fn jenkins(a: usize, b: Option<usize>, kt: f64, mu: f64, preload: f64) -> Self {
         Self {
-            kind: ContactKind::Jenkins,
+            kind: kinds::Jenkins,
             dof_a: [Some(a), None, None],
             dof_b: [b, None, None],
             frame: None,
@@ -49,7 +50,7 @@ impl Contact {
     #[must_use]
     pub fn friction(a: [Option<usize>; 2], b: [Option<usize>; 2], (kt, kn): (f64, f64), mu: f64, preload: f64) -> Self {
         Self {
-            kind: ContactKind::Friction2d,
+            kind: kinds::Friction2d,
             dof_a: [a[0], None, a[1]],
             dof_b: [b[0], None, b[1]],
             kn,
@@ -68,7 +69,7 @@ impl Contact {
         preload: f64,
     ) -> Self {
         Self {
-            kind: ContactKind::Friction3d,
+            kind: kinds::Friction3d,
             dof_a: a,
             dof_b: b,
             kn,
@@ -80,7 +81,7 @@ impl Contact {
     #[must_use]
     pub fn regularised(a: usize, b: Option<usize>, mu: f64, preload: f64, velocity: f64) -> Self {
         Self {
-            kind: ContactKind::Regularised,
+            kind: kinds::Regularised,
             velocity,
             ..Self::jenkins(a, b, 0.0, mu, preload)
         }
@@ -91,7 +92,7 @@ impl Contact {
     #[must_use]
     pub fn cubic(a: usize, b: Option<usize>, kt: f64, k3: f64) -> Self {
         Self {
-            kind: ContactKind::Cubic,
+            kind: kinds::Cubic,
             cubic: k3,
             ..Self::jenkins(a, b, kt, 0.0, 0.0)
         }
@@ -102,7 +103,7 @@ impl Contact {
     #[must_use]
     pub fn unilateral(a: Option<usize>, b: Option<usize>, kn: f64, gap: f64) -> Self {
         Self {
-            kind: ContactKind::Unilateral,
+            kind: kinds::Unilateral,
             dof_a: [None, None, a],
             dof_b: [None, None, b],
             kn,

@@ -1,8 +1,7 @@
-//! Checks of what a caller says of a contact: constants in their ranges, those of other laws zero, degrees
+//! Checks of the description of a contact: constants in their ranges, those of other laws zero, degrees
 //! of freedom only along directions in which the law acts.
 
-use crate::contact::laws::regularised::TanhFriction;
-use crate::contact::{Contact, ContactKind, Law};
+use crate::contact::description::Contact;
 use crate::error::{Result, fail};
 
 impl Contact {
@@ -15,7 +14,11 @@ impl Contact {
             ("kt", self.kt, false),
             ("kn", self.kn, false),
             ("mu", self.mu, false),
-            ("preload", self.preload, self.may_stick_for_ever()),
+            (
+                "preload",
+                self.preload,
+                self.ask(|law| law.may_stick_for_ever() || !law.has_preload()),
+            ),
             ("velocity", self.velocity, false),
         ] {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
@@ -30,72 +33,34 @@ impl Contact {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number");
             }
         }
-        let (kt, kn, mu) = (("kt", self.kt), ("kn", self.kn), ("mu", self.mu));
-        let (preload, gap, cubic) = (("preload", self.preload), ("gap", self.gap), ("cubic", self.cubic));
-        let velocity = ("velocity", self.velocity);
-        let (unused, kind): (&[(&str, f64)], _) = match &self.kind {
-            ContactKind::Jenkins => (&[kn, gap, cubic, velocity], "Jenkins contact"),
-            ContactKind::Cubic => (&[kn, mu, preload, gap, velocity], "cubic spring"),
-            ContactKind::Unilateral => (&[kt, mu, cubic, velocity], "unilateral spring"),
-            ContactKind::Friction2d | ContactKind::Friction3d => (&[cubic, velocity], "friction contact"),
-            ContactKind::Regularised => (&[kt, kn, gap, cubic], "regularised friction"),
-            ContactKind::Table(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "table"),
-            ContactKind::Polynomial(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "polynomial"),
-            ContactKind::User(_) => (&[kt, kn, mu, preload, gap, cubic, velocity], "law of the host"),
-        };
-        for &(name, value) in unused {
-            if value != 0.0 {
+        let constants = [
+            ("kt", self.kt),
+            ("kn", self.kn),
+            ("mu", self.mu),
+            ("preload", self.preload),
+            ("gap", self.gap),
+            ("cubic", self.cubic),
+            ("velocity", self.velocity),
+        ];
+        let (kind, used, motions) = self.ask(|law| (law.name(), law.constants(), law.motions()));
+        for (name, value) in constants {
+            if value != 0.0 && !used.contains(&name) {
                 return fail!(Argument, "contact: {name} = {value}, needs 0 for a {kind}");
             }
         }
-        self.check_normal()?;
-        if let ContactKind::Regularised = self.kind {
-            TanhFriction::new(self.slip_limit(), self.velocity)?;
-        }
-        let wanted = match &self.kind {
-            ContactKind::Polynomial(law) => law.directions(),
-            ContactKind::User(law) => law.directions(),
-            _ => self.places().len(),
-        };
-        let over_dofs = matches!(self.kind, ContactKind::Polynomial(_) | ContactKind::User(_));
-        if self.directions() != wanted || !(self.dofs.is_empty() || over_dofs) {
+        self.ask(|law| law.check())?;
+        let needed = motions.unwrap_or(self.places().len());
+        if self.directions() != needed || !(self.dofs.is_empty() || motions.is_some()) {
             return fail!(
                 Dimension,
-                "contact: {} degrees of freedom for a {kind} of {wanted} motions",
+                "contact: {} degrees of freedom for a {kind} of {needed} motions",
                 self.directions()
             );
         }
         self.check_places(kind)
     }
 
-    /// Whether an infinite load makes sense, or no load at all.
-    fn may_stick_for_ever(&self) -> bool {
-        matches!(self.kind, ContactKind::Jenkins) || self.without_load().is_some()
-    }
-
-    /// The normal direction of friction: with a stiffness, or none at all. Without any force, such as
-    /// that of no area, it needs none.
-    fn check_normal(&self) -> Result<()> {
-        let plane = matches!(self.kind, ContactKind::Friction3d);
-        let needs_stiffness = matches!(self.kind, ContactKind::Friction2d) || (plane && self.has_normal());
-        if needs_stiffness && self.kn == 0.0 && (self.kt != 0.0 || self.preload != 0.0) {
-            return fail!(
-                Argument,
-                "contact: kn = 0, needs a number > 0 for friction under a load that varies"
-            );
-        }
-        if plane && !self.has_normal() && (self.kn != 0.0 || self.gap != 0.0) {
-            return fail!(
-                Argument,
-                "contact: kn = {}, gap = {}, need 0 for friction without a degree of freedom along n",
-                self.kn,
-                self.gap
-            );
-        }
-        Ok(())
-    }
-
-    /// Degrees of freedom along directions in which the law does not act are a mistake.
+    /// Refuses degrees of freedom along directions in which the law does not act.
     fn check_places(&self, kind: &str) -> Result<()> {
         if self.frame.is_some() {
             return Ok(());

@@ -1,22 +1,124 @@
-//! The vocabulary that every contact law speaks: what a solver asks of a law, and the forms in which
-//! a law can answer.
+//! The traits of contact laws: the questions of a model, of a solver and of an integration in time.
 //!
-//! A law knows the motion of its relative coordinates and tells its force. How its Fourier
-//! coefficients and Jacobian follow is the same for all laws of a [`Form`] and lives in
-//! [`crate::aft`], which knows no law by name. All quantities are in the solver's units.
+//! A [`ContactLaw`] is a law as the caller describes it, with its constants; it tells its role in a model and
+//! makes the [`Law`] that a solver evaluates, in the solver's units. A law maps the motion of its relative
+//! coordinates to its force. How Fourier coefficients and Jacobian follow is the same for all laws of a
+//! [`Form`] and lives in [`crate::aft`], which knows no law by name. In time a law is an [`EventLaw`], linear
+//! between events, or smooth.
 
+use crate::contact::constants::Role;
 use crate::contact::contact_state::State;
-use crate::contact::hysteretic_law::Hysteretic;
-use crate::contact::laws::friction_2d::Friction2d;
-use crate::contact::memoryless_law::Memoryless;
-use crate::fourier::Extremum;
-use crate::fourier::HarmonicSet;
+use crate::contact::coupled_search::CoupledSearch;
+use crate::contact::linearisation::Range;
+use crate::contact::march::{March, Sticking, StuckState};
+use crate::contact::piece::{CoupledPiece, Piece};
+use crate::contact::samples::Samples;
+use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros};
+use crate::error::Result;
+use crate::fourier::{Extremum, HarmonicSet};
 use core::fmt::Debug;
 use num_complex::Complex64;
+use std::sync::Arc;
+
+/// A law as the caller describes it, its constants in the caller's units.
+pub trait ContactLaw {
+    /// Name of a contact of this law in messages, "cubic spring".
+    fn name(&self) -> &'static str;
+
+    /// Names of the constants that the law has; all others must be 0.
+    fn constants(&self) -> &'static [&'static str] {
+        &[]
+    }
+
+    /// Checks between the constants, beyond signs and unused ones.
+    ///
+    /// # Errors
+    /// `NotFinite` or `Argument`, naming the constant, its value and its range.
+    fn check(&self) -> Result<()> {
+        Ok(())
+    }
+
+    /// Directions (t1, t2, n as 0, 1, 2) in which the law acts, in the order of its motions.
+    fn places(&self) -> &'static [usize] {
+        &[0]
+    }
+
+    /// Number of motions of a law that may act over a list of degrees of freedom; `None` for others.
+    fn motions(&self) -> Option<usize> {
+        None
+    }
+
+    /// Role that the constants give the contact.
+    fn role(&self) -> Role {
+        Role::Active
+    }
+
+    /// Stiffness of the force in the k-th direction by the l-th motion at small motion; 0 where it is open at
+    /// rest or unknown.
+    fn stiffness_at_small_motion(&self, k: usize, l: usize) -> f64;
+
+    /// Largest stiffness along the k-th motion, but for terms that grow with the motion.
+    fn stiffness(&self, k: usize) -> f64;
+
+    /// Whether the stiffness may grow beyond [`Self::stiffness`], or that be zero.
+    fn is_spring(&self) -> bool {
+        true
+    }
+
+    /// Whether every motion meets exactly [`Self::stiffness`] while the contact sticks (along the normal:
+    /// while it is closed), as with friction.
+    fn may_stick(&self) -> bool {
+        false
+    }
+
+    /// A bound of the force in each direction over all motions; infinite where there is none.
+    fn largest_force(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Whether the contact has a normal load at rest that a caller may set.
+    fn has_preload(&self) -> bool {
+        false
+    }
+
+    /// Whether an infinite normal load is allowed: the contact then sticks for ever.
+    fn may_stick_for_ever(&self) -> bool {
+        false
+    }
+
+    /// Whether the constants make sense per unit of area.
+    fn is_per_area(&self) -> bool {
+        true
+    }
+
+    /// Whether the contact loads the structure without vibration.
+    fn is_preloaded(&self) -> bool {
+        false
+    }
+
+    /// Normal load at the relative motion y along the normal; 0 without normal load.
+    fn normal_load(&self, y: f64) -> f64 {
+        let _ = y;
+        0.0
+    }
+
+    /// The law, with lengths in units of `length` and forces in units of `length` times the caller's
+    /// stiffness.
+    ///
+    /// # Errors
+    /// Those of the constants.
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>>;
+
+    /// The law of an active contact in an integration in time, in the caller's units.
+    ///
+    /// # Errors
+    /// `Unsupported` for laws that cannot be integrated in time.
+    fn in_time(&self) -> Result<LawInTime>;
+}
 
 /// The law of a contact.
 pub trait Law: Debug + Send + Sync {
-    /// Relative coordinates on which it acts.
+    /// Number of relative coordinates on which it acts.
     fn directions(&self) -> usize {
         1
     }
@@ -24,7 +126,7 @@ pub trait Law: Debug + Send + Sync {
     /// Whether f(−x) = −f(x).
     fn is_odd(&self) -> bool;
 
-    /// How the law is evaluated.
+    /// The way in which the law is evaluated.
     fn form(&self) -> Form<'_>;
 
     /// The factor s from which on s·f(x/s) is (nearly) linear, for motions of the given ranges: friction
@@ -38,39 +140,14 @@ pub trait Law: Debug + Send + Sync {
     }
 }
 
-/// Range of a motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Range {
-    /// (max − min)/2
-    pub half: f64,
-    /// Mean.
-    pub mean: f64,
-    /// A bound of the velocity.
-    pub speed: f64,
-}
-
-impl Range {
-    /// A bound of the motion's magnitude.
-    #[must_use]
-    pub fn size(&self) -> f64 {
-        self.half + self.mean.abs()
-    }
-}
-
-/// Share of the reference stiffness below which a nonlinear term counts as small. From here the
-/// homotopy may have to pass the resonance, at an amplitude Q times that of the linear structure,
-/// where the term is larger by a power of Q; it must not be felt there, up to Q of a million for a
-/// cubic one.
-pub const SMALL: f64 = 1e-12;
-
-/// The forms in which laws answer.
+/// The forms of laws.
 pub enum Form<'a> {
     /// Intervals on which the force is affine in the one relative motion: exact.
     PiecewiseLinear(&'a dyn PiecewiseLinear),
     /// A spectrum of the stiffness on one relative motion: exact.
     Spectral(&'a dyn Spectral),
     /// Friction in one direction under a normal load that varies: exact.
-    Coupled(&'a Friction2d),
+    VaryingNormalLoad(&'a dyn VaryingNormalLoad),
     /// Force, states and the derivatives of their steps, marched over equidistant times.
     Hysteretic(&'a dyn Hysteretic),
     /// Force and tangents at equidistant times, without memory.
@@ -92,16 +169,16 @@ pub trait PiecewiseLinear {
         4 * highest + 8
     }
 
-    /// What the contact does on a piece of it.
+    /// State of the contact on a piece of it.
     fn state(&self, piece: &Piece) -> State;
 
-    /// Force and state at the motion x of a law without memory; `None` for one that remembers, whose
+    /// Force and state at the motion x of a law without memory; `None` for one with memory, whose
     /// force follows from its pieces.
     fn at(&self, x: f64) -> Option<(f64, State)>;
 }
 
 /// A law without events on one relative motion: linear·x plus a term that is homogeneous in x, f(s·x) =
-/// s^degree·f(x).
+/// s^degree·f(x) for s > 0.
 pub trait Spectral {
     /// Fills Sₙ = (1/2π)∫ s(x(τ)) e^{−inτ} dτ, n ≥ 0, of the tangent stiffness s of the homogeneous term.
     fn spectrum(&self, set: &HarmonicSet, motion: &[f64], spectrum: &mut [Complex64]);
@@ -116,20 +193,174 @@ pub trait Spectral {
     fn at(&self, x: f64) -> f64;
 }
 
-/// An interval on which the force is f(τ) = slope·(x(τ) − x(anchor)) + offset.
-///
-/// With exact events `start`, `end` and `anchor` are times in τ; with sampling they are sample
-/// numbers, and the piece holds the samples start ≤ j < end.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piece {
-    /// Begin of the interval.
-    pub start: f64,
-    /// End of the interval.
-    pub end: f64,
-    /// Tangent stiffness.
-    pub slope: f64,
-    /// Where the motion is measured from; `None`: from zero.
-    pub anchor: Option<f64>,
-    /// Force at the anchor.
-    pub offset: f64,
+/// A law on a tangential motion x and a normal motion y, in this order: friction under a normal load that
+/// follows from y alone.
+pub trait VaryingNormalLoad {
+    /// Exact pieces of the normal force (slope −∂N/∂y) and of the tangential force over one turn. `motion` is
+    /// the packed x, then the packed y. The tangential pieces begin anywhere in the turn and follow each
+    /// other without a gap; without friction there are none.
+    fn coupled_pieces(
+        &self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        search: &mut CoupledSearch,
+        normal: &mut Vec<Piece>,
+        tangential: &mut Vec<CoupledPiece>,
+    );
+
+    /// n₀ − kn·y: the normal load where it is positive; the contact is open where it is not.
+    fn load_at(&self, y: f64) -> f64;
+}
+
+/// A law with internal states over d directions, stepped from sample to sample of a period. Where nothing
+/// moves and nothing has moved before, the states are zero.
+pub trait Hysteretic: Law {
+    /// Number s of states.
+    fn states(&self) -> usize;
+
+    /// Whether the law depends on velocities; if not, they need not be given.
+    fn uses_velocity(&self) -> bool;
+
+    /// Whether a march without slip and opening has the force of a linear spring.
+    fn sticks(&self) -> bool {
+        false
+    }
+
+    /// Whether the law can stick through the period of the motion `u`, samples × d row-major. Where
+    /// it can, any of many states may be periodic: the one that counts is then in `out`, and does not jump as
+    /// the motion changes. A start that is nearly periodic is in `out` likewise; all of its first `samples`
+    /// blocks are written.
+    fn stuck_state(&self, samples: usize, u: &[f64], out: &mut StuckState) -> Sticking {
+        let _ = (samples, u, out);
+        Sticking::Unknown
+    }
+
+    /// The force along the last motion, a normal one, where it depends on that motion alone: then its
+    /// harmonics are exact, from located closings and openings.
+    fn normal(&self) -> Option<&dyn VaryingNormalLoad> {
+        None
+    }
+
+    /// Samples per period for motions up to the reduced harmonic `highest`, where the caller requested
+    /// `requested`, or with 0 the number that suits the law.
+    fn samples(&self, highest: usize, requested: usize) -> usize;
+
+    /// Marches once over `samples` equidistant times of the period 2π/`omega` and writes every entry
+    /// of the first `samples` blocks of `out`.
+    ///
+    /// `u` and `v` hold the relative motions and their velocities, samples × d row-major; `v` is empty
+    /// unless [`Self::uses_velocity`]. `z0` are the states before sample 0: those of the last
+    /// sample of the period before, whose motion is that of the last sample.
+    ///
+    /// # Errors
+    /// Those of the law.
+    fn march(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()>;
+}
+
+/// A law f(u, v) of d relative motions u and their velocities v = du/dt at the same time. All quantities are in
+/// the solver's units.
+pub trait Memoryless: Law {
+    /// Whether the force depends on v; if not, v and df_dv are empty.
+    fn uses_velocity(&self) -> bool;
+
+    /// Whether the law may be evaluated over half a period where motion and law are odd, so that the
+    /// other half repeats the first with opposite sign.
+    fn half_period_suffices(&self) -> bool {
+        self.is_odd()
+    }
+
+    /// Samples per period that motions up to the reduced harmonic `highest` need; a fast transform may
+    /// take a few more.
+    fn samples(&self, highest: usize, requested: usize) -> usize;
+
+    /// Whether these samples give the harmonics of the force without any error.
+    fn is_alias_free(&self) -> bool {
+        false
+    }
+
+    /// Force and tangents at given times, `samples` of them, for u and v that are stored like the
+    /// force.
+    ///
+    /// # Errors
+    /// Those of a callback.
+    fn evaluate(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], out: Samples<'_>) -> Result<()>;
+}
+
+/// The law of an active contact in time.
+pub struct LawInTime {
+    /// Stiffness of a linear part along the first motion.
+    pub stiffness: f64,
+    /// The first of the contact's motions on which the other part acts; the later ones follow.
+    pub first: usize,
+    /// The other part.
+    pub part: TimePart,
+}
+
+/// A law in time, apart from a linear spring.
+#[derive(Clone, Debug)]
+pub enum TimePart {
+    /// Linear between events.
+    Events(Arc<dyn EventLaw>),
+    /// Smooth, of the form [`Form::Memoryless`].
+    Smooth(Arc<dyn Law>),
+}
+
+impl LawInTime {
+    /// A law with events from its first motion on.
+    #[must_use]
+    pub fn events(law: impl EventLaw + 'static) -> Self {
+        Self {
+            stiffness: 0.0,
+            first: 0,
+            part: TimePart::Events(Arc::new(law)),
+        }
+    }
+
+    /// A smooth law of the form [`Form::Memoryless`].
+    #[must_use]
+    pub fn smooth(law: Arc<dyn Law>) -> Self {
+        Self {
+            stiffness: 0.0,
+            first: 0,
+            part: TimePart::Smooth(law),
+        }
+    }
+}
+
+/// A law in time that is linear between events, on the motions x and, for friction under a load that varies,
+/// y. Friction remembers the stretch e of its spring from the slider.
+pub trait EventLaw: Debug + Send + Sync {
+    /// The mode at a state, whose stretch comes within its range; then the mode, if any, in which the slider's
+    /// place follows from the motion alone.
+    fn begin(&self, at: &Instant, e: &mut f64) -> (Mode, Option<Mode>);
+
+    /// The forces in a mode from a motion on, the spring of the slider stretched by e.
+    fn piece(&self, mode: Mode, motion: [f64; 2], e: f64) -> TimePiece;
+
+    /// Number of margins in a mode.
+    fn margins(&self, mode: Mode) -> usize;
+
+    /// Writes the polynomial of a margin, which is positive as long as the piece lasts, from those of the
+    /// relative motions, all of one length.
+    fn margin(&self, mode: Mode, which: usize, e: f64, x: &[f64], y: &[f64], margin: &mut [f64]);
+
+    /// The mode after margin `which` has fallen to zero, and the zeros of the new margins.
+    fn leave(&self, mode: Mode, which: usize, at: &Instant, e: &mut f64) -> (Mode, Zeros);
+
+    /// The slider of a law with memory, part of the state.
+    fn slider(&self) -> Option<&dyn SliderLaw> {
+        None
+    }
+}
+
+/// A slider in time, the memory of friction.
+pub trait SliderLaw {
+    /// The slider after any motion that ends at x and y, from w: the play operator.
+    fn drag(&self, motion: [f64; 2], w: f64) -> f64;
+
+    /// The stretch after x has grown by `growth` to where y is, within a piece.
+    fn stretch(&self, mode: Mode, growth: f64, y: f64, e: &mut f64);
+
+    /// The a of δw = δx + a·δy at the end of a mode in which the slider moves; `after`: the next mode.
+    fn follows(&self, mode: Mode, after: Mode, rate: [f64; 2]) -> f64;
 }

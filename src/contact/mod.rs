@@ -1,15 +1,23 @@
-//! Contacts: what a caller says of them, and the laws that they obey.
+//! Contacts: their description by the caller, and the laws that they obey.
 
+pub mod constants;
 mod constructors;
 mod contact_checks;
 pub mod contact_state;
+pub mod coupled_search;
 mod description;
-pub mod hysteretic_law;
 pub mod law;
 pub mod laws;
-pub mod memoryless_law;
+pub mod linearisation;
+pub mod march;
 pub mod patch;
+pub mod piece;
 pub mod relative_motion;
+pub mod samples;
+pub mod time_piece;
 
-pub use description::{Contact, ContactKind, Role};
-pub use law::{Form, Law, Piece};
+pub use constants::Role;
+pub use description::Contact;
+pub use law::{Form, Law};
+pub use laws::registry::ContactKind;
+pub use piece::Piece;

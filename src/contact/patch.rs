@@ -1,15 +1,14 @@
-//! A contact patch: many node pairs between two surfaces, each with the share of area that it stands
-//! for.
+//! A contact patch: many node pairs between two surfaces, each with its share of the area.
 
+use crate::contact::description::Contact;
 use crate::contact::relative_motion::Frame;
-use crate::contact::{Contact, ContactKind};
 use crate::error::{Result, fail, try_push};
 
 /// Node pairs of two surfaces. All arrays have one entry per pair; `None` takes the value of `law`.
 #[derive(Clone, Copy, Debug)]
 pub struct Patch<'a> {
     /// The law per unit of area: kt and kn are force per length and area, cubic force per length cubed
-    /// and area, preload is a pressure. Its degrees of freedom and frame are not looked at.
+    /// and area, preload is a pressure. Its degrees of freedom and frame are ignored.
     pub law: &'a Contact,
     /// Degrees of freedom of the nodes on side a in three orthogonal axes; `None` does not move.
     pub dof_a: &'a [[Option<usize>; 3]],
@@ -64,17 +63,12 @@ impl Patch<'_> {
         Ok(contacts)
     }
 
-    /// Checks the law by itself, so that what is wrong with it is not put down to an entry.
+    /// Checks the law by itself, so that its errors do not name an entry.
     fn check_law(&self) -> Result<()> {
         let law = self.law;
-        if matches!(
-            law.kind,
-            ContactKind::Table(_) | ContactKind::Polynomial(_) | ContactKind::User(_)
-        ) {
-            return fail!(
-                Unsupported,
-                "a table, a polynomial or a law of the host is no law per unit of area"
-            );
+        let (per_area, kind) = law.ask(|law| (law.is_per_area(), law.name()));
+        if !per_area {
+            return fail!(Unsupported, "a {kind} is no law per unit of area");
         }
         // Between a node that moves along t1, t2 and n, and the ground.
         let frame = Frame::new([0.0, 0.0, 1.0], Some([1.0, 0.0, 0.0]))?;
@@ -103,7 +97,7 @@ impl Patch<'_> {
         };
         let (law, area) = (self.law, at_least_0("area", self.area[i], false)?);
         let pressure = match self.pressure {
-            Some(pressure) => at_least_0("pressure", pressure[i], matches!(law.kind, ContactKind::Jenkins))?,
+            Some(pressure) => at_least_0("pressure", pressure[i], law.ask(|law| law.may_stick_for_ever()))?,
             None => law.preload,
         };
         let gap = self.gap.map_or(law.gap, |gap| gap[i]);

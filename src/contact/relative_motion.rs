@@ -1,4 +1,4 @@
-//! The sides of a contact: which degrees of freedom a relative motion compares.
+//! The relative motions of a contact: the degrees of freedom of its two sides.
 
 use crate::error::{Result, fail};
 
@@ -22,7 +22,7 @@ impl Direction {
         Self { a: side(a), b: side(b) }
     }
 
-    /// What tells two directions apart, in an order.
+    /// A key that differs between different directions, and orders them.
     #[must_use]
     pub fn key(&self) -> [Option<(usize, u64)>; 6] {
         let mut key = [None; 6];
@@ -68,7 +68,7 @@ impl Frame {
             axis[far] = 1.0;
             axis
         };
-        // What is left of the tangent beside the normal.
+        // The part of the tangent orthogonal to the normal.
         let along = dot(t, n);
         let t1 = unit(
             "tangent",
@@ -97,7 +97,7 @@ fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// A vector of length 1; its largest component is divided out first, whatever its size.
+/// The vector scaled to length 1; its largest component is divided out first, so that nothing overflows.
 fn unit(name: &str, v: [f64; 3]) -> Result<[f64; 3]> {
     if let Some(i) = v.iter().position(|x| !x.is_finite()) {
         return fail!(NotFinite, "{name}[{i}] = {}, needs a finite number", v[i]);
@@ -116,7 +116,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_frame_is_orthonormal_and_right_handed_whatever_the_lengths_given() {
+    fn a_frame_is_orthonormal_and_right_handed_for_vectors_of_any_length() {
         for normal in [[0.0, 0.0, 3.0], [1e-200, 2e-200, -5e-201], [1.0, -1.0, 1e8]] {
             let frame = Frame::new(normal, None).unwrap();
             for i in 0..3 {
@@ -133,7 +133,7 @@ mod tests {
     }
 
     #[test]
-    fn directions_that_make_no_frame_are_refused_by_name() {
+    fn directions_that_span_no_frame_are_refused_by_name() {
         let refusal = |n, t| Frame::new(n, t).unwrap_err().to_string();
         assert!(refusal([0.0; 3], None).contains("normal is zero"));
         assert!(refusal([0.0, f64::NAN, 1.0], None).contains("normal[1] = NaN"));

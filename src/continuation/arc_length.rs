@@ -7,9 +7,10 @@
 //! accepted when the prediction was close and the direction kept.
 
 use crate::continuation::corrector::{Corrector, Outcome};
-pub use crate::continuation::metric::Metric;
-pub use crate::continuation::point::Point;
+use crate::continuation::metric::Metric;
+use crate::continuation::point::Point;
 use crate::continuation::predictor::Cubic;
+use crate::continuation::settings::Settings;
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
 use crate::linalg::norm;
@@ -35,50 +36,35 @@ pub enum Advance {
     Stopped(Status),
 }
 
-/// Bounds and tolerances of a continuation.
-#[derive(Clone, Copy, Debug)]
-pub struct Settings {
-    /// Begin of the parameter range.
-    pub start: f64,
-    /// End of the parameter range.
-    pub end: f64,
-    /// Relative residual wanted.
-    pub tolerance: f64,
-    /// Cap on Newton iterations.
-    pub max_iterations: usize,
-    /// Steps.
-    pub steps: StepControl,
-}
-
 /// A branch being followed.
 pub struct Continuation {
-    pub(super) settings: Settings,
-    pub(super) steps: StepControl,
-    pub(super) corrector: Corrector,
-    pub(super) previous: Option<Point>,
-    pub(super) current: Point,
+    settings: Settings,
+    steps: StepControl,
+    corrector: Corrector,
+    previous: Option<Point>,
+    current: Point,
     /// Largest motion and amplitude met so far.
-    pub(super) largest: (f64, f64),
-    pub(super) row: Vec<f64>,
-    pub(super) scratch: Vec<f64>,
+    largest: (f64, f64),
+    row: Vec<f64>,
+    scratch: Vec<f64>,
 }
 
-pub(super) const CONTEXT: &str = "the continuation";
+const CONTEXT: &str = "the continuation";
 
 /// Cosine of the largest turn of the branch within one step.
-pub(super) const STRAIGHT: f64 = 0.5;
+const STRAIGHT: f64 = 0.5;
 
 /// Step below which a failure counts as a corner of the branch.
-pub(super) const CORNER_STEP: f64 = 1e-6;
+const CORNER_STEP: f64 = 1e-6;
 
 /// Least cosine between the branch beyond a corner and its direction as predicted there.
-pub(super) const ALONG: f64 = 0.9;
+const ALONG: f64 = 0.9;
 
 /// Motions below this share of the largest met so far no longer refine the metric.
-pub(super) const FLOOR: f64 = 1e-2;
+const FLOOR: f64 = 1e-2;
 
 /// What the corrected prediction of one step came to.
-pub(super) enum Attempt {
+enum Attempt {
     Good { point: Point, error: f64 },
     Poor { error: f64 },
     Failed,
@@ -201,7 +187,7 @@ impl Continuation {
     /// angle, back in the parameter too. The Jacobian just beyond gives the new direction, and the
     /// sign of the bordered determinant, which a path through a piecewise smooth map keeps, its
     /// sense (Allgower & Georg, ch. 15).
-    pub(super) fn turn_corner(
+    fn turn_corner(
         &mut self,
         problem: &mut dyn Problem,
         metric: Metric,
@@ -246,7 +232,7 @@ impl Continuation {
         Ok(None)
     }
 
-    pub(super) fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
+    fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
         self.largest.0 = self.largest.0.max(norm(point.unknowns()));
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
         self.previous = Some(core::mem::replace(&mut self.current, point.try_clone()?));
@@ -258,7 +244,7 @@ impl Continuation {
     }
 
     /// Units for the step that starts at the current point.
-    pub(super) fn metric(&self) -> Metric {
+    fn metric(&self) -> Metric {
         Metric::along(
             norm(self.current.unknowns()).max(FLOOR * self.largest.0),
             &self.settings,
@@ -266,7 +252,7 @@ impl Continuation {
     }
 
     /// Predicted point and amplitude a step ahead; leaves the tangent as the row of the plane.
-    pub(super) fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
+    fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
         let here = &self.current;
         metric.unit(&here.tangent, &mut self.row);
         let cutoff = step / metric.norm(&here.tangent);
@@ -292,7 +278,7 @@ impl Continuation {
     }
 
     /// The bound of the range that a parameter value lies beyond, and the share of the way to it.
-    pub(super) fn overshoot(&self, p: f64) -> Option<(f64, f64)> {
+    fn overshoot(&self, p: f64) -> Option<(f64, f64)> {
         let here = self.current.parameter();
         let (start, end) = (self.settings.start, self.settings.end);
         let sense = (end - start).signum();
@@ -307,7 +293,7 @@ impl Continuation {
     }
 
     #[allow(clippy::too_many_arguments)]
-    pub(super) fn try_point(
+    fn try_point(
         &mut self,
         problem: &mut dyn Problem,
         metric: Metric,
@@ -366,7 +352,7 @@ impl Continuation {
     }
 
     /// Relative error of the prediction in the motion and in the observed amplitude.
-    pub(super) fn prediction_error(&self, predicted: &[f64], point: &Point, amplitude: Complex64) -> f64 {
+    fn prediction_error(&self, predicted: &[f64], point: &Point, amplitude: Complex64) -> f64 {
         let relative = |difference: f64, size: f64| if difference == 0.0 { 0.0 } else { difference / size };
         let n = predicted.len() - 1;
         let mut difference = 0.0_f64;
@@ -383,7 +369,7 @@ impl Continuation {
 }
 
 /// No step is small enough: a callback is to blame, or nobody knows.
-pub(super) fn too_small(failure: Option<Error>) -> Result<Advance> {
+fn too_small(failure: Option<Error>) -> Result<Advance> {
     match failure {
         Some(e) if e.status == Status::Callback => Err(e),
         _ => Ok(Advance::Stopped(Status::StoppedStepTooSmall)),

@@ -8,9 +8,11 @@ pub mod newton_homotopy;
 pub mod point;
 pub mod predictor;
 pub mod resolve;
+mod settings;
 pub mod special_points;
 pub mod step_control;
 
-pub use arc_length::{Advance, Continuation, Settings};
+pub use arc_length::{Advance, Continuation};
 pub use metric::Metric;
 pub use point::Point;
+pub use settings::Settings;

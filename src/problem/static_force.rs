@@ -1,4 +1,4 @@
-//! Whether a law pushes where nothing moves: known of the library's own laws, asked of the caller's.
+//! Forces of laws at rest, evaluated where the description of a contact does not determine them.
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
@@ -6,16 +6,21 @@ use crate::contact::{Form, Law};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 
-/// The first contact with a force at rest, at the angular frequency `omega`. A law that cannot tell its
-/// force just there is passed over.
+/// The first contact with a force at rest, at the angular frequency `omega`. A law that cannot be
+/// evaluated at rest is skipped.
 ///
 /// # Errors
 /// `Argument` for a law that is said to be odd and has a force at rest; those of callbacks.
 pub fn static_force(condensed: &Condensed, omega: f64, samples: usize) -> Result<Option<usize>> {
-    // Laws in pieces tell by themselves, see `Contact::is_preloaded`.
-    let asked = |law: &dyn Law| matches!(law.form(), Form::Memoryless(_) | Form::Hysteretic(_));
+    // `Contact::is_preloaded` answers for the others.
+    let needs_evaluation = |law: &dyn Law| matches!(law.form(), Form::Memoryless(_) | Form::Hysteretic(_));
     let set = HarmonicSet::all(0)?;
-    let laws = || condensed.laws().iter().filter(|assembled| asked(&*assembled.law));
+    let laws = || {
+        condensed
+            .laws()
+            .iter()
+            .filter(|assembled| needs_evaluation(&*assembled.law))
+    };
     let mut evaluator = Evaluator::new(&set, samples, laws().map(|assembled| &*assembled.law))?;
     let mut found: Vec<Evaluation> = Vec::new();
     for assembled in laws() {

@@ -1,28 +1,28 @@
-//! From event to event through one lapse, the part of the period after which the wave has moved on by
-//! some sectors.
+//! The integration from event to event through one lapse, the part of the period after which the wave has moved
+//! on by some sectors.
 
+use crate::contact::time_piece::{Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
-use crate::time_integration::contacts_in_time::{Element, Mode, Piece, Zeros, along};
+use crate::time_integration::event_law::{Element, along};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::implicit_step::Implicit;
 use crate::time_integration::linear_step::Taylor;
-use crate::time_integration::slider_events::Slider;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial, first_fall};
 use crate::time_integration::unrolled_structure::System;
 
 const CONTEXT: &str = "the motion in time";
 
-/// Steps of one lapse before it is given up: a structure so stiff against its period is none for
-/// integration in time.
+/// Steps of one lapse before the integration stops with an error: the structure is then too stiff against its
+/// period for integration in time.
 const MOST_STEPS: usize = 20_000_000;
 
-/// Events without progress in time, per contact, before it is given up.
+/// Events without progress in time, per contact, before the integration stops with an error.
 const MOST_AT_ONCE: usize = 50;
 
 /// Parts of a step within which events count as simultaneous.
 const SIMULTANEOUS: f64 = 1e-13;
 
-/// Steps between two looks at the cancel flag.
+/// Steps between two checks of the cancel flag.
 const BETWEEN_LOOKS: usize = 256;
 
 /// Displacements, velocities and the stretches of the sliders' springs.
@@ -43,7 +43,7 @@ impl State {
         })
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy whose memory is reserved fallibly.
     pub fn try_clone(&self) -> Result<Self> {
         Ok(Self {
             x: try_copy(&self.x, CONTEXT)?,
@@ -52,14 +52,14 @@ impl State {
         })
     }
 
-    /// Takes the values of another.
+    /// Copies the values of another.
     pub fn set(&mut self, other: &Self) {
         self.x.copy_from_slice(&other.x);
         self.v.copy_from_slice(&other.v);
         self.e.copy_from_slice(&other.e);
     }
 
-    /// Numbers in it.
+    /// Number of its entries.
     pub fn len(&self) -> usize {
         self.x.len() + self.v.len() + self.e.len()
     }
@@ -81,9 +81,9 @@ impl Sensitivity {
     }
 }
 
-/// What a lapse was like.
+/// Summary of a lapse.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Travel {
+pub(super) struct LapseSummary {
     /// Changes of piece.
     pub events: usize,
     /// Largest displacement and velocity at the ends of the steps.
@@ -92,7 +92,7 @@ pub(super) struct Travel {
     pub cancelled: bool,
 }
 
-impl Travel {
+impl LapseSummary {
     fn see(&mut self, state: &State) {
         for (largest, values) in [(&mut self.largest.0, &state.x), (&mut self.largest.1, &state.v)] {
             *largest = values.iter().fold(*largest, |m, x| m.max(x.abs()));
@@ -108,16 +108,16 @@ enum Stepper {
 /// Memory of the integration.
 pub(super) struct EventLoop {
     stepper: Stepper,
-    segment: StepPolynomial,
+    polynomial: StepPolynomial,
     modes: Vec<Mode>,
-    pieces: Vec<Piece>,
+    pieces: Vec<TimePiece>,
     /// Zeros by construction of the margins at the begin of the step.
     zeros: Vec<Zeros>,
     /// Next event of each contact within the step: (θ, margin).
     falls: Vec<Option<(f64, usize)>>,
-    /// Modes that tell of sliders where the motion puts them at the begin.
+    /// Modes of the sliders whose place at the begin follows from the motion.
     slaved: Vec<Option<Mode>>,
-    /// Sliders that have moved in some lapse since [`Self::forget`].
+    /// Sliders that have moved in some lapse since [`Self::clear_moved`].
     pub moved: Vec<bool>,
 }
 
@@ -132,9 +132,9 @@ impl EventLoop {
         };
         Ok(Self {
             stepper,
-            segment: StepPolynomial::new(system.order())?,
+            polynomial: StepPolynomial::new(system.order())?,
             modes: try_vec(count, Mode::Stick, CONTEXT)?,
-            pieces: try_vec(count, Piece::default(), CONTEXT)?,
+            pieces: try_vec(count, TimePiece::default(), CONTEXT)?,
             zeros: try_vec(count, Zeros::default(), CONTEXT)?,
             falls: try_vec(count, None, CONTEXT)?,
             slaved: try_vec(count, None, CONTEXT)?,
@@ -142,12 +142,12 @@ impl EventLoop {
         })
     }
 
-    /// Forgets which sliders have moved.
-    pub fn forget(&mut self) {
+    /// Clears the record of sliders that have moved.
+    pub fn clear_moved(&mut self) {
         self.moved.fill(false);
     }
 
-    /// Carries a state from time 0 over one lapse, and with it what is asked for besides.
+    /// Integrates a state from time 0 over one lapse, and with it the sensitivity and the analysis requested.
     pub fn run(
         &mut self,
         system: &mut System,
@@ -155,24 +155,24 @@ impl EventLoop {
         mut sensitivity: Option<&mut Sensitivity>,
         mut recorder: Option<&mut HarmonicAnalysis>,
         cancelled: Option<&dyn Fn() -> bool>,
-    ) -> Result<Travel> {
+    ) -> Result<LapseSummary> {
         let end = system.lapse();
-        let mut travel = Travel::default();
-        travel.see(state);
+        let mut summary = LapseSummary::default();
+        summary.see(state);
         system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.slaved);
         self.zeros.fill(Zeros::default());
         if let Some(s) = sensitivity.as_deref_mut() {
             self.identity(system, state, s);
         }
         for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
-            *moved |= Slider::moves(*mode);
+            *moved |= mode.moves_slider();
         }
         let mut t = 0.0;
         let (mut steps, mut at_once) = (0, 0);
         while t < end {
             if steps % BETWEEN_LOOKS == 0 && cancelled.is_some_and(|f| f()) {
-                travel.cancelled = true;
-                return Ok(travel);
+                summary.cancelled = true;
+                return Ok(summary);
             }
             steps += 1;
             if steps > MOST_STEPS {
@@ -189,27 +189,27 @@ impl EventLoop {
             }
             self.step(system, state, t, end - t)?;
             let theta = self.next_event(system, state);
-            let h = self.segment.length;
+            let h = self.polynomial.length;
             if let Some(r) = recorder.as_deref_mut() {
-                r.add(&self.segment, theta);
+                r.add(&self.polynomial, theta);
             }
             if theta > 0.0 {
                 if let Some(s) = sensitivity.as_deref_mut() {
                     self.transfer(system, theta, s)?;
                 }
-                self.segment.at(theta, &mut state.x, &mut state.v);
+                self.polynomial.at(theta, &mut state.x, &mut state.v);
                 for (i, e) in system.elements.iter().enumerate() {
                     if let Some(slider) = e.slider() {
-                        let growth = self.segment.growth(&e.rows[0], theta);
+                        let growth = self.polynomial.growth(&e.rows[0], theta);
                         let [_, y] = e.relative(&state.x);
                         slider.stretch(self.modes[i], growth, y, &mut state.e[i]);
                     }
                 }
-                travel.see(state);
+                summary.see(state);
                 self.zeros.fill(Zeros::default());
             }
             let happened = self.switch(system, state, sensitivity.as_deref_mut());
-            travel.events += happened;
+            summary.events += happened;
             at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
             if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {
                 return fail!(NoConvergence, "contacts change without end at time {t} of the period");
@@ -221,24 +221,24 @@ impl EventLoop {
             };
         }
         if let Some(s) = sensitivity {
-            // A slider that still moves is where the motion puts it.
+            // The place of a slider that still moves follows from the motion.
             for (i, e) in system.elements.iter().enumerate() {
                 enslave(e, i, (self.modes[i], self.modes[i]), state, s);
             }
             exchange(system, state, s);
         }
-        Ok(travel)
+        Ok(summary)
     }
 
     fn step(&mut self, system: &mut System, state: &State, t: f64, longest: f64) -> Result<()> {
-        let (pieces, segment) = (&self.pieces, &mut self.segment);
+        let (pieces, polynomial) = (&self.pieces, &mut self.polynomial);
         match &mut self.stepper {
-            Stepper::Taylor(s) => s.step(system, pieces, &state.x, &state.v, t, longest, segment),
-            Stepper::Implicit(s) => s.step(system, pieces, &state.x, &state.v, t, longest, segment),
+            Stepper::Taylor(s) => s.step(system, pieces, &state.x, &state.v, t, longest, polynomial),
+            Stepper::Implicit(s) => s.step(system, pieces, &state.x, &state.v, t, longest, polynomial),
         }
     }
 
-    /// The first θ at which a contact leaves its piece, 1 where none does; `falls` notes those that leave
+    /// The first θ at which a contact leaves its piece, 1 where none does; `falls` receives those that leave
     /// theirs by then.
     fn next_event(&mut self, system: &System, state: &State) -> f64 {
         let mut first = f64::INFINITY;
@@ -246,10 +246,10 @@ impl EventLoop {
             self.falls[i] = None;
             let Some(law) = e.events() else { continue };
             let mode = self.modes[i];
-            let used = self.segment.degree + 1;
+            let used = self.polynomial.degree + 1;
             let mut motion = [[0.0; DEGREE + 1]; 2];
             for (motion, row) in motion.iter_mut().zip(&e.rows) {
-                self.segment.relative(row, motion);
+                self.polynomial.relative(row, motion);
             }
             let [x, y] = &motion;
             for which in 0..law.margins(mode) {
@@ -272,7 +272,7 @@ impl EventLoop {
         first.min(1.0)
     }
 
-    /// Takes the contacts whose piece has ended into the next one; their number.
+    /// Switches the contacts whose piece has ended to the next one. Returns their number.
     fn switch(&mut self, system: &System, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
         let mut happened = 0;
         for (i, e) in system.elements.iter().enumerate() {
@@ -282,7 +282,7 @@ impl EventLoop {
             let before = self.modes[i];
             let at = e.instant(&state.x, &state.v);
             (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
-            self.moved[i] |= Slider::moves(self.modes[i]);
+            self.moved[i] |= self.modes[i].moves_slider();
             if let Some(s) = sensitivity.as_deref_mut() {
                 enslave(e, i, (before, self.modes[i]), state, s);
             }
@@ -306,7 +306,7 @@ impl EventLoop {
     }
 
     fn transfer(&mut self, system: &mut System, theta: f64, s: &mut Sensitivity) -> Result<()> {
-        let h = self.segment.length;
+        let h = self.polynomial.length;
         let n = system.order();
         let m = 2 * n + system.elements.len();
         if let Stepper::Implicit(stepper) = &mut self.stepper {
@@ -326,7 +326,7 @@ impl EventLoop {
 
 /// At the end of a mode, before the next one, a slider that has moved has the sensitivity of the motion.
 fn enslave(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s: &mut Sensitivity) {
-    let Some(slider) = e.slider().filter(|_| Slider::moves(mode)) else {
+    let Some(slider) = e.slider().filter(|_| mode.moves_slider()) else {
         return;
     };
     let (m, at) = (state.len(), 2 * state.x.len() + i);

@@ -32,7 +32,7 @@ pub(super) fn nodes<const N: usize>() -> ([f64; N], [f64; N]) {
 }
 
 /// Collocation at Gauss's nodes.
-pub(super) struct FrequencyCache {
+pub(super) struct GaussTables {
     /// Nodes cᵢ.
     pub nodes: [f64; STAGES],
     /// aᵢⱼ, integrals of the Lagrange polynomials up to the nodes.
@@ -45,7 +45,7 @@ pub(super) struct FrequencyCache {
     pub powers: [[f64; STAGES]; STAGES],
 }
 
-impl FrequencyCache {
+impl GaussTables {
     pub fn new() -> Self {
         let (nodes, weights) = nodes::<STAGES>();
         let mut powers = [[0.0; STAGES]; STAGES];
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn tables_integrate_polynomials_once_and_twice() {
-        let t = FrequencyCache::new();
+        let t = GaussTables::new();
         for degree in 0..STAGES as i32 {
             let a = t.nodes.map(|c| c.powi(degree));
             let d = f64::from(degree);

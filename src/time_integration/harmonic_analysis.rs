@@ -1,8 +1,8 @@
-//! Harmonics and samples of a motion that comes in polynomial steps.
+//! Harmonics and samples of a motion given in polynomial steps.
 //!
 //! X_h = (2 − δ₀ₕ)/T ∫ x e^{−ihωt} dt over the period, step by step with the moments
-//! ∫ θᵏ e^{−iαθ} dθ, which Gauss's quadrature gives to rounding on parts of at most four radians. A lapse
-//! of all sectors is the whole period of one: x₀(t + kT/n) is what the sector k·j before does at t.
+//! ∫ θᵏ e^{−iαθ} dθ, which Gauss's quadrature computes to rounding on parts of at most four radians. A lapse
+//! of all sectors is the whole period of one: x₀(t + kT/n) is the motion at t of the sector k·j before.
 
 use crate::error::{Result, try_push, try_vec};
 use crate::time_integration::gauss::nodes;
@@ -19,14 +19,14 @@ const POINTS: usize = 20;
 /// Largest angle of a part.
 const WIDEST: f64 = 4.0;
 
-/// A time at which the motion is wanted: within the lapse, of a sector, for a sample.
-struct Wanted {
+/// A requested time: within the lapse, of a sector, for a sample.
+struct RequestedTime {
     time: f64,
     sector: usize,
     sample: usize,
 }
 
-/// What is noted of a lapse.
+/// Harmonics and samples of a lapse.
 pub(super) struct HarmonicAnalysis {
     ndof: usize,
     sectors: usize,
@@ -35,7 +35,7 @@ pub(super) struct HarmonicAnalysis {
     integrals: Vec<Complex64>,
     nodes: ([f64; POINTS], [f64; POINTS]),
     /// By time.
-    wanted: Vec<Wanted>,
+    requested: Vec<RequestedTime>,
     next: usize,
     /// Motion of sector 0 at each sample.
     samples: Vec<f64>,
@@ -48,26 +48,26 @@ impl HarmonicAnalysis {
     /// Memory for harmonics 0 ..= `harmonics` and for `samples` times of the period.
     pub fn new(system: &System, harmonics: usize, samples: usize) -> Result<Self> {
         let n = system.order();
-        let mut wanted = Vec::new();
+        let mut requested = Vec::new();
         for sample in 0..samples {
             // Whole parts of the period are counted exactly.
             let part = sample * system.sectors / samples;
             let within = sample * system.sectors % samples;
-            let entry = Wanted {
+            let entry = RequestedTime {
                 time: system.lapse() * within as f64 / samples as f64,
                 sector: before(system, part),
                 sample,
             };
-            try_push(&mut wanted, entry, "the samples of the motion")?;
+            try_push(&mut requested, entry, "the samples of the motion")?;
         }
-        wanted.sort_unstable_by(|a, b| a.time.total_cmp(&b.time));
+        requested.sort_unstable_by(|a, b| a.time.total_cmp(&b.time));
         Ok(Self {
             ndof: system.ndof,
             sectors: system.sectors,
             omega: system.omega,
             integrals: try_vec((harmonics + 1).saturating_mul(n), Complex64::ZERO, CONTEXT)?,
             nodes: nodes(),
-            wanted,
+            requested,
             next: 0,
             samples: try_vec(samples.saturating_mul(system.ndof), 0.0, "the samples of the motion")?,
             x: try_vec(n, 0.0, CONTEXT)?,
@@ -76,7 +76,7 @@ impl HarmonicAnalysis {
         })
     }
 
-    /// Notes the part of a step up to θ.
+    /// Adds the part of a step up to θ.
     pub fn add(&mut self, step: &StepPolynomial, theta: f64) {
         if theta <= 0.0 {
             return;
@@ -96,15 +96,15 @@ impl HarmonicAnalysis {
             }
         }
         let end = step.begin + length;
-        while let Some(wanted) = self.wanted.get(self.next) {
+        while let Some(requested) = self.requested.get(self.next) {
             // Rounding may leave the last times of a lapse just beyond its last step.
-            if wanted.time > end && end < self.lapse * (1.0 - 1e-12) {
+            if requested.time > end && end < self.lapse * (1.0 - 1e-12) {
                 break;
             }
-            let within = ((wanted.time - step.begin) / step.length).clamp(0.0, theta);
+            let within = ((requested.time - step.begin) / step.length).clamp(0.0, theta);
             step.at(within, &mut self.x, &mut self.v);
-            let to = wanted.sample * self.ndof;
-            let from = wanted.sector * self.ndof;
+            let to = requested.sample * self.ndof;
+            let from = requested.sector * self.ndof;
             self.samples[to..to + self.ndof].copy_from_slice(&self.x[from..from + self.ndof]);
             self.next += 1;
         }
@@ -140,7 +140,7 @@ impl HarmonicAnalysis {
     }
 }
 
-/// The sector that does now what sector 0 does `parts` lapses later.
+/// The sector that moves now as sector 0 does `parts` lapses later.
 fn before(system: &System, parts: usize) -> usize {
     let back = parts * system.follower % system.sectors;
     (system.sectors - back) % system.sectors

@@ -1,4 +1,4 @@
-//! Adaptive implicit steps where a law is smooth and no matrix exponential is at hand: collocation at
+//! Adaptive implicit steps for smooth laws, which have no matrix exponential: collocation at
 //! eight Gauss nodes, of order 16, A-stable, without damping of its own.
 //!
 //! The unknowns are the accelerations at the nodes: M aᵢ + C vᵢ + K xᵢ + f(xᵢ) = F(tᵢ) with
@@ -7,10 +7,10 @@
 //! estimates the error and sets the step; see Hairer, Nørsett & Wanner, Solving Ordinary Differential
 //! Equations I (1993), II.7, doi:10.1007/978-3-540-78862-1.
 
+use crate::contact::time_piece::TimePiece;
 use crate::error::{Error, Result, fail, try_vec};
 use crate::linalg::lu::Lu;
-use crate::time_integration::contacts_in_time::Piece;
-use crate::time_integration::gauss::{FrequencyCache, STAGES};
+use crate::time_integration::gauss::{GaussTables, STAGES};
 use crate::time_integration::smooth_laws::Smooth;
 use crate::time_integration::step_polynomial::StepPolynomial;
 use crate::time_integration::unrolled_structure::System;
@@ -20,7 +20,7 @@ const MOST_ITERATIONS: usize = 30;
 
 /// Memory of the steps.
 pub(super) struct Implicit {
-    tables: FrequencyCache,
+    tables: GaussTables,
     lu: Lu<f64>,
     /// Accelerations at the nodes, node after node.
     accelerations: Vec<f64>,
@@ -32,7 +32,7 @@ pub(super) struct Implicit {
     tolerance: f64,
     /// Largest displacement and velocity so far.
     largest: (f64, f64),
-    /// What a callback said of the last motion that it could not answer for.
+    /// Error of a callback at the last motion that it could not evaluate.
     refusal: Option<Error>,
 }
 
@@ -43,7 +43,7 @@ impl Implicit {
         let n = system.order();
         let all = n.saturating_mul(STAGES);
         Ok(Self {
-            tables: FrequencyCache::new(),
+            tables: GaussTables::new(),
             lu: Lu::new(all, 1)?,
             accelerations: try_vec(all, 0.0, CONTEXT)?,
             residual: try_vec(all, 0.0, CONTEXT)?,
@@ -62,7 +62,7 @@ impl Implicit {
     pub fn step(
         &mut self,
         system: &System,
-        pieces: &[Piece],
+        pieces: &[TimePiece],
         x: &[f64],
         v: &[f64],
         t: f64,
@@ -88,7 +88,7 @@ impl Implicit {
                     self.trial = 0.25 * h;
                     continue;
                 }
-                // Another motion may do.
+                // Another motion may succeed.
                 Err(e) if e.recoverable => {
                     self.refusal = Some(e);
                     self.trial = 0.25 * h;
@@ -102,7 +102,7 @@ impl Implicit {
             let factor = 0.9 * (self.tolerance / error).powf(1.0 / (STAGES + 1) as f64);
             let next = h * factor.clamp(0.2, 2.0);
             if error <= self.tolerance {
-                // A step cut short by the end of the time says nothing against a longer one.
+                // A step that ends with the lapse does not shorten the next one.
                 self.trial = if h < self.trial { next.max(self.trial) } else { next };
                 return Ok(());
             }
@@ -111,7 +111,7 @@ impl Implicit {
     }
 
     /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the tangents as they are.
-    fn factor(&mut self, system: &System, pieces: &[Piece], h: f64) -> Result<()> {
+    fn factor(&mut self, system: &System, pieces: &[TimePiece], h: f64) -> Result<()> {
         let n = self.x.len();
         let all = n * STAGES;
         let tables = &self.tables;
@@ -145,7 +145,15 @@ impl Implicit {
     }
 
     /// Newton's method for the accelerations, with the tangents of the step's begin; `false`: it failed.
-    fn collocate(&mut self, system: &System, pieces: &[Piece], x: &[f64], v: &[f64], t: f64, h: f64) -> Result<bool> {
+    fn collocate(
+        &mut self,
+        system: &System,
+        pieces: &[TimePiece],
+        x: &[f64],
+        v: &[f64],
+        t: f64,
+        h: f64,
+    ) -> Result<bool> {
         let n = x.len();
         self.smooth.evaluate(system, 0, x, v, &mut self.residual[..n])?;
         self.smooth.repeat();
@@ -176,7 +184,15 @@ impl Implicit {
     }
 
     /// M a + C v + K x + f − F at the nodes, and the tangents there.
-    fn evaluate(&mut self, system: &System, pieces: &[Piece], x0: &[f64], v0: &[f64], t: f64, h: f64) -> Result<()> {
+    fn evaluate(
+        &mut self,
+        system: &System,
+        pieces: &[TimePiece],
+        x0: &[f64],
+        v0: &[f64],
+        t: f64,
+        h: f64,
+    ) -> Result<()> {
         let n = self.x.len();
         for i in 0..STAGES {
             let c = self.tables.nodes[i];
@@ -242,7 +258,7 @@ impl Implicit {
             self.largest.0 = self.largest.0.max(x.abs());
             self.largest.1 = self.largest.1.max(v.abs());
         }
-        // From rest the step itself says what is large.
+        // From rest the sizes follow from the step itself.
         step.at(1.0, &mut self.x, &mut self.v);
         for (x, v) in self.x.iter().zip(&self.v) {
             self.largest.0 = self.largest.0.max(x.abs());
@@ -255,16 +271,16 @@ impl Implicit {
     }
 
     /// Factors the equations of sensitivities over the last step.
-    pub fn prepare(&mut self, system: &System, pieces: &[Piece], h: f64) -> Result<()> {
+    pub fn prepare(&mut self, system: &System, pieces: &[TimePiece], h: f64) -> Result<()> {
         self.factor(system, pieces, h)
     }
 
-    /// Carries one sensitivity (δx, δv) with the sliders' δu over the part θ of the step of length h.
+    /// Integrates one sensitivity (δx, δv) with the sliders' δu over the part θ of the step of length h.
     #[allow(clippy::too_many_arguments)]
     pub fn transfer(
         &mut self,
         system: &System,
-        pieces: &[Piece],
+        pieces: &[TimePiece],
         h: f64,
         theta: f64,
         x: &mut [f64],

@@ -2,13 +2,13 @@
 //!
 //! Between events z′ = A z + g(t) with constant A and harmonic g, whose solution is a matrix exponential.
 //! Its series is summed in the displacements alone, xₖ being their Taylor coefficients:
-//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative motions y for k > 0. The step is so
-//! long that the last terms are below rounding, which needs |A|h of about 2; a step is then exact, and
+//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative
+//! motions y for k > 0. The step is so long that the last terms are below rounding, which needs |A|h of about 2; a step is then exact, and
 //! a polynomial as well (Moler & Van Loan 2003, doi:10.1137/S00361445024180, method 1 with short
 //! steps; Jorba & Zou 2005, doi:10.1080/10586458.2005.10128904, for the choice of h).
 
+use crate::contact::time_piece::TimePiece;
 use crate::error::{Result, fail, try_vec};
-use crate::time_integration::contacts_in_time::Piece;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial};
 use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
@@ -54,7 +54,7 @@ impl Taylor {
     pub fn step(
         &mut self,
         system: &mut System,
-        pieces: &[Piece],
+        pieces: &[TimePiece],
         x: &[f64],
         v: &[f64],
         t: f64,
@@ -79,7 +79,7 @@ impl Taylor {
             }
             let ratio = Self::ratio(step);
             if ratio > 0.0 {
-                // A step cut short by the end of the time says nothing against a longer one.
+                // A step that ends with the lapse does not shorten the next one.
                 let shortened = h < self.trial && ratio >= 1.0;
                 self.trial = (h * ratio.min(2.0)).max(if shortened { self.trial } else { 0.0 });
                 if ratio < 1.0 {
@@ -99,7 +99,7 @@ impl Taylor {
     fn next_term(
         &mut self,
         system: &mut System,
-        pieces: &[Piece],
+        pieces: &[TimePiece],
         k: usize,
         h: f64,
         step: &mut StepPolynomial,
@@ -164,11 +164,11 @@ impl Taylor {
         ratio
     }
 
-    /// Carries one sensitivity (δx, δv) with the sliders' δu over a time h within the pieces.
+    /// Integrates one sensitivity (δx, δv) with the sliders' δu over a time h within the pieces.
     pub fn transfer(
         &mut self,
         system: &mut System,
-        pieces: &[Piece],
+        pieces: &[TimePiece],
         h: f64,
         x: &mut [f64],
         v: &mut [f64],

@@ -1,6 +1,6 @@
 //! Periodic responses by integration in time from event to event, without a harmonic series.
 
-mod contacts_in_time;
+mod event_law;
 mod event_loop;
 mod gauss;
 mod harmonic_analysis;
@@ -8,9 +8,7 @@ mod implicit_step;
 mod linear_step;
 mod periodic_response;
 mod shooting;
-mod slider_events;
 mod smooth_laws;
-mod spring_events;
 mod step_polynomial;
 mod unrolled_structure;
 

@@ -1,11 +1,12 @@
-//! The truth in time: a periodic response by integration from event to event, without a harmonic series.
+//! A reference solution in time: a periodic response by integration from event to event, without a harmonic
+//! series.
 //!
-//! `system` holds the structure, unrolled to as many sectors as a travelling wave needs; `contacts` says
-//! what laws with events tell, `slider` and `springs` what each of them does, `smooth` asks the laws without;
-//! `piecewise` makes exact steps where all laws are linear between
-//! events, `implicit` adaptive ones where a law is smooth; `segment` locates events within a step;
-//! `flow` goes from event to event through a lapse; `steady` closes the period; `record` turns the motion
-//! into harmonics, free of the truncation of harmonic balance.
+//! `unrolled_structure` holds the structure with as many sectors as a travelling wave needs, `event_law` its
+//! contacts, whose events come from their laws, `smooth_laws` the evaluation of laws without events;
+//! `linear_step` makes exact steps where all laws are linear between events, `implicit_step` adaptive ones where
+//! a law is smooth; `step_polynomial` locates events within a step; `event_loop` runs from event to event
+//! through a lapse; `shooting` closes the period; `harmonic_analysis` turns the motion into harmonics, free of
+//! the truncation of harmonic balance.
 
 use crate::error::{Result, Status, try_vec};
 use crate::hooks::{Hooks, LogLevel};
@@ -27,7 +28,7 @@ pub struct TimeResponse {
     pub period: f64,
     /// Largest change of a displacement, velocity or slider over one period, relative to the largest
     /// displacement or velocity. In a travelling wave it is compared already after the part of the period
-    /// in which another sector comes to do the same. Infinite where the caller stopped before.
+    /// after which another sector moves alike. Infinite where the caller stopped before.
     pub residual: f64,
     /// Periods that were integrated, rounded up.
     pub periods: usize,
@@ -49,19 +50,19 @@ pub struct TimeResponse {
 /// Integrates the response of a model to its forces until it is periodic.
 ///
 /// # Errors
-/// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence` where no
-/// steady state was found, `NoBoundedSolution` where the motion grows without end, `OutOfMemory`.
+/// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence`
+/// where no steady state was found, `NoBoundedSolution` where the motion grows without end, `OutOfMemory`.
 pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
     let mut system = System::new(model, options.omega)?;
-    let mut flow = EventLoop::new(&system, options.tolerance)?;
+    let mut event_loop = EventLoop::new(&system, options.tolerance)?;
     let start = match options.start {
         Some(harmonics) => state_of(model, &system, harmonics)?,
         None => State::rest(&system)?,
     };
     hooks.log(LogLevel::Info, "the structure in time is set up");
-    let mut steady = Search::new(&mut system, &mut flow, options, hooks, start)?.run()?;
+    let mut steady = Search::new(&mut system, &mut event_loop, options, hooks, start)?.run()?;
     let mut recorder = HarmonicAnalysis::new(&system, options.harmonics, options.samples)?;
-    let travel = flow.run(&mut system, &mut steady.state, None, Some(&mut recorder), None)?;
+    let summary = event_loop.run(&mut system, &mut steady.state, None, Some(&mut recorder), None)?;
     let (harmonics, samples) = recorder.finish(&system)?;
     Ok(TimeResponse {
         status: steady.status,
@@ -69,8 +70,8 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
         residual: steady.residual,
         periods: steady.periods,
         marched: steady.marched,
-        // All sectors during a lapse do what one of them does in a period.
-        events: travel.events,
+        // All sectors during a lapse move as one of them does in a period.
+        events: summary.events,
         ndof: system.ndof,
         harmonics,
         samples,
@@ -80,8 +81,8 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
 /// Times per period of the highest harmonic at which a start drags its sliders along.
 pub(super) const POINTS_PER_WAVE: usize = 64;
 
-/// The state at time 0 of a periodic motion, with the sliders where a virgin one would be after two
-/// periods of it.
+/// The state at time 0 of a periodic motion, each slider at its place after two periods of the motion, begun at
+/// rest.
 pub(super) fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) -> Result<State> {
     const CONTEXT: &str = "the start of the motion in time";
     let mut state = State::rest(system)?;

@@ -2,14 +2,14 @@
 //!
 //! Unknown is the state z at the begin of a lapse, the equation S G(z) = z with the flow G over the lapse
 //! and the shift S that gives every sector the motion of the one it follows. The monodromy ∂G/∂z is
-//! carried along piece by piece and is exact, since the field is continuous at events. A slider that
-//! never moves may rest anywhere: its equation is void, and it stays where the start has put it.
+//! integrated piece by piece and is exact, since the field is continuous at events. A slider that
+//! never moves may rest anywhere: its equation is void, and it keeps its place at the start.
 
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, Progress};
 use crate::linalg::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
-use crate::time_integration::event_loop::{EventLoop, Sensitivity, State, Travel};
+use crate::time_integration::event_loop::{EventLoop, LapseSummary, Sensitivity, State};
 use crate::time_integration::unrolled_structure::System;
 
 /// Newton iterations before marching takes over.
@@ -18,14 +18,14 @@ const MOST_ITERATIONS: usize = 30;
 /// Smallest share of a Newton step that is tried.
 const SHORTEST: f64 = 1.0 / 64.0;
 
-/// Directions whose monodromy is this near to 1 are left alone, such as the free rotation of a ring that
+/// Directions whose monodromy is this near to 1 are not corrected, such as the free rotation of a ring that
 /// friction alone holds: the whole motion may be shifted along them.
 const NEUTRAL: f64 = 1e-9;
 
 /// Periods that are marched when Newton's method has failed for the first time; each time twice as many.
 const FIRST_MARCH: usize = 8;
 
-/// Where a search has led.
+/// Result of a search.
 pub(super) struct Steady {
     /// The state at time 0.
     pub state: State,
@@ -48,11 +48,11 @@ enum Outcome {
 /// Memory of a search.
 pub(super) struct Search<'a, 'h> {
     system: &'a mut System,
-    flow: &'a mut EventLoop,
+    event_loop: &'a mut EventLoop,
     options: &'a TimeOptions<'a>,
     hooks: &'a mut Hooks<'h>,
     state: State,
-    /// Where a lapse leads from `state`, and the same with the sectors shifted.
+    /// The state after a lapse from `state`, and the same with the sectors shifted.
     image: State,
     shifted: State,
     scale: (f64, f64),
@@ -65,7 +65,7 @@ impl<'a, 'h> Search<'a, 'h> {
     /// A search from `start`.
     pub fn new(
         system: &'a mut System,
-        flow: &'a mut EventLoop,
+        event_loop: &'a mut EventLoop,
         options: &'a TimeOptions<'a>,
         hooks: &'a mut Hooks<'h>,
         start: State,
@@ -76,7 +76,7 @@ impl<'a, 'h> Search<'a, 'h> {
             state: start,
             most_laps: options.max_periods.saturating_mul(system.sectors),
             system,
-            flow,
+            event_loop,
             options,
             hooks,
             scale: (0.0, 0.0),
@@ -85,7 +85,7 @@ impl<'a, 'h> Search<'a, 'h> {
         })
     }
 
-    /// Looks for the steady state.
+    /// Searches the steady state.
     pub fn run(mut self) -> Result<Steady> {
         let mut march = FIRST_MARCH;
         let mut marched = false;
@@ -118,7 +118,7 @@ impl<'a, 'h> Search<'a, 'h> {
         }
     }
 
-    /// One lapse from the state, whose image is shifted and compared; `true`: the caller wants to stop.
+    /// One lapse from the state, whose image is shifted and compared; `true`: the caller requested a stop.
     fn lap(&mut self, sensitivity: Option<&mut Sensitivity>) -> Result<bool> {
         if self.laps >= self.most_laps {
             return fail!(
@@ -130,34 +130,34 @@ impl<'a, 'h> Search<'a, 'h> {
         }
         self.laps += 1;
         self.image.set(&self.state);
-        let travel = self
-            .flow
+        let summary = self
+            .event_loop
             .run(self.system, &mut self.image, sensitivity, None, self.hooks.cancelled)?;
-        if travel.cancelled {
+        if summary.cancelled {
             return Ok(true);
         }
-        self.compare(&travel);
+        self.compare(&summary);
         if self.residual.is_nan() {
             return fail!(NoBoundedSolution, "the motion in time grows beyond all bounds");
         }
         let progress = Progress {
             point: self.laps,
             parameter: self.system.omega,
-            amplitude: travel.largest.0,
+            amplitude: summary.largest.0,
             residual: self.residual,
             ..Progress::default()
         };
         Ok(self.hooks.report(&progress))
     }
 
-    /// Shifts the image and measures what has changed.
-    fn compare(&mut self, travel: &Travel) {
+    /// Shifts the image and measures its distance from the state.
+    fn compare(&mut self, summary: &LapseSummary) {
         let system = &*self.system;
         shift(system, system.ndof, &self.image.x, &mut self.shifted.x);
         shift(system, system.ndof, &self.image.v, &mut self.shifted.v);
         shift(system, 1, &self.image.e, &mut self.shifted.e);
         let unit = |x: f64| if x > 0.0 { x } else { 1.0 };
-        self.scale = (unit(travel.largest.0), unit(travel.largest.1));
+        self.scale = (unit(summary.largest.0), unit(summary.largest.1));
         self.residual = 0.0;
         for (a, b, scale) in [
             (&self.shifted.x, &self.state.x, self.scale.0),
@@ -171,7 +171,7 @@ impl<'a, 'h> Search<'a, 'h> {
         }
     }
 
-    /// Goes on period by period until nothing changes.
+    /// Marches period by period until nothing changes.
     fn march(&mut self, laps: usize) -> Result<Outcome> {
         for _ in 0..laps {
             if self.lap(None)? {
@@ -185,7 +185,7 @@ impl<'a, 'h> Search<'a, 'h> {
         Ok(Outcome::Failed)
     }
 
-    /// Newton's method with halved steps where a whole one makes things worse.
+    /// Newton's method with halved steps where a whole one increases the error.
     fn shoot(&mut self) -> Result<Outcome> {
         let m = self.state.len();
         let mut sensitivity = Sensitivity::new(&self.state)?;
@@ -193,7 +193,7 @@ impl<'a, 'h> Search<'a, 'h> {
         let mut step = try_vec(m, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
         for _ in 0..MOST_ITERATIONS {
-            self.flow.forget();
+            self.event_loop.clear_moved();
             if self.lap(Some(&mut sensitivity))? {
                 return Ok(Outcome::Stopped);
             }
@@ -209,7 +209,7 @@ impl<'a, 'h> Search<'a, 'h> {
                 match self.lap(None) {
                     Ok(false) => {}
                     Ok(true) => return Ok(Outcome::Stopped),
-                    // A step far too long may lead to where nothing can be integrated.
+                    // A step far too long may lead to a state that cannot be integrated.
                     Err(e)
                         if !(e.recoverable
                             || matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence)) =>
@@ -250,10 +250,10 @@ impl<'a, 'h> Search<'a, 'h> {
                 1.0
             }
         };
-        // A slider that rests in all sectors keeps its place.
+        // A slider that rests in all sectors has a fixed place.
         let rests = |i: usize| {
             i >= 2 * n
-                && system.elements.iter().zip(&self.flow.moved).all(|(e, &moved)| {
+                && system.elements.iter().zip(&self.event_loop.moved).all(|(e, &moved)| {
                     e.family != system.elements[i - 2 * n].family || !(moved && e.slider().is_some())
                 })
         };
@@ -313,14 +313,14 @@ impl<'a, 'h> Search<'a, 'h> {
     }
 }
 
-/// Where the entry `i` of a shifted vector comes from, with `block` entries per sector.
+/// Source of the entry `i` of a shifted vector, with `block` entries per sector.
 fn shifted_from(system: &System, block: usize, i: usize) -> usize {
     let (sector, within) = (i / block % system.sectors, i % block);
     let group = i - sector * block - within;
     group + system.after_lapse(sector) * block + within
 }
 
-/// Gives every sector the values of the one that does the same a lapse later.
+/// Gives every sector the values of the one that moves alike a lapse later.
 fn shift(system: &System, block: usize, from: &[f64], to: &mut [f64]) {
     for (i, to) in to.iter_mut().enumerate() {
         *to = from[shifted_from(system, block, i)];

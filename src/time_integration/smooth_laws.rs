@@ -1,24 +1,24 @@
 //! Smooth laws at the nodes of an implicit step: their forces, and their tangents by motions and
 //! velocities.
 //!
-//! A law answers for one time, as it does for the samples of a period in harmonic balance.
+//! A law is evaluated at one time as at the samples of a period in harmonic balance.
 
-use crate::contact::memoryless_law::Samples;
+use crate::contact::samples::Samples;
 use crate::error::{Result, try_vec};
-use crate::time_integration::contacts_in_time::along;
+use crate::time_integration::event_law::along;
 use crate::time_integration::unrolled_structure::System;
 
 const CONTEXT: &str = "the contacts at a time";
 
 /// Memory of the laws at the nodes.
 pub(super) struct Smooth {
-    /// Where the tangents of each element begin within those of a node.
+    /// Begin of the tangents of each element within those of a node.
     starts: Vec<usize>,
     /// Tangents by motions, d × d, and by velocities, d × d, of every element; node after node.
     tangents: Vec<f64>,
-    /// Numbers of a node.
+    /// Count of numbers per node.
     per_node: usize,
-    /// Relative motions, velocities and forces of one element, and what a law needs besides.
+    /// Relative motions, velocities and forces of one element, and memory for the law's own use.
     u: Vec<f64>,
     v: Vec<f64>,
     f: Vec<f64>,
@@ -49,7 +49,7 @@ impl Smooth {
         })
     }
 
-    /// r += Rᵀ f(R x, R v), and keeps the tangents.
+    /// r += Rᵀ f(R x, R v); the tangents are stored.
     ///
     /// # Errors
     /// Those of a callback.
@@ -82,7 +82,7 @@ impl Smooth {
         Ok(())
     }
 
-    /// Takes the tangents of the first node for all.
+    /// Copies the tangents of the first node to all.
     pub fn repeat(&mut self) {
         let mut nodes = self.tangents.chunks_exact_mut(self.per_node.max(1));
         if let Some(first) = nodes.next() {

@@ -2,7 +2,7 @@
 //! through zero within it.
 
 use crate::error::{Result, try_vec};
-use crate::time_integration::contacts_in_time::{Row, along};
+use crate::time_integration::event_law::{Row, along};
 
 /// Highest degree of a step's polynomials.
 pub(super) const DEGREE: usize = 26;
@@ -79,18 +79,18 @@ impl StepPolynomial {
     }
 }
 
-/// Width of an interval of θ in which two roots cannot be told apart.
+/// Width of an interval of θ in which two roots cannot be distinguished.
 const FINEST: f64 = 1e-14;
 
-/// A margin that is this small against its terms stands at zero.
+/// A margin this small against its terms counts as zero.
 const ZERO: f64 = 4.0 * f64::EPSILON;
 
 /// The first θ in [0, 1] at which a margin m(θ) = Σ cₖθᵏ falls below zero; `None`: it does not.
-/// `zeros` of its first coefficients are zero by construction, whatever rounding made of them.
+/// `zeros` of its first coefficients are zero by construction, apart from rounding.
 ///
 /// None is missed: in Bernstein's form a polynomial has no more roots in an interval than its
 /// coefficients change sign (Farouki 2012, doi:10.1016/j.cagd.2012.03.001). Intervals are halved from
-/// the left until they hold one root or none; two that cannot be told apart are a touch, which does not
+/// the left until they hold one root or none; two that cannot be distinguished are a touch, which does not
 /// end a piece.
 pub(super) fn first_fall(margin: &[f64], zeros: usize) -> Option<f64> {
     let mut c = &margin[zeros.min(margin.len())..];
@@ -136,7 +136,7 @@ fn search(c: &[f64]) -> Option<f64> {
             if b[0] > 0.0 {
                 return Some(root(c, from, to));
             }
-            // A margin that rises again after two roots that could not be told apart.
+            // A margin that rises again after two roots that could not be distinguished.
             continue;
         }
         if to - from < FINEST || open + 2 > DEEPEST {

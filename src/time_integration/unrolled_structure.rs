@@ -2,12 +2,13 @@
 //! loads, springs and contacts.
 
 use crate::contact::relative_motion::Direction;
+use crate::contact::time_piece::Mode;
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
-use crate::time_integration::contacts_in_time::{Element, Mode, Tie, row, unroll};
+use crate::time_integration::event_law::{Element, Tie, row, unroll};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -74,7 +75,7 @@ pub(super) struct Load {
     pub value: Complex64,
 }
 
-/// See the module.
+/// The equations of motion of all carried sectors.
 pub(super) struct System {
     /// Degrees of freedom of a sector.
     pub ndof: usize,
@@ -148,7 +149,7 @@ impl System {
         self.ndof * self.sectors
     }
 
-    /// The part of the period after which every sector does what another one did before.
+    /// The part of the period after which every sector moves as another one did before.
     pub fn lapse(&self) -> f64 {
         TAU / self.omega / self.sectors as f64
     }
@@ -191,8 +192,8 @@ impl System {
         }
     }
 
-    /// Modes at a state; stretches come within their range. `slaved` notes the modes that tell of sliders
-    /// where the motion puts them.
+    /// Modes at a state; stretches come within their range. `slaved` receives the modes of sliders whose
+    /// place follows from the motion.
     pub fn begin(&self, x: &[f64], v: &[f64], stretch: &mut [f64], modes: &mut [Mode], slaved: &mut [Option<Mode>]) {
         for (i, e) in self.elements.iter().enumerate() {
             (modes[i], slaved[i]) = match e.events() {

@@ -4,9 +4,10 @@
 #![allow(dead_code)]
 
 use hbvib::aft::Evaluation;
-use hbvib::aft::varying_normal_load::Coupled;
+use hbvib::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use hbvib::contact::Piece;
-use hbvib::contact::laws::friction_2d::{CoupledPiece, Friction2d};
+use hbvib::contact::laws::friction_2d::Friction2d;
+use hbvib::contact::piece::CoupledPiece;
 use hbvib::fourier::HarmonicSet;
 use std::f64::consts::TAU;
 
@@ -16,7 +17,7 @@ pub fn evaluate(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluati
 
 pub fn pieces(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> (Evaluation, Vec<CoupledPiece>, Vec<Piece>) {
     let mut out = Evaluation::new(set, 2).unwrap();
-    let mut way = Coupled::new(set).unwrap();
+    let mut way = VaryingNormalLoadEvaluator::new(set).unwrap();
     way.evaluate(law, set, motion, &mut out);
     (out, way.tangential().to_vec(), way.normal().to_vec())
 }

@@ -5,9 +5,10 @@
 
 use hbvib::aft::Evaluation;
 use hbvib::aft::memoryless::MemorylessEvaluator;
+use hbvib::contact::law::Memoryless;
 use hbvib::contact::laws::polynomial::{Monomial, Polynomial};
 use hbvib::contact::laws::user_law::{Call, User, UserForce};
-use hbvib::contact::memoryless_law::{Memoryless, Samples};
+use hbvib::contact::samples::Samples;
 use hbvib::error::{Error, Status};
 use hbvib::fourier::HarmonicSet;
 use std::f64::consts::TAU;

@@ -3,8 +3,9 @@
 
 use crate::analysis::check_jacobian::jacobian_gap::{JacobianGap, Tangent};
 use crate::analysis::check_jacobian::test_motion::{CONTEXT, Motion, SAMPLES, sizes, step_of};
-use crate::contact::hysteretic_law::{Hysteretic, March};
+use crate::contact::law::Hysteretic;
 use crate::contact::laws::user_law::User;
+use crate::contact::march::March;
 use crate::error::{Result, try_vec};
 
 /// One step of a law with states: a period of two samples, of which the first is compared and the second is the one

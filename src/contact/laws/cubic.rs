@@ -8,9 +8,72 @@
 //! k + ¾·c·A². An oscillator on such a spring is Duffing's; see Krack & Gross, Harmonic Balance
 //! for Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6.
 
-use crate::contact::law::{Form, Law, Range, SMALL, Spectral};
+use crate::contact::constants::{Constants, Role};
+use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Spectral};
+use crate::contact::laws::polynomial::Polynomial;
+use crate::contact::linearisation::{Range, SMALL};
+use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
+use std::sync::Arc;
+
+/// A cubic spring of the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct CubicContact {
+    kt: f64,
+    cubic: f64,
+}
+
+impl CubicContact {
+    pub(super) fn new(constants: &Constants) -> Self {
+        Self {
+            kt: constants.kt,
+            cubic: constants.cubic,
+        }
+    }
+}
+
+impl ContactLaw for CubicContact {
+    fn name(&self) -> &'static str {
+        "cubic spring"
+    }
+
+    fn constants(&self) -> &'static [&'static str] {
+        &["kt", "cubic"]
+    }
+
+    fn role(&self) -> Role {
+        match (self.cubic == 0.0, self.kt == 0.0) {
+            (true, true) => Role::Inert,
+            (true, false) => Role::Spring,
+            (false, _) => Role::Active,
+        }
+    }
+
+    fn stiffness_at_small_motion(&self, _k: usize, _l: usize) -> f64 {
+        self.kt
+    }
+
+    fn stiffness(&self, _k: usize) -> f64 {
+        self.kt
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(Arc::new(Cubic {
+            linear: self.kt,
+            cubic: self.cubic * length * length,
+        }))
+    }
+
+    /// A linear spring and a polynomial of the third degree.
+    fn in_time(&self) -> Result<LawInTime> {
+        let law = Polynomial::scalar(&[0.0, 0.0, self.cubic], &[])?;
+        Ok(LawInTime {
+            stiffness: self.kt,
+            ..LawInTime::smooth(Arc::new(law))
+        })
+    }
+}
 
 /// Constants of a cubic spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +93,7 @@ impl Law for Cubic {
         Form::Spectral(self)
     }
 
-    /// From here on the cubic term is small against `reference`.
+    /// From this scale on the cubic term is small against `reference`.
     fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64 {
         ranges[0].size() * (self.cubic.abs() / (SMALL * reference)).sqrt()
     }

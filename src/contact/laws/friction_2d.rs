@@ -3,8 +3,8 @@
 //!
 //! With the relative motions x along the surface and y along its normal, side a minus side b, the
 //! normal load is N = max(n₀ − kn·y, 0) and the normal force on y is −N. The tangential force is
-//! f = kt·(x − w) with the slider at w: it sticks (w at rest) while |f| ≤ μN, slips with f = ±μN, and is
-//! zero while the contact is open. At closing it begins from f = 0.
+//! f = kt·(x − w) with the slider at w. The contact sticks (w at rest) while |f| ≤ μN, slips with f = ±μN, and
+//! has no force while it is open. At closing it begins from f = 0.
 //!
 //! In terms of s = kt·w the slider is a play between two moving bounds,
 //!
@@ -13,21 +13,141 @@
 //! which meet where N = 0. A bound that moves against the slider drags it: slip in + direction while
 //! q₊ rises, in − direction while q₋ falls. Where the contact is closed both bounds are, but for a
 //! constant, the signals u± = kt·x ± μ·kn·y, of the same harmonics as the motion, so that slip ends at
-//! turning points of u± and begins where u± passes a level. The walk along them is in `slider.rs`.
+//! turning points of u± and begins where u± passes a level. The walk along them is in `friction_2d_slider.rs`.
 //!
-//! The period map of the slider is s ↦ clamp(s), so any slip or opening makes it forget: a walk that
-//! begins there has the periodic state at once. What never slips nor opens is a slider loaded slowly
-//! from s = 0, dragged along just so far as its bounds need. See Petrov & Ewins, J. Turbomach. 125 (2003)
-//! 364–371, doi:10.1115/1.1539868, for the friction element whose harmonics these are.
+//! The period map of the slider is s ↦ clamp(s), so that the state after any slip or opening does not depend on
+//! the state before: a walk that begins there has the periodic state at once. A slider that never slips nor
+//! opens is loaded slowly from s = 0 and dragged along just so far as its bounds need. See Petrov & Ewins,
+//! J. Turbomach. 125 (2003) 364–371, doi:10.1115/1.1539868, for the friction element whose harmonics these are.
 
-use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law, Piece, PiecewiseLinear, Range};
-use crate::contact::laws::friction_2d_slider::{Phase, Walk};
+use crate::contact::constants::{Constants, Role};
+use crate::contact::coupled_search::{Bound, CoupledSearch, find};
+use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear, VaryingNormalLoad};
+use crate::contact::laws::friction_2d_events::Slider;
+use crate::contact::laws::friction_2d_slider::{Phase, Play, Walk};
 use crate::contact::laws::unilateral::Unilateral;
-use crate::error::{Error, Result, try_vec};
+use crate::contact::linearisation::Range;
+use crate::contact::piece::{CoupledPiece, Piece};
+use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
-use crate::fourier::{Extremum, TurningPoints, jet};
-use std::f64::consts::{PI, TAU};
+use crate::fourier::{Extremum, jet};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Friction in one tangential direction of the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction2dContact {
+    kt: f64,
+    kn: f64,
+    mu: f64,
+    preload: f64,
+    clearance: f64,
+    load: f64,
+}
+
+impl Friction2dContact {
+    pub(super) fn new(constants: &Constants) -> Self {
+        Self {
+            kt: constants.kt,
+            kn: constants.kn,
+            mu: constants.mu,
+            preload: constants.preload,
+            clearance: constants.clearance(),
+            load: constants.load(),
+        }
+    }
+}
+
+/// Refuses friction under a load that varies without a normal stiffness. Without any force, such as that of no
+/// area, it needs none.
+pub(super) fn check_normal_stiffness(kn: f64, kt: f64, preload: f64) -> Result<()> {
+    if kn == 0.0 && (kt != 0.0 || preload != 0.0) {
+        return fail!(
+            Argument,
+            "contact: kn = 0, needs a number > 0 for friction under a load that varies"
+        );
+    }
+    Ok(())
+}
+
+impl ContactLaw for Friction2dContact {
+    fn name(&self) -> &'static str {
+        "friction contact"
+    }
+
+    fn constants(&self) -> &'static [&'static str] {
+        &["kt", "kn", "mu", "preload", "gap"]
+    }
+
+    fn check(&self) -> Result<()> {
+        check_normal_stiffness(self.kn, self.kt, self.preload)
+    }
+
+    fn places(&self) -> &'static [usize] {
+        &[0, 2]
+    }
+
+    fn role(&self) -> Role {
+        if self.kn == 0.0 { Role::Inert } else { Role::Active }
+    }
+
+    fn stiffness_at_small_motion(&self, k: usize, l: usize) -> f64 {
+        if (self.mu == 0.0 && k == 0) || k != l || self.load <= 0.0 {
+            0.0
+        } else {
+            self.stiffness(k)
+        }
+    }
+
+    fn stiffness(&self, k: usize) -> f64 {
+        if k == 1 { self.kn } else { self.kt }
+    }
+
+    fn is_spring(&self) -> bool {
+        false
+    }
+
+    fn may_stick(&self) -> bool {
+        true
+    }
+
+    fn has_preload(&self) -> bool {
+        true
+    }
+
+    fn is_preloaded(&self) -> bool {
+        self.kn > 0.0 && self.load >= 0.0
+    }
+
+    fn normal_load(&self, y: f64) -> f64 {
+        (self.load - self.kn * y).max(0.0)
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(Arc::new(Friction2d {
+            kt: self.kt,
+            kn: self.kn,
+            mu: self.mu,
+            load: self.load / length,
+        }))
+    }
+
+    /// A slider under a varying load; without friction a spring along the normal is left.
+    fn in_time(&self) -> Result<LawInTime> {
+        if self.kt == 0.0 || self.mu == 0.0 {
+            let spring = Unilateral {
+                stiffness: self.kn,
+                gap: self.clearance,
+            };
+            return Ok(LawInTime {
+                first: 1,
+                ..LawInTime::events(spring)
+            });
+        }
+        let slider = Slider::under_varying_load(self.kt, self.kn, self.mu, self.load);
+        Ok(LawInTime::events(slider))
+    }
+}
 
 /// Constants of friction under a varying normal load, all finite.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,100 +162,6 @@ pub struct Friction2d {
     pub load: f64,
 }
 
-/// An interval on which the tangential force is
-/// f(τ) = of_x·x(τ) + of_y·y(τ) + at_x·x(r) + at_y·y(r) + constant, with the anchor r.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CoupledPiece {
-    /// Begin of the interval.
-    pub start: f64,
-    /// End of the interval.
-    pub end: f64,
-    /// Tangent stiffness in the tangential motion.
-    pub of_x: f64,
-    /// Tangent stiffness in the normal motion.
-    pub of_y: f64,
-    /// The time r that the force remembers; `None`: at_x, at_y and moved_y are 0.
-    pub anchor: Option<f64>,
-    /// What the force remembers of x(r).
-    pub at_x: f64,
-    /// What the force remembers of y(r).
-    pub at_y: f64,
-    /// The constant part.
-    pub constant: f64,
-    /// Derivative of the force by y(r) beyond at_y. Where r is the time of closing, N(r) = 0, the
-    /// normal motion moves it: dr = −dy(r)/y′(r), and −kt·x(r) changes by kt·x′(r)/y′(r)·dy(r). At other
-    /// anchors, which are extrema of the remembered signal, this is 0.
-    pub moved_y: f64,
-    /// What the contact does.
-    pub state: State,
-}
-
-/// One bound of the slider: its signal u and the turning points of it over a whole turn.
-pub(super) struct Bound {
-    pub(super) signal: Vec<f64>,
-    pub(super) turning_points: Vec<Extremum>,
-}
-
-/// Memory for finding the pieces of motions with one harmonic set.
-pub struct Scratch {
-    search: TurningPoints,
-    normal: Vec<Extremum>,
-    bounds: [Bound; 2],
-}
-
-impl Scratch {
-    /// Memory for motions of `set`.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet) -> Result<Self> {
-        let bound = || -> Result<Bound> {
-            Ok(Bound {
-                signal: try_vec(set.packed_len(), 0.0, "a motion")?,
-                turning_points: try_reserve(2 * most_closings(set))?,
-            })
-        };
-        Ok(Self {
-            search: TurningPoints::new(set)?,
-            normal: try_reserve(2 * most_closings(set))?,
-            bounds: [bound()?, bound()?],
-        })
-    }
-}
-
-/// How often a normal motion can close a contact in a turn, with room for what rounding makes of
-/// touching; a signal has at most twice as many turning points.
-fn most_closings(set: &HarmonicSet) -> usize {
-    set.highest_reduced() + 2
-}
-
-fn try_reserve<T>(count: usize) -> Result<Vec<T>> {
-    let mut v = Vec::new();
-    v.try_reserve_exact(count)
-        .map_err(|_| Error::out_of_memory("the pieces of a motion"))?;
-    Ok(v)
-}
-
-/// Empty lists with memory for the normal and tangential pieces of any motion of `set`.
-///
-/// # Errors
-/// `OutOfMemory`.
-pub fn piece_lists(set: &HarmonicSet) -> Result<(Vec<Piece>, Vec<CoupledPiece>)> {
-    let closings = most_closings(set);
-    // One stick and one slip at most between neighbours of the turning points of both bounds and the ends of
-    // the closed times, and the open times.
-    Ok((
-        try_reserve(4 * closings)?,
-        try_reserve(2 * (4 * closings + 2 * closings) + closings)?,
-    ))
-}
-
-/// Whether the contact is closed on a piece of its normal force.
-#[must_use]
-pub fn is_closed(piece: &Piece) -> bool {
-    piece.slope != 0.0 || piece.offset != 0.0
-}
-
 impl Law for Friction2d {
     fn directions(&self) -> usize {
         2
@@ -146,7 +172,7 @@ impl Law for Friction2d {
     }
 
     fn form(&self) -> Form<'_> {
-        Form::Coupled(self)
+        Form::VaryingNormalLoad(self)
     }
 
     /// With an open gap at rest: the closing over the gap.
@@ -155,45 +181,55 @@ impl Law for Friction2d {
     }
 }
 
-impl Friction2d {
-    /// Finds the exact pieces of the normal force (slope −∂N/∂y) and of the tangential force over one
-    /// turn. `motion` is the packed x, then the packed y. The tangential pieces begin anywhere in the
-    /// turn and follow each other without a gap; without friction (kt or mu is 0) there are none.
-    pub fn pieces(
+impl VaryingNormalLoad for Friction2d {
+    /// Without friction (kt or mu is 0) there are no tangential pieces.
+    fn coupled_pieces(
         &self,
         set: &HarmonicSet,
         motion: &[f64],
-        scratch: &mut Scratch,
+        search: &mut CoupledSearch,
         normal: &mut Vec<Piece>,
         tangential: &mut Vec<CoupledPiece>,
     ) {
         normal.clear();
         tangential.clear();
         let (x, y) = motion.split_at(set.packed_len());
-        self.normal_pieces(set, y, scratch, normal);
+        self.normal_pieces(set, y, search, normal);
         if self.kt == 0.0 || self.mu == 0.0 {
             return;
         }
-        for (bound, sign) in scratch.bounds.iter_mut().zip([1.0, -1.0]) {
+        for (bound, sign) in search.bounds.iter_mut().zip([1.0, -1.0]) {
             for ((u, x), y) in bound.signal.iter_mut().zip(x).zip(y) {
                 *u = self.kt * x + sign * (self.mu * self.kn) * y;
             }
-            find(&mut scratch.search, set, &bound.signal, &mut bound.turning_points);
+            find(&mut search.search, set, &bound.signal, &mut bound.turning_points);
         }
         let mut walk = Walk {
-            law: self,
+            play: Play {
+                kt: self.kt,
+                kn: self.kn,
+                mu: self.mu,
+                load: self.load,
+            },
             set,
             motion: (x, y),
-            bounds: &scratch.bounds,
+            bounds: &search.bounds,
             pieces: tangential,
         };
         match normal.as_slice() {
-            [only] if is_closed(only) => self.always_closed(&mut walk),
+            [only] if only.is_closed() => always_closed(&mut walk),
             pieces => closed_times(pieces, &mut walk),
         }
     }
 
-    fn normal_pieces(&self, set: &HarmonicSet, y: &[f64], scratch: &mut Scratch, pieces: &mut Vec<Piece>) {
+    fn load_at(&self, y: f64) -> f64 {
+        self.load - self.kn * y
+    }
+}
+
+impl Friction2d {
+    /// Pieces of the normal force.
+    fn normal_pieces(&self, set: &HarmonicSet, y: &[f64], search: &mut CoupledSearch, pieces: &mut Vec<Piece>) {
         if self.kn == 0.0 {
             pieces.push(Piece {
                 start: 0.0,
@@ -204,115 +240,49 @@ impl Friction2d {
             });
             return;
         }
-        find(&mut scratch.search, set, y, &mut scratch.normal);
+        find(&mut search.search, set, y, &mut search.normal);
         let spring = Unilateral {
             stiffness: self.kn,
             gap: -self.load / self.kn,
         };
-        spring.pieces(set, y, &scratch.normal, pieces);
+        spring.pieces(set, y, &search.normal, pieces);
         for piece in pieces.iter_mut().filter(|p| p.slope != 0.0) {
-            // As it is, not by way of the gap.
+            // From the load itself, without the rounding of the gap.
             piece.offset = -self.load;
         }
     }
-
-    /// A motion that never opens the contact. It slips where the bounds, each over the whole turn, leave
-    /// no room for a slider at rest, and then the highest q₊ drags the slider: below it the slider was
-    /// when the lowest q₋ had passed, and only q₊ has moved it up since.
-    fn always_closed(&self, walk: &mut Walk<'_>) {
-        let [upper, lower] = walk.bounds;
-        let limit = self.mu * self.load;
-        let highest = walk.extreme(upper, 1.0);
-        let lowest = walk.extreme(lower, -1.0);
-        let room = (lowest.x + limit) - (highest.x - limit);
-        if room < 0.0 && !upper.turning_points.is_empty() {
-            walk.run([highest.tau, highest.tau + TAU], Phase::slip(0, highest.tau));
-            return;
-        }
-        let dragged = if highest.x > limit {
-            Some((1.0, highest.tau))
-        } else if lowest.x < -limit {
-            Some((-1.0, lowest.tau))
-        } else {
-            None
-        };
-        let mut piece = dragged.map_or(self.stick(), |(sign, tau)| self.stick_after_slip(sign, tau));
-        (piece.start, piece.end) = (0.0, TAU);
-        walk.pieces.push(piece);
-    }
-
-    /// Stick of a slider at s = 0.
-    pub(super) fn stick(&self) -> CoupledPiece {
-        CoupledPiece { of_x: self.kt, ..OPEN }.doing(State::Stick)
-    }
-
-    /// Stick after a slip of the given sign that ended at the time r: s = q±(r).
-    pub(super) fn stick_after_slip(&self, sign: f64, r: f64) -> CoupledPiece {
-        CoupledPiece {
-            anchor: Some(r),
-            at_x: -self.kt,
-            at_y: -sign * self.mu * self.kn,
-            constant: sign * self.mu * self.load,
-            ..self.stick()
-        }
-    }
-
-    /// Stick from the time r of closing: s = kt·x(r).
-    pub(super) fn stick_after_closing(&self, r: f64, moved_y: f64) -> CoupledPiece {
-        CoupledPiece {
-            anchor: Some(r),
-            at_x: -self.kt,
-            moved_y,
-            ..self.stick()
-        }
-    }
-
-    /// Slip of the given sign, f = ±μN.
-    pub(super) fn slip(&self, sign: f64) -> CoupledPiece {
-        CoupledPiece {
-            of_y: -sign * self.mu * self.kn,
-            constant: sign * self.mu * self.load,
-            ..OPEN
-        }
-        .doing(State::Slip)
-    }
 }
 
-/// A piece without force.
-const OPEN: CoupledPiece = CoupledPiece {
-    start: 0.0,
-    end: 0.0,
-    of_x: 0.0,
-    of_y: 0.0,
-    anchor: None,
-    at_x: 0.0,
-    at_y: 0.0,
-    constant: 0.0,
-    moved_y: 0.0,
-    state: State::Open,
-};
-
-impl CoupledPiece {
-    const fn doing(self, state: State) -> Self {
-        Self { state, ..self }
+/// Pieces of a motion that never opens the contact. It slips where the bounds, each over the whole turn, leave
+/// no room for a slider at rest, and then the highest q₊ drags the slider: below it the slider was
+/// when the lowest q₋ had passed, and only q₊ has moved it up since.
+fn always_closed(walk: &mut Walk<'_>) {
+    let [upper, lower] = walk.bounds;
+    let limit = walk.play.mu * walk.play.load;
+    let highest = extreme(walk.set, upper, 1.0);
+    let lowest = extreme(walk.set, lower, -1.0);
+    let room = (lowest.x + limit) - (highest.x - limit);
+    if room < 0.0 && !upper.turning_points.is_empty() {
+        walk.run([highest.tau, highest.tau + TAU], Phase::slip(0, highest.tau));
+        return;
     }
-}
-
-/// Reversals over a whole turn, also for sets of odd harmonics: a varying load has no such symmetry.
-fn find(search: &mut TurningPoints, set: &HarmonicSet, signal: &[f64], found: &mut Vec<Extremum>) {
-    search.find(set, signal, found);
-    if set.is_odd() {
-        for i in 0..found.len() {
-            let Extremum { tau, x } = found[i];
-            found.push(Extremum { tau: tau + PI, x: -x });
-        }
-    }
+    let dragged = if highest.x > limit {
+        Some((1.0, highest.tau))
+    } else if lowest.x < -limit {
+        Some((-1.0, lowest.tau))
+    } else {
+        None
+    };
+    let play = &walk.play;
+    let mut piece = dragged.map_or(play.stick(), |(sign, tau)| play.stick_after_slip(sign, tau));
+    (piece.start, piece.end) = (0.0, TAU);
+    walk.pieces.push(piece);
 }
 
 /// Walks every closed time from its closing on; the open times between them carry no force.
 fn closed_times(normal: &[Piece], walk: &mut Walk<'_>) {
-    let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(is_closed));
-    // The turn of the normal pieces begins anywhere; a closed time that it cuts is one all the same.
+    let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(Piece::is_closed));
+    // The turn of the normal pieces begins anywhere; a closed time across its begin counts as one.
     let cut = closed_ends == [true, true] && normal.len() > 1;
     for (i, piece) in normal.iter().enumerate().skip(usize::from(cut)) {
         let end = if cut && i + 1 == normal.len() {
@@ -320,24 +290,22 @@ fn closed_times(normal: &[Piece], walk: &mut Walk<'_>) {
         } else {
             piece.end
         };
-        if is_closed(piece) {
+        if piece.is_closed() {
             let phase = walk.closing(piece.start);
             walk.run([piece.start, end], phase);
         } else {
-            walk.push(OPEN, piece.start, end);
+            walk.push(CoupledPiece::OPEN, piece.start, end);
         }
     }
 }
 
-impl Walk<'_> {
-    /// The highest (sign 1) or lowest (−1) value of a bound's signal.
-    fn extreme(&self, bound: &Bound, sign: f64) -> Extremum {
-        let still = Extremum {
-            tau: 0.0,
-            x: jet(self.set, &bound.signal, 0.0).x,
-        };
-        let first = bound.turning_points.first().copied().unwrap_or(still);
-        let further = |best: Extremum, e: &Extremum| if sign * (e.x - best.x) > 0.0 { *e } else { best };
-        bound.turning_points.iter().fold(first, further)
-    }
+/// The highest (sign 1) or lowest (−1) value of a bound's signal.
+fn extreme(set: &HarmonicSet, bound: &Bound, sign: f64) -> Extremum {
+    let still = Extremum {
+        tau: 0.0,
+        x: jet(set, &bound.signal, 0.0).x,
+    };
+    let first = bound.turning_points.first().copied().unwrap_or(still);
+    let further = |best: Extremum, e: &Extremum| if sign * (e.x - best.x) > 0.0 { *e } else { best };
+    bound.turning_points.iter().fold(first, further)
 }

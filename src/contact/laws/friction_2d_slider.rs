@@ -1,19 +1,72 @@
 //! The walk of a friction slider between its two moving bounds, from one event to the next.
 //!
-//! See [`crate::contact::laws::friction_2d`] for the bounds. Between neighbouring turning points of the two signals both
-//! bounds are monotone and q₊ ≤ q₋, so at most one event lies there: where the bound that comes
+//! See [`crate::contact::laws::friction_2d`] for the bounds. Between neighbouring turning points of the two
+//! signals both bounds are monotone and q₊ ≤ q₋, so at most one event lies there: where the bound that comes
 //! towards a slider at rest is beyond it at the end of the interval, slip begins at the one time
 //! that it passes; and slip ends where the bound that drags the slider turns back.
 
-use crate::contact::laws::friction_2d::{Bound, CoupledPiece, Friction2d};
+use crate::contact::contact_state::State;
+use crate::contact::coupled_search::Bound;
+use crate::contact::piece::CoupledPiece;
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, crossing, jet};
 use std::f64::consts::TAU;
 
+/// Constants of the slider: those of friction under a varying normal load.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Play {
+    pub(super) kt: f64,
+    pub(super) kn: f64,
+    pub(super) mu: f64,
+    pub(super) load: f64,
+}
+
+impl Play {
+    /// Stick of a slider at s = 0.
+    pub(super) fn stick(&self) -> CoupledPiece {
+        CoupledPiece {
+            of_x: self.kt,
+            state: State::Stick,
+            ..CoupledPiece::OPEN
+        }
+    }
+
+    /// Stick after a slip of the given sign that ended at the time r: s = q±(r).
+    pub(super) fn stick_after_slip(&self, sign: f64, r: f64) -> CoupledPiece {
+        CoupledPiece {
+            anchor: Some(r),
+            at_x: -self.kt,
+            at_y: -sign * self.mu * self.kn,
+            constant: sign * self.mu * self.load,
+            ..self.stick()
+        }
+    }
+
+    /// Stick from the time r of closing: s = kt·x(r).
+    fn stick_after_closing(&self, r: f64, moved_y: f64) -> CoupledPiece {
+        CoupledPiece {
+            anchor: Some(r),
+            at_x: -self.kt,
+            moved_y,
+            ..self.stick()
+        }
+    }
+
+    /// Slip of the given sign, f = ±μN.
+    fn slip(&self, sign: f64) -> CoupledPiece {
+        CoupledPiece {
+            of_y: -sign * self.mu * self.kn,
+            constant: sign * self.mu * self.load,
+            state: State::Slip,
+            ..CoupledPiece::OPEN
+        }
+    }
+}
+
 /// Direction in which each bound drags the slider.
 const SIGNS: [f64; 2] = [1.0, -1.0];
 
-/// What the slider does since the time `piece.start` or `start`.
+/// Phase of the slider since the time `piece.start` or `start`.
 pub(super) enum Phase {
     /// Dragged by a bound.
     Slip { side: usize, start: f64 },
@@ -30,7 +83,7 @@ impl Phase {
 
 /// A walk that writes pieces.
 pub(super) struct Walk<'a> {
-    pub(super) law: &'a Friction2d,
+    pub(super) play: Play,
     pub(super) set: &'a HarmonicSet,
     /// Packed x and y.
     pub(super) motion: (&'a [f64], &'a [f64]),
@@ -46,19 +99,19 @@ struct Instant {
 }
 
 impl Walk<'_> {
-    /// How the slider begins at the time r of closing, where s = kt·x(r). The bounds open by
+    /// Phase of the slider from the time r of closing on, where s = kt·x(r). The bounds open by
     /// q±′ = kt·x′ ∓ μN′ with N′ = −kn·y′; it sticks if neither comes towards it.
     pub(super) fn closing(&self, r: f64) -> Phase {
         let (x, y) = (jet(self.set, self.motion.0, r), jet(self.set, self.motion.1, r));
-        let rate = self.law.kt * x.dx;
-        if rate.abs() >= self.law.mu * self.law.kn * y.dx.abs() && rate != 0.0 {
+        let rate = self.play.kt * x.dx;
+        if rate.abs() >= self.play.mu * self.play.kn * y.dx.abs() && rate != 0.0 {
             return Phase::slip(usize::from(rate < 0.0), r);
         }
         // Stick needs |kt·x′/y′| < μ·kn; where both rates vanish, the time of closing has no derivative.
         let moved_y = if y.dx == 0.0 { 0.0 } else { rate / y.dx };
-        let piece = self.law.stick_after_closing(r, moved_y);
+        let piece = self.play.stick_after_closing(r, moved_y);
         Phase::Stick {
-            s: self.law.kt * x.x,
+            s: self.play.kt * x.x,
             piece: CoupledPiece { start: r, ..piece },
         }
     }
@@ -81,7 +134,7 @@ impl Walk<'_> {
             from = to;
         }
         match phase {
-            Phase::Slip { side, start } => self.push(self.law.slip(SIGNS[side]), start, end),
+            Phase::Slip { side, start } => self.push(self.play.slip(SIGNS[side]), start, end),
             Phase::Stick { piece, .. } => self.push(piece, piece.start, end),
         }
     }
@@ -94,13 +147,13 @@ impl Walk<'_> {
     /// One interval between turning points, with each bound moving in the direction that drags the slider, or not.
     fn advance(&mut self, phase: Phase, from: Instant, to: Instant, drags: [bool; 2]) -> Phase {
         // q± = u± ∓ μ·n₀.
-        let limit = self.law.mu * self.law.load;
+        let limit = self.play.mu * self.play.load;
         let (s, piece) = match phase {
             Phase::Slip { side, .. } if drags[side] => return phase,
             Phase::Slip { side, start } => {
                 let sign = SIGNS[side];
-                self.push(self.law.slip(sign), start, from.tau);
-                let piece = self.law.stick_after_slip(sign, from.tau);
+                self.push(self.play.slip(sign), start, from.tau);
+                let piece = self.play.stick_after_slip(sign, from.tau);
                 let start = from.tau;
                 (from.u[side] - sign * limit, CoupledPiece { start, ..piece })
             }
@@ -122,7 +175,7 @@ impl Walk<'_> {
         Phase::Stick { s, piece }
     }
 
-    /// Keeps a piece from `start` to `end`, unless it has no length.
+    /// Stores a piece from `start` to `end`, unless it has no length.
     pub(super) fn push(&mut self, piece: CoupledPiece, start: f64, end: f64) {
         if end > start {
             self.pieces.push(CoupledPiece { start, end, ..piece });
@@ -156,7 +209,7 @@ impl<'a> Cursor<'a> {
             .map_or(f64::INFINITY, |e| e.tau + self.turns * TAU)
     }
 
-    /// Leaves the turning points up to a time behind.
+    /// Passes the turning points up to a time.
     fn pass(&mut self, time: f64) {
         while self.tau() <= time {
             self.next += 1;
@@ -168,7 +221,7 @@ impl<'a> Cursor<'a> {
     }
 
     /// Rise from the last turning point to the next, 0 for a constant signal. Its sign is that of the slope, also in
-    /// intervals too short for the values at their ends to tell.
+    /// intervals so short that rounding hides the difference of the values at their ends.
     fn rise(&self) -> f64 {
         let count = self.turning_points.len();
         self.turning_points.get(self.next).map_or(0.0, |next| {

@@ -8,18 +8,145 @@
 //!
 //! Slip goes along the force (the circle |f| = μN is the limit, and the slip velocity γ e is normal to
 //! it). The motion between two samples is taken as linear and followed exactly, see
-//! friction_step.rs, so that the force is of second order in the distance of samples and its
-//! derivative is that of the discrete force. Where it sticks through the period, the slider rests
-//! where friction_rest.rs says. The normal force, which remembers nothing, has exact harmonics.
+//! friction_3d_step.rs, so that the force is of second order in the distance of samples and its
+//! derivative is that of the discrete force. The place of a slider that sticks through the period is in
+//! friction_3d_stuck.rs. The normal force, which has no memory, has exact harmonics.
 
+use crate::contact::constants::{Constants, Role};
 use crate::contact::contact_state::State;
-use crate::contact::hysteretic_law::{Hysteretic, March, Sticking, StuckState};
-use crate::contact::law::{Form, Law, Range};
-use crate::contact::laws::friction_2d::Friction2d;
+use crate::contact::coupled_search::CoupledSearch;
+use crate::contact::law::{ContactLaw, Form, Hysteretic, Law, LawInTime, VaryingNormalLoad};
+use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness};
 use crate::contact::laws::friction_3d_step::{NO_LOAD, step};
-use crate::contact::laws::friction_3d_stuck::{Disc, rest};
-use crate::contact::memoryless_law::automatic_samples;
-use crate::error::Result;
+use crate::contact::laws::friction_3d_stuck::{Disc, stuck_slider};
+use crate::contact::linearisation::Range;
+use crate::contact::march::{March, Sticking, StuckState};
+use crate::contact::piece::{CoupledPiece, Piece};
+use crate::contact::samples::automatic_samples;
+use crate::error::{Result, fail};
+use crate::fourier::HarmonicSet;
+use std::sync::Arc;
+
+/// Friction in a plane of the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct Friction3dContact {
+    constants: Constants,
+    load: f64,
+    slip_limit: f64,
+}
+
+impl Friction3dContact {
+    pub(super) fn new(constants: &Constants) -> Self {
+        Self {
+            constants: *constants,
+            load: constants.load(),
+            slip_limit: constants.slip_limit(),
+        }
+    }
+}
+
+impl ContactLaw for Friction3dContact {
+    fn name(&self) -> &'static str {
+        "friction contact"
+    }
+
+    fn constants(&self) -> &'static [&'static str] {
+        &["kt", "kn", "mu", "preload", "gap"]
+    }
+
+    fn check(&self) -> Result<()> {
+        let c = &self.constants;
+        if c.has_normal {
+            return check_normal_stiffness(c.kn, c.kt, c.preload);
+        }
+        if c.kn != 0.0 || c.gap != 0.0 {
+            return fail!(
+                Argument,
+                "contact: kn = {}, gap = {}, need 0 for friction without a degree of freedom along n",
+                c.kn,
+                c.gap
+            );
+        }
+        Ok(())
+    }
+
+    fn places(&self) -> &'static [usize] {
+        if self.constants.has_normal { &[0, 1, 2] } else { &[0, 1] }
+    }
+
+    fn role(&self) -> Role {
+        let c = &self.constants;
+        if c.kn == 0.0 && (c.kt == 0.0 || self.slip_limit == 0.0) {
+            Role::Inert
+        } else {
+            Role::Active
+        }
+    }
+
+    fn stiffness_at_small_motion(&self, k: usize, l: usize) -> f64 {
+        if (self.constants.mu == 0.0 && k < 2) || k != l || self.load <= 0.0 {
+            0.0
+        } else {
+            self.stiffness(k)
+        }
+    }
+
+    fn stiffness(&self, k: usize) -> f64 {
+        let c = &self.constants;
+        if c.has_normal && k == 2 { c.kn } else { c.kt }
+    }
+
+    fn is_spring(&self) -> bool {
+        false
+    }
+
+    fn may_stick(&self) -> bool {
+        true
+    }
+
+    fn largest_force(&self) -> f64 {
+        if self.constants.kn == 0.0 {
+            self.slip_limit
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn has_preload(&self) -> bool {
+        true
+    }
+
+    fn is_preloaded(&self) -> bool {
+        self.role() == Role::Active && self.constants.kn > 0.0 && self.load >= 0.0
+    }
+
+    fn normal_load(&self, y: f64) -> f64 {
+        let c = &self.constants;
+        if c.has_normal {
+            (self.load - c.kn * y).max(0.0)
+        } else {
+            c.preload
+        }
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        let c = &self.constants;
+        Ok(Arc::new(Friction3d {
+            kt: c.kt,
+            kn: c.kn,
+            mu: c.mu,
+            load: self.load / length,
+            has_normal: c.has_normal,
+        }))
+    }
+
+    fn in_time(&self) -> Result<LawInTime> {
+        fail!(
+            Unsupported,
+            "friction in a plane is not integrated in time, friction in one direction is"
+        )
+    }
+}
 
 /// Constants of friction in a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -47,7 +174,7 @@ impl Friction3d {
     }
 }
 
-/// Finer sampling than a law of unknown form gets: the error falls with the square.
+/// Finer sampling than that of a law of unknown form: the error falls with the square.
 const REFINEMENT: usize = 4;
 
 impl Law for Friction3d {
@@ -82,8 +209,8 @@ impl Hysteretic for Friction3d {
         false
     }
 
-    fn samples(&self, highest: usize, asked: usize) -> usize {
-        match asked {
+    fn samples(&self, highest: usize, requested: usize) -> usize {
+        match requested {
             0 => automatic_samples(highest).saturating_mul(REFINEMENT),
             n => n,
         }
@@ -93,17 +220,11 @@ impl Hysteretic for Friction3d {
         self.kt > 0.0 && self.mu > 0.0
     }
 
-    fn normal(&self) -> Option<Friction2d> {
-        // Without tangential stiffness: the normal force alone.
-        self.has_normal.then_some(Friction2d {
-            kt: 0.0,
-            kn: self.kn,
-            mu: self.mu,
-            load: self.load,
-        })
+    fn normal(&self) -> Option<&dyn VaryingNormalLoad> {
+        if self.has_normal { Some(self) } else { None }
     }
 
-    fn rest(&self, samples: usize, u: &[f64], out: &mut StuckState) -> Sticking {
+    fn stuck_state(&self, samples: usize, u: &[f64], out: &mut StuckState) -> Sticking {
         let d = self.directions();
         let motion = |j: usize| &u[j * d..(j + 1) * d];
         if !self.sticks() {
@@ -122,7 +243,7 @@ impl Hysteretic for Friction3d {
             centre: [motion(j)[0], motion(j)[1]],
             radius: self.mu * self.pressure(motion(j)) / self.kt,
         };
-        let Some(found) = rest(samples, disc) else {
+        let Some(found) = stuck_slider(samples, disc) else {
             return Sticking::Nowhere;
         };
         let last = (samples - 1) * d;
@@ -192,5 +313,29 @@ impl Hysteretic for Friction3d {
             (force, before, load_before) = (step.force, motion, load);
         }
         Ok(())
+    }
+}
+
+/// The normal force alone: friction in one direction without tangential stiffness.
+impl VaryingNormalLoad for Friction3d {
+    fn coupled_pieces(
+        &self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        search: &mut CoupledSearch,
+        normal: &mut Vec<Piece>,
+        tangential: &mut Vec<CoupledPiece>,
+    ) {
+        let law = Friction2d {
+            kt: 0.0,
+            kn: self.kn,
+            mu: self.mu,
+            load: self.load,
+        };
+        law.coupled_pieces(set, motion, search, normal, tangential);
+    }
+
+    fn load_at(&self, y: f64) -> f64 {
+        self.load - self.kn * y
     }
 }

@@ -9,10 +9,10 @@
 //! > tan(ψ₁/2) = tan(ψₑ/2) e^{−κ},  f₁ = r₁ e₁.
 //!
 //! Derivatives. The rate of the force jumps at the onset by kt·γ e and |f| meets the limit at the rate
-//! kt·γ. What the moving onset adds is thus a multiple of e, which moves the force back onto the circle:
+//! kt·γ. The contribution of the moving onset is thus a multiple of e, which moves the force back onto the circle:
 //! δfₑ = (1 − e eᵀ) δf_stick + e δr, all at the time of the onset kept. Nothing is divided by γ, so a
 //! grazing onset is no special case. At an opening the force is zero with its derivatives. At a closing
-//! the force starts from zero, and its rate times the moving time s_c is what it adds.
+//! the force starts from zero, and the moving time s_c contributes its rate.
 
 /// Loads whose ratio is below count as no load: the force is then as small against the other end's.
 pub(super) const NO_LOAD: f64 = 1e-14;
@@ -39,7 +39,7 @@ pub(super) struct Step {
     pub open: f64,
 }
 
-/// Derivatives by what a step starts from: the force (2), the travel (2), the load before and after.
+/// Derivatives by the data of a step: the force at its start (2), the travel (2), the load before and after.
 type Gradient = [f64; 6];
 
 fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
@@ -136,7 +136,7 @@ fn closing(kt: f64, mu: f64, d: [f64; 2], before: f64, after: f64) -> Step {
     out
 }
 
-/// The force in units of the limit, drawn back to it where it lies beyond, and whether it is there.
+/// The force in units of the limit, reduced to it where it lies beyond; `true` if it is at the limit.
 fn relative(force: [f64; 2], r: f64) -> ([f64; 2], bool) {
     let f = scaled(force, 1.0 / r);
     let length = f[0].hypot(f[1]);
@@ -183,7 +183,7 @@ fn closed(kt: f64, mu: f64, force: [f64; 2], d: [f64; 2], before: f64, after: f6
         let size = force[0].hypot(force[1]);
         let (f, at_limit) = relative(force, r);
         if size > r * (1.0 + AT_LIMIT) {
-            // No state of this motion: the nearest one is.
+            // Not a state of this motion: replaced by the nearest one.
             start = scaled(f, r);
             let n = left(f);
             for i in 0..2 {
@@ -255,7 +255,7 @@ fn inverse_mean(r: f64, r_end: f64) -> (f64, f64, f64) {
     const NEAR: f64 = 0.1;
     let growth = (r_end - r) / r;
     if growth.abs() < NEAR {
-        // q = Σ (−ρ)ᵏ/(k + 1) and what follows from it; the first term left out is below 1e-17.
+        // q = Σ (−ρ)ᵏ/(k + 1) and its derivatives; the first term left out is below 1e-17.
         let (mut q, mut by_end, mut by_start) = (0.0, 0.0, 0.0);
         for k in (0..17).rev() {
             let k = f64::from(k);
@@ -269,7 +269,7 @@ fn inverse_mean(r: f64, r_end: f64) -> (f64, f64, f64) {
     (q, (r / r_end - q) / growth, (q - 1.0) / growth)
 }
 
-/// Where a unit vector has turned to.
+/// A unit vector after a turn.
 struct Turned {
     e: [f64; 2],
     /// Derivative of its angle by the angle at the start.

@@ -1,12 +1,12 @@
-//! Where the slider of friction in a plane rests if it sticks through the period.
+//! Place of the slider of friction in a plane that sticks through the period.
 //!
 //! A force f = kt·(x − w) with the slider at rest at w stays within its limit if w lies in every disc
 //! |w − xⱼ| ≤ ρⱼ = μNⱼ/kt about the motion at a sample; within a step, where x and ρ are linear, the
-//! ends tell, because |w − x| − ρ is convex. If the discs have points in common, each of them is a
-//! periodic state; if not, slip goes on, and with it every memory of the past is lost: the march is a
+//! ends suffice, because |w − x| − ρ is convex. If the discs have points in common, each of them is a
+//! periodic state; if not, slip continues, and with it the memory of the past is lost: the march is a
 //! map that brings no two states apart, and slip brings them together.
 //!
-//! Of the common points the one nearest to the virgin slider at 0 is taken,
+//! The solution is the common point nearest to the virgin slider at 0,
 //!
 //! > w = argmin |w| over the intersection of the discs:
 //!
@@ -16,7 +16,7 @@
 //! period begins.
 //!
 //! The point is found as in other problems of low dimension (Sharir & Welzl 1992): at most two discs hold
-//! it; the one most violated is added, and those are found that hold the point of the three. Every round
+//! it; the most violated one is added, and of the three those that hold the new point are found. Every round
 //! moves the point further out, so that their number is finite.
 
 /// A disc |w − centre| ≤ radius.
@@ -37,7 +37,7 @@ pub(super) struct Holding {
 
 /// The slider at rest.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct StuckState {
+pub(super) struct StuckSlider {
     pub at: [f64; 2],
     /// None where the slider is virgin, one disc or two.
     pub holding: [Option<Holding>; 2],
@@ -45,14 +45,14 @@ pub(super) struct StuckState {
     pub is_common: bool,
 }
 
-/// Violations below this, in units of the lengths at hand, are rounding.
+/// Violations below this, relative to the current lengths, are rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// Discs that may be added; beyond it rounding turns in circles. A few are the rule.
+/// Largest number of discs that are added; a few suffice but for a cycle by rounding.
 const ROUNDS: usize = 200;
 
 impl Disc {
-    /// How far `w` lies outside; not above 0 for what is inside to rounding.
+    /// Distance of `w` outside the disc; not above 0 for points that are inside to rounding.
     fn violation(&self, w: [f64; 2]) -> f64 {
         let [x, y] = self.centre;
         let size = x.abs() + y.abs() + w[0].abs() + w[1].abs();
@@ -65,7 +65,7 @@ impl Disc {
         self.centre.map(|x| share * x)
     }
 
-    /// Of the points where two circles meet, the one nearer to 0.
+    /// The intersection of two circles nearer to 0.
     fn corner(&self, other: &Self) -> Option<[f64; 2]> {
         let across = [other.centre[0] - self.centre[0], other.centre[1] - self.centre[1]];
         let distance = across[0].hypot(across[1]);
@@ -90,7 +90,7 @@ impl Disc {
 ///
 /// Shortly before slip ends, two discs are hardly apart. A little slip at both takes the slider to that point, but
 /// the slower the nearer it is, so that it is good to begin there.
-pub(super) fn rest(count: usize, disc: impl Fn(usize) -> Disc) -> Option<StuckState> {
+pub(super) fn stuck_slider(count: usize, disc: impl Fn(usize) -> Disc) -> Option<StuckSlider> {
     let mut at = [0.0; 2];
     let mut held: [Option<usize>; 2] = [None; 2];
     for _ in 0..ROUNDS {
@@ -140,7 +140,7 @@ fn among(
 /// The point midway between two discs that are apart. With the unit vector u from centre a to centre b at the
 /// distance c, and n across, w = xₐ + λ(x_b − xₐ) with λ = (c + ρₐ − ρ_b)/2c, so that
 /// u·δw = u·(δxₐ + δx_b)/2 + (δρₐ − δρ_b)/2, n·δw = n·((1 − λ)δxₐ + λδx_b).
-fn midway(a: usize, b: usize, disc: &impl Fn(usize) -> Disc) -> Option<StuckState> {
+fn midway(a: usize, b: usize, disc: &impl Fn(usize) -> Disc) -> Option<StuckSlider> {
     let (first, second) = (disc(a), disc(b));
     let across: [f64; 2] = std::array::from_fn(|i| second.centre[i] - first.centre[i]);
     let distance = across[0].hypot(across[1]);
@@ -157,7 +157,7 @@ fn midway(a: usize, b: usize, disc: &impl Fn(usize) -> Disc) -> Option<StuckStat
             by_radius: u.map(|u| 0.5 * sign * u),
         })
     };
-    Some(StuckState {
+    Some(StuckSlider {
         at: std::array::from_fn(|i| first.centre[i] + share * across[i]),
         holding: [of(a, 1.0 - share, 1.0), of(b, share, -1.0)],
         is_common: false,
@@ -166,7 +166,7 @@ fn midway(a: usize, b: usize, disc: &impl Fn(usize) -> Disc) -> Option<StuckStat
 
 /// With its derivatives. On one circle w = x − ρe, e = x/|x|; at a corner nₐ·δw = nₐ·δxₐ − δρₐ for both
 /// circles, nₐ the normal of the one at w.
-fn written(at: [f64; 2], held: [Option<usize>; 2], disc: impl Fn(usize) -> Disc) -> Option<StuckState> {
+fn written(at: [f64; 2], held: [Option<usize>; 2], disc: impl Fn(usize) -> Disc) -> Option<StuckSlider> {
     let normal = |j: usize| {
         let Disc { centre, radius } = disc(j);
         [(centre[0] - at[0]) / radius, (centre[1] - at[1]) / radius]
@@ -205,7 +205,7 @@ fn written(at: [f64; 2], held: [Option<usize>; 2], disc: impl Fn(usize) -> Disc)
         }
         _ => [None; 2],
     };
-    Some(StuckState {
+    Some(StuckSlider {
         at,
         holding,
         is_common: true,

@@ -7,11 +7,98 @@
 //! exact multi-harmonic friction element of Petrov & Ewins, J. Turbomach. 125 (2003) 364–371,
 //! doi:10.1115/1.1539868.
 
+use crate::contact::constants::{Constants, Role};
 use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law, Piece, PiecewiseLinear, Range};
+use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
+use crate::contact::laws::friction_2d_events::Slider;
+use crate::contact::linearisation::Range;
+use crate::contact::piece::Piece;
+use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, crossing};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// A Jenkins contact of the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct JenkinsContact {
+    kt: f64,
+    preload: f64,
+    slip_limit: f64,
+}
+
+impl JenkinsContact {
+    pub(super) fn new(constants: &Constants) -> Self {
+        Self {
+            kt: constants.kt,
+            preload: constants.preload,
+            slip_limit: constants.slip_limit(),
+        }
+    }
+}
+
+impl ContactLaw for JenkinsContact {
+    fn name(&self) -> &'static str {
+        "Jenkins contact"
+    }
+
+    fn constants(&self) -> &'static [&'static str] {
+        &["kt", "mu", "preload"]
+    }
+
+    fn role(&self) -> Role {
+        if self.kt == 0.0 || self.slip_limit == 0.0 {
+            Role::Inert
+        } else if self.slip_limit.is_infinite() {
+            Role::Spring
+        } else {
+            Role::Active
+        }
+    }
+
+    fn stiffness_at_small_motion(&self, _k: usize, _l: usize) -> f64 {
+        if self.role() == Role::Inert { 0.0 } else { self.kt }
+    }
+
+    fn stiffness(&self, _k: usize) -> f64 {
+        self.kt
+    }
+
+    fn is_spring(&self) -> bool {
+        false
+    }
+
+    fn may_stick(&self) -> bool {
+        true
+    }
+
+    fn largest_force(&self) -> f64 {
+        self.slip_limit
+    }
+
+    fn has_preload(&self) -> bool {
+        true
+    }
+
+    fn may_stick_for_ever(&self) -> bool {
+        true
+    }
+
+    fn normal_load(&self, _y: f64) -> f64 {
+        self.preload
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(Arc::new(Jenkins {
+            stiffness: self.kt,
+            limit: self.slip_limit / length,
+        }))
+    }
+
+    fn in_time(&self) -> Result<LawInTime> {
+        Ok(LawInTime::events(Slider::under_constant_load(self.kt, self.slip_limit)))
+    }
+}
 
 /// Constants of a Jenkins element.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,7 +109,7 @@ pub struct Jenkins {
     pub limit: f64,
 }
 
-/// The slider between two slips: where the present stick began, and the sign of the slip before.
+/// The slider between two slips: where the current stick began, and the sign of the slip before.
 struct Stick {
     start: f64,
     x: f64,
@@ -148,7 +235,7 @@ impl PiecewiseLinear for Jenkins {
             }
             last = next;
         }
-        // Only rounding at the very onset of slip leaves a stick open here.
+        // A stick ends here only by rounding at the very onset of slip.
         if stick.start < last.tau {
             self.push_stick(&stick, last.tau, pieces);
         }

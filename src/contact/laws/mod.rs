@@ -1,16 +1,13 @@
-//! The contact laws, one file each.
+//! The contact laws, one file each. The [`registry`] declares and lists them; declared here are the parts of laws
+//! that have files of their own, and the [`iwan`] joint, which is made of Jenkins contacts.
 
-pub mod cubic;
-pub mod friction_2d;
+mod friction_2d_events;
 mod friction_2d_slider;
-pub mod friction_3d;
 mod friction_3d_step;
 mod friction_3d_stuck;
 pub mod iwan;
-pub mod jenkins;
-pub mod polynomial;
-pub mod regularised;
-pub mod table;
-pub mod unilateral;
-pub mod user_law;
+mod polynomial_terms;
+pub mod registry;
 mod user_states;
+
+pub use registry::*;

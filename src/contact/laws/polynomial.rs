@@ -2,53 +2,18 @@
 //!
 //! A polynomial of degree P in motions of H harmonics has harmonics up to P·H, and its tangents up
 //! to (P − 1)·H. With N > (P + 1)·H equidistant samples none of them is mistaken for one of the
-//! force (up to H) or of the tangents (up to 2·H) that are wanted: harmonic balance is exact. See
+//! force (up to H) or of the tangents (up to 2·H) that are needed: harmonic balance is exact. See
 //! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
-use crate::contact::law::{Form, Law, Range, SMALL};
-use crate::contact::memoryless_law::{Memoryless, Samples};
+use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
+use crate::contact::laws::polynomial_terms::{Collector, Factor, Term, Terms, check, power};
+use crate::contact::linearisation::{Range, SMALL};
+use crate::contact::samples::Samples;
 use crate::error::{Result, fail, try_push};
 use std::sync::Arc;
 
-/// Highest exponent of a single motion or velocity.
-pub const HIGHEST_EXPONENT: u32 = 15;
-
-/// One product of powers, as a caller tells it.
-#[derive(Clone, Copy, Debug)]
-pub struct Monomial<'a> {
-    /// Direction i of the force that it belongs to.
-    pub direction: usize,
-    /// Its coefficient.
-    pub coefficient: f64,
-    /// Exponents of the d relative motions; empty for none.
-    pub displacements: &'a [u32],
-    /// Exponents of the d velocities; empty for none.
-    pub velocities: &'a [u32],
-}
-
-/// A power of one variable: 0 .. d are the motions, d .. 2d the velocities.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-struct Factor {
-    variable: usize,
-    power: u32,
-}
-
-/// A product of factors, stored one after the other for all terms.
-#[derive(Clone, Copy, Debug)]
-struct Term {
-    direction: usize,
-    coefficient: f64,
-    first: usize,
-    count: usize,
-    degree: u32,
-}
-
-#[derive(Clone, Debug, Default)]
-struct Terms {
-    terms: Vec<Term>,
-    factors: Vec<Factor>,
-}
+pub use crate::contact::laws::polynomial_terms::{HIGHEST_EXPONENT, Monomial};
 
 /// A polynomial law. Copies share the terms.
 #[derive(Clone, Debug)]
@@ -78,13 +43,13 @@ impl Polynomial {
             }
             collector.add(monomial.direction, monomial.coefficient)?;
         }
-        collector.finish()
+        Self::of(collector)
     }
 
     /// Spring and damper of one motion: f = Σ spring\[k\]·y^(k+1) + Σ damper\[k\]·v^(k+1).
     ///
     /// # Errors
-    /// As [`Self::new`] has them, the monomials counted through springs, then dampers.
+    /// Those of [`Self::new`], the monomials counted through springs, then dampers.
     pub fn scalar(spring: &[f64], damper: &[f64]) -> Result<Self> {
         let mut collector = Collector::new(1)?;
         for (name, variable, coefficients) in [("spring", 0, spring), ("damper", 1, damper)] {
@@ -105,7 +70,7 @@ impl Polynomial {
                 collector.add(0, coefficient)?;
             }
         }
-        collector.finish()
+        Self::of(collector)
     }
 
     /// Stiffness tensors of `directions` = d motions: fᵢ = Σ K1ᵢⱼ xⱼ + Σ K2ᵢⱼₖ xⱼ xₖ + Σ K3ᵢⱼₖₗ xⱼ xₖ xₗ.
@@ -117,8 +82,8 @@ impl Polynomial {
     pub fn tensors(directions: usize, linear: &[f64], quadratic: &[f64], cubic: &[f64]) -> Result<Self> {
         let mut collector = Collector::new(directions)?;
         for (name, rank, tensor) in [("linear", 2, linear), ("quadratic", 3, quadratic), ("cubic", 4, cubic)] {
-            let wanted = directions.checked_pow(rank);
-            if !tensor.is_empty() && wanted != Some(tensor.len()) {
+            let needed = directions.checked_pow(rank);
+            if !tensor.is_empty() && needed != Some(tensor.len()) {
                 return fail!(
                     Dimension,
                     "the {name} stiffness has {} entries, needs {directions}^{rank}",
@@ -151,7 +116,15 @@ impl Polynomial {
                 collector.add(digit(rank - 1), coefficient)?;
             }
         }
-        collector.finish()
+        Self::of(collector)
+    }
+
+    fn of(collector: Collector) -> Result<Self> {
+        Ok(Self {
+            directions: collector.directions(),
+            content: Arc::new(collector.finish()?),
+            length: 1.0,
+        })
     }
 
     /// The law in units of `length` of its present unit: x = length·x̂, f = length·f̂.
@@ -171,9 +144,39 @@ impl Polynomial {
 
     /// Linear stiffness of the force i by the motion j.
     #[must_use]
-    pub fn stiffness_at_small_motion(&self, i: usize, j: usize) -> f64 {
+    pub fn linear_stiffness(&self, i: usize, j: usize) -> f64 {
         let linear = |t: &&Term| t.degree == 1 && t.direction == i && self.content.factors[t.first].variable == j;
         self.content.terms.iter().find(linear).map_or(0.0, |t| t.coefficient)
+    }
+}
+
+impl ContactLaw for Polynomial {
+    fn name(&self) -> &'static str {
+        "polynomial"
+    }
+
+    fn motions(&self) -> Option<usize> {
+        Some(self.directions)
+    }
+
+    fn stiffness_at_small_motion(&self, k: usize, l: usize) -> f64 {
+        self.linear_stiffness(k, l)
+    }
+
+    fn stiffness(&self, _k: usize) -> f64 {
+        0.0
+    }
+
+    fn is_per_area(&self) -> bool {
+        false
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(Arc::new(self.in_units(length)))
+    }
+
+    fn in_time(&self) -> Result<LawInTime> {
+        Ok(LawInTime::smooth(self.law(1.0)?))
     }
 }
 
@@ -190,7 +193,7 @@ impl Law for Polynomial {
         Form::Memoryless(self)
     }
 
-    /// From here on every term of higher degree is small.
+    /// From this scale on every term of higher degree is small.
     fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64 {
         let size = |variable: usize| match variable.checked_sub(self.directions) {
             None => ranges[variable].size(),
@@ -221,8 +224,8 @@ impl Memoryless for Polynomial {
         true
     }
 
-    /// (P + 1)·H + 1, whatever is asked for; at least the 2·H + 1 of a law, if no term is left.
-    fn samples(&self, highest: usize, _asked: usize) -> usize {
+    /// (P + 1)·H + 1, whatever is requested; at least the 2·H + 1 of a law, if no term is left.
+    fn samples(&self, highest: usize, _requested: usize) -> usize {
         (self.degree().max(1) as usize + 1)
             .saturating_mul(highest)
             .saturating_add(1)
@@ -273,137 +276,5 @@ impl Memoryless for Polynomial {
             }
         }
         Ok(())
-    }
-}
-
-/// xⁿ by repeated squaring.
-fn power(x: f64, n: u32) -> f64 {
-    match n {
-        0 => 1.0,
-        1 => x,
-        2 => x * x,
-        3 => x * x * x,
-        n => {
-            let half = power(x, n / 2);
-            if n % 2 == 0 { half * half } else { half * half * x }
-        }
-    }
-}
-
-fn check(directions: usize, monomial: &Monomial<'_>) -> Result<()> {
-    let (x, v) = (monomial.displacements, monomial.velocities);
-    if monomial.direction >= directions {
-        return fail!(
-            Index,
-            "direction = {}, needs one below {directions}",
-            monomial.direction
-        );
-    }
-    if !monomial.coefficient.is_finite() {
-        return fail!(
-            NotFinite,
-            "coefficient = {}, needs a finite number",
-            monomial.coefficient
-        );
-    }
-    for (name, exponents) in [("displacements", x), ("velocities", v)] {
-        if !exponents.is_empty() && exponents.len() != directions {
-            return fail!(
-                Dimension,
-                "{} exponents of {name}, needs {directions} or none",
-                exponents.len()
-            );
-        }
-        if let Some((j, p)) = exponents.iter().enumerate().find(|(_, p)| **p > HIGHEST_EXPONENT) {
-            return fail!(
-                Argument,
-                "exponent {j} of {name} = {p}, needs at most {HIGHEST_EXPONENT}"
-            );
-        }
-    }
-    if x.iter().chain(v).all(|p| *p == 0) {
-        return fail!(
-            Argument,
-            "all exponents are 0; a constant force is an excitation in harmonic 0"
-        );
-    }
-    Ok(())
-}
-
-/// Gathers terms while a polynomial is made.
-struct Collector {
-    directions: usize,
-    content: Terms,
-    /// Factors of the term at hand, by ascending variable.
-    powers: Vec<Factor>,
-}
-
-impl Collector {
-    fn new(directions: usize) -> Result<Self> {
-        if directions == 0 {
-            return fail!(Argument, "polynomial: directions = 0, needs at least 1");
-        }
-        Ok(Self {
-            directions,
-            content: Terms::default(),
-            powers: Vec::new(),
-        })
-    }
-
-    /// Keeps the term at hand.
-    fn add(&mut self, direction: usize, coefficient: f64) -> Result<()> {
-        let term = Term {
-            direction,
-            coefficient,
-            first: self.content.factors.len(),
-            count: self.powers.len(),
-            degree: self.powers.iter().map(|f| f.power).sum(),
-        };
-        for &factor in &self.powers {
-            try_push(&mut self.content.factors, factor, "a polynomial")?;
-        }
-        try_push(&mut self.content.terms, term, "a polynomial")
-    }
-
-    /// Merges terms of equal powers, in order, and leaves out what vanishes.
-    fn finish(self) -> Result<Polynomial> {
-        let Terms { mut terms, factors } = self.content;
-        let of = |t: &Term| &factors[t.first..t.first + t.count];
-        // In place: a stable sort would ask for memory. Equal terms keep their order by `first`.
-        terms.sort_unstable_by(|a, b| {
-            let key = (a.direction, a.degree).cmp(&(b.direction, b.degree));
-            key.then_with(|| of(a).cmp(of(b))).then(a.first.cmp(&b.first))
-        });
-        terms.dedup_by(|next, kept| {
-            let same = next.direction == kept.direction && of(next) == of(kept);
-            if same {
-                kept.coefficient += next.coefficient;
-            }
-            same
-        });
-        terms.retain(|t| t.coefficient != 0.0);
-        if let Some(term) = terms.iter().find(|t| !t.coefficient.is_finite()) {
-            return fail!(
-                NotFinite,
-                "polynomial: the terms of degree {} in direction {} add up to {}, needs a finite number",
-                term.degree,
-                term.direction,
-                term.coefficient
-            );
-        }
-        // The factors of the terms that are left, in their order.
-        let mut content = Terms::default();
-        for term in &terms {
-            let first = content.factors.len();
-            for &factor in of(term) {
-                try_push(&mut content.factors, factor, "a polynomial")?;
-            }
-            try_push(&mut content.terms, Term { first, ..*term }, "a polynomial")?;
-        }
-        Ok(Polynomial {
-            directions: self.directions,
-            content: Arc::new(content),
-            length: 1.0,
-        })
     }
 }

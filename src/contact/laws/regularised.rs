@@ -3,14 +3,86 @@
 //! The law creeps where Coulomb's sticks. Its Fourier coefficients fall off as e^{−nδ} with
 //! sinh δ = π·v₀/(2V) for a motion of one harmonic of velocity V, the distance of the nearest pole
 //! of tanh from the real axis of τ; N samples leave an error of about e^{−(N−H)δ}. The number of
-//! samples hence depends on V/v₀, which only the solution tells.
+//! samples that suffices hence depends on V/v₀, which is known with the solution only.
 
-use crate::contact::law::{Form, Law, Range, SMALL};
-use crate::contact::memoryless_law::{Memoryless, Samples, automatic_samples};
+use crate::contact::constants::{Constants, Role};
+use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
+use crate::contact::linearisation::{Range, SMALL};
+use crate::contact::samples::{Samples, automatic_samples};
 use crate::error::{Result, fail};
+use std::sync::Arc;
 
-/// Finer sampling than a law of unknown form gets, for the steep passage through v = 0.
+/// Finer sampling than that of a law of unknown form, for the steep passage through v = 0.
 const REFINEMENT: usize = 4;
+
+/// Regularised friction of the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct RegularisedContact {
+    slip_limit: f64,
+    preload: f64,
+    velocity: f64,
+}
+
+impl RegularisedContact {
+    pub(super) fn new(constants: &Constants) -> Self {
+        Self {
+            slip_limit: constants.slip_limit(),
+            preload: constants.preload,
+            velocity: constants.velocity,
+        }
+    }
+}
+
+impl ContactLaw for RegularisedContact {
+    fn name(&self) -> &'static str {
+        "regularised friction"
+    }
+
+    fn constants(&self) -> &'static [&'static str] {
+        &["mu", "preload", "velocity"]
+    }
+
+    fn check(&self) -> Result<()> {
+        TanhFriction::new(self.slip_limit, self.velocity).map(|_| ())
+    }
+
+    fn role(&self) -> Role {
+        if self.slip_limit == 0.0 {
+            Role::Inert
+        } else {
+            Role::Active
+        }
+    }
+
+    fn stiffness_at_small_motion(&self, _k: usize, _l: usize) -> f64 {
+        0.0
+    }
+
+    fn stiffness(&self, _k: usize) -> f64 {
+        0.0
+    }
+
+    fn largest_force(&self) -> f64 {
+        self.slip_limit
+    }
+
+    fn has_preload(&self) -> bool {
+        true
+    }
+
+    fn normal_load(&self, _y: f64) -> f64 {
+        self.preload
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        let law = TanhFriction::new(self.slip_limit, self.velocity)?;
+        Ok(Arc::new(law.in_units(length)))
+    }
+
+    fn in_time(&self) -> Result<LawInTime> {
+        Ok(LawInTime::smooth(self.law(1.0)?))
+    }
+}
 
 /// Constants of regularised friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +95,7 @@ pub struct TanhFriction {
 
 impl TanhFriction {
     /// Friction of slip limit `limit` ≥ 0 that reaches 76 % of it (tanh 1) at the velocity `velocity`
-    /// > 0. Unless samples are asked for it takes four times as many as [`automatic_samples`] has.
+    /// > 0. Unless samples are requested it takes four times as many as [`automatic_samples`] has.
     ///
     /// # Errors
     /// `NotFinite` or `Argument`, naming the constant, its value and its range.
@@ -90,8 +162,8 @@ impl Memoryless for TanhFriction {
         true
     }
 
-    fn samples(&self, highest: usize, asked: usize) -> usize {
-        match asked {
+    fn samples(&self, highest: usize, requested: usize) -> usize {
+        match requested {
             0 => automatic_samples(highest).saturating_mul(REFINEMENT),
             n => n,
         }

@@ -6,7 +6,10 @@
 //! are for a unilateral spring, the table of two lines.
 
 use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law, Piece, PiecewiseLinear, Range};
+use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
+use crate::contact::linearisation::Range;
+use crate::contact::piece::Piece;
+use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, crossing};
@@ -79,7 +82,7 @@ impl Table {
                     k + 1
                 );
             }
-            // Points on a line through the origin make one, whatever the division rounds away.
+            // Points on a line through the origin make one, in spite of the rounding of the division.
             let noise = ROUNDING * (f[0].abs().max(f[1].abs()) + slope.abs() * x[near].abs());
             let line = Line {
                 from: if k == 0 { f64::NEG_INFINITY } else { x[0] },
@@ -114,7 +117,7 @@ impl Table {
     /// Stiffness at small motion: the slope at zero displacement, the mean of both where it is that
     /// of a point.
     #[must_use]
-    pub fn stiffness_at_small_motion(&self) -> f64 {
+    pub fn slope_at_rest(&self) -> f64 {
         0.5 * (self.lines[self.line_from(0.0)].slope + self.lines[self.line_below(0.0)].slope)
     }
 
@@ -135,20 +138,20 @@ impl Table {
     }
 
     /// Slope and offset of a line.
-    pub(crate) fn line(&self, number: usize) -> (f64, f64) {
+    fn line(&self, number: usize) -> (f64, f64) {
         let line = &self.lines[number];
         (line.slope, self.scaled(line.offset))
     }
 
     /// Displacement at which a line takes over from the one before; `None` for the first, and beyond the
     /// last.
-    pub(crate) fn level(&self, number: usize) -> Option<f64> {
+    fn level(&self, number: usize) -> Option<f64> {
         let line = self.lines.get(number).filter(|_| number > 0);
         line.map(|line| self.scaled(line.from))
     }
 
     /// Number of the line at x, the later one of two that meet there.
-    pub(crate) fn line_from(&self, x: f64) -> usize {
+    fn line_from(&self, x: f64) -> usize {
         self.lines[1..].partition_point(|line| self.scaled(line.from) <= x)
     }
 
@@ -157,13 +160,13 @@ impl Table {
         self.lines[1..].partition_point(|line| self.scaled(line.from) < x)
     }
 
-    /// A lone piece through the origin says that the contact is at rest, of the stiffness that it has
+    /// A lone piece through the origin means that the contact is at rest, of the stiffness that it has
     /// there. A motion that stays on another line whose continuation meets the origin is not; its
     /// piece is cut in two.
     fn part_from_rest(&self, pieces: &mut Vec<Piece>) {
         let [only] = pieces[..] else { return };
-        let static_force = only.slope.to_bits() == self.stiffness_at_small_motion().to_bits();
-        if only.offset == 0.0 && !static_force {
+        let at_rest_slope = only.slope.to_bits() == self.slope_at_rest().to_bits();
+        if only.offset == 0.0 && !at_rest_slope {
             let middle = (0.5 * (only.start + only.end)).ceil().min(only.end);
             pieces[0].end = middle;
             pieces.push(Piece { start: middle, ..only });
@@ -182,6 +185,36 @@ impl Table {
             anchor: None,
             offset: self.scaled(line.offset),
         });
+    }
+}
+
+impl ContactLaw for Table {
+    fn name(&self) -> &'static str {
+        "table"
+    }
+
+    fn stiffness_at_small_motion(&self, _k: usize, _l: usize) -> f64 {
+        self.slope_at_rest()
+    }
+
+    fn stiffness(&self, _k: usize) -> f64 {
+        self.largest_stiffness()
+    }
+
+    fn is_per_area(&self) -> bool {
+        false
+    }
+
+    fn is_preloaded(&self) -> bool {
+        self.force(0.0) != 0.0
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(Arc::new(self.in_units(length)))
+    }
+
+    fn in_time(&self) -> Result<LawInTime> {
+        Ok(LawInTime::events(self.clone()))
     }
 }
 
@@ -205,7 +238,7 @@ impl Law for Table {
         Form::PiecewiseLinear(self)
     }
 
-    /// From here on the motion stays on the line at rest.
+    /// From this scale on the motion stays on the line at rest.
     fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
         let nearest = self.levels().fold(f64::INFINITY, |near, x| near.min(x.abs()));
         ranges[0].size() / nearest
@@ -286,5 +319,44 @@ impl PiecewiseLinear for Table {
 
     fn at(&self, x: f64) -> Option<(f64, State)> {
         Some((self.force(x), State::Stick))
+    }
+}
+
+/// On one of the lines.
+impl EventLaw for Table {
+    fn begin(&self, at: &Instant, _e: &mut f64) -> (Mode, Option<Mode>) {
+        (Mode::Line(self.line_from(at.motion[0])), None)
+    }
+
+    fn piece(&self, mode: Mode, motion: [f64; 2], _e: f64) -> TimePiece {
+        let Mode::Line(k) = mode else {
+            return TimePiece::default();
+        };
+        let (slope, offset) = self.line(k);
+        TimePiece::line(slope, slope * motion[0] + offset, motion)
+    }
+
+    fn margins(&self, _mode: Mode) -> usize {
+        2
+    }
+
+    /// To the upper and to the lower end of the line; the first and the last line have no end outwards.
+    fn margin(&self, mode: Mode, which: usize, _e: f64, x: &[f64], _y: &[f64], margin: &mut [f64]) {
+        margin.fill(0.0);
+        margin[0] = 1.0;
+        if let Mode::Line(k) = mode {
+            let (number, sign) = if which == 0 { (k + 1, -1.0) } else { (k, 1.0) };
+            if let Some(level) = self.level(number) {
+                margin_of_level(sign, level, x, margin);
+            }
+        }
+    }
+
+    fn leave(&self, mode: Mode, which: usize, _at: &Instant, _e: &mut f64) -> (Mode, Zeros) {
+        match (mode, which) {
+            (Mode::Line(k), 0) => (Mode::Line(k + 1), [0, 1, 0]),
+            (Mode::Line(k), _) => (Mode::Line(k.saturating_sub(1)), [1, 0, 0]),
+            _ => (mode, [0; 3]),
+        }
     }
 }

@@ -6,11 +6,94 @@
 //! stiffness spectrum, F = k·T(S)·X + k·g·ĝ (Petrov & Ewins 2004, doi:10.1115/1.1644557, treat it
 //! as the normal part of a friction contact).
 
+use crate::contact::constants::{Constants, Role};
 use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law, Piece, PiecewiseLinear, Range};
+use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
+use crate::contact::linearisation::Range;
+use crate::contact::piece::Piece;
+use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
+use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, crossing};
 use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// A unilateral spring of the caller.
+#[derive(Clone, Copy, Debug)]
+pub struct UnilateralContact {
+    kn: f64,
+    clearance: f64,
+    load: f64,
+}
+
+impl UnilateralContact {
+    pub(super) fn new(constants: &Constants) -> Self {
+        Self {
+            kn: constants.kn,
+            clearance: constants.clearance(),
+            load: constants.load(),
+        }
+    }
+}
+
+impl ContactLaw for UnilateralContact {
+    fn name(&self) -> &'static str {
+        "unilateral spring"
+    }
+
+    fn constants(&self) -> &'static [&'static str] {
+        &["kn", "preload", "gap"]
+    }
+
+    fn places(&self) -> &'static [usize] {
+        &[2]
+    }
+
+    fn role(&self) -> Role {
+        if self.kn == 0.0 { Role::Inert } else { Role::Active }
+    }
+
+    fn stiffness_at_small_motion(&self, _k: usize, _l: usize) -> f64 {
+        if self.clearance < 0.0 { self.kn } else { 0.0 }
+    }
+
+    fn stiffness(&self, _k: usize) -> f64 {
+        self.kn
+    }
+
+    fn is_spring(&self) -> bool {
+        false
+    }
+
+    fn has_preload(&self) -> bool {
+        true
+    }
+
+    fn is_preloaded(&self) -> bool {
+        self.kn > 0.0 && self.load >= 0.0
+    }
+
+    fn normal_load(&self, y: f64) -> f64 {
+        match self.role() {
+            Role::Active => (self.kn * (-y - self.clearance)).max(0.0),
+            Role::Inert | Role::Spring => 0.0,
+        }
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(Arc::new(Unilateral {
+            stiffness: self.kn,
+            gap: self.clearance / length,
+        }))
+    }
+
+    fn in_time(&self) -> Result<LawInTime> {
+        Ok(LawInTime::events(Unilateral {
+            stiffness: self.kn,
+            gap: self.clearance,
+        }))
+    }
+}
 
 /// Constants of a unilateral spring.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,5 +185,36 @@ impl PiecewiseLinear for Unilateral {
         } else {
             (0.0, State::Open)
         })
+    }
+}
+
+/// Open or closed, f = k·(x + g) where that is negative.
+impl EventLaw for Unilateral {
+    fn begin(&self, at: &Instant, _e: &mut f64) -> (Mode, Option<Mode>) {
+        let closed = at.motion[0] < -self.gap;
+        (if closed { Mode::Closed } else { Mode::Open }, None)
+    }
+
+    fn piece(&self, mode: Mode, motion: [f64; 2], _e: f64) -> TimePiece {
+        if mode == Mode::Closed {
+            TimePiece::line(self.stiffness, self.stiffness * (motion[0] + self.gap), motion)
+        } else {
+            TimePiece::line(0.0, 0.0, motion)
+        }
+    }
+
+    fn margins(&self, _mode: Mode) -> usize {
+        1
+    }
+
+    /// The distance while it is open, the compression while closed.
+    fn margin(&self, mode: Mode, _which: usize, _e: f64, x: &[f64], _y: &[f64], margin: &mut [f64]) {
+        let sign = if mode == Mode::Closed { -1.0 } else { 1.0 };
+        margin_of_level(sign, -self.gap, x, margin);
+    }
+
+    fn leave(&self, mode: Mode, _which: usize, _at: &Instant, _e: &mut f64) -> (Mode, Zeros) {
+        let after = if mode == Mode::Closed { Mode::Open } else { Mode::Closed };
+        (after, [1, 0, 0])
     }
 }

@@ -1,14 +1,15 @@
-//! A law of the caller: a callback that is asked for one period at a time, or by integration in time for
-//! one time.
+//! A law of the caller: a callback that evaluates one period at a time, or one time for an integration in
+//! time.
 //!
-//! A force without memory is told sample by sample; one with internal states is marched over them, and
-//! tells the derivatives of its steps as well. It sees motions and velocities in the caller's units
-//! and answers with forces and tangents. What it returns is checked: a code other than 0, and numbers
-//! that are not finite, become errors that keep the code, name the place, and tell whether another
-//! motion may do.
+//! A force without memory is evaluated sample by sample; one with internal states is marched over them, and
+//! returns the derivatives of its steps as well. It receives motions and velocities in the caller's units
+//! and returns forces and tangents. Its results are checked: a code other than 0, and numbers
+//! that are not finite, become errors that keep the code, name the place, and are recoverable where another
+//! motion may succeed.
 
-use crate::contact::law::{Form, Law, Range};
-use crate::contact::memoryless_law::{Memoryless, Samples, automatic_samples};
+use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
+use crate::contact::linearisation::Range;
+use crate::contact::samples::{Samples, automatic_samples};
 use crate::error::{Error, Result, Status, fail};
 use std::fmt;
 use std::sync::Arc;
@@ -35,15 +36,15 @@ pub struct Call<'a> {
     pub directions: usize,
     /// Relative motions, N × d.
     pub u: &'a [f64],
-    /// Their velocities du/dt, N × d; empty for a force that does not feel them.
+    /// Their velocities du/dt, N × d; empty for a force without velocities.
     pub v: &'a [f64],
     /// Forces, N × d, each to be written: they are NaN before the call.
     pub f: &'a mut [f64],
     /// ∂fᵢ/∂uⱼ at the same time and given states, N × d × d, the row i in one piece; 0 before the call.
     pub df_du: &'a mut [f64],
-    /// ∂fᵢ/∂vⱼ likewise; empty for a force that does not feel the velocity.
+    /// ∂fᵢ/∂vⱼ likewise; empty for a force without velocities.
     pub df_dv: &'a mut [f64],
-    /// What belongs to internal states; empty without them.
+    /// Data of the internal states; empty without them.
     pub states: States<'a>,
 }
 
@@ -64,7 +65,7 @@ pub struct States<'a> {
     pub dz_du_before: &'a mut [f64],
     /// ∂zⱼ/∂uⱼ, N × s × d.
     pub dz_du: &'a mut [f64],
-    /// ∂zⱼ/∂vⱼ₋₁, N × s × d; empty for a force that does not feel the velocity.
+    /// ∂zⱼ/∂vⱼ₋₁, N × s × d; empty for a force without velocities.
     pub dz_dv_before: &'a mut [f64],
     /// ∂zⱼ/∂vⱼ, likewise.
     pub dz_dv: &'a mut [f64],
@@ -85,7 +86,7 @@ pub struct User {
     pub states: usize,
     /// Whether the force depends on velocities.
     pub velocity: bool,
-    /// Whether f(−u, −v) = −f(u, v), on the caller's word: then even harmonics may be left out.
+    /// Whether f(−u, −v) = −f(u, v), as the caller states: then even harmonics may be left out.
     pub odd: bool,
     /// The solver's unit of length in the caller's; forces have the same.
     pub length: f64,
@@ -122,13 +123,13 @@ impl User {
         }
     }
 
-    /// The motions `own` in the caller's units, from those of the solver. No caller is asked about a motion
-    /// that is no number.
-    pub(super) fn take_motion(&self, u: &[f64], v: &[f64], own: &mut [f64]) -> Result<()> {
+    /// The motions `own` in the caller's units, from those of the solver. The callback is never called with a
+    /// motion that is not a number.
+    pub(crate) fn take_motion(&self, u: &[f64], v: &[f64], own: &mut [f64]) -> Result<()> {
         for (own, x) in own.iter_mut().zip(u.iter().chain(v)) {
             *own = self.length * x;
             if !own.is_finite() {
-                let message = format_args!("a motion that the force callback is asked about is {own}");
+                let message = format_args!("a motion of the force callback is {own}, needs a finite number");
                 return Err(Error::new(Status::NotFinite, message).recoverable());
             }
         }
@@ -136,7 +137,7 @@ impl User {
     }
 
     /// Calls the caller and checks its code.
-    pub(super) fn ask(&self, call: &mut Call<'_>) -> Result<()> {
+    pub(crate) fn ask(&self, call: &mut Call<'_>) -> Result<()> {
         let code = self.force.evaluate(call);
         if code == 0 {
             return Ok(());
@@ -150,8 +151,8 @@ impl User {
         Err(Error::from_callback(code, message))
     }
 
-    /// Takes the forces over into the solver's units.
-    pub(super) fn take_forces(&self, f: &mut [f64]) -> Result<()> {
+    /// Converts the forces to the solver's units.
+    pub(crate) fn take_forces(&self, f: &mut [f64]) -> Result<()> {
         check_filled("f", f, self.directions)?;
         for f in &mut *f {
             *f /= self.length;
@@ -159,10 +160,9 @@ impl User {
         check_filled("f", f, self.directions)
     }
 
-    /// Samples per period for motions up to the reduced harmonic `highest`; what the force was given for
-    /// itself goes before what was asked of all.
-    pub(super) fn samples_for(&self, asked: usize, automatic: usize) -> usize {
-        match (self.samples, asked) {
+    /// Samples per period: those of this force alone, else those requested of all, else `automatic`.
+    pub(crate) fn samples_for(&self, requested: usize, automatic: usize) -> usize {
+        match (self.samples, requested) {
             (0, 0) => automatic,
             (0, n) | (n, _) => n,
         }
@@ -171,7 +171,7 @@ impl User {
 
 /// Refuses values, `width` per sample, that the caller had to write and that are not finite. Another motion
 /// may do: where a trial step was too long, forces overflow.
-pub(super) fn check_filled(name: &str, values: &[f64], width: usize) -> Result<()> {
+pub(crate) fn check_filled(name: &str, values: &[f64], width: usize) -> Result<()> {
     let Some(at) = values.iter().position(|x| !x.is_finite()) else {
         return Ok(());
     };
@@ -185,7 +185,7 @@ pub(super) fn check_filled(name: &str, values: &[f64], width: usize) -> Result<(
 }
 
 /// Refuses derivatives, blocks of some `rows` and `columns` per sample, that are not finite.
-pub(super) fn check_block(name: &str, values: &[f64], (rows, columns): (usize, usize)) -> Result<()> {
+pub(crate) fn check_block(name: &str, values: &[f64], (rows, columns): (usize, usize)) -> Result<()> {
     let Some(at) = values.iter().position(|x| !x.is_finite()) else {
         return Ok(());
     };
@@ -212,8 +212,42 @@ impl fmt::Debug for User {
     }
 }
 
-/// A law of which nothing is known is taken for linear at motions this many times smaller.
+/// A law of unknown form counts as linear at motions this many times smaller.
 const FAR: f64 = 1e6;
+
+impl ContactLaw for User {
+    fn name(&self) -> &'static str {
+        "law of the caller"
+    }
+
+    fn motions(&self) -> Option<usize> {
+        Some(self.directions)
+    }
+
+    /// Not known: the callback is not called.
+    fn stiffness_at_small_motion(&self, _k: usize, _l: usize) -> f64 {
+        0.0
+    }
+
+    fn stiffness(&self, _k: usize) -> f64 {
+        0.0
+    }
+
+    fn is_per_area(&self) -> bool {
+        false
+    }
+
+    fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
+        Ok(Arc::new(self.in_units(length)))
+    }
+
+    fn in_time(&self) -> Result<LawInTime> {
+        if self.states > 0 {
+            return fail!(Unsupported, "a law of the caller with states is not integrated in time");
+        }
+        Ok(LawInTime::smooth(self.law(1.0)?))
+    }
+}
 
 impl Law for User {
     fn directions(&self) -> usize {
@@ -246,13 +280,13 @@ impl Memoryless for User {
         self.velocity
     }
 
-    /// A callback is always asked for a whole period.
+    /// A callback always evaluates a whole period.
     fn half_period_suffices(&self) -> bool {
         false
     }
 
-    fn samples(&self, highest: usize, asked: usize) -> usize {
-        self.samples_for(asked, automatic_samples(highest))
+    fn samples(&self, highest: usize, requested: usize) -> usize {
+        self.samples_for(requested, automatic_samples(highest))
     }
 
     fn evaluate(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], out: Samples<'_>) -> Result<()> {

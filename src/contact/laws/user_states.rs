@@ -1,11 +1,12 @@
 //! A law of the caller with internal states: one callback per march.
 //!
-//! States are the caller's in whatever units. Motions x = L·x̂ and forces f = L·f̂ change their unit by the
+//! States have the caller's units. Motions x = L·x̂ and forces f = L·f̂ change their unit by the
 //! same length L, so that ∂f/∂u and ∂f/∂v stay, ∂z/∂û = L·∂z/∂u, and ∂f̂/∂z = ∂f/∂z / L.
 
-use crate::contact::hysteretic_law::{Hysteretic, March};
+use crate::contact::law::Hysteretic;
 use crate::contact::laws::user_law::{Call, States, User, check_block, check_filled};
-use crate::contact::memoryless_law::automatic_samples;
+use crate::contact::march::March;
+use crate::contact::samples::automatic_samples;
 use crate::error::Result;
 
 /// Finer sampling than a law without memory gets: steps of states are of second order at best.
@@ -20,8 +21,8 @@ impl Hysteretic for User {
         self.velocity
     }
 
-    fn samples(&self, highest: usize, asked: usize) -> usize {
-        self.samples_for(asked, automatic_samples(highest).saturating_mul(REFINEMENT))
+    fn samples(&self, highest: usize, requested: usize) -> usize {
+        self.samples_for(requested, automatic_samples(highest).saturating_mul(REFINEMENT))
     }
 
     fn march(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {

@@ -1,7 +1,7 @@
 //! What the laws look like at other motions and other samples: where they are linear, and how much
 //! their sampling matters.
 
-use crate::contact::law::Range;
+use crate::contact::linearisation::Range;
 use crate::error::{Error, Result, try_push};
 use crate::problem::contact_forces::{ContactForces, gather};
 

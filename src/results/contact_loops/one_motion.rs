@@ -1,14 +1,15 @@
 //! Laws on one relative motion, exactly: their pieces from event to event, or their closed form.
 //!
 //! A slider stores f²/2k, the same at the begin and the end of every stick between slips, so that its
-//! work per cycle is what the slips take: Σ f·Δx, a sum of positive terms.
+//! work per cycle is that of the slips: Σ f·Δx, a sum of positive terms.
 
 use crate::contact::contact_state::State;
-use crate::contact::law::{Form, Law, Piece};
+use crate::contact::law::{Form, Law};
+use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{TurningPoints, jet};
-use crate::results::contact_loops::{Account, CONTEXT, extrema};
+use crate::results::contact_loops::period::{Account, CONTEXT, extrema};
 use std::f64::consts::{PI, TAU};
 
 /// A law of the form `PiecewiseLinear` or `Spectral` under a packed motion.
@@ -55,7 +56,7 @@ impl<'a> ScalarOrbit<'a> {
         let known = match self.law.form() {
             Form::PiecewiseLinear(law) => law.at(x),
             Form::Spectral(law) => Some((law.at(x), State::Stick)),
-            Form::Memoryless(_) | Form::Coupled(_) | Form::Hysteretic(_) => None,
+            Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::Hysteretic(_) => None,
         };
         known.unwrap_or_else(|| self.remembered(tau, x))
     }
@@ -80,11 +81,11 @@ impl<'a> ScalarOrbit<'a> {
     fn state(&self, piece: &Piece) -> State {
         match self.law.form() {
             Form::PiecewiseLinear(law) => law.state(piece),
-            Form::Spectral(_) | Form::Memoryless(_) | Form::Coupled(_) | Form::Hysteretic(_) => State::Stick,
+            Form::Spectral(_) | Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::Hysteretic(_) => State::Stick,
         }
     }
 
-    /// Length of what the pieces cover.
+    /// Length of the time that the pieces cover.
     fn turn(&self) -> f64 {
         if self.set.is_odd() { PI } else { TAU }
     }

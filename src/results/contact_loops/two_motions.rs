@@ -2,19 +2,21 @@
 //! event, its normal force from the normal motion at the time.
 
 use crate::contact::contact_state::State;
-use crate::contact::laws::friction_2d::{CoupledPiece, Friction2d, Scratch, piece_lists};
+use crate::contact::coupled_search::{CoupledSearch, piece_lists};
+use crate::contact::law::VaryingNormalLoad;
+use crate::contact::piece::CoupledPiece;
 use crate::error::{Result, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::jet;
-use crate::results::contact_loops::CONTEXT;
+use crate::results::contact_loops::period::CONTEXT;
 use std::f64::consts::TAU;
 
 /// The law under a packed motion, x before y.
 pub struct CoupledOrbit<'a> {
-    law: &'a Friction2d,
+    law: &'a dyn VaryingNormalLoad,
     /// Tangential pieces; none without friction.
     pieces: Vec<CoupledPiece>,
-    /// What each piece remembers: at_x·x(r) + at_y·y(r) + constant.
+    /// Remembered part of each piece: at_x·x(r) + at_y·y(r) + constant.
     kept: Vec<f64>,
 }
 
@@ -23,9 +25,9 @@ impl<'a> CoupledOrbit<'a> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(set: &HarmonicSet, motion: &[f64], law: &'a Friction2d) -> Result<Self> {
+    pub fn new(set: &HarmonicSet, motion: &[f64], law: &'a dyn VaryingNormalLoad) -> Result<Self> {
         let (mut normal, mut pieces) = piece_lists(set)?;
-        law.pieces(set, motion, &mut Scratch::new(set)?, &mut normal, &mut pieces);
+        law.coupled_pieces(set, motion, &mut CoupledSearch::new(set)?, &mut normal, &mut pieces);
         let (x, y) = motion.split_at(set.packed_len());
         let mut kept = Vec::new();
         for piece in &pieces {
@@ -40,7 +42,7 @@ impl<'a> CoupledOrbit<'a> {
     /// Tangential and normal force, and the state, at τ in [0, 2π), where the motions are x and y.
     #[must_use]
     pub fn at(&self, tau: f64, [x, y]: [f64; 2]) -> ([f64; 2], State) {
-        let load = self.law.load - self.law.kn * y;
+        let load = self.law.load_at(y);
         let Some(first) = self.pieces.first() else {
             return if load > 0.0 {
                 ([0.0, -load], State::Stick)

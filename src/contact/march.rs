@@ -1,70 +1,19 @@
-//! Laws with states that are marched over equidistant samples of a period.
-//!
-//! A law of this kind knows no pieces: it gets the relative motions at all samples in one call and
-//! steps its states zⱼ = Z(zⱼ₋₁, motion at j − 1 and j) from sample to sample, telling the derivative
-//! of every step. What the states are at the start of the period, how they make it periodic and
-//! what that means for harmonics is the matter of [`crate::aft::hysteretic`].
+//! Data of a march: forces, states and derivatives of a law with states at equidistant samples of a period,
+//! and the state of a law that sticks through the period.
 
 use crate::contact::contact_state::State;
-use crate::contact::law::Law;
-use crate::contact::laws::friction_2d::Friction2d;
 use crate::error::{Result, try_vec};
 
-/// A law with internal states over d directions. Where nothing moves and nothing has moved before,
-/// the states are zero.
-pub trait Hysteretic: Law {
-    /// Number s of states.
-    fn states(&self) -> usize;
-
-    /// Whether velocities enter; if not, they need not be given.
-    fn uses_velocity(&self) -> bool;
-
-    /// Whether a march in which nothing slips and nothing is open has the force of a linear spring.
-    fn sticks(&self) -> bool {
-        false
-    }
-
-    /// Whether the law can stick through the period of the motion `u`, samples × d row-major. Where
-    /// it can, any of many states may be periodic: the one that counts is then in `out`, and does not jump as the
-    /// motion changes. A start that is nearly periodic is in `out` likewise; all of its first `samples`
-    /// blocks are written.
-    fn rest(&self, samples: usize, u: &[f64], out: &mut StuckState) -> Sticking {
-        let _ = (samples, u, out);
-        Sticking::Unknown
-    }
-
-    /// Whether the force along the last motion, a normal one, depends on that motion alone as that of this
-    /// friction in one direction does: then its harmonics are exact, from located closings and openings.
-    fn normal(&self) -> Option<Friction2d> {
-        None
-    }
-
-    /// Samples per period for motions up to the reduced harmonic `highest`, where the caller asked for
-    /// `asked`, or with 0 for what suits the law.
-    fn samples(&self, highest: usize, asked: usize) -> usize;
-
-    /// Marches once over `samples` equidistant times of the period 2π/`omega` and writes every entry
-    /// of the first `samples` blocks of `out`.
-    ///
-    /// `u` and `v` hold the relative motions and their velocities, samples × d row-major; `v` is empty
-    /// where [`Self::uses_velocity`] denies it. `z0` are the states before sample 0: those of the last
-    /// sample of the period before, whose motion is that of the last sample.
-    ///
-    /// # Errors
-    /// Those of the law.
-    fn march(&self, omega: f64, samples: usize, u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()>;
-}
-
-/// Whether a law sticks through the period.
+/// Knowledge of a law about sticking through a period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sticking {
-    /// The law does not know; what a march from rest leads to counts.
+    /// Unknown to the law; the result of a march from rest counts.
     Unknown,
-    /// It does.
+    /// It sticks in a known state.
     Here,
-    /// It slips, which makes it forget, so that it has one periodic state; not far from a known one.
+    /// It slips, so that it has one periodic state; that is near a known one.
     Nearly,
-    /// Likewise, and nothing is known of the state.
+    /// It slips, and nothing is known of its one periodic state.
     Nowhere,
 }
 
@@ -94,7 +43,7 @@ impl StuckState {
     }
 }
 
-/// What a march gives at each sample j: force, states, and the derivatives of the step that led to
+/// Results of a march at each sample j: force, states, and the derivatives of the step that led to
 /// it. Blocks are row-major and follow each other.
 #[derive(Clone, Debug)]
 pub struct March {
@@ -129,7 +78,7 @@ pub struct March {
     pub slip: Vec<f64>,
     /// Share of the step before each sample that is spent open.
     pub open: Vec<f64>,
-    /// What the contact does at each sample; a law without states in this sense always sticks.
+    /// State of the contact at each sample; a law without stick and slip always sticks.
     pub state: Vec<State>,
     /// Memory for the law's own use, 2·d per sample.
     pub scratch: Vec<f64>,
@@ -164,7 +113,7 @@ impl March {
         })
     }
 
-    /// Sets the first `samples` blocks to zero, and to sticking; a law then writes what is not so.
+    /// Sets the first `samples` blocks to zero, and to sticking; a law then writes the entries that differ.
     pub fn clear(&mut self, samples: usize) {
         let (d, s) = (self.directions, self.states);
         for (values, size) in [

@@ -6,12 +6,12 @@
 //! the sign σ lasts while the slider moves that way, σ·kt·x′ − μN′ ≥ 0 with N′ = −kn·y′. At closing f begins
 //! from zero, sticking if and only if kt·|x′| ≤ μ·|N′|: the limit then grows faster than the force.
 //!
-//! Sensitivities follow the slider. δw = 0 while it sticks. In slip and while open the motion tells where it
-//! is, δw = δx + a·δy with a = σ·μkn/kt and a = 0. A closing at the time r leaves it at w = x(r); y(r) being given,
+//! Sensitivities follow the slider. δw = 0 while it sticks. In slip and while open its place follows from the
+//! motion, δw = δx + a·δy with a = σ·μkn/kt and a = 0. A closing at the time r leaves it at w = x(r); with y(r) given
 //! the time moves by δr = −δy/y′, so that a = −x′/y′ (the rate of w jumps there, unlike that of the motion).
 
-use crate::contact::Contact;
-use crate::time_integration::contacts_in_time::{Events, Instant, Mode, Piece, Zeros};
+use crate::contact::law::{EventLaw, SliderLaw};
+use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros};
 
 /// Constants of a slider.
 #[derive(Clone, Copy, Debug)]
@@ -20,7 +20,7 @@ pub(super) struct Slider {
     kt: f64,
     /// Half the play at y = 0, μn₀/kt; negative with a gap.
     play: f64,
-    /// What y takes of it, μkn/kt.
+    /// Decrease of the play by y, μkn/kt.
     fall: f64,
     /// kn; 0 for a constant load.
     kn: f64,
@@ -30,24 +30,24 @@ pub(super) struct Slider {
 
 impl Slider {
     /// Under the constant load of a Jenkins contact.
-    pub fn jenkins(c: &Contact) -> Self {
+    pub(super) fn under_constant_load(kt: f64, slip_limit: f64) -> Self {
         Self {
-            kt: c.kt,
-            play: c.slip_limit() / c.kt,
+            kt,
+            play: slip_limit / kt,
             fall: 0.0,
             kn: 0.0,
             opening: f64::INFINITY,
         }
     }
 
-    /// Under a load that varies.
-    pub fn friction(c: &Contact) -> Self {
+    /// Under a load that varies, n₀ − kn·y.
+    pub(super) fn under_varying_load(kt: f64, kn: f64, mu: f64, load: f64) -> Self {
         Self {
-            kt: c.kt,
-            play: c.mu * c.load() / c.kt,
-            fall: c.mu * c.kn / c.kt,
-            kn: c.kn,
-            opening: c.load() / c.kn,
+            kt,
+            play: mu * load / kt,
+            fall: mu * kn / kt,
+            kn,
+            opening: load / kn,
         }
     }
 
@@ -64,15 +64,15 @@ impl Slider {
     fn speed(&self, sign: f64, rate: [f64; 2]) -> f64 {
         sign * rate[0] + self.fall * rate[1]
     }
+}
 
-    /// The slider after any motion that ends at x and y, from w: the play operator.
-    pub fn drag(&self, [x, y]: [f64; 2], w: f64) -> f64 {
+impl SliderLaw for Slider {
+    fn drag(&self, [x, y]: [f64; 2], w: f64) -> f64 {
         let range = self.range(y);
         w.max(x - range).min(x + range)
     }
 
-    /// The stretch after x has grown by `growth` to where y is, within a piece.
-    pub fn stretch(&self, mode: Mode, growth: f64, y: f64, e: &mut f64) {
+    fn stretch(&self, mode: Mode, growth: f64, y: f64, e: &mut f64) {
         match mode {
             Mode::Stick => *e += growth,
             Mode::Slip(sign) => *e = sign * self.range(y),
@@ -80,13 +80,7 @@ impl Slider {
         }
     }
 
-    /// Whether the slider moves in a mode.
-    pub fn moves(mode: Mode) -> bool {
-        mode != Mode::Stick
-    }
-
-    /// The a of δw = δx + a·δy at the end of a mode in which the slider moves; `after`: the next mode.
-    pub fn follows(&self, mode: Mode, after: Mode, rate: [f64; 2]) -> f64 {
+    fn follows(&self, mode: Mode, after: Mode, rate: [f64; 2]) -> f64 {
         match (mode, after) {
             (Mode::Slip(sign), _) => sign * self.fall,
             (Mode::Open, Mode::Stick) if rate[1] != 0.0 => -rate[0] / rate[1],
@@ -95,7 +89,7 @@ impl Slider {
     }
 }
 
-impl Events for Slider {
+impl EventLaw for Slider {
     fn begin(&self, at: &Instant, e: &mut f64) -> (Mode, Option<Mode>) {
         let [_, y] = at.motion;
         if y >= self.opening && (y > self.opening || at.rate[1] >= 0.0) {
@@ -103,7 +97,7 @@ impl Events for Slider {
             return (Mode::Open, Some(Mode::Open));
         }
         let range = self.range(y);
-        // At the time of closing both limits are here, and the motion tells the way.
+        // At the time of closing both limits are zero, and the motion gives the sign.
         let sign = if range == 0.0 { at.rate[0] } else { *e }.signum();
         let (at_limit, beyond) = (e.abs() >= range, e.abs() > range);
         if at_limit {
@@ -117,10 +111,10 @@ impl Events for Slider {
         }
     }
 
-    fn piece(&self, mode: Mode, motion: [f64; 2], e: f64) -> Piece {
-        let mut piece = Piece {
+    fn piece(&self, mode: Mode, motion: [f64; 2], e: f64) -> TimePiece {
+        let mut piece = TimePiece {
             origin: motion,
-            ..Piece::default()
+            ..TimePiece::default()
         };
         if mode == Mode::Open {
             return piece;
@@ -204,5 +198,9 @@ impl Events for Slider {
                 (Mode::Open, [1, 0, 0])
             }
         }
+    }
+
+    fn slider(&self) -> Option<&dyn SliderLaw> {
+        Some(self)
     }
 }

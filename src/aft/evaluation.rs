@@ -1,0 +1,77 @@
+//! The result of evaluating a law: harmonics of its force, their Jacobian, and shares of the period.
+
+use crate::contact::contact_state::State;
+use crate::error::{Result, try_vec};
+use crate::fourier::HarmonicSet;
+
+/// Harmonics of a contact force and their derivatives, all in packed form, one direction of the law
+/// after the other.
+#[derive(Clone, Debug)]
+pub struct Evaluation {
+    /// Directions d of the relative motion; m is the packed length of one signal.
+    pub directions: usize,
+    /// F, d·m numbers.
+    pub force: Vec<f64>,
+    /// ∂F/∂X, (d·m)², column-major.
+    pub jacobian: Vec<f64>,
+    /// F − ∂F/∂X · X, the derivative by ln s of s·F(X/s), the law at a motion s times smaller.
+    pub offset: Vec<f64>,
+    /// ∂F/∂ω at fixed X; zero unless the law depends on velocities.
+    pub by_omega: Vec<f64>,
+    /// Share of the period in slip, 0 for a stuck contact.
+    pub slip_fraction: f64,
+    /// Share of the period in which the contact is open.
+    pub open_fraction: f64,
+    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed
+    /// throughout, where the normal load varies). Never so for a smooth law.
+    pub stuck: bool,
+}
+
+impl Evaluation {
+    /// Memory for the signals of `set` in a number of directions.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet, directions: usize) -> Result<Self> {
+        let m = set.packed_len().saturating_mul(directions);
+        Ok(Self {
+            directions,
+            force: try_vec(m, 0.0, "a contact force")?,
+            jacobian: try_vec(m.saturating_mul(m), 0.0, "a contact Jacobian")?,
+            offset: try_vec(m, 0.0, "a contact force")?,
+            by_omega: try_vec(m, 0.0, "a contact force")?,
+            slip_fraction: 0.0,
+            open_fraction: 0.0,
+            stuck: false,
+        })
+    }
+
+    /// Adds a share of the period in a state.
+    pub(super) fn count(&mut self, state: State, share: f64) {
+        match state {
+            State::Stick => {}
+            State::Slip => self.slip_fraction += share,
+            State::Open => self.open_fraction += share,
+        }
+    }
+
+    /// Clears the results of the last evaluation.
+    pub(super) fn clear(&mut self) {
+        self.jacobian.fill(0.0);
+        self.clear_forces();
+    }
+
+    /// The same, but for the Jacobian.
+    pub(super) fn clear_forces(&mut self) {
+        self.offset.fill(0.0);
+        self.by_omega.fill(0.0);
+        self.slip_fraction = 0.0;
+        self.open_fraction = 0.0;
+        self.stuck = false;
+    }
+}
+
+/// Whether a share of the period is the whole period, but for rounding.
+pub(super) fn is_whole(share: f64) -> bool {
+    share > 1.0 - 1e-12
+}

@@ -1,0 +1,203 @@
+//! The evaluator of laws: selects the way of evaluation by the form of the law.
+
+use crate::aft::evaluation::Evaluation;
+use crate::aft::hysteretic::HystereticEvaluator;
+use crate::aft::jacobian_assembly::Assembly;
+use crate::aft::memoryless::MemorylessEvaluator;
+use crate::aft::piecewise_exact::Exact;
+use crate::aft::piecewise_sampled::Sampled;
+use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
+use crate::contact::law::{Form, Law};
+use crate::error::{Result, fail, try_push};
+use crate::fourier::HarmonicSet;
+
+/// Ways of evaluating laws, with their tables.
+pub struct Evaluator {
+    /// Laws on one relative motion.
+    scalar: Scalar,
+    smooth: Assembly,
+    /// Friction under a varying normal load.
+    varying_load: Option<Box<VaryingNormalLoadEvaluator>>,
+    /// Laws with states, by their directions, states and samples.
+    hysteretic: Vec<HystereticEvaluator>,
+    /// Laws without memory, by their directions and samples.
+    memoryless: Vec<MemorylessEvaluator>,
+    sampling: Sampling,
+}
+
+/// Numbers of samples for laws without exact events.
+#[derive(Clone, Copy)]
+struct Sampling {
+    /// Samples requested; 0 for the number that suits the law.
+    requested: usize,
+    /// Whether half of them are taken, or twice as many where half are too few.
+    other: bool,
+}
+
+impl Sampling {
+    fn of(self, samples: usize, highest: usize) -> usize {
+        match samples / 2 {
+            _ if !self.other => samples,
+            half if half > 2 * highest => half,
+            _ => samples.saturating_mul(2),
+        }
+    }
+}
+
+/// Way of evaluating laws on one relative motion.
+enum Scalar {
+    /// Events located, integrals in closed form.
+    Exact(Box<Exact>),
+    /// Equidistant samples.
+    Sampled(Box<Sampled>),
+}
+
+impl Evaluator {
+    /// Tables for motions of `set` under `laws`; `samples` = 0 locates events exactly where the law has
+    /// them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        Self::with(
+            set,
+            Sampling {
+                requested: samples,
+                other: false,
+            },
+            laws,
+        )
+    }
+
+    /// The same with half as many samples, or twice as many where half are too few: the reference for the
+    /// sampling error of [`Self::new`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn otherwise<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        Self::with(
+            set,
+            Sampling {
+                requested: samples,
+                other: true,
+            },
+            laws,
+        )
+    }
+
+    fn with<'l>(set: &HarmonicSet, sampling: Sampling, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        let highest = set.highest_reduced();
+        let mut memoryless: Vec<MemorylessEvaluator> = Vec::new();
+        let mut most_pieces = 0;
+        let mut varying_load = None;
+        let mut hysteretic: Vec<HystereticEvaluator> = Vec::new();
+        for law in laws {
+            match law.form() {
+                Form::PiecewiseLinear(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
+                Form::VaryingNormalLoad(_) if varying_load.is_none() => {
+                    varying_load = Some(Box::new(VaryingNormalLoadEvaluator::new(set)?));
+                }
+                Form::VaryingNormalLoad(_) | Form::Spectral(_) => {}
+                Form::Hysteretic(law) => {
+                    let requested = sampling.of(law.samples(highest, sampling.requested), highest);
+                    if !hysteretic.iter().any(|way| way.suits(law, requested)) {
+                        let way = HystereticEvaluator::new(set, law, requested)?;
+                        try_push(&mut hysteretic, way, "the contact laws")?;
+                    }
+                }
+                Form::Memoryless(law) => {
+                    let requested = sampling.of(law.samples(highest, sampling.requested), highest);
+                    if !memoryless.iter().any(|way| way.suits(law, requested)) {
+                        let way = MemorylessEvaluator::new(set, law, requested)?;
+                        try_push(&mut memoryless, way, "the contact laws")?;
+                    }
+                }
+            }
+        }
+        Ok(Self {
+            scalar: if sampling.requested == 0 {
+                Scalar::Exact(Box::new(Exact::new(set, most_pieces)?))
+            } else {
+                let samples = sampling.of(sampling.requested, highest);
+                Scalar::Sampled(Box::new(Sampled::new(set, samples)?))
+            },
+            smooth: Assembly::new(set)?,
+            varying_load,
+            hysteretic,
+            memoryless,
+            sampling,
+        })
+    }
+
+    /// Finds the turning points, or samples, of the packed motion of one relative coordinate, which serve every
+    /// law on this coordinate alone.
+    pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
+        match &mut self.scalar {
+            Scalar::Exact(way) => way.prepare(set, motion),
+            Scalar::Sampled(way) => way.prepare(set, motion),
+        }
+    }
+
+    /// Force and Jacobian of `law` at packed motions, one direction after the other, and an angular
+    /// frequency. A law of one direction needs its motion prepared.
+    ///
+    /// # Errors
+    /// Those of callbacks.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn Law,
+        set: &HarmonicSet,
+        motion: &[f64],
+        omega: f64,
+        out: &mut Evaluation,
+    ) -> Result<()> {
+        match (law.form(), &mut self.scalar) {
+            (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
+            (Form::PiecewiseLinear(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
+            (Form::PiecewiseLinear(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
+            (Form::VaryingNormalLoad(law), _) => {
+                let Some(way) = &mut self.varying_load else {
+                    return fail!(Internal, "no memory for the pieces of a contact law");
+                };
+                way.evaluate(law, set, motion, out);
+            }
+            (Form::Hysteretic(law), _) => {
+                let highest = set.highest_reduced();
+                let requested = self.sampling.of(law.samples(highest, self.sampling.requested), highest);
+                let Some(way) = self.hysteretic.iter_mut().find(|way| way.suits(law, requested)) else {
+                    return fail!(Internal, "no memory for the march of a contact law");
+                };
+                return way.evaluate(law, omega, motion, out);
+            }
+            (Form::Memoryless(law), _) => {
+                let highest = set.highest_reduced();
+                let requested = self.sampling.of(law.samples(highest, self.sampling.requested), highest);
+                let Some(way) = self.memoryless.iter_mut().find(|way| way.suits(law, requested)) else {
+                    return fail!(Internal, "no memory for the samples of a contact law");
+                };
+                return way.evaluate(law, set, omega, motion, out);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether sampling leaves an error in the force of `law`.
+    #[must_use]
+    pub fn samples(&self, law: &dyn Law) -> bool {
+        match law.form() {
+            Form::PiecewiseLinear(_) => self.sampling.requested > 0,
+            Form::Spectral(_) | Form::VaryingNormalLoad(_) => false,
+            Form::Hysteretic(_) => true,
+            Form::Memoryless(law) => !law.is_alias_free(),
+        }
+    }
+
+    /// Half the range (max − min)/2 of the motion that was prepared.
+    #[must_use]
+    pub fn half_range(&self, set: &HarmonicSet) -> f64 {
+        match &self.scalar {
+            Scalar::Exact(way) => way.half_range(set),
+            Scalar::Sampled(way) => way.half_range(),
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! The registry of contact laws: the kinds of contacts, and the only `match` on them.
+//!
+//! A law is one file, declared here so that a new one is its file, its lines in this file, its constants in the
+//! C interface and its test.
+
+#[path = "cubic.rs"]
+pub mod cubic;
+#[path = "friction_2d.rs"]
+pub mod friction_2d;
+#[path = "friction_3d.rs"]
+pub mod friction_3d;
+#[path = "jenkins.rs"]
+pub mod jenkins;
+#[path = "polynomial.rs"]
+pub mod polynomial;
+#[path = "regularised.rs"]
+pub mod regularised;
+#[path = "table.rs"]
+pub mod table;
+#[path = "unilateral.rs"]
+pub mod unilateral;
+#[path = "user_law.rs"]
+pub mod user_law;
+
+use crate::contact::constants::Constants;
+use crate::contact::law::ContactLaw;
+use crate::contact::laws::cubic::CubicContact;
+use crate::contact::laws::friction_2d::Friction2dContact;
+use crate::contact::laws::friction_3d::Friction3dContact;
+use crate::contact::laws::jenkins::JenkinsContact;
+use crate::contact::laws::polynomial::Polynomial;
+use crate::contact::laws::regularised::RegularisedContact;
+use crate::contact::laws::table::Table;
+use crate::contact::laws::unilateral::UnilateralContact;
+use crate::contact::laws::user_law::User;
+
+/// The kind of a contact: its law.
+#[derive(Clone, Debug)]
+pub enum ContactKind {
+    /// Elastic Coulomb friction with constant normal load in one direction.
+    Jenkins,
+    /// Spring with a cubic term: f = kt·y + cubic·y³.
+    Cubic,
+    /// Spring that is pressed once a gap has closed, and open otherwise.
+    Unilateral,
+    /// Elastic Coulomb friction in one tangential direction, t1, under a normal load along n that varies
+    /// and may vanish.
+    Friction2d,
+    /// Elastic Coulomb friction in the plane of t1 and t2, whose force turns with the slip, under a
+    /// normal load along n that varies and may vanish; without a degree of freedom along n the load is
+    /// constant.
+    Friction3d,
+    /// Friction with Coulomb's jump smoothed: f = μN₀·tanh(v/velocity).
+    Regularised,
+    /// Spring whose force is straight between the points of a table.
+    Table(Table),
+    /// Springs and dampers of polynomial form over one or several motions.
+    Polynomial(Polynomial),
+    /// A law of the caller.
+    User(User),
+}
+
+/// The kinds by their names alone, for the constructors of contacts.
+pub(crate) mod kinds {
+    pub(crate) use crate::contact::laws::registry::ContactKind::{
+        Cubic, Friction2d, Friction3d, Jenkins, Regularised, Unilateral,
+    };
+}
+
+impl ContactKind {
+    /// Answer of the law with the given constants to a question.
+    pub(crate) fn with_law<R>(&self, constants: &Constants, question: impl FnOnce(&dyn ContactLaw) -> R) -> R {
+        match self {
+            Self::Jenkins => question(&JenkinsContact::new(constants)),
+            Self::Cubic => question(&CubicContact::new(constants)),
+            Self::Unilateral => question(&UnilateralContact::new(constants)),
+            Self::Friction2d => question(&Friction2dContact::new(constants)),
+            Self::Friction3d => question(&Friction3dContact::new(constants)),
+            Self::Regularised => question(&RegularisedContact::new(constants)),
+            Self::Table(law) => question(law),
+            Self::Polynomial(law) => question(law),
+            Self::User(law) => question(law),
+        }
+    }
+
+    /// The law of the caller, if it is one.
+    #[must_use]
+    pub fn user(&self) -> Option<&User> {
+        match self {
+            Self::User(law) => Some(law),
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,153 @@
+//! Elements in time: the contacts of a structure, sorted into linear springs and elements, the laws of which
+//! are linear between events or smooth.
+//!
+//! Within a piece the forces of an [`EventLaw`] are linear in the relative motions, x and for friction under a
+//! load that varies also y, side a minus side b of each. Friction remembers the stretch e = x − w of its
+//! spring from the slider at w: in x and w themselves a stiff spring would show the rounding.
+//!
+//! A piece ends where one of its *margins*, polynomials in time like the motion, falls through zero. The
+//! force is continuous there, and so is the whole right-hand side: sensitivities of displacements and
+//! velocities pass events unchanged (the saltation matrix is the identity; see Leine & Nijmeijer,
+//! Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004).
+//!
+//! Smooth laws have one piece without end and are evaluated at times; see `smooth_laws`.
+
+use crate::contact::law::{EventLaw, Form, LawInTime, Memoryless, SliderLaw, TimePart};
+use crate::contact::relative_motion::Direction;
+use crate::contact::time_piece::Instant;
+use crate::contact::{Contact, Role};
+use crate::error::{Result, try_push};
+
+const CONTEXT: &str = "the contacts";
+
+/// One contact of one sector.
+#[derive(Clone, Debug)]
+pub(super) struct Element {
+    /// One row for each relative motion.
+    pub rows: Vec<Row>,
+    /// The law, its constants in the caller's units.
+    law: TimePart,
+    /// Contacts of equal family are one contact in all sectors.
+    pub family: usize,
+}
+
+/// A linear spring between two degrees of freedom.
+pub(super) struct Tie {
+    pub row: Row,
+    pub stiffness: f64,
+}
+
+/// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
+pub(super) type Row = [Option<(usize, f64)>; 6];
+
+/// Row of a direction whose sides lie in two sectors, side a minus side b; `place` is the number of a
+/// degree of freedom in a sector.
+pub(super) fn row(direction: &Direction, sectors: (usize, usize), place: impl Fn(usize, usize) -> usize) -> Row {
+    let mut row = [None; 6];
+    let (a, b) = row.split_at_mut(3);
+    for (entry, side) in a.iter_mut().zip(&direction.a) {
+        *entry = side.map(|(dof, c)| (place(dof, sectors.0), c));
+    }
+    for (entry, side) in b.iter_mut().zip(&direction.b) {
+        *entry = side.map(|(dof, c)| (place(dof, sectors.1), -c));
+    }
+    row
+}
+
+/// r·x
+pub(super) fn along(row: &Row, x: &[f64]) -> f64 {
+    row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
+}
+
+/// Sorts the contacts of all sectors into springs and elements.
+///
+/// `place` is the number of a degree of freedom in a sector (of any number) of the ring.
+pub(super) fn unroll(
+    contacts: &[Contact],
+    sectors: usize,
+    place: impl Fn(usize, usize) -> usize,
+    ties: &mut Vec<Tie>,
+    elements: &mut Vec<Element>,
+) -> Result<()> {
+    for (family, c) in contacts.iter().enumerate() {
+        let (stiffness, law) = match c.role() {
+            Role::Inert => (0.0, None),
+            Role::Spring => (c.stiffness_as_spring(), None),
+            Role::Active => {
+                let LawInTime { stiffness, first, part } =
+                    c.in_time().map_err(|e| e.at(format_args!("contact {family}")))?;
+                (stiffness, Some((first, part)))
+            }
+        };
+        for s in 0..sectors {
+            let other = (s as i64 + c.sector_offset).rem_euclid(sectors as i64) as usize;
+            if stiffness != 0.0 {
+                let row = row(&c.direction(0), (s, other), &place);
+                try_push(ties, Tie { row, stiffness }, CONTEXT)?;
+            }
+            if let Some((first, part)) = &law {
+                let mut rows = Vec::new();
+                for k in *first..c.directions() {
+                    try_push(&mut rows, row(&c.direction(k), (s, other), &place), CONTEXT)?;
+                }
+                let law = part.clone();
+                try_push(elements, Element { rows, law, family }, CONTEXT)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+impl Element {
+    /// The law of an element that is integrated numerically.
+    pub fn smooth(&self) -> Option<&dyn Memoryless> {
+        match &self.law {
+            TimePart::Smooth(law) => match law.form() {
+                Form::Memoryless(law) => Some(law),
+                _ => None,
+            },
+            TimePart::Events(_) => None,
+        }
+    }
+
+    /// The law of an element that is linear between events.
+    pub fn events(&self) -> Option<&dyn EventLaw> {
+        match &self.law {
+            TimePart::Events(law) => Some(&**law),
+            TimePart::Smooth(_) => None,
+        }
+    }
+
+    /// The slider of an element with memory, part of the state.
+    pub fn slider(&self) -> Option<&dyn SliderLaw> {
+        self.events()?.slider()
+    }
+
+    /// The first two relative motions of displacements, or velocities.
+    pub fn relative(&self, x: &[f64]) -> [f64; 2] {
+        let mut motion = [0.0; 2];
+        for (motion, row) in motion.iter_mut().zip(&self.rows) {
+            *motion = along(row, x);
+        }
+        motion
+    }
+
+    /// The relative motions and velocities.
+    pub fn instant(&self, x: &[f64], v: &[f64]) -> Instant {
+        Instant {
+            motion: self.relative(x),
+            rate: self.relative(v),
+        }
+    }
+
+    /// f += s·Rᵀ g of forces g along the first two relative motions
+    pub fn push(&self, s: f64, g: [f64; 2], f: &mut [f64]) {
+        for (row, g) in self.rows.iter().zip(g) {
+            if g != 0.0 {
+                for &(dof, a) in row.iter().flatten() {
+                    f[dof] += s * a * g;
+                }
+            }
+        }
+    }
+}
