@@ -3,7 +3,7 @@
 //! [`branch_tracer`] follows the branch: the continuation predicts and corrects a point; [`controller`] estimates its
 //! error and refines it until it meets the tolerance, by the harmonics of [`harmonic_levels`]; the analysis records it;
 //! peaks, folds and requested solutions between it and the point before are located; the controller chooses the
-//! harmonics of the next step. An analysis enters through the two traits of [`discretised`]. [`resolution`] keeps the
+//! harmonics of the next step. An analysis enters through the two traits of [`discretised`]. [`resolutions`] keeps the
 //! equations at the resolutions of a run, [`transfer`] takes points from one resolution to another, and
 //! [`branch_recorder`] stores points.
 
@@ -12,5 +12,5 @@ pub(crate) mod branch_tracer;
 pub(crate) mod controller;
 pub(crate) mod discretised;
 pub(crate) mod harmonic_levels;
-pub(crate) mod resolution;
+pub(crate) mod resolutions;
 pub(crate) mod transfer;

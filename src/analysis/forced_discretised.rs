@@ -3,7 +3,7 @@
 use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::adaptivity::resolution::Resolutions;
+use crate::adaptivity::resolutions::Resolutions;
 use crate::analysis::point_error::observed;
 use crate::condense::ModelCache;
 use crate::continuation::corrector::Corrector;

@@ -3,7 +3,7 @@
 use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::adaptivity::resolution::Resolutions;
+use crate::adaptivity::resolutions::Resolutions;
 use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
