@@ -12,11 +12,11 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use hbvib::SolverOptions;
 use hbvib::condense::Condensed;
 use hbvib::linalg::bordered::Bordered;
 use hbvib::linalg::linear_system::Jacobian;
 use hbvib::linalg::norm;
-use hbvib::options::SolverOptions;
 use hbvib::problem::contact_forces::ContactForces;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
 use hbvib::problem::{InitialGuess, Problem, Residual};

@@ -5,10 +5,7 @@
 //! alternately in one run: read them as ratios. With the argument `iteration` it prints the times of the parts of a
 //! Newton iteration instead.
 
-use hbvib::analysis::forced_response;
-use hbvib::hooks::Hooks;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{Branch, ForcedOptions, Hooks, SolverOptions, forced_response};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::time::Instant;

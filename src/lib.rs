@@ -1,38 +1,106 @@
-//! hbvib: harmonic balance of vibrating structures with friction contacts.
+//! hbvib: steady-state vibration of structures with friction contacts, by harmonic balance.
 //!
-//! Mass, damping and stiffness matrices, contact data and forces go in; converged harmonics of the
-//! steady state come out: M ẍ + C ẋ + K x + f_nl = f_ex with x(t) = Re Σₕ Xₕ e^{ihωt}.
+//! Mass, damping and stiffness matrices, contact data and forces go in; converged harmonics come out:
 //!
-//! The way of the data, one direction, each step a module of its own:
+//! > M ẍ + C ẋ + K x + f_contact(x, ẋ) = f_excitation(t),  x(t) = Re Σₕ Xₕ e^{ihωt},  h = 0 … H.
 //!
-//! [`model`] (structure, contacts, excitation) → [`condense`] (relative coordinates) → [`problem`]
-//! (residual and Jacobian, with [`aft`] evaluating the [`contact`] laws) → [`continuation`]
-//! (predict, correct, accept) → [`branch`] (points, peaks, folds; [`postprocess`] makes energies of
-//! a point; [`error_estimate`] tells how wrong it is). [`time_response`] finds the same periodic motions without harmonics, in time. [`analysis`]
-//! puts them together and [`capi`] hands them to C.
+//! # The algorithm
 //!
-//! Units are the caller's, consistent; angular frequencies in rad per time unit; amplitudes are
-//! peak values.
+//! 1. A [`Model`] holds one structure, or one sector of a wheel in a travelling wave, its contacts and its forces.
+//! 2. Condensation keeps the relative motions y of the contacts alone: y − y_lin + G (f(y) − κ y) = 0 in each harmonic,
+//!    with the dynamic flexibility G and any reference stiffness κ.
+//! 3. Contact forces f(y) and their Jacobians are evaluated exactly: stick-slip events are located, Fourier integrals
+//!    between them have a closed form. Laws without events are sampled.
+//! 4. Newton's method solves for a first point; arc-length continuation predicts and corrects the next ones, and folds,
+//!    peaks and requested values are solved for between them.
+//! 5. Each point gets an error estimate from a few Newton steps with more harmonics, and as many harmonics as the
+//!    tolerance requires.
+//! 6. The [`Branch`] holds the points; motions of all degrees of freedom, energies and hysteresis loops follow from them.
+//!
+//! A [`nonlinear_mode`] (extended periodic motion concept, EPMC) replaces the forces by an artificial negative damping
+//! and the frequency by the amplitude as the parameter. [`time_response`] and [`verify`] integrate in time from event to
+//! event: the same periodic motions without harmonics.
+//!
+//! # Conventions
+//!
+//! Any consistent units; angular frequencies in rad per time unit; amplitudes are peak values. Engine order EO on N
+//! sectors: sector s + 1 lags behind s by h·2π·EO/N in harmonic h. Degrees of freedom and contacts count from 0.
+//!
+//! The same functions are in the C header `include/hbvib.h`. The modules behind this page are not part of the public
+//! interface.
 
 #![deny(unsafe_code)]
 
 mod adaptivity;
+#[doc(hidden)]
 pub mod aft;
+#[doc(hidden)]
 pub mod analysis;
+#[doc(hidden)]
 pub mod capi;
+#[doc(hidden)]
 pub mod condense;
+#[doc(hidden)]
 pub mod contact;
+#[doc(hidden)]
 pub mod continuation;
+#[doc(hidden)]
 pub mod error;
+#[doc(hidden)]
 pub mod error_estimate;
+#[doc(hidden)]
 pub mod fourier;
+#[doc(hidden)]
 pub mod hooks;
+#[doc(hidden)]
 pub mod linalg;
+#[doc(hidden)]
 pub mod model;
+#[doc(hidden)]
 pub mod options;
+#[doc(hidden)]
 pub mod problem;
+#[doc(hidden)]
 pub mod results;
+#[doc(hidden)]
 pub mod time_integration;
+
+// Models.
+pub use contact::laws::iwan::Iwan;
+pub use contact::laws::polynomial::{Monomial, Polynomial};
+pub use contact::laws::table::Table;
+pub use contact::laws::user_law::{Call, States, User, UserForce};
+pub use contact::patch::Patch;
+pub use contact::relative_motion::{Direction, Frame};
+pub use contact::{Contact, ContactKind};
+pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
+pub use model::Model;
+pub use model::linear_modes::{ContactState, LinearModes};
+pub use model::spring::Spring;
+pub use model::structure::MatrixKind;
+
+// Analyses.
+pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use analysis::forced_response::forced_response;
+pub use analysis::harmonic_residual::{contact_evaluate, forced_residual};
+pub use analysis::nonlinear_mode::nonlinear_mode;
+pub use analysis::point_error::estimate_at;
+pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise};
+pub use analysis::time_response::time_response;
+pub use analysis::verify::{Verification, verify};
+pub use hooks::{Hooks, LogLevel, Progress};
+pub use options::{
+    Amplitude, DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions,
+    TimeOptions, VerifyOptions,
+};
+
+// Results.
+pub use contact::contact_state::State;
+pub use error::{Error, Result, Status};
+pub use error_estimate::{Corrected, Estimate};
+pub use results::mode_branch::{ModeInfo, ModePoint};
+pub use results::{Branch, ContactLoop, ContactSummary, Energy, Special};
+pub use time_integration::TimeResponse;
 
 #[doc = include_str!("../docs/statuses.md")]
 pub mod when_it_does_not_converge {}

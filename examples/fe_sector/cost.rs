@@ -8,8 +8,7 @@ use std::time::{Duration, Instant};
 use hbvib::condense::Condensed;
 use hbvib::condense::flexibility::Workspace;
 use hbvib::linalg::lu::Lu;
-use hbvib::model::Model;
-use hbvib::options::SolverOptions;
+use hbvib::{Model, SolverOptions};
 
 use crate::response::Response;
 

@@ -7,8 +7,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::SolverOptions;
+use hbvib::{ContactState, SolverOptions};
 
 use crate::cost;
 use crate::csv::write_csv;

@@ -17,12 +17,7 @@
 
 use std::path::Path;
 
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, ContactState, MatrixKind, MatrixView, Model, Spring};
 use num_complex::Complex64;
 
 use crate::matrix_market::{self, Matrix};

@@ -5,7 +5,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use hbvib::options::SolverOptions;
+use hbvib::SolverOptions;
 
 use crate::cost;
 use crate::flags::{self, Flag, Flags};

@@ -8,13 +8,7 @@
 
 use std::collections::BTreeMap;
 
-use hbvib::contact::Contact;
-use hbvib::contact::patch::Patch;
-use hbvib::error::Result;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
-use hbvib::model::Model;
-use hbvib::model::spring::Spring;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, MatrixKind, MatrixView, Model, Part, Patch, Result, Spring, Storage, Values};
 use num_complex::Complex64;
 
 use crate::brick::{self, Material};

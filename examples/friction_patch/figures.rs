@@ -5,8 +5,7 @@ use std::f64::consts::TAU;
 use std::io::Write;
 use std::path::Path;
 
-use hbvib::model::linear_modes::ContactState;
-use hbvib::options::SolverOptions;
+use hbvib::{ContactState, SolverOptions};
 use num_complex::Complex64;
 
 use crate::beam::{Beam, Y, Z};

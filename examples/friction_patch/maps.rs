@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::Path;
 
-use hbvib::results::ContactSummary;
+use hbvib::ContactSummary;
 
 use crate::beam::{Beam, Spot};
 use crate::csv::write_csv;

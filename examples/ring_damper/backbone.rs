@@ -3,11 +3,10 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use hbvib::analysis::nonlinear_mode;
-use hbvib::error::{Result as Checked, Status};
-use hbvib::hooks::{Hooks, Progress};
-use hbvib::options::{Amplitude, DampingForm, ModeChoice, ModeOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::error::Result as Checked;
+use hbvib::{
+    Amplitude, Branch, DampingForm, Hooks, ModeChoice, ModeOptions, Progress, SolverOptions, Status, nonlinear_mode,
+};
 use serde_json::{Map, Value};
 
 use crate::json::number;

@@ -6,7 +6,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use hbvib::options::SolverOptions;
+use hbvib::SolverOptions;
 
 use crate::csv::write_csv;
 use crate::model::{LARGEST_DIAMETER, Parameters, REPORTED_DOFS, modes_with_ring_stuck, modes_without_ring};

@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::Write;
 use std::path::PathBuf;
 
-use hbvib::options::{DampingForm, SolverOptions};
+use hbvib::{DampingForm, SolverOptions};
 
 use crate::backbone::{Backbone, ModeRequest, Point};
 use crate::flags::{self, Flag, Flags};

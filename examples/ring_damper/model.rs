@@ -8,11 +8,7 @@
 use std::error::Error;
 use std::f64::consts::{PI, TAU};
 
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::{ContactState, LinearModes};
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, ContactState, LinearModes, MatrixKind, MatrixView, Model};
 use num_complex::Complex64;
 
 /// Degrees of freedom of a sector, in this order.

@@ -7,10 +7,7 @@ use std::io::Write;
 use std::path::Path;
 use std::time::Instant;
 
-use hbvib::analysis::synthesis::SynthesisPeak;
-use hbvib::analysis::synthesise;
-use hbvib::options::{DampingForm, SolverOptions, SynthesisOptions};
-use hbvib::results::Branch;
+use hbvib::{Branch, DampingForm, SolverOptions, SynthesisOptions, SynthesisPeak, synthesise};
 
 use crate::backbone::{Backbone, ModeRequest, Point};
 use crate::csv::write_csv;

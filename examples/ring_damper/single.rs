@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::Write;
 use std::path::PathBuf;
 
-use hbvib::options::SolverOptions;
+use hbvib::SolverOptions;
 
 use crate::flags::{self, Flag, Flags};
 use crate::json::write_json;

@@ -3,6 +3,7 @@
 //! All times are minima: read them as ratios.
 
 use super::model;
+use hbvib::SolverOptions;
 use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::condense::Condensed;
 use hbvib::continuation::Metric;
@@ -10,7 +11,6 @@ use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::linalg::bordered::Bordered;
 use hbvib::linalg::linear_system::Jacobian;
 use hbvib::linalg::norm;
-use hbvib::options::SolverOptions;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
 use hbvib::problem::{InitialGuess, Problem, Residual};
 use std::error::Error;

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use hbvib::error::Status;
+use hbvib::Status;
 
 use crate::measure::Outcome;
 use crate::plot::{Figure, Series, Style};

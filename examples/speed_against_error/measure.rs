@@ -4,11 +4,7 @@ use std::error::Error;
 use std::thread;
 use std::time::Instant;
 
-use hbvib::analysis::{estimate_at, forced_response};
-use hbvib::error::Status;
-use hbvib::hooks::Hooks;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::{Branch, Special};
+use hbvib::{Branch, ForcedOptions, Hooks, SolverOptions, Special, Status, estimate_at, forced_response};
 use num_complex::Complex64;
 
 use crate::systems::System;

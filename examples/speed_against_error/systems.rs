@@ -3,11 +3,7 @@
 use std::error::Error;
 use std::f64::consts::TAU;
 
-use hbvib::contact::Contact;
-use hbvib::linalg::matrix_view::MatrixView;
-use hbvib::model::Model;
-use hbvib::model::linear_modes::ContactState;
-use hbvib::model::structure::MatrixKind;
+use hbvib::{Contact, ContactState, MatrixKind, MatrixView, Model};
 use num_complex::Complex64;
 
 use crate::model::{B2, Parameters};

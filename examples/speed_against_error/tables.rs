@@ -4,7 +4,7 @@ use std::error::Error;
 use std::io::Write;
 use std::path::Path;
 
-use hbvib::error::Status;
+use hbvib::Status;
 
 use crate::csv::write_csv;
 use crate::front::{Front, fewest};

@@ -3,10 +3,7 @@
 use std::error::Error;
 use std::thread;
 
-use hbvib::analysis::forced_response;
-use hbvib::hooks::Hooks;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{Branch, ForcedOptions, Hooks, SolverOptions, forced_response};
 use num_complex::Complex64;
 
 use crate::measure::sweep;

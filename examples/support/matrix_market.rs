@@ -10,8 +10,8 @@ use std::path::Path;
 use std::str::FromStr;
 
 use flate2::bufread::MultiGzDecoder;
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::structure::MAX_DOF;
+use hbvib::{MatrixView, Part, Storage, Values};
 
 /// A sparse matrix in compressed columns; all indices count from 1, as in the file.
 #[derive(Clone, Debug)]

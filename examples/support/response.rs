@@ -5,12 +5,7 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::time::{Duration, Instant};
 
-use hbvib::analysis::forced_response;
-use hbvib::error::Status;
-use hbvib::hooks::{Hooks, Progress};
-use hbvib::model::Model;
-use hbvib::options::{ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::{Branch, ForcedOptions, Hooks, Model, Progress, SolverOptions, Status, forced_response};
 use num_complex::Complex64;
 use serde_json::{Map, Value};
 
