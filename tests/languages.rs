@@ -55,15 +55,20 @@ fn first_place() -> PathBuf {
     Path::new(env!("CARGO_TARGET_TMPDIR")).join("languages/first")
 }
 
+/// A command whose cargo is that of the test. It must not reach for the network: all that a build needs is there since
+/// the test itself was built.
+fn without_network(command: &mut Command) -> &mut Command {
+    command.env("CARGO", env!("CARGO")).env("CARGO_NET_OFFLINE", "true")
+}
+
 /// An installation that was moved.
 fn prefix() -> &'static Path {
     static PREFIX: OnceLock<PathBuf> = OnceLock::new();
     PREFIX.get_or_init(|| {
         let folder = workshop("first");
-        run(Command::new("sh")
+        run(without_network(&mut Command::new("sh"))
             .arg("examples/install.sh")
             .arg(&folder)
-            .env("CARGO", env!("CARGO"))
             .current_dir(root()));
         let moved = workshop("moved").join("prefix");
         fs::rename(folder, &moved).unwrap();
@@ -164,10 +169,9 @@ fn the_installation_is_complete_and_may_be_moved() {
 /// Runs install.sh in a folder of the test's own; whether it succeeded.
 fn installs(folder: &Path, prefix: &str, destination: Option<&Path>) -> bool {
     let mut command = Command::new("sh");
-    command
+    without_network(&mut command)
         .arg(root().join("examples/install.sh"))
         .arg(prefix)
-        .env("CARGO", env!("CARGO"))
         .env_remove("DESTDIR")
         .current_dir(folder);
     if let Some(destination) = destination {
@@ -459,15 +463,10 @@ fn python_feels_native() {
 #[test]
 fn the_wheel_brings_its_library() {
     let folder = workshop("wheel");
-    run(Command::new(python())
-        .args([
-            "-m",
-            "pip",
-            "install",
-            "--quiet",
-            "--no-deps",
-            "--disable-pip-version-check",
-        ])
+    // The build backend is that of the Python of the tests; pip's own folder for it would be filled from the network.
+    run(without_network(&mut Command::new(python()))
+        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+        .args(["--no-deps", "--no-build-isolation", "--no-index"])
         .args(["--root-user-action=ignore", "--target", "site"])
         .arg(root())
         .current_dir(&folder));

@@ -32,14 +32,15 @@ need pkg-config pkg-config --version
 need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
 
-# Python with numpy, scipy, matplotlib and pip: the system's, or one of our own.
-complete() { "$1" -c 'import numpy, scipy, matplotlib, pip' >/dev/null 2>&1; }
+# Python with numpy, scipy, matplotlib, pip and what builds the wheel: the system's, or one of our own. All that comes from
+# the network comes here; the tests work without it.
+complete() { "$1" -c 'import numpy, scipy, matplotlib, pip, hatchling' >/dev/null 2>&1; }
 if { [ -e .venv ] || ! complete python3; } && ! complete .venv/bin/python; then
     need python3-venv python3 -c 'import venv, ensurepip'
-    echo "installing numpy, scipy and matplotlib in .venv"
+    echo "installing numpy, scipy, matplotlib and hatchling in .venv"
     python3 -m venv .venv
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check numpy scipy matplotlib || {
-        echo "tests/run.sh: no numpy, scipy and matplotlib; install them for python3 (pip or apt) and run again" >&2
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check numpy scipy matplotlib 'hatchling>=1.24' || {
+        echo "tests/run.sh: no numpy, scipy, matplotlib and hatchling; install them for python3 (pip or apt) and run again" >&2
         exit 1
     }
 fi

@@ -1,6 +1,7 @@
 """Builds the library for a wheel; hatchling calls it (pyproject.toml)."""
 
 import json
+import os
 import shutil
 import subprocess
 import sysconfig
@@ -34,7 +35,8 @@ class Library(BuildHookInterface):
 
 def built(root):
     """The shared library as cargo has built it."""
-    command = ["cargo", "build", "--release", "--lib", "--message-format=json-render-diagnostics"]
+    cargo = os.environ.get("CARGO", "cargo")
+    command = [cargo, "build", "--release", "--lib", "--message-format=json-render-diagnostics"]
     output = subprocess.run(command, cwd=root, check=True, stdout=subprocess.PIPE, text=True).stdout
     files = []
     for line in output.splitlines():
