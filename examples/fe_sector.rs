@@ -1,8 +1,8 @@
 //! A real finite-element sector: matrices in, response out.
 //!
-//! A bladed disk with a friction ring under its rim, one of 24 sectors meshed and assembled by a
-//! finite-element program, with 30 pairs of nodes in contact. [`sector`] says how that program's
-//! convention for the wave is turned into the library's.
+//! A bladed disk with a friction ring under its rim, one of 24 sectors meshed and assembled by a finite-element
+//! program, with 30 pairs of nodes in contact. [`sector`] describes how the sign convention of that program for the
+//! wave is converted into that of the library.
 //!
 //! `cargo run --release --example fe_sector` computes natural frequencies, forced responses and maps
 //! of the slip in the contact; with flags (`-- --help` lists them) it computes one response. Exit
@@ -46,7 +46,7 @@ fn main() -> ExitCode {
         Ok(flags) => flags,
         Err(message) => return refuse(&message),
     };
-    // Cargo tells a program that it runs where its package lies; elsewhere the current folder has to do.
+    // Cargo sets this variable for a program that it runs; without it the current folder serves.
     let root = std::env::var_os("CARGO_MANIFEST_DIR")
         .map(PathBuf::from)
         .unwrap_or_default();

@@ -1,12 +1,13 @@
-//! A beam on a patch of friction contacts in three directions: slip, lift-off, and where work is lost.
+//! A beam on a patch of friction contacts in three directions: slip, lift-off, and the places where work is
+//! dissipated.
 //!
-//! A small clamped steel beam of bricks is pressed on a soft friction lining under its free end and shaken
-//! across, a little upwards too, through its first bending resonance. Across, friction holds the beam at
-//! small forces and loses its grip at large ones; upwards, the lining only pushes, and the resonance that
-//! lift-off softens leans far into the range and folds back. `cargo run --release --example
-//! friction_patch` computes its response to several forces, between the linear limits of a lining that
-//! sticks and one that only carries, and at the resonance what every contact of the patch does. CSV, SVG
-//! and PNG go to target/friction_patch/. Exit status: 0 done, 1 a computation or a file failed.
+//! A small clamped steel beam of bricks is pressed on a soft friction lining under its free end. A harmonic force
+//! across the beam, with a small share upwards, excites its first bending resonance. Across, the contacts stick at
+//! small forces and slip at large ones; upwards, the lining transmits compression only, and the resonance that
+//! lift-off softens bends far into the range and folds back. `cargo run --release --example friction_patch`
+//! computes its response to several forces, between the linear limits of a sticking and of a frictionless lining,
+//! and the state of every contact of the patch at the resonance. CSV, SVG and PNG go to target/friction_patch/.
+//! Exit status: 0 done, 1 a computation or a file failed.
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -31,7 +32,7 @@ mod progress;
 mod response;
 
 fn main() -> ExitCode {
-    // Cargo tells a program that it runs where its package lies; elsewhere the current folder has to do.
+    // Cargo sets this variable for a program that it runs; without it the current folder serves.
     let root = std::env::var_os("CARGO_MANIFEST_DIR")
         .map(PathBuf::from)
         .unwrap_or_default();

@@ -3,10 +3,10 @@
 #
 #   sh examples/install.sh PREFIX
 #
-# The result may be moved: no file in it knows where it stands. DESTDIR is put in front of PREFIX for
-# packagers; CARGO and STRIP name other programs than cargo and strip.
+# The installed folder may be moved: no file in it contains its own path. DESTDIR precedes PREFIX, for
+# packagers; CARGO and STRIP name programs to use instead of cargo and strip.
 set -eu
-# Others are to read what root installs.
+# Files that root installs are readable for all users.
 umask 022
 
 [ $# = 1 ] && [ -n "$1" ] || { echo "usage: sh examples/install.sh PREFIX" >&2; exit 2; }
@@ -19,7 +19,7 @@ cd "$(dirname "$0")/.."
 cargo=${CARGO:-cargo}
 strip=${STRIP:-strip}
 
-[ "$(uname -s)" = Linux ] || { echo "install.sh knows shared libraries of Linux only; elsewhere use cargo-c" >&2; exit 1; }
+[ "$(uname -s)" = Linux ] || { echo "install.sh supports shared libraries of Linux only; elsewhere use cargo-c" >&2; exit 1; }
 "$cargo" build --release --lib
 target=$("$cargo" metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
 built=$target/${CARGO_BUILD_TARGET:+$CARGO_BUILD_TARGET/}release
@@ -27,7 +27,7 @@ version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
 # Before 1.0 every minor version may change the interface, and so the SONAME (build.rs).
 abi=${version%.*}
 
-# Puts a file in its place whole or not at all, so that a program that runs keeps its old library.
+# Installs a file completely or not at all, so that a running program keeps its old library.
 put() { # mode, file, place
     mkdir -p "$(dirname "$prefix/$3")"
     cp "$2" "$prefix/$3.new"
@@ -35,13 +35,13 @@ put() { # mode, file, place
     mv -f "$prefix/$3.new" "$prefix/$3"
 }
 
-# A template with the version filled in.
+# Installs a template with the version filled in.
 fill() { # template, place
     sed -e "s/@VERSION@/$version/g" -e "s/@ABI@/$abi/g" "examples/install/$1" >"$scratch/$1"
     put 644 "$scratch/$1" "$2"
 }
 
-# Without the names of the inside a library is smaller; without strip it works as well.
+# Strips the internal symbols of a library, which makes it smaller; without strip it is installed unchanged.
 stripped() { # file, option
     cp "$built/$1" "$scratch/$1"
     if command -v "$strip" >/dev/null 2>&1; then "$strip" "$2" "$scratch/$1"; fi

@@ -1,10 +1,10 @@
-//! What a Newton iteration costs with many contacts in three directions.
+//! Cost of a Newton iteration with many contacts in three directions.
 //!
-//! A clamped plate of bricks rubs with its whole underside on a lining: 200 contacts of friction in a
-//! plane with separation, 600 relative motions, 6600 real unknowns at H = 5. At one frequency Newton's
-//! method is followed from the linear solution, and every iteration is shown with the time of its parts:
-//! contact laws, assembly (the coupling of their Jacobians by the flexibility of the plate),
-//! factorisation, and the solution for the step. `-- --help` lists the flags.
+//! A clamped plate of bricks rubs with its whole underside on a lining: 200 contacts of friction in a plane with
+//! separation, 600 relative motions, 6600 real unknowns at H = 5. At one frequency Newton's method starts from the
+//! linear solution, and every iteration is shown with the time of its parts: contact laws, assembly (the coupling
+//! of their Jacobians by the flexibility of the plate), factorisation, and the solution for the step. `-- --help`
+//! lists the flags.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -14,11 +14,12 @@ use std::time::{Duration, Instant};
 
 use hbvib::condense::Condensed;
 use hbvib::linalg::bordered::Bordered;
+use hbvib::linalg::linear_system::Jacobian;
 use hbvib::linalg::norm;
 use hbvib::options::SolverOptions;
 use hbvib::problem::contact_forces::ContactForces;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Linearisation, Problem};
+use hbvib::problem::{InitialGuess, Problem, Residual};
 
 use beam::{Beam, Z};
 use flags::{Flag, Flags};
@@ -39,13 +40,13 @@ const FLAGS: [Flag; 6] = [
     Flag::new("--help", "", "show this text"),
 ];
 
-/// Newton iterations at most.
+/// Largest number of Newton iterations.
 const ITERATIONS: usize = 12;
 
 /// Relative residual at which the iteration ends.
 const TOLERANCE: f64 = 1e-10;
 
-/// The vertical share of the force, enough for parts of the plate to lift off.
+/// Vertical share of the force, large enough for parts of the plate to lift off.
 const LIFT: f64 = 0.5;
 
 struct Request {
@@ -93,13 +94,14 @@ impl Request {
         let mut forces = ContactForces::new(&condensed, 0)?;
         let n = problem.size();
         let mut u = vec![0.0; n];
-        let mut at = Linearisation::new(n)?;
+        let mut at = Residual::new(n)?;
+        let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
         let mut lu = Bordered::new(n)?;
         let mut row = vec![0.0; n + 1];
         row[n] = 1.0;
         let mut step = vec![0.0; n + 1];
-        // The flexibility at this frequency belongs to the start: it stays the same here.
-        problem.start(InitialGuess::Reference, omega, &mut u)?;
+        // The flexibility at this frequency is evaluated once: it stays the same here.
+        problem.initial_guess(InitialGuess::Reference, omega, &mut u)?;
         writeln!(
             screen,
             "{} degrees of freedom, {} contacts, {} relative motions, {n} unknowns at H = {}\n\
@@ -116,14 +118,18 @@ impl Request {
         for k in 0..ITERATIONS {
             let (laws, done) = timed(|| forces.evaluate(&u, omega));
             done?;
-            let (evaluation, done) = timed(|| problem.evaluate(&u, omega, &mut at));
+            let (evaluation, done) = timed(|| {
+                let done = problem.evaluate(&u, omega, &mut at);
+                problem.fill(&mut jacobian, &mut active);
+                done
+            });
             done?;
-            let residual = norm(&at.residual) / at.scale;
+            let residual = norm(&at.values) / at.scale;
             let slip = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
-            let active = at.active.iter().filter(|a| **a).count();
-            let (factor, done) = timed(|| lu.factor(&at.jacobian, &at.d_parameter, &at.active, (1.0, omega), &row));
+            let solved_for = active.iter().filter(|a| **a).count();
+            let (factor, done) = timed(|| lu.factor(&jacobian, &at.d_parameter, &active, (1.0, omega), &row));
             done?;
-            for (s, r) in step.iter_mut().zip(&at.residual) {
+            for (s, r) in step.iter_mut().zip(&at.values) {
                 *s = -r;
             }
             step[n] = 0.0;
@@ -132,7 +138,7 @@ impl Request {
                 *u += s;
             }
             let parts = [laws, evaluation.saturating_sub(laws), factor, solve];
-            write!(screen, "{k:>4}  {residual:>9.2e}  {slip:>4}  {active:>10}")?;
+            write!(screen, "{k:>4}  {residual:>9.2e}  {slip:>4}  {solved_for:>10}")?;
             for (sum, part) in total.iter_mut().zip(parts) {
                 *sum += part;
                 write!(screen, "{:>10.4}", part.as_secs_f64())?;

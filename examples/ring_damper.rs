@@ -1,8 +1,8 @@
 //! A bladed disk with a friction ring damper, after the paper "Nonlinear Vibrational Analysis for
 //! Integrally Bladed Disk Using Frictional Ring Damper".
 //!
-//! `cargo run --release --example ring_damper` draws the paper's figures 4 to 9; with flags
-//! (`-- --help` lists them) it computes one response or, with `--mode`, one nonlinear mode. Exit status: 0 done, 1 a computation or a
+//! `cargo run --release --example ring_damper` draws the paper's figures 4 to 9; with flags (`-- --help` lists
+//! them) it computes one response or, with `--mode`, one nonlinear mode. Exit status: 0 done, 1 a computation or a
 //! file failed, 2 the flags are wrong; in the last two cases no JSON file is written.
 
 use std::io::Write;

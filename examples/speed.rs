@@ -1,9 +1,9 @@
-//! Speed against error: the ring damper's response at several H, with exact events and sampled.
+//! Speed against error: the response of the ring damper at several H, with exact events and sampled.
 //!
-//! Prints per way: points, Newton iterations, time of the sweep as a ratio to the default (H = 9,
-//! exact events), and the error of the peak amplitude against H = 255. Times are minima over
-//! repeated sweeps, measured alternately in one run: read them as ratios. With the argument
-//! `iteration` it prints instead where the time of a Newton iteration goes.
+//! Prints for each way: points, Newton iterations, time of the sweep as a ratio to the default (H = 9, exact
+//! events), and the error of the peak amplitude against H = 255. Times are minima over repeated sweeps, measured
+//! alternately in one run: read them as ratios. With the argument `iteration` it prints the times of the parts of a
+//! Newton iteration instead.
 
 use hbvib::analysis::forced_response;
 use hbvib::hooks::Hooks;
@@ -16,7 +16,7 @@ use std::time::Instant;
 #[path = "speed/iteration.rs"]
 mod iteration;
 #[path = "ring_damper/model.rs"]
-#[allow(dead_code, reason = "the response alone is needed here")]
+#[allow(dead_code, reason = "only the response is used here")]
 mod model;
 
 /// (highest harmonic, samples per period; 0 = exact events)

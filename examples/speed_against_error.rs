@@ -1,13 +1,15 @@
 //! Time of a whole response against its true error: harmonics fixed or from a tolerance, events exact or sampled.
 //!
-//! Five structures are followed over a range of frequency in some twenty ways each. The error of a way is the largest
-//! relative error of the complex fundamental of the response degree of freedom at frequencies that all ways have in
-//! common, against converged harmonic balance; of ways that choose their harmonics some of the branch's own points are
-//! compared, too. Times are minima over sweeps that alternate between the ways in one run, without the estimates that
-//! only serve the comparison: read them as ratios. Folds are left out: there the error at a fixed frequency is infinite.
+//! The responses of five structures over a range of frequency are computed in about twenty ways each. The error of
+//! a way is the largest relative error of the complex fundamental of the response degree of freedom at frequencies
+//! that all ways have in common, compared with converged harmonic balance; for ways that choose their harmonics
+//! some points of the branch itself are compared, too. Times are minima over sweeps that alternate between the ways
+//! in one run, without the estimates that only serve the comparison: read them as ratios. Folds are excluded: there
+//! the error at a fixed frequency is infinite.
 //!
-//! `cargo run --release --example speed_against_error` does all, letters after `--` some of the systems. Tables go to the
-//! screen, CSV, SVG and PNG to target/speed_against_error/. Exit status: 0 done, 1 a computation or a file failed.
+//! `cargo run --release --example speed_against_error` computes all systems, letters after `--` select some of
+//! them. Tables go to the screen, CSV, SVG and PNG to target/speed_against_error/. Exit status: 0 done, 1 a
+//! computation or a file failed.
 
 use std::io::Write;
 use std::path::PathBuf;
@@ -27,7 +29,7 @@ mod front;
 #[path = "speed_against_error/measure.rs"]
 mod measure;
 #[path = "ring_damper/model.rs"]
-#[allow(dead_code, reason = "the response alone is needed here")]
+#[allow(dead_code, reason = "only the response is used here")]
 mod model;
 #[path = "support/plot.rs"]
 mod plot;
@@ -38,7 +40,7 @@ mod tables;
 #[path = "speed_against_error/truth.rs"]
 mod truth;
 
-/// Harmonics that a tolerance begins with, the library's own default.
+/// Initial harmonics where a tolerance chooses, the default of the library.
 const FIRST: usize = 9;
 
 fn ways(system: &System) -> Vec<Way> {
@@ -49,23 +51,23 @@ fn ways(system: &System) -> Vec<Way> {
     };
     let fixed = system.fixed.iter().map(|&h| way(h, 0, 0.0));
     let sampled = system.sampled.iter().flat_map(|&h| SAMPLES.map(|n| way(h, n, 0.0)));
-    // With fewer, forces in harmonics above 3H alias onto those that are solved for.
+    // With fewer samples, forces in harmonics above 3H alias onto the carried ones.
     let sampled = sampled.filter(|w| w.samples >= 4 * w.harmonics);
     let automatic = system.tolerances.iter().map(|&t| way(FIRST, 0, t));
     fixed.chain(sampled).chain(automatic).collect()
 }
 
 fn run() -> Done {
-    // Cargo tells a program that it runs where its package lies; elsewhere the current folder has to do.
+    // Cargo sets this variable for a program that it runs; without it the current folder serves.
     let root = std::env::var_os("CARGO_MANIFEST_DIR")
         .map(PathBuf::from)
         .unwrap_or_default();
     let folder = root.join("target/speed_against_error");
-    let wanted: String = std::env::args().skip(1).collect();
+    let selected: String = std::env::args().skip(1).collect();
     let mut screen = std::io::stdout().lock();
     let mut all = Vec::new();
     for system in systems::all()? {
-        if !wanted.is_empty() && !wanted.contains(system.key) {
+        if !selected.is_empty() && !selected.contains(system.key) {
             continue;
         }
         let truth = Truth::new(&system)?;

@@ -1,29 +1,29 @@
 //! Status codes, their names, and the one error type of the crate.
 //!
-//! An error carries its sentence in a fixed buffer, so that reporting a failure (an exhausted
-//! memory among them) never allocates.
+//! An error carries its sentence in a fixed buffer, so that reporting a failure, exhausted memory included, never
+//! allocates.
 
 use core::fmt;
 
-/// Outcome of a call. `0` is success, negative values mean that nothing was written, positive
-/// values that the work stopped early and the partial result is there.
+/// Outcome of a call. `0` is success; negative values mean that nothing was written, positive values that the work
+/// stopped early and a partial result is available.
 #[repr(i32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
     /// Done.
     Ok = 0,
-    /// A progress hook or the cancel flag asked to stop; the points found so far are kept.
+    /// A progress hook or the cancel flag requested the stop; the points found so far are kept.
     StoppedByCaller = 1,
     /// The step fell below its minimum; the points found so far are kept.
     StoppedStepTooSmall = 2,
     /// The limit on the number of points was reached; the points found so far are kept.
     StoppedMaxPoints = 3,
-    /// The whole range was covered, but some points miss the tolerance: they need more harmonics than allowed, or
-    /// than can be afforded, or their error is unknown. All points are kept.
+    /// The whole range was covered, but some points miss the tolerance: they need more harmonics than the options
+    /// or the memory allow, or their error is unknown. All points are kept.
     StoppedMaxHarmonics = 4,
-    /// The residual stopped falling above the wanted tolerance (round-off); all points are kept.
+    /// Round-off stopped the residual above the requested tolerance; all points are kept.
     StoppedStalled = 5,
-    /// The branch turned back, left the range where it began and did not come back; all points are kept.
+    /// The branch turned back, left the range at the end where it began and did not return; all points are kept.
     StoppedLeftRange = 6,
     /// A callback of the caller failed; the points found so far are kept.
     StoppedCallback = 7,
@@ -35,7 +35,7 @@ pub enum Status {
     Dimension = -3,
     /// A number is NaN or infinite where it must be finite.
     NotFinite = -4,
-    /// A matrix that was announced as symmetric or Hermitian is not.
+    /// A matrix that was declared symmetric or Hermitian is not.
     NotHermitian = -5,
     /// A linear system has no unique solution.
     Singular = -6,
@@ -45,9 +45,9 @@ pub enum Status {
     StructSize = -8,
     /// A callback reported a failure or returned numbers that are not finite.
     Callback = -9,
-    /// The combination asked for is not provided.
+    /// The requested combination is not provided.
     Unsupported = -10,
-    /// Memory could not be had.
+    /// Memory could not be allocated.
     OutOfMemory = -11,
     /// The problem has no bounded periodic solution.
     NoBoundedSolution = -12,
@@ -59,7 +59,7 @@ pub enum Status {
     Index = -15,
     /// A matrix that must be positive definite is not.
     NotPositiveDefinite = -16,
-    /// A defect of the library itself.
+    /// A defect in the library itself.
     Internal = -99,
 }
 
@@ -96,8 +96,8 @@ impl Status {
         }
     }
 
-    /// What a status without an error says to the user; empty for success and for errors, whose
-    /// sentence is their own.
+    /// Sentence for the user about a call that stopped early; empty for success and for errors, which carry their
+    /// own.
     #[must_use]
     pub const fn sentence(self) -> &'static str {
         match self {
@@ -117,12 +117,12 @@ impl Status {
             Self::StoppedLeftRange => {
                 "the branch turned back and left the range where it began for good; all points are kept; start elsewhere or from the other end"
             }
-            Self::StoppedCallback => "a callback of the host failed; the points found so far are kept",
+            Self::StoppedCallback => "a callback of the caller failed; the points found so far are kept",
             _ => "",
         }
     }
 
-    /// All values, for tables and for turning an integer back into a status.
+    /// All values, for tables and for the conversion of an integer into a status.
     pub const ALL: [Self; 25] = [
         Self::Ok,
         Self::StoppedByCaller,
@@ -152,7 +152,7 @@ impl Status {
     ];
 }
 
-/// Longest error sentence in bytes; what does not fit is cut at a character boundary.
+/// Longest error sentence in bytes; a longer one is cut at a character boundary.
 pub const TEXT_CAPACITY: usize = 231;
 
 /// A sentence in a fixed buffer.
@@ -188,7 +188,7 @@ impl fmt::Write for Text {
     }
 }
 
-/// What went wrong, where, and what to do about it.
+/// A failure: its kind, its place and its remedy.
 #[derive(Clone, Copy)]
 pub struct Error {
     /// The kind of failure; always negative.
@@ -197,8 +197,8 @@ pub struct Error {
     pub argument: i32,
     /// Code that a callback of the caller returned; 0 if none did.
     pub callback: i32,
-    /// Whether the same call may succeed at another motion: a callback said so, or its numbers were
-    /// not finite. A solver then tries a smaller step before it gives up.
+    /// The same call may succeed at another motion: a callback reported so, or its numbers were not finite. A
+    /// solver then tries a smaller step before it fails.
     pub recoverable: bool,
     text: Text,
 }
@@ -208,7 +208,7 @@ impl Error {
     #[must_use]
     pub fn new(status: Status, message: fmt::Arguments<'_>) -> Self {
         let mut text = Text::EMPTY;
-        // Writing into the fixed buffer cuts, it cannot fail.
+        // Writing into the fixed buffer truncates; it cannot fail.
         let _ = fmt::Write::write_fmt(&mut text, message);
         Self {
             status,
@@ -219,8 +219,8 @@ impl Error {
         }
     }
 
-    /// A callback of the caller returned `code` instead of 0: above 0 it may succeed elsewhere, below 0
-    /// it gives up for good.
+    /// A callback of the caller returned `code` instead of 0: above 0 it may succeed at another motion, below 0 it
+    /// has failed for good.
     #[must_use]
     pub fn from_callback(code: i32, message: fmt::Arguments<'_>) -> Self {
         Self {
@@ -230,14 +230,14 @@ impl Error {
         }
     }
 
-    /// The same error, which another motion may not meet.
+    /// The same error, marked as one that may not occur at another motion.
     #[must_use]
     pub fn recoverable(mut self) -> Self {
         self.recoverable = true;
         self
     }
 
-    /// The same error, blaming the C function's argument number `argument` (from 1).
+    /// The same error, attributed to argument number `argument` (from 1) of the C function.
     #[must_use]
     pub fn in_argument(mut self, argument: i32) -> Self {
         self.argument = argument;
@@ -254,7 +254,7 @@ impl Error {
         }
     }
 
-    /// Memory for `what` could not be had.
+    /// Memory for `what` could not be allocated.
     #[must_use]
     pub fn out_of_memory(what: &str) -> Self {
         Self::new(
@@ -295,7 +295,7 @@ macro_rules! fail {
 }
 pub(crate) use fail;
 
-/// A vector of `len` copies of `value` whose memory is asked for fallibly.
+/// A vector of `len` copies of `value`, allocated fallibly.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.
@@ -306,8 +306,8 @@ pub fn try_vec<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
     Ok(v)
 }
 
-/// Whether memory for `len` values could be had at this moment, asked before code that does not
-/// ask fallibly by itself.
+/// Checks that memory for `len` values is available at this moment, before code that does not allocate fallibly
+/// itself.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.
@@ -316,7 +316,7 @@ pub fn check_memory<T>(len: usize, what: &str) -> Result<()> {
     v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))
 }
 
-/// A copy of `values` whose memory is asked for fallibly.
+/// A copy of `values`, allocated fallibly.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.
@@ -326,7 +326,7 @@ pub fn try_copy<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
     Ok(v)
 }
 
-/// Appends `value`, asking fallibly for memory.
+/// Appends `value`, allocating fallibly.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.
@@ -336,7 +336,7 @@ pub fn try_push<T>(v: &mut Vec<T>, value: T, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// Appends copies of `values`, asking fallibly for memory.
+/// Appends copies of `values`, allocating fallibly.
 ///
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.

@@ -1,4 +1,4 @@
-//! What a caller may attach to a running solve: progress, cancellation, log.
+//! Callbacks that a caller attaches to a running solve: progress, cancellation, log.
 
 /// State of a solve, reported at each accepted point.
 #[derive(Clone, Copy, Debug, Default)]
@@ -12,18 +12,18 @@ pub struct Progress {
     pub amplitude: f64,
     /// Relative residual of the accepted point.
     pub residual: f64,
-    /// Arc length of the step that led here, in scaled unknowns.
+    /// Arc length of the step to this point, in scaled unknowns.
     pub step: f64,
-    /// Share of the parameter range done, 0 to 1.
+    /// Completed share of the parameter range, 0 to 1.
     pub fraction_done: f64,
-    /// Newton iterations that the point took.
+    /// Newton iterations of the point.
     pub newton_iterations: usize,
 }
 
-/// Weight of a log line.
+/// Severity of a log line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum LogLevel {
-    /// Something the user should look at.
+    /// Something that the user should check.
     Warn = 1,
     /// A step of the method.
     Info = 2,
@@ -34,19 +34,19 @@ pub enum LogLevel {
 /// Receiver of log lines.
 pub type LogSink<'a> = dyn FnMut(LogLevel, &str) + 'a;
 
-/// Callbacks of the caller. Nothing is ever printed; without hooks a solve is silent.
+/// Callbacks of the caller. The library never prints; without hooks a solve has no output.
 #[derive(Default)]
 pub struct Hooks<'a> {
     /// Called at each accepted point; `true` stops the solve and keeps the points so far.
     pub progress: Option<&'a mut dyn FnMut(&Progress) -> bool>,
-    /// Asked at each Newton iteration; `true` stops the solve and keeps the points so far.
+    /// Called at each Newton iteration; `true` stops the solve and keeps the points so far.
     pub cancelled: Option<&'a dyn Fn() -> bool>,
     /// Receives log lines.
     pub log: Option<&'a mut LogSink<'a>>,
 }
 
 impl Hooks<'_> {
-    /// Reports a point; `true` when the caller wants to stop.
+    /// Reports a point; `true` when the caller requests a stop.
     pub fn report(&mut self, progress: &Progress) -> bool {
         self.progress.as_mut().is_some_and(|f| f(progress))
     }

@@ -34,5 +34,5 @@ pub mod problem;
 pub mod results;
 pub mod time_integration;
 
-#[doc = include_str!("when_it_does_not_converge.md")]
+#[doc = include_str!("../docs/statuses.md")]
 pub mod when_it_does_not_converge {}

@@ -14,7 +14,7 @@ use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::damped_mode::DampedMode;
 use hbvib::model::mode_selection::SelectedMode;
-use hbvib::model::spring::Wave;
+use hbvib::model::spring_stiffness::Wave;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{DampingForm, ModeChoice};
 use modes::{assert_wave, chain_frequency, chains, gap, mass_product, sector, skewed};

@@ -13,7 +13,7 @@ use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Linearisation, Problem};
+use hbvib::problem::{InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 use proptest::prelude::*;
 use stencil::{Checked, Stencil, config, pairs, parts};
@@ -226,11 +226,13 @@ struct Condensation {
 }
 
 /// All derivatives of the problem as it stands: R by u and p, and the observed amplitude.
-fn check_problem(problem: &mut HarmonicBalance<'_>, at: &Condensation, play: f64) -> Checked {
+fn check_problem(problem: &mut dyn Problem, at: &Condensation, play: f64) -> Checked {
     let n = at.u.len();
-    let mut out = Linearisation::new(n).unwrap();
+    let mut out = Residual::new(n).unwrap();
     problem.evaluate(&at.u, at.p, &mut out).unwrap();
-    let (jacobian, d_parameter) = (out.jacobian.clone(), out.d_parameter.clone());
+    let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
+    problem.fill(&mut jacobian, &mut active);
+    let d_parameter = out.d_parameter.clone();
     let (_, dz) = problem.observe(&at.u, &at.direction);
     let scale = size(&jacobian);
     // Everything is measured in units of the play, the length at which the laws change.
@@ -239,13 +241,13 @@ fn check_problem(problem: &mut HarmonicBalance<'_>, at: &Condensation, play: f64
             let mut u = at.u.clone();
             u[c] += h;
             problem.evaluate(&u, at.p, &mut out).unwrap();
-            out.residual.clone()
+            out.values.clone()
         });
         stencil.check("condensed Jacobian", column, scale)?;
     }
     let stencil = Stencil::of(1e-6, |h| {
         problem.evaluate(&at.u, at.p + h, &mut out).unwrap();
-        out.residual.clone()
+        out.values.clone()
     });
     let largest = at.u.iter().fold(play, |m, x| m.max(x.abs()));
     stencil.check("derivative by the parameter", &d_parameter, scale * largest)?;
@@ -330,18 +332,17 @@ proptest! {
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
         let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), 0, None).unwrap();
         let mut stuck = vec![0.0; u.len()];
-        prop_assert!(problem.start(InitialGuess::Stuck, omega, &mut stuck).unwrap() != preloaded);
+        prop_assert!(problem.initial_guess(InitialGuess::Stuck, omega, &mut stuck).unwrap() != preloaded);
         // The stuck motion must slip for a homotopy to exist; a larger one always does.
         for x in &mut stuck {
             *x *= 1e3;
         }
-        let Some((_, end)) = problem.begin_homotopy(omega, &stuck).unwrap() else {
+        let Some(mut homotopy) = problem.homotopy(omega, &stuck).unwrap() else {
             return Err(TestCaseError::fail("no homotopy"));
         };
         // Limits from those given to ten times that, or vibrating forces from none to those given.
         let p = if preloaded { share } else { share * 10.0_f64.ln() };
-        prop_assert_eq!(end > 0.5, preloaded);
-        check_problem(&mut problem, &Condensation { u, p, direction }, play)?;
-        problem.end_homotopy();
+        prop_assert_eq!(homotopy.end > 0.5, preloaded);
+        check_problem(&mut *homotopy.problem, &Condensation { u, p, direction }, play)?;
     }
 }

@@ -10,10 +10,11 @@ mod stencil;
 use common::harmonics;
 use hbvib::condense::Condensed;
 use hbvib::contact::Contact;
+use hbvib::linalg::linear_system::Jacobian;
 use hbvib::model::spring::relative_row;
 use hbvib::options::{DampingForm, SolverOptions};
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
-use hbvib::problem::{Linearisation, Problem};
+use hbvib::problem::{Problem, Residual};
 use modes::{N, Skewed};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -25,24 +26,26 @@ fn size(a: &[f64]) -> f64 {
 }
 
 /// Jacobian, derivative by the parameter and observed amplitude at (u, p).
-fn check_problem(problem: &mut Epmc<'_>, u: &[f64], p: f64, direction: &[f64]) -> Checked {
+fn check_problem(problem: &mut dyn Problem, u: &[f64], p: f64, direction: &[f64]) -> Checked {
     let n = u.len();
-    let mut out = Linearisation::new(n).unwrap();
+    let mut out = Residual::new(n).unwrap();
     problem.evaluate(u, p, &mut out).unwrap();
-    let (jacobian, d_parameter) = (out.jacobian.clone(), out.d_parameter.clone());
+    let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
+    problem.fill(&mut jacobian, &mut active);
+    let d_parameter = out.d_parameter.clone();
     let scale = size(&jacobian).max(size(&d_parameter)) * size(u);
     for (c, column) in jacobian.chunks_exact(n).enumerate() {
         let stencil = Stencil::of(1e-6, |h| {
             let mut u = u.to_vec();
             u[c] += h;
             problem.evaluate(&u, p, &mut out).unwrap();
-            out.residual.clone()
+            out.values.clone()
         });
         stencil.check(&format!("column {c} of {n}"), column, scale)?;
     }
     let stencil = Stencil::of(1e-6, |h| {
         problem.evaluate(u, p + h, &mut out).unwrap();
-        out.residual.clone()
+        out.values.clone()
     });
     stencil.check("derivative by the parameter", &d_parameter, scale)?;
     problem.evaluate(u, p, &mut out).unwrap();
@@ -122,9 +125,11 @@ impl Case {
         let direction: Vec<f64> = (0..=n).map(|_| real()).collect();
         if self.homotopy {
             let large: Vec<f64> = u.iter().map(|u| 1e3 * u).collect();
-            prop_assert!(problem.begin_homotopy(p, &large).unwrap().is_some());
-            check_problem(&mut problem, &u, 2.0 * self.log10.abs(), &direction)?;
-            problem.end_homotopy();
+            let homotopy = problem.homotopy(p, &large).unwrap();
+            prop_assert!(homotopy.is_some());
+            if let Some(mut homotopy) = homotopy {
+                check_problem(&mut *homotopy.problem, &u, 2.0 * self.log10.abs(), &direction)?;
+            }
         }
         check_problem(&mut problem, &u, p, &direction)
     }

@@ -7,7 +7,8 @@ use hbvib::continuation::special_points::{Event, Locator};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Advance, Continuation, Metric, Point, Settings};
 use hbvib::error::Result;
-use hbvib::problem::{InitialGuess, Linearisation, Problem};
+use hbvib::linalg::linear_system::Jacobian;
+use hbvib::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 
 const DAMPING: f64 = 0.05;
@@ -15,28 +16,38 @@ const CUBIC: f64 = 0.1;
 const FORCE: f64 = 0.18;
 
 /// (1 − ω² + iωd + ¾γ|X|²) X = F
-struct Duffing;
+#[derive(Default)]
+struct Duffing {
+    jacobian: [f64; 4],
+}
 
-impl Problem for Duffing {
+impl Jacobian for Duffing {
     fn size(&self) -> usize {
         2
     }
 
-    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+        matrix.copy_from_slice(&self.jacobian);
+        active.fill(true);
+    }
+}
+
+impl Problem for Duffing {
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
         let (a, b) = (u[0], u[1]);
         let cubic = 0.75 * CUBIC;
         let linear = 1.0 - p * p;
         let stiffness = linear + cubic * (a * a + b * b);
         let quadrature = DAMPING * p;
-        out.residual
+        out.values
             .copy_from_slice(&[stiffness * a - quadrature * b - FORCE, stiffness * b + quadrature * a]);
         let cross = 2.0 * cubic * a * b;
-        out.jacobian.copy_from_slice(&[
+        self.jacobian = [
             stiffness + 2.0 * cubic * a * a,
             cross + quadrature,
             cross - quadrature,
             stiffness + 2.0 * cubic * b * b,
-        ]);
+        ];
         out.d_parameter
             .copy_from_slice(&[-2.0 * p * a - DAMPING * b, -2.0 * p * b + DAMPING * a]);
         out.scale = a.hypot(b) + FORCE;
@@ -47,16 +58,14 @@ impl Problem for Duffing {
         (Complex64::new(u[0], u[1]), Complex64::new(direction[0], direction[1]))
     }
 
-    fn start(&mut self, _: InitialGuess, _: f64, u: &mut [f64]) -> Result<bool> {
+    fn initial_guess(&mut self, _: InitialGuess, _: f64, u: &mut [f64]) -> Result<bool> {
         u.fill(0.0);
         Ok(true)
     }
 
-    fn begin_homotopy(&mut self, _: f64, _: &[f64]) -> hbvib::error::Result<Option<(f64, f64)>> {
+    fn homotopy(&mut self, _: f64, _: &[f64]) -> Result<Option<Homotopy<'_>>> {
         Ok(None)
     }
-
-    fn end_homotopy(&mut self) {}
 }
 
 /// ω² on the upper (+1) or lower (−1) flank of the resonance at an amplitude, from
@@ -97,7 +106,7 @@ fn follow(from: f64, to: f64) -> (Vec<Point>, Settings) {
     let mut v = vec![0.0, 0.0, from];
     let metric = Metric::along(1.0, &settings);
     let mut corrector = Corrector::new(2, settings.tolerance, settings.max_iterations).unwrap();
-    let outcome = corrector.correct(&mut Duffing, &mut v, &[0.0, 0.0, 1.0], metric, true, None);
+    let outcome = corrector.correct(&mut Duffing::default(), &mut v, &[0.0, 0.0, 1.0], metric, true, None);
     let Outcome::Converged(corrected) = outcome.unwrap() else {
         panic!("no first point");
     };
@@ -105,7 +114,7 @@ fn follow(from: f64, to: f64) -> (Vec<Point>, Settings) {
     // As the continuation has turned it, into the range.
     let mut points = vec![continuation.current().clone()];
     while points.len() < 1000 {
-        match continuation.advance(&mut Duffing, None).unwrap() {
+        match continuation.advance(&mut Duffing::default(), None).unwrap() {
             Advance::Accepted { point, last } => {
                 points.push(point);
                 if last {
@@ -131,7 +140,9 @@ fn folds_pass_without_help_and_are_found_where_the_closed_form_has_them() {
         for pair in points.windows(2) {
             for (event, list) in [(Event::Fold, &mut folds), (Event::Peak, &mut peaks)] {
                 if event.between(&pair[0], &pair[1]) {
-                    let found = locator.locate(&mut Duffing, event, &pair[0], &pair[1]).unwrap();
+                    let found = locator
+                        .locate(&mut Duffing::default(), event, &pair[0], &pair[1])
+                        .unwrap();
                     list.push(found.unwrap());
                 }
             }
@@ -166,7 +177,7 @@ fn between_the_folds_every_one_of_three_solutions_is_found() {
         let (a, b) = (pair[0].parameter(), pair[1].parameter());
         if (a - wanted) * (b - wanted) < 0.0 {
             let point = locator
-                .at_parameter(&mut Duffing, &pair[0], &pair[1], wanted)
+                .at_parameter(&mut Duffing::default(), &pair[0], &pair[1], wanted)
                 .unwrap()
                 .unwrap();
             assert_eq!(point.parameter().to_bits(), f64::to_bits(wanted));

@@ -366,17 +366,3 @@ fn every_bad_choice_of_a_mode_is_refused_by_name() {
         refused(options.check(4, 2, 24), status, &[words]);
     }
 }
-
-#[test]
-fn the_page_on_convergence_tells_of_every_status() {
-    let page = include_str!("../src/when_it_does_not_converge.md");
-    for status in Status::ALL {
-        let name = status.name().to_str().unwrap();
-        // Statuses about the call share one line, by the ends of their names.
-        let end = name.trim_start_matches("HBVIB_E");
-        assert!(
-            page.contains(&format!("`{name}`")) || page.contains(&format!("`{end}`")),
-            "{name}"
-        );
-    }
-}

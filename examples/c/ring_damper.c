@@ -1,4 +1,4 @@
-/* The paper's bladed disk with its ring damper, from C: one of 24 sectors, engine order 2, friction
+/* A bladed disk with a friction ring damper, in C: one of 24 sectors, engine order 2, friction
  * between disk and ring. Prints the resonance of the blade tip under three forces.
  *
  *   sh examples/install.sh $HOME/hbvib
@@ -13,7 +13,7 @@ enum { B2, B1, D, R, NDOF }; /* blade tip, blade root, disk, ring */
 
 static const double PI = 3.14159265358979323846;
 
-/* Ends the program with the library's own words where a call did not succeed. */
+/* Ends the program with the error sentence of the library if a call failed. */
 static void check(hbvib_status status, const char *call)
 {
     if (status == HBVIB_OK) return;
@@ -69,7 +69,7 @@ int main(void)
     hbvib_forced_options range;
     size_t f;
     CHECK(hbvib_solver_options_init(&solver, sizeof solver));
-    solver.tolerance = 0; /* exactly so many harmonics */
+    solver.tolerance = 0; /* fixed harmonics: exactly H = 63 */
     solver.harmonics = 63;
     solver.response_dof = B2;
     CHECK(hbvib_forced_options_init(&range, sizeof range));

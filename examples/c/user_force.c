@@ -1,5 +1,5 @@
-/* A force of your own in the solver: a Bouc-Wen element, the hysteresis of a rubber or wire-rope mount,
- * carries an oscillator. Checks the derivatives of the force, follows the response over the resonance,
+/* A force of the caller in the solver: a Bouc-Wen element, the hysteresis of a rubber or wire-rope mount,
+ * supports an oscillator. Checks the derivatives of the force, follows the response over the resonance,
  * prints it, the element's loop at the peak, and the balance of work there.
  *
  *   cargo build --release
@@ -17,7 +17,7 @@ enum { HARMONICS = 7, TIMES = 1024 };
 
 static const double PI = 3.14159265358979323846;
 
-/* Ends the program with the library's own words where a call did not succeed. */
+/* Ends the program with the error sentence of the library if a call failed. */
 static void check(hbvib_status status, const char *call)
 {
     if (status == HBVIB_OK) return;
@@ -45,8 +45,8 @@ static double step(const bouc_wen *e, double z, double du, double *by_z, double 
     return z + du * (1 - c1 * middle);
 }
 
-/* One degree of freedom and one state, so that each array has one number per sample. Before sample 0
- * lies the last one, with the state z0. */
+/* One degree of freedom and one state, so that each array has one number per sample. The last
+ * sample, with the state z0, precedes sample 0. */
 static int32_t force(void *user, const hbvib_force_call *call)
 {
     const bouc_wen *e = user;
@@ -56,7 +56,7 @@ static int32_t force(void *user, const hbvib_force_call *call)
         double by_z, by_du;
         z = step(e, z, call->u[j] - before, &by_z, &by_du);
         before = call->u[j];
-        if (!isfinite(z)) return 1; /* the step was too long: come back with a shorter one */
+        if (!isfinite(z)) return 1; /* the step was too long: request a shorter one */
         call->z[j] = z;
         call->dz_dz[j] = by_z;
         call->dz_du[j] = by_du;
@@ -114,7 +114,7 @@ int main(void)
     double motion[TIMES], loop[TIMES], z = 0, unused, given, damped = 0, lost = 0;
     int64_t peaks, peak, i, j;
 
-    /* Wrong derivatives are the first suspect where a solve does not converge. */
+    /* Wrong derivatives are a frequent reason why a solve does not converge. */
     CHECK(hbvib_jacobian_gap_init(&gap, sizeof gap));
     CHECK(hbvib_check_jacobian(model, 0, 1, &amplitude, 1, &gap));
     printf("derivatives: gap %.1e\n", gap.gap);
@@ -125,7 +125,7 @@ int main(void)
     }
 
     CHECK(hbvib_solver_options_init(&solver, sizeof solver));
-    solver.tolerance = 0; /* exactly so many harmonics */
+    solver.tolerance = 0; /* fixed harmonics */
     solver.harmonics = HARMONICS;
     CHECK(hbvib_forced_options_init(&range, sizeof range));
     range.omega_start = 0.5;
@@ -146,7 +146,7 @@ int main(void)
     }
     printf("peak: %.17g %.17g\n", peak_omega, peak_amplitude);
 
-    /* The loop: the element on the motion at the peak, once the first period has brought it there. */
+    /* The loop: the element under the motion at the peak, in the second period, when it is periodic. */
     CHECK(hbvib_branch_time_history(branch, peak, 0, TIMES, motion));
     for (j = 0; j < 2 * TIMES; j++) {
         double du = motion[j % TIMES] - motion[(j + TIMES - 1) % TIMES];
@@ -157,7 +157,7 @@ int main(void)
     }
     for (j = 0; j < TIMES; j += TIMES / 32) printf("loop: %+.6f %+.6f\n", motion[j], loop[j]);
 
-    /* What the load gives per cycle is what damper and element take. */
+    /* The work of the load per cycle is dissipated by damper and element. */
     CHECK(hbvib_branch_harmonics(branch, peak, 0, 1, x, HARMONICS + 1));
     given = -PI * load * x[3];
     for (i = 1; i <= HARMONICS; i++)

@@ -1,5 +1,5 @@
-/* hbvib with Eigen: matrices go in as they are, dense or sparse, and results come out as maps over the
- * library's own memory. A chain of masses, one of which rubs on the ground; at its resonance the residual
+/* hbvib with Eigen: matrices are passed directly, dense or sparse, and results are maps over the
+ * memory of the library. A chain of masses, one of them with friction against the ground; at its resonance the residual
  * of harmonic balance is computed again with Eigen's algebra.
  *
  *   cmake -S examples/cpp -B build -DCMAKE_PREFIX_PATH=<where hbvib is installed>
@@ -71,7 +71,7 @@ int main() try {
   const auto peak = branch.highest_peak();
   const auto memory = branch.harmonics(peak.point);
   const auto x = matrix(memory);
-  Eigen::VectorXd worst(x.rows());  // what the contact does not explain, degree of freedom by degree of freedom
+  Eigen::VectorXd worst(x.rows());  // residual without the row of the contact, per harmonic
   for (Eigen::Index h = 0; h < x.rows(); h++) {
     const double w = static_cast<double>(h) * peak.omega;
     VectorXcd r = (stiffness.cast<Complex>() - w * w * mass.cast<Complex>() + Complex(0, w) * damping) * x.row(h).transpose();

@@ -1,4 +1,4 @@
-/* The paper's bladed disk with its ring damper, from C++: one of 24 sectors, engine order 2, friction
+/* A bladed disk with a friction ring damper, in C++: one of 24 sectors, engine order 2, friction
  * between disk and ring. Prints the resonance of the blade tip under three forces.
  *
  *   cmake -S examples/cpp -B build -DCMAKE_PREFIX_PATH=<where hbvib is installed>
@@ -37,7 +37,7 @@ hbvib::Model ring_damper(double ring_mass, double rpm) {
 int main() try {
   auto model = ring_damper(0.03, 3000);
   hbvib::SolverOptions solver;
-  solver.tolerance = 0;  // exactly so many harmonics
+  solver.tolerance = 0;  // fixed harmonics: exactly H = 63
   solver.harmonics = 63;
   solver.response_dof = B2;
   const hbvib::ForcedOptions range(2 * PI * 207, 2 * PI * 211);

@@ -1,4 +1,4 @@
-//! What a response cost: where the time went, against which yardsticks, and the memory.
+//! Cost of a response: time of its parts, times for comparison, and memory.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -13,10 +13,10 @@ use hbvib::options::SolverOptions;
 
 use crate::response::Response;
 
-/// Repetitions of a measurement; the quickest counts.
+/// Repetitions of a measurement; the shortest time counts.
 const REPEATS: usize = 5;
 
-/// Shows the time of every part of a response, and the most memory that the program has used.
+/// Shows the time of every part of a response, and the peak memory of the program.
 ///
 /// # Errors
 ///
@@ -33,7 +33,7 @@ pub fn show(screen: &mut impl Write, read: Duration, model: &Model, response: &R
     for (what, time) in [
         ("reading the files", read),
         ("condensation and first point", times.first_point),
-        ("curve, peaks, wanted frequencies", times.curve),
+        ("curve, peaks, at frequencies", times.curve),
         ("recovery of all motions", times.recovery),
     ] {
         writeln!(screen, "  {what:<34}{:>9.3} s", time.as_secs_f64())?;
@@ -41,7 +41,7 @@ pub fn show(screen: &mut impl Write, read: Duration, model: &Model, response: &R
     let per_iteration = (times.first_point + times.curve).as_secs_f64() / iterations.max(1) as f64;
     writeln!(
         screen,
-        "  {iterations} Newton iterations on the curve, {:.2} ms each with all that goes with them",
+        "  {iterations} Newton iterations on the curve, {:.2} ms each with all related work",
         1e3 * per_iteration
     )?;
     let lu = dense_lu(reduction.unknowns)?.as_secs_f64();
@@ -70,7 +70,7 @@ pub fn show(screen: &mut impl Write, read: Duration, model: &Model, response: &R
     Ok(())
 }
 
-/// Time of one dense real LU factorisation, the unit in which an iteration can be read.
+/// Time of one dense real LU factorisation, for comparison with an iteration.
 fn dense_lu(n: usize) -> Result<Duration, Box<dyn Error>> {
     let mut lu = Lu::<f64>::new(n, 1)?;
     let mut best = Duration::MAX;
@@ -100,7 +100,7 @@ fn factorisation(model: &Model, solver: &SolverOptions, omega: f64) -> Result<Du
     Ok(best)
 }
 
-/// The most memory that this process has occupied, in MiB, where the system tells (Linux).
+/// Peak memory of this process, in MiB, if the system reports it (Linux).
 fn peak_memory() -> Option<f64> {
     let status = std::fs::read_to_string("/proc/self/status").ok()?;
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;

@@ -20,7 +20,7 @@ use crate::single::RANGE;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-/// Lowest modes that the diagram shows of each nodal diameter.
+/// Number of lowest modes of each nodal diameter in the diagram.
 const MODES: usize = 6;
 const FORCES: [f64; 2] = [0.2, 2.0];
 /// Highest harmonic of the responses; the even ones vanish.
@@ -169,7 +169,7 @@ fn responses(sector: &Sector, read: Duration, folder: &Path, screen: &mut impl W
     figure.save(&folder.join("response"))
 }
 
-/// Where the contact slips at the peak of a response.
+/// Map of the slip in the contact at the peak of a response.
 fn slip_map(sector: &Sector, response: &Response, force: f64, folder: &Path, screen: &mut impl Write) -> Outcome {
     let shares = response
         .branch
@@ -178,7 +178,7 @@ fn slip_map(sector: &Sector, response: &Response, force: f64, folder: &Path, scr
     // Contacts 2p and 2p + 1 are pair p along θ and along z.
     let along = |pair: usize, direction: usize| shares[2 * pair + direction];
     let mut order: Vec<usize> = (0..sector.pairs.len()).collect();
-    // The mesher places the nodes of a row within a small tolerance of a plane.
+    // The mesh generator places the nodes of a row within a small tolerance of a plane.
     let plane = |p: usize| (1e4 * sector.pairs[p].z).round();
     order.sort_by(|&i, &j| {
         let rows = plane(j).total_cmp(&plane(i));
@@ -196,7 +196,7 @@ fn slip_map(sector: &Sector, response: &Response, force: f64, folder: &Path, scr
         let sign = ["θ", "z"][direction];
         writeln!(
             screen,
-            "  share of the period [%] that the pairs slip along {sign} at the peak; columns round the wheel"
+            "  share of the period [%] that the pairs slip along {sign} at the peak; columns around the wheel"
         )?;
         for (i, &p) in order.iter().enumerate() {
             if i == 0 || plane(p) < plane(order[i - 1]) {
@@ -216,7 +216,7 @@ fn slip_map(sector: &Sector, response: &Response, force: f64, folder: &Path, scr
         });
         let figure = Figure {
             title: format!("Slip along {sign} at the peak of the response to {force} N"),
-            x_label: "Position round the wheel [°]".into(),
+            x_label: "Position around the wheel [°]".into(),
             y_label: "Position along the axis [mm]".into(),
             legend_title: "Share of the period".into(),
             series: series.collect(),

@@ -1,17 +1,17 @@
-//! The sector as the finite-element program wrote it, as a model of the library.
+//! The sector from the files of the finite-element program, as a model of the library.
 //!
-//! One of 24 equal sectors of a bladed disk with a friction ring in a groove under its rim, in two
-//! sizes: the full mesh, and a reduced model whose contact and tip degrees of freedom are physical.
-//! Degrees of freedom are cylindrical (r, θ, z) at each node, so the blocks are those of every sector.
+//! One of 24 equal sectors of a bladed disk with a friction ring in a groove under its rim, in two sizes: the full
+//! mesh, and a reduced model whose contact and tip degrees of freedom are physical. Degrees of freedom are
+//! cylindrical (r, θ, z) at each node, so that the blocks are those of every sector.
 //!
 //! # The sign of the wave
 //!
-//! The files say: sector n *leads* by n·φ, φ = 2π·EO/24 with EO 21, and a wave of ND diameters sees
-//! K(ND) = K0 + K1 e^{+i·ND·2π/24} + K1ᵀ e^{−i·ND·2π/24}. The library says: sector s + 1 *lags* by
-//! 2π·EO/24, so that harmonic h sees A0 + A1 e^{−ihφ} + A1ᵀ e^{+ihφ}. Leading by 21/24 of a turn is
-//! lagging by 3/24, for harmonic h by 3h/24: the same wave has engine order 3 here. K1 itself, from
-//! a sector to the next one, keeps its place. Natural frequencies do not tell the two signs apart
-//! (K(−ND) is the conjugate of K(ND)), the forced response with friction does.
+//! Convention of the files: sector n *leads* by n·φ, φ = 2π·EO/24 with EO 21, and the matrix of a wave of ND
+//! diameters is K(ND) = K0 + K1 e^{+i·ND·2π/24} + K1ᵀ e^{−i·ND·2π/24}. Convention of the library: sector s + 1
+//! *lags* by 2π·EO/24, so that the matrix of harmonic h is A0 + A1 e^{−ihφ} + A1ᵀ e^{+ihφ}. Leading by 21/24 of a
+//! turn is lagging by 3/24, for harmonic h by 3h/24: the same wave has engine order 3 here. K1 itself, from a
+//! sector to the next one, is unchanged. Natural frequencies do not distinguish the two signs (K(−ND) is the
+//! conjugate of K(ND)), the forced response with friction does.
 
 #![allow(dead_code, reason = "the tests use a part of this module")]
 
@@ -30,12 +30,12 @@ use crate::table::Table;
 
 /// Sectors of the wheel.
 pub const SECTORS: usize = 24;
-/// Engine order of the wave where a sector lags behind the one before.
+/// Engine order of the wave in the convention that a sector lags behind the previous one.
 pub const ENGINE_ORDER: i64 = 3;
 /// Damping C = `DAMPING`·K of the structure, without the contact, s.
 const DAMPING: f64 = 5e-7;
 
-/// Which of the two models.
+/// One of the two models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
     /// 293 degrees of freedom.
@@ -45,7 +45,7 @@ pub enum Size {
 }
 
 impl Size {
-    /// Name in the flags, and the beginning of its columns in the table of contacts.
+    /// Name in the flags, and prefix of its columns in the table of contacts.
     pub fn name(self) -> &'static str {
         match self {
             Self::Reduced => "rom",
@@ -53,7 +53,7 @@ impl Size {
         }
     }
 
-    /// Beginning of its files' names.
+    /// Prefix of the names of its files.
     fn files(self) -> &'static str {
         match self {
             Self::Reduced => "rom",
@@ -61,7 +61,7 @@ impl Size {
         }
     }
 
-    /// Degree of freedom of the blade tip in the direction θ: forced, and followed.
+    /// Degree of freedom of the blade tip in the direction θ: the forced one, and the response degree of freedom.
     pub fn tip(self) -> usize {
         match self {
             Self::Reduced => 181,
@@ -73,20 +73,20 @@ impl Size {
 /// A pair of nodes that touch, on the rim and on the ring.
 #[derive(Clone, Debug)]
 pub struct Pair {
-    /// Position round the wheel, rad.
+    /// Position around the wheel, rad.
     pub theta: f64,
     /// Position along the axis, m.
     pub z: f64,
     /// Jenkins contacts of rim against ring: along θ and along z.
     pub friction: [Contact; 2],
-    /// Bilateral spring along r; by definition of this data set the ring does not lift off.
+    /// Bilateral spring along r; in this data set the ring does not lift off.
     pub normal: Spring,
 }
 
-/// What touches between rim and ring.
+/// Connection of rim and ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Interface {
-    /// Nothing.
+    /// No connection.
     Absent,
     /// The normal springs.
     Springs,
@@ -94,10 +94,10 @@ pub enum Interface {
     Friction2d,
 }
 
-/// A sector as read.
+/// A sector read from files.
 #[derive(Clone, Debug)]
 pub struct Sector {
-    /// Which model it is.
+    /// The model.
     pub size: Size,
     /// The contact pairs in the order of the table.
     pub pairs: Vec<Pair>,

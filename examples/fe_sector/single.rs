@@ -1,4 +1,4 @@
-//! One response as the flags describe it: a summary on the screen and, if wanted, a JSON file.
+//! One response as the flags describe it: a summary on the screen and, on request, a JSON file.
 
 use std::error::Error;
 use std::io::Write;
@@ -19,7 +19,7 @@ pub const FLAGS: [Flag; 9] = [
     Flag::new("--force", "N", "amplitude of the force at the blade tip (2)"),
     Flag::new("--harmonics", "H", "highest harmonic number (3)"),
     Flag::new("--model", "rom|full", "reduced or full sector (rom)"),
-    Flag::new("--from", "Hz", "begin of the range (512)"),
+    Flag::new("--from", "Hz", "beginning of the range (512)"),
     Flag::new("--to", "Hz", "end of the range (548)"),
     Flag::new(
         "--at-hz",
@@ -32,7 +32,7 @@ pub const FLAGS: [Flag; 9] = [
     Flag::new("--help", "", "show this text"),
 ];
 
-/// Shows the resonance of the blade from sticking (537 Hz) to sliding (528 Hz).
+/// Range of frequency that shows the resonance of the blade from sticking (537 Hz) to sliding (528 Hz).
 pub const RANGE: (f64, f64) = (512.0, 548.0);
 
 /// The text of `--help`.
@@ -46,7 +46,7 @@ pub fn help() -> String {
     )
 }
 
-/// One response that was asked for.
+/// One requested response.
 #[derive(Clone, Debug)]
 pub struct Request {
     size: Size,
@@ -58,7 +58,7 @@ pub struct Request {
 }
 
 impl Request {
-    /// Understands the flags; `folder` holds the data where none is given.
+    /// Interprets the flags; `folder` holds the data if no flag names one.
     ///
     /// # Errors
     ///
@@ -84,7 +84,7 @@ impl Request {
             to: flags.positive("--to")?.unwrap_or(RANGE.1),
             at: flags.values("--at-hz", "a finite number above 0", flags::is_positive)?,
         };
-        // A downward sweep must be meant: it takes both ends.
+        // A downward sweep must be explicit: it requires both ends.
         if !(flags.has("--from") && flags.has("--to")) && range.from >= range.to {
             return Err(format!(
                 "--from or --to lies outside of the default range of {} to {} Hz; give both",
@@ -105,7 +105,7 @@ impl Request {
         })
     }
 
-    /// Computes the response, shows its peak and the solutions asked for, and writes the file.
+    /// Computes the response, shows its peak and the requested solutions, and writes the file.
     ///
     /// # Errors
     ///

@@ -13,7 +13,7 @@ program ring_damper
    integer :: i, best
 
    call build(ring_mass=0.03_dp, rpm=3000._dp)
-   solver%tolerance = 0 ! exactly so many harmonics
+   solver%tolerance = 0 ! fixed harmonics: exactly H = 63
    solver%harmonics = 63
    solver%response_dof = b2
    write (*, '(a)') '   F/N              f/Hz            |X1|/m'
@@ -66,7 +66,7 @@ contains
       call check(model%add_contact(friction))
    end subroutine build
 
-   !> Ends the program with the library's own words where a call did not succeed.
+   !> Ends the program with the error sentence of the library if a call failed.
    subroutine check(status)
       integer(c_int32_t), intent(in) :: status
       if (status /= HBVIB_OK) call fail(hbvib_text(hbvib_status_name(status))//': '//hbvib_error_text())

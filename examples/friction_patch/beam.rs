@@ -1,8 +1,8 @@
-//! A beam of bricks, clamped at x = 0, whose underside rubs on the ground near the free end.
+//! A beam of bricks, clamped at x = 0, with friction between its underside and the ground near the free end.
 //!
-//! x runs along the beam, y upwards, z across. Between beam and ground lies a soft friction lining: per
-//! unit of area it has the stiffnesses kt and kn, and it is pressed at rest by the approach of the
-//! ground and by a constant load from above.
+//! x runs along the beam, y upwards, z across. Between beam and ground lies a soft friction lining: per unit of
+//! area it has the stiffnesses kt and kn, and it has a static load by the approach of the ground and by a constant
+//! force from above.
 
 #![allow(dead_code, reason = "the tests and another example use a part of this module")]
 
@@ -19,9 +19,9 @@ use num_complex::Complex64;
 
 use crate::brick::{self, Material};
 
-/// Directions of the degrees of freedom of a node.
+/// Upward direction of the degrees of freedom of a node.
 pub const Y: usize = 1;
-/// Across the beam.
+/// Direction across the beam.
 pub const Z: usize = 2;
 
 /// Steel.
@@ -36,7 +36,7 @@ pub const STEEL: Material = Material {
 pub struct Beam {
     /// Length, height and width.
     pub size: [f64; 3],
-    /// Elements along them.
+    /// Number of elements along them.
     pub elements: [usize; 3],
     /// First and last row of nodes along x whose undersides touch the ground.
     pub rows: [usize; 2],
@@ -74,7 +74,7 @@ pub struct Spot {
     pub x: f64,
     /// Position across, m.
     pub z: f64,
-    /// Share of the area, m².
+    /// Area of the patch that belongs to the node, m².
     pub area: f64,
     /// First degree of freedom of the node.
     pub dof: usize,
@@ -99,11 +99,11 @@ impl Beam {
         std::array::from_fn(|k| self.size[k] / self.elements[k] as f64)
     }
 
-    /// The nodes of the patch, across the beam first.
+    /// The nodes of the patch, the index across the beam running fastest.
     pub fn spots(&self) -> Vec<Spot> {
         let [dx, _, dz] = self.edges();
         let ([first, last], nz) = (self.rows, self.elements[2]);
-        // Nodes at a border of the patch stand for half an element.
+        // Nodes at a border of the patch represent half an element.
         let share = |i: usize, ends: [usize; 2]| if ends.contains(&i) { 0.5 } else { 1.0 };
         let all = (first..=last).flat_map(|i| (0..=nz).map(move |k| (i, k)));
         let spot = |(i, k): (usize, usize)| {
@@ -117,8 +117,8 @@ impl Beam {
         all.filter_map(spot).collect()
     }
 
-    /// The two nodes in the middle of the upper edge at the free end (one where they coincide), at which
-    /// the force that vibrates acts.
+    /// The two nodes in the middle of the upper edge at the free end (one where they coincide), at which the
+    /// harmonic force acts.
     pub fn tips(&self) -> Vec<usize> {
         let [nx, ny, nz] = self.elements;
         let mut tips: Vec<usize> = [nz / 2, nz.div_ceil(2)]
@@ -185,17 +185,17 @@ impl Beam {
     }
 
     /// The beam on its lining, without loads.
-    pub fn resting(&self) -> Result<Model> {
+    pub fn on_lining(&self) -> Result<Model> {
         let mut model = self.structure()?;
         model.add_contacts(&self.contacts()?)?;
         Ok(model)
     }
 
-    /// The beam on its lining under the constant load and a vibrating force: `force` across the beam and
-    /// `extend` times that upwards.
-    pub fn forced(&self, force: f64, extend: f64) -> Result<Model> {
-        let mut model = self.resting()?;
-        self.excite(&mut model, force, extend)?;
+    /// The beam on its lining under the constant load and a harmonic force: `force` across the beam and
+    /// `upward_share` times that upwards.
+    pub fn forced(&self, force: f64, upward_share: f64) -> Result<Model> {
+        let mut model = self.on_lining()?;
+        self.excite(&mut model, force, upward_share)?;
         let above = self.elements[1];
         let spots = self.spots();
         let whole: f64 = spots.iter().map(|s| s.area).sum();
@@ -207,15 +207,15 @@ impl Beam {
         Ok(model)
     }
 
-    /// The linear limit for vanishing motion (`sticks`), or for motion so large that friction is nothing
-    /// beside it, under the vibrating force: springs in place of the lining.
-    pub fn linear(&self, sticks: bool, force: f64, extend: f64) -> Result<Model> {
+    /// The linear limit under the harmonic force, with springs in place of the lining: for vanishing motion
+    /// (`sticks`), or for motion so large that friction is negligible.
+    pub fn linear(&self, sticks: bool, force: f64, upward_share: f64) -> Result<Model> {
         let mut model = self.sprung(sticks)?;
-        self.excite(&mut model, force, extend)?;
+        self.excite(&mut model, force, upward_share)?;
         Ok(model)
     }
 
-    /// The beam on springs along its normal and, where it `sticks`, along the ground.
+    /// The beam on springs along its normal and, if it `sticks`, along the ground.
     pub fn sprung(&self, sticks: bool) -> Result<Model> {
         let mut model = self.structure()?;
         let (kt, kn) = self.stiffness;
@@ -234,22 +234,22 @@ impl Beam {
         Ok(model)
     }
 
-    fn excite(&self, model: &mut Model, force: f64, extend: f64) -> Result<()> {
+    fn excite(&self, model: &mut Model, force: f64, upward_share: f64) -> Result<()> {
         let tips = self.tips();
         for &tip in &tips {
             let part = force / tips.len() as f64;
             model.add_force(tip + Z, 1, part.into())?;
-            model.add_force(tip + Y, 1, (extend * part).into())?;
+            model.add_force(tip + Y, 1, (upward_share * part).into())?;
         }
         Ok(())
     }
 
-    /// Work per cycle of the vibrating force, −π Re(F) Im(X) summed over where it acts, for the fundamental
+    /// Work per cycle of the harmonic force, −π Re(F) Im(X) summed over its degrees of freedom, for the fundamental
     /// of all degrees of freedom.
-    pub fn work_of_force(&self, fundamental: &[Complex64], force: f64, extend: f64) -> f64 {
+    pub fn work_of_force(&self, fundamental: &[Complex64], force: f64, upward_share: f64) -> f64 {
         let tips = self.tips();
         let part = force / tips.len() as f64;
-        let one = |tip: &usize| part * (fundamental[tip + Z].im + extend * fundamental[tip + Y].im);
+        let one = |tip: &usize| part * (fundamental[tip + Z].im + upward_share * fundamental[tip + Y].im);
         -std::f64::consts::PI * tips.iter().map(one).sum::<f64>()
     }
 }

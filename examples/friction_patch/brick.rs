@@ -1,9 +1,9 @@
 //! Matrices of a rectangular brick with eight nodes and trilinear shape functions.
 //!
-//! Trilinear functions alone cannot bend: in a state of pure bending they shear, and a mesh of one
-//! element over the height would be several times too stiff. The quadratic functions 1 − ξ², 1 − η²,
-//! 1 − ζ² that vanish at the nodes (Wilson et al. 1973) repair that; they belong to the element alone and
-//! are condensed out. For a rectangular brick the element passes the patch test as it is.
+//! Trilinear functions alone cannot bend: in a state of pure bending they shear, and a mesh of one element over the
+//! height would be several times too stiff. The quadratic functions 1 − ξ², 1 − η², 1 − ζ² that vanish at the nodes
+//! (Wilson et al. 1973) correct this; they are internal to the element and are condensed out. A rectangular brick
+//! passes the patch test without modification.
 //!
 //! Corner c lies at the end (c >> k) & 1 of edge k; its degrees of freedom are 3c + k.
 
@@ -72,7 +72,7 @@ pub fn stiffness(size: [f64; 3], material: &Material) -> Matrix {
         let of = |i: usize| strains(gradients[i / 3], i % 3);
         for (i, row) in full.iter_mut().enumerate() {
             let e = of(i);
-            // Stresses of a unit of motion i: 2G ε + λ tr ε on the diagonal, G γ beside it.
+            // Stresses of a unit of motion i: 2G ε + λ tr ε on the diagonal, G γ off the diagonal.
             let trace = e[0] + e[1] + e[2];
             let stress: [f64; 6] = std::array::from_fn(|s| {
                 if s < 3 {

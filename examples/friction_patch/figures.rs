@@ -16,14 +16,14 @@ use crate::plot::{Figure, Series, Style};
 use crate::progress::Bar;
 use crate::response::{Point, Range, Response};
 
-/// What every part of the program returns.
+/// Result of every part of the program.
 pub type Outcome = Result<(), Box<dyn Error>>;
 
 /// Amplitudes of the force across the beam, N.
 const FORCES: [f64; 4] = [1.0, 3.0, 6.0, 12.0];
-/// Of these, the one whose contacts are looked at.
-const LOOKED_AT: f64 = 6.0;
-/// The force upwards, as a share of that.
+/// The force whose contacts are examined.
+const EXAMINED: f64 = 6.0;
+/// The force upwards, as a share of the force across.
 pub const LIFT: f64 = 0.1;
 const HARMONICS: usize = 3;
 /// Hz
@@ -65,7 +65,7 @@ pub fn run(folder: &Path, screen: &mut impl Write) -> Outcome {
         let points = response.points.iter();
         let points = points.map(|p| (p.frequency, 1e6 * amplitude_upwards(p))).collect();
         upwards.push(Series::new(format!("{force} N"), Style::Line, points));
-        if force == LOOKED_AT {
+        if force == EXAMINED {
             maps::draw(&beam, &response, force, folder, screen)?;
         }
     }
@@ -76,8 +76,8 @@ pub fn run(folder: &Path, screen: &mut impl Write) -> Outcome {
         let points = points.iter().map(|&[f, x, _]| (f, 1e6 * x)).collect();
         series.push(Series::new(label, Style::Dashed, points));
     }
-    // A force of 0 stands for the limit that sticks, an infinite one for that without friction; both are
-    // amplitudes per newton.
+    // A force of 0 denotes the sticking limit, an infinite one the limit without friction; both are amplitudes per
+    // newton.
     write_csv(
         folder.join("response.csv"),
         &["force_N", "frequency_Hz", "amplitude_across_m", "amplitude_up_m"],
@@ -93,8 +93,8 @@ pub fn run(folder: &Path, screen: &mut impl Write) -> Outcome {
         ..Figure::default()
     };
     figure.save(&folder.join("response"))?;
-    // The upward bending mode, 651 Hz on a closed lining, is softened by lift-off: its resonance leans far
-    // to the left, folds back, and shows in the motion across where the two meet.
+    // The upward bending mode, 651 Hz on a closed lining, is softened by lift-off: its resonance bends far to the
+    // left, folds back, and appears in the motion across near the intersection of the two.
     let figure = Figure {
         title: "Beam on a friction lining: motion of the free end upwards".into(),
         y_label: "Amplitude [µm]".into(),
@@ -108,17 +108,17 @@ pub fn run(folder: &Path, screen: &mut impl Write) -> Outcome {
 
 fn frequencies(beam: &Beam, screen: &mut impl Write) -> Outcome {
     const MODES: usize = 4;
-    let resting = beam.resting()?;
+    let on_lining = beam.on_lining()?;
     writeln!(screen, "Natural frequencies [Hz], lowest {MODES}")?;
     for (label, modes) in [
-        ("without lining", resting.lowest_modes(0, ContactState::Free, MODES)?),
+        ("without lining", on_lining.lowest_modes(0, ContactState::Free, MODES)?),
         (
             "lining without friction",
             beam.sprung(false)?.lowest_modes(0, ContactState::Free, MODES)?,
         ),
         (
             "lining that sticks",
-            resting.lowest_modes(0, ContactState::Stuck, MODES)?,
+            on_lining.lowest_modes(0, ContactState::Stuck, MODES)?,
         ),
     ] {
         write!(screen, "  {label:<24}")?;
@@ -130,19 +130,19 @@ fn frequencies(beam: &Beam, screen: &mut impl Write) -> Outcome {
     Ok(())
 }
 
-/// Where the response is looked at: across, then upwards.
+/// Response degrees of freedom: across, then upwards.
 fn ends(beam: &Beam) -> [usize; 2] {
     let tip = beam.tips()[0];
     [tip + Z, tip + Y]
 }
 
-/// Amplitude of the fundamental of the second.
+/// Amplitude of the fundamental of the upward motion.
 fn amplitude_upwards(point: &Point) -> f64 {
     let first = point.harmonics.iter().find(|h| h.0 == 1);
     first.map_or(0.0, |h| h.1[1].norm())
 }
 
-/// The solver's options for the nonlinear responses.
+/// Options of the solver for the nonlinear responses.
 pub fn solver() -> SolverOptions {
     SolverOptions {
         harmonics: HARMONICS,
@@ -187,7 +187,7 @@ fn linear(beam: &Beam, sticks: bool) -> Result<Vec<[f64; 3]>, Box<dyn Error>> {
         .collect())
 }
 
-/// Work per cycle at the peak: of the force, lost in the beam, and lost in each contact.
+/// Work per cycle at the peak: of the force, dissipated in the beam, and dissipated in each contact.
 fn balance(beam: &Beam, response: &Response, force: f64, screen: &mut impl Write) -> Outcome {
     let (branch, point) = (&response.branch, response.peak.number);
     let n = branch.ndof();
@@ -201,7 +201,7 @@ fn balance(beam: &Beam, response: &Response, force: f64, screen: &mut impl Write
     }
     writeln!(
         screen,
-        "  work per cycle at the peak: given {:.6e} J = {:.1} % beam + {:.1} % contacts; what is missing {:.1e} of it",
+        "  work per cycle at the peak: force {:.6e} J = {:.1} % beam + {:.1} % contacts; relative difference {:.1e}",
         given,
         100.0 * lost / given,
         100.0 * of_contacts / given,

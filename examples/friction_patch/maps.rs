@@ -1,4 +1,4 @@
-//! What every contact of the patch does at a resonance: maps over the patch, and hysteresis loops.
+//! State of every contact of the patch at a resonance: maps over the patch, and hysteresis loops.
 
 use std::io::Write;
 use std::path::Path;
@@ -11,13 +11,13 @@ use crate::figures::Outcome;
 use crate::plot::{Figure, Series, Style};
 use crate::response::Response;
 
-/// Times of a loop.
+/// Number of times of a loop.
 const TIMES: usize = 512;
 
-/// Classes of a map, more than six, so that their colours form a scale.
+/// Number of classes of a map, more than six, so that their colours form a scale.
 const CLASSES: usize = 8;
 
-/// A quantity that is mapped: name of its file, title, unit, and what it is of a contact.
+/// A mapped quantity: name of its file, title, unit, and its value for a contact.
 type Quantity = (
     &'static str,
     &'static str,
@@ -38,7 +38,7 @@ const QUANTITIES: [Quantity; 5] = [
     ("pressure_max", "Largest pressure over the period", "kPa", |c, s| {
         1e-3 * c.load_max / s.area
     }),
-    ("work", "Work lost per cycle and area", "mJ/m²", |c, s| {
+    ("work", "Dissipated work per cycle and area", "mJ/m²", |c, s| {
         1e3 * c.work / s.area
     }),
 ];
@@ -91,7 +91,7 @@ pub fn draw(beam: &Beam, response: &Response, force: f64, folder: &Path, screen:
             writeln!(screen)?;
         }
         let series = classes(&values, &spots);
-        // All alike is no map.
+        // A map needs more than one class.
         if series.len() > 1 {
             let figure = Figure {
                 title: format!("{title}, {force} N at {:.1} Hz", response.peak.frequency),
@@ -107,7 +107,7 @@ pub fn draw(beam: &Beam, response: &Response, force: f64, folder: &Path, screen:
     loops(beam, response, force, folder)
 }
 
-/// The spots by classes of their values, evenly spaced from the least to the largest.
+/// The nodes by classes of their values, evenly spaced from the smallest to the largest.
 fn classes(values: &[f64], spots: &[Spot]) -> Vec<Series> {
     let least = values.iter().copied().fold(f64::INFINITY, f64::min);
     let largest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);

@@ -1,4 +1,4 @@
-# A version serves requests for its own major and minor number, as its SONAME says.
+# A version is compatible with requests for its own major and minor number, as its SONAME shows.
 set(PACKAGE_VERSION "@VERSION@")
 if(CMAKE_SIZEOF_VOID_P AND NOT CMAKE_SIZEOF_VOID_P EQUAL 8)
   set(PACKAGE_VERSION "@VERSION@ (64 bit)")

@@ -11,18 +11,18 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 
 class Library(BuildHookInterface):
-    """Puts the shared library beside the module, which is what the module looks for first."""
+    """Puts the shared library beside the module, where the module searches first."""
 
     def initialize(self, version, build_data):
         library = built(self.root)
-        # The wheel holds a copy without the names of the inside, where there is a strip to make one.
+        # The wheel holds a copy without internal symbols, if strip is available.
         self.scratch = tempfile.mkdtemp()
         copy = Path(self.scratch, library.name)
         shutil.copy(library, copy)
         if shutil.which("strip"):
             subprocess.run(["strip", "--strip-unneeded", str(copy)], check=True)
         build_data["pure_python"] = False
-        # Any Python 3, no ABI of it, this platform.
+        # Tag: any Python 3, no Python ABI, this platform.
         platform = sysconfig.get_platform().replace("-", "_").replace(".", "_")
         build_data["tag"] = f"py3-none-{platform}"
         build_data["force_include"][str(copy)] = f"hbvib/{library.name}"

@@ -1,4 +1,4 @@
-"""A bladed disk with its ring damper, from Python: one of 24 sectors, engine order 2, friction between disk and ring.
+"""A bladed disk with a friction ring damper, in Python: one of 24 sectors, engine order 2, friction between disk and ring.
 Prints the resonance of the blade tip under three forces.
 
     cargo build --release

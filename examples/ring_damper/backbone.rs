@@ -11,13 +11,13 @@ use hbvib::results::Branch;
 use serde_json::{Map, Value};
 
 use crate::json::number;
-use crate::model::{CONTACT, DOFS, Parameters, SECTORS, WANTED};
+use crate::model::{CONTACT, DOFS, Parameters, REPORTED_DOFS, SECTORS};
 use crate::response::{Harmonics, error_to_json, harmonics, harmonics_to_json, highest};
 
-/// A mode that is wanted over a range of slip: the peak of the fundamental of the relative motion of
-/// disk and ring, over the motion at which the contact begins to slip.
+/// A requested mode over a range of slip: the peak of the fundamental of the relative motion of disk and ring, over
+/// the motion at which the contact begins to slip.
 #[derive(Clone, Debug)]
-pub struct Wanted {
+pub struct ModeRequest {
     /// The structure; its engine order is the nodal diameter of the mode.
     pub parameters: Parameters,
     /// Number of the mode from 1 by rising frequency, ring stuck.
@@ -28,12 +28,12 @@ pub struct Wanted {
     pub from: f64,
     /// Slip at the last point, above the first.
     pub to: f64,
-    /// Slips at which every passage is wanted, in the order in which they are to be listed.
+    /// Slips at which every passage is listed, in this order.
     pub at: Vec<f64>,
 }
 
-impl Wanted {
-    /// Checks the range and the slips against what the library takes.
+impl ModeRequest {
+    /// Checks the range and the slips by the rules of the library.
     ///
     /// # Errors
     ///
@@ -63,7 +63,7 @@ impl Wanted {
         }
     }
 
-    /// Slip at a value of the parameter; those that were asked for are given back as they were.
+    /// Slip at a value of the parameter; requested slips are returned exactly as given.
     fn slip(&self, log10: f64) -> f64 {
         let mut known = [self.from, self.to].into_iter().chain(self.at.iter().copied());
         known
@@ -94,16 +94,16 @@ pub struct Point {
 }
 
 impl Point {
-    fn new(wanted: &Wanted, branch: &Branch, number: usize, omega: f64) -> Result<Self, Box<dyn Error>> {
+    fn new(requested: &ModeRequest, branch: &Branch, number: usize, omega: f64) -> Result<Self, Box<dyn Error>> {
         let mode = branch.mode_at(number).ok_or("a point of the mode has no numbers")?;
         Ok(Self {
-            slip: wanted.slip(mode.log10_amplitude),
+            slip: requested.slip(mode.log10_amplitude),
             modal_amplitude: mode.modal_amplitude,
             frequency: omega / TAU,
             damping_ratio: mode.damping_ratio,
             energy: mode.energy,
             dissipation: mode.friction_loss,
-            harmonics: harmonics(branch, number, &WANTED)?,
+            harmonics: harmonics(branch, number, &REPORTED_DOFS)?,
             errors: branch
                 .error_estimate_at(number)
                 .zip(branch.damping_error_estimate_at(number))
@@ -111,7 +111,8 @@ impl Point {
         })
     }
 
-    /// With errors where a largest damping ratio is given, over which that of the damping ratio is told.
+    /// The point as JSON, with errors if a largest damping ratio is given, to which that of the damping ratio is
+    /// relative.
     fn to_json(&self, largest: Option<f64>) -> Result<Value, Box<dyn Error>> {
         let mut object = Map::new();
         for (name, value) in [
@@ -148,13 +149,13 @@ fn is_complete(status: Status) -> bool {
 pub struct Backbone {
     /// From exactly the first slip to exactly the last.
     pub points: Vec<Point>,
-    /// Every passage of the slips asked for, in the order asked.
+    /// Every passage of the requested slips, in the requested order.
     pub at: Vec<Point>,
     /// The largest maximum of the damping ratio inside the range, if there is one.
     pub max_damping: Option<Point>,
-    /// Whether rounding kept the residual of a point above the solver's tolerance.
+    /// Whether rounding kept the residual of a point above the tolerance of the solver.
     pub stalled: bool,
-    /// Whether some point misses the tolerance.
+    /// Whether some point exceeds the tolerance.
     pub missed: bool,
     /// Whether a tolerance chose the harmonics.
     automatic: bool,
@@ -163,19 +164,19 @@ pub struct Backbone {
 }
 
 impl Backbone {
-    /// Follows a mode and reports the share of the range that is done.
+    /// Follows a mode and reports the completed share of the range.
     ///
     /// # Errors
     ///
     /// If the model or an option is refused, or the mode could not be followed to its end.
     pub fn follow(
-        wanted: &Wanted,
+        requested: &ModeRequest,
         solver: &SolverOptions,
         mut progress: impl FnMut(f64),
     ) -> Result<Self, Box<dyn Error>> {
-        let model = wanted.parameters.model()?;
-        let at = wanted.logarithms();
-        let options = wanted.options(&at);
+        let model = requested.parameters.model()?;
+        let at = requested.logarithms();
+        let options = requested.options(&at);
         let mut report = |state: &Progress| {
             progress(state.fraction_done);
             false
@@ -187,25 +188,25 @@ impl Backbone {
         let branch = nonlinear_mode(&model, solver, &options, &mut hooks)?;
         let curve = branch.omega().iter().enumerate();
         let points: Vec<Point> = curve
-            .map(|(i, &omega)| Point::new(wanted, &branch, i, omega))
+            .map(|(i, &omega)| Point::new(requested, &branch, i, omega))
             .collect::<Result<_, _>>()?;
         let end = points.last().map_or(f64::NAN, |p| p.slip);
-        if end.to_bits() != wanted.to.to_bits() || !is_complete(branch.status()) {
+        if end.to_bits() != requested.to.to_bits() || !is_complete(branch.status()) {
             let reason = branch.status().name().to_string_lossy();
-            return Err(format!("the mode ends at slip {end} ({reason}), before {}", wanted.to).into());
+            return Err(format!("the mode ends at slip {end} ({reason}), before {}", requested.to).into());
         }
         let mut at = Vec::new();
-        for (i, slip) in wanted.at.iter().enumerate() {
+        for (i, slip) in requested.at.iter().enumerate() {
             if branch.at(i).is_empty() {
                 return Err(format!("no solution was found at slip {slip}").into());
             }
             for special in branch.at(i) {
-                at.push(Point::new(wanted, &branch, special.point, special.omega)?);
+                at.push(Point::new(requested, &branch, special.point, special.omega)?);
             }
         }
         let mut max_damping: Option<Point> = None;
         for peak in branch.peaks() {
-            let peak = Point::new(wanted, &branch, peak.point, peak.omega)?;
+            let peak = Point::new(requested, &branch, peak.point, peak.omega)?;
             if max_damping
                 .as_ref()
                 .is_none_or(|best| peak.damping_ratio > best.damping_ratio)

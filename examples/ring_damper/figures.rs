@@ -9,13 +9,14 @@ use std::time::Instant;
 use hbvib::options::SolverOptions;
 
 use crate::csv::write_csv;
-use crate::model::{LARGEST_DIAMETER, Parameters, WANTED, modes_with_ring_stuck, modes_without_ring};
+use crate::model::{LARGEST_DIAMETER, Parameters, REPORTED_DOFS, modes_with_ring_stuck, modes_without_ring};
 use crate::modes::{self, Overlay};
 use crate::plot::{Figure, Series, Style};
 use crate::progress::Bar;
 use crate::response::{Range, Response};
 
-/// Shows the resonance of nodal diameter 2 from the ring sliding (207.8 Hz) to stuck (210.0 Hz).
+/// Range of frequency that shows the resonance of nodal diameter 2 from the ring sliding (207.8 Hz) to stuck (210.0
+/// Hz).
 pub const RANGE: (f64, f64) = (207.0, 211.0);
 
 /// Largest step along a curve, small enough for it to be drawn smoothly.
@@ -27,7 +28,7 @@ struct Study {
     title: &'static str,
     /// Name and unit of the parameter, for legend and screen.
     parameter: &'static str,
-    /// Name of the parameter's column.
+    /// Name of the column of the parameter.
     column: &'static str,
     values: &'static [f64],
     case: fn(f64) -> Parameters,
@@ -75,7 +76,7 @@ const STUDIES: [Study; 3] = [
 ///
 /// If a response cannot be computed or a file cannot be written.
 pub fn run() -> Result<(), Box<dyn Error>> {
-    // Cargo tells a program that it runs where its package lies; elsewhere the current folder has to do.
+    // Cargo sets this variable for a program that it runs; without it the current folder serves.
     let root = std::env::var_os("CARGO_MANIFEST_DIR")
         .map(PathBuf::from)
         .unwrap_or_default();
@@ -164,7 +165,7 @@ impl Study {
             let progress = |share: f64| bar.set((i as f64 + share) / count as f64);
             let response = (self.case)(value)
                 .model()
-                .and_then(|model| Response::follow(&model, &solver, &range, &WANTED, progress))
+                .and_then(|model| Response::follow(&model, &solver, &range, &REPORTED_DOFS, progress))
                 .map_err(|e| format!("{} = {value}: {e}", self.parameter))?;
             cases.push((value, response, begin.elapsed().as_secs_f64()));
         }
@@ -190,7 +191,7 @@ impl Study {
             figure.series.extend(mode.series());
             mode.write(folder)?;
             overlay = Some(mode);
-            // Divided by the force, the stuck and the sliding ring both collapse onto one curve.
+            // Divided by the force, all curves of the stuck ring coincide, and so do those of the sliding ring.
             self.plot(&cases, |force| force, "Amplitude of b2 / force [m/N]")
                 .save(&folder.join("figure5_receptance"))?;
         }

@@ -1,4 +1,4 @@
-//! One nonlinear mode as the flags describe it: a summary on the screen and, if wanted, a JSON file.
+//! One nonlinear mode as the flags describe it: a summary on the screen and, on request, a JSON file.
 
 use std::error::Error;
 use std::io::Write;
@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use hbvib::options::{DampingForm, SolverOptions};
 
-use crate::backbone::{Backbone, Point, Wanted};
+use crate::backbone::{Backbone, ModeRequest, Point};
 use crate::flags::{self, Flag, Flags};
 use crate::json::write_json;
 use crate::model::{DOFS, LARGEST_DIAMETER, Parameters};
@@ -27,29 +27,29 @@ pub const FLAGS: [Flag; 7] = [
         "mass|stiffness",
         "form of the artificial damping (mass)",
     ),
-    Flag::new("--from-slip", "a", "slip at the begin of the range (0.5)"),
+    Flag::new("--from-slip", "a", "slip at the beginning of the range (0.5)"),
     Flag::new("--to-slip", "a", "slip at the end of the range (1e4)"),
     Flag::new("--at-slip", "a", "list every passage of exactly this slip; repeatable").repeatable(),
 ];
 
-/// What the help says of modes beside their flags.
+/// Text of the help about modes beside their flags.
 pub const NOTE: &str = "Slip a is the peak of the fundamental of the relative motion of disk and ring, over the motion mu N0/kt at\n\
     which the contact begins to slip: up to a = 1 the ring sticks. max_damping in the JSON is the largest\n\
     maximum of the damping ratio inside the range; where there is none, it is null.\n";
 
-/// Slip at the ends of the range where the flags do not say it: from stuck to sliding.
+/// Slip at the ends of the range if the flags do not set it: from stuck to sliding.
 const RANGE: (f64, f64) = (0.5, 1e4);
 
-/// One mode that was asked for.
+/// One requested mode.
 #[derive(Clone, Debug)]
 pub struct Request {
-    wanted: Wanted,
+    requested: ModeRequest,
     solver: SolverOptions,
     json: Option<PathBuf>,
 }
 
 impl Request {
-    /// Understands the flags.
+    /// Interprets the flags.
     ///
     /// # Errors
     ///
@@ -76,7 +76,7 @@ impl Request {
             Some("stiffness") => DampingForm::Stiffness,
             Some(other) => return Err(format!("--mode-damping {other}: needs mass or stiffness")),
         };
-        let wanted = Wanted {
+        let requested = ModeRequest {
             parameters: Parameters {
                 ring_mass: positive("--ring-mass", base.ring_mass)?,
                 rpm: positive("--rpm", base.rpm)?,
@@ -91,32 +91,31 @@ impl Request {
             to: positive("--to-slip", RANGE.1)?,
             at: flags.values("--at-slip", "a finite number above 0", flags::is_positive)?,
         };
-        let (from, to) = (wanted.from, wanted.to);
+        let (from, to) = (requested.from, requested.to);
         if from >= to {
             return Err(format!("--from-slip {from} needs to be below --to-slip {to}"));
         }
-        if let Some(slip) = wanted.at.iter().find(|a| **a < from || **a > to) {
+        if let Some(slip) = requested.at.iter().find(|a| **a < from || **a > to) {
             return Err(format!("--at-slip {slip}: needs a slip within {from} to {to}"));
         }
-        wanted
+        requested
             .check()
             .map_err(|e| format!("--from-slip, --to-slip, --at-slip: {e}"))?;
         Ok(Self {
-            wanted,
+            requested,
             solver: solver_options(flags)?,
             json: flags.path("--json"),
         })
     }
 
-    /// Computes the mode, shows its ends, its largest damping and the points asked for, and writes
-    /// the file.
+    /// Computes the mode, shows its ends, its largest damping and the requested points, and writes the file.
     ///
     /// # Errors
     ///
     /// If the mode cannot be computed to its end or the file cannot be written.
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let mut bar = Bar::new("Mode, percent", 100);
-        let mode = Backbone::follow(&self.wanted, &self.solver, |share| bar.set(share))?;
+        let mode = Backbone::follow(&self.requested, &self.solver, |share| bar.set(share))?;
         bar.finish();
         if mode.stalled {
             write_stderr("note: rounding kept the residual of some points above the solver's tolerance\n");
@@ -125,15 +124,13 @@ impl Request {
             write_stderr("note: the damping ratio has no maximum inside the range, max_damping is null\n");
         }
         if mode.missed {
-            write_stderr(
-                "note: some points miss the tolerance, or their error is unknown: their error_estimate tells\n",
-            );
+            write_stderr("note: some points miss the tolerance, or their error is unknown: see their error_estimate\n");
         }
         if let Some(path) = &self.json {
             write_json(path, &mode.to_json()?)?;
         }
         let mut screen = std::io::stdout().lock();
-        let (from, to) = (self.wanted.from, self.wanted.to);
+        let (from, to) = (self.requested.from, self.requested.to);
         writeln!(screen, "{} points from slip {from} to {to}", mode.points.len())?;
         for end in mode.points.first().into_iter().chain(mode.points.last()) {
             show(&mut screen, "end", end)?;

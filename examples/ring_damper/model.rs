@@ -17,9 +17,9 @@ use num_complex::Complex64;
 
 /// Degrees of freedom of a sector, in this order.
 pub const DOFS: [&str; 4] = ["b2", "b1", "d", "r"];
-/// Their numbers: a response lists all and follows the first.
-pub const WANTED: [usize; DOFS.len()] = [B2, B1, DISK, RING];
-/// The blade tip, whose motion is followed.
+/// Their numbers; a response reports all, and the first is its response degree of freedom.
+pub const REPORTED_DOFS: [usize; DOFS.len()] = [B2, B1, DISK, RING];
+/// The blade tip, the response degree of freedom.
 pub const B2: usize = 0;
 const B1: usize = 1;
 const DISK: usize = 2;
@@ -39,16 +39,16 @@ const DISK_STIFFNESS: f64 = 5e7;
 const GROUND_STIFFNESS: f64 = 6e5;
 const RING_STIFFNESS: f64 = 2e7;
 const FRICTION: f64 = 0.3;
-/// The paper does not give the radius of the ring. With this one the ring sticks at 0.5 N, slides
-/// at 50 N, and damps best with 30 g at 3000 rpm, as the paper finds.
+/// The paper does not give the radius of the ring. With this value the ring sticks at 0.5 N, slides at 50 N, and
+/// damps best with 30 g at 3000 rpm, as in the paper.
 const RADIUS: f64 = 0.165;
 
-/// What a study varies; the default is the base case.
+/// Parameters that a study varies; the default is the base case.
 #[derive(Clone, Copy, Debug)]
 pub struct Parameters {
     /// Amplitude of the force on each forced mass, N.
     pub force: f64,
-    /// Whether the force acts on b2 alone instead of on b2 and b1.
+    /// Whether the force acts on b2 only instead of on b2 and b1.
     pub tip_only: bool,
     /// Mass of the ring per sector, kg.
     pub ring_mass: f64,
@@ -110,8 +110,8 @@ impl Parameters {
         Ok(model)
     }
 
-    /// A range of frequency, Hz, round the resonance of the first family at the nodal diameter of
-    /// the engine order: from the ring sliding freely to the ring stuck, with room on both sides.
+    /// A range of frequency, Hz, around the resonance of the first family at the nodal diameter of the engine
+    /// order: from the ring sliding freely to the ring stuck, with a margin on both sides.
     ///
     /// # Errors
     ///
@@ -121,7 +121,10 @@ impl Parameters {
         let diameter = model.structure().diameter_of(1);
         let free = modes_without_ring(diameter)?;
         let stuck = model.linear_modes(diameter, ContactState::Stuck)?;
-        let (a, b) = (free.omega[0] / TAU, alike(&stuck, &free.shapes[..RING]) / TAU);
+        let (a, b) = (
+            free.omega[0] / TAU,
+            frequency_of_most_similar(&stuck, &free.shapes[..RING]) / TAU,
+        );
         let (low, high) = (a.min(b), a.max(b));
         let room = (0.3 * (high - low)).max(0.003 * high);
         Ok((((low - room) * 2.0).floor() / 2.0, ((high + room) * 2.0).ceil() / 2.0))
@@ -181,8 +184,8 @@ fn structure(ring_mass: Option<f64>) -> Result<Model, Box<dyn Error>> {
     Ok(model)
 }
 
-/// Angular frequency of the mode that moves blade and disk most like `shape`.
-fn alike(modes: &LinearModes, shape: &[Complex64]) -> f64 {
+/// Angular frequency of the mode whose motion of blade and disk is most similar to `shape`.
+fn frequency_of_most_similar(modes: &LinearModes, shape: &[Complex64]) -> f64 {
     let masses = [BLADE_TIP_MASS, BLADE_ROOT_MASS, DISK_MASS];
     let likeness = |mode: &[Complex64]| {
         let product = shape.iter().zip(mode).zip(masses);

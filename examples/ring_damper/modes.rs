@@ -1,5 +1,5 @@
-//! The nonlinear mode of the base case: figures 8 and 9 of the paper, and what it tells of the
-//! responses of Fig. 5 without computing them.
+//! The nonlinear mode of the base case: figures 8 and 9 of the paper, and the responses of Fig. 5 synthesised from
+//! it.
 
 use std::error::Error;
 use std::f64::consts::TAU;
@@ -12,27 +12,27 @@ use hbvib::analysis::synthesise;
 use hbvib::options::{DampingForm, SolverOptions, SynthesisOptions};
 use hbvib::results::Branch;
 
-use crate::backbone::{Backbone, Point, Wanted};
+use crate::backbone::{Backbone, ModeRequest, Point};
 use crate::csv::write_csv;
 use crate::figures::{RANGE, SMOOTH};
-use crate::model::{B2, Parameters, WANTED};
+use crate::model::{B2, Parameters, REPORTED_DOFS};
 use crate::plot::{Figure, Series, Style};
 use crate::progress::Bar;
 use crate::response::{Range, Response};
 
-/// Slip of the ring, from stuck to sliding as it does at any larger one.
+/// Range of slip of the ring, from stuck to the limit of free sliding.
 const SLIPS: (f64, f64) = (0.1, 1e4);
 
-/// Covers the responses of Fig. 5 with room on both sides.
+/// Range of slip that covers the responses of Fig. 5 with a margin on both sides.
 const SLIPS_OF_RESPONSES: (f64, f64) = (0.01, 4e3);
 
-/// With so many harmonics the response is right to 1e-4, which tells the error of the synthesis from
+/// With this number of harmonics the response is accurate to 1e-4, which separates the error of the synthesis from
 /// that of the harmonics.
 const MANY_HARMONICS: usize = 63;
 
 /// The first family at nodal diameter 2.
-fn wanted(beta: f64, (from, to): (f64, f64)) -> Wanted {
-    Wanted {
+fn request(beta: f64, (from, to): (f64, f64)) -> ModeRequest {
+    ModeRequest {
         parameters: Parameters {
             beta,
             ..Parameters::default()
@@ -58,7 +58,7 @@ pub fn against_energy(folder: &Path) -> Result<(), Box<dyn Error>> {
     };
     let mut bar = Bar::new("Figures 8 and 9, percent", 100);
     let begin = Instant::now();
-    let mode = Backbone::follow(&wanted(0.0, SLIPS), &solver, |share| bar.set(share))?;
+    let mode = Backbone::follow(&request(0.0, SLIPS), &solver, |share| bar.set(share))?;
     let time = 1e3 * begin.elapsed().as_secs_f64();
     bar.finish();
     let peak = mode.max_damping.as_ref().ok_or("the damping ratio has no maximum")?;
@@ -142,13 +142,13 @@ struct Row {
     computed: Resonance,
     frequency: f64,
     amplitude: f64,
-    /// How far the synthesis may be trusted.
+    /// Assessment of the validity of the synthesis.
     judgement: &'static str,
 }
 
 impl Overlay {
-    /// Synthesises the resonances under the same forces from the mode, whose damping includes the
-    /// structure's: this keeps the phases between the masses right, which damping changes.
+    /// Synthesises the resonances under the same forces from the mode, whose damping includes that of the
+    /// structure: this preserves the phases between the masses, which damping changes.
     ///
     /// # Errors
     ///
@@ -159,7 +159,7 @@ impl Overlay {
             response_dof: Some(B2),
             ..*solver
         };
-        let branch = Backbone::follow(&wanted(base.beta, SLIPS_OF_RESPONSES), &solver, |_| {})?.branch;
+        let branch = Backbone::follow(&request(base.beta, SLIPS_OF_RESPONSES), &solver, |_| {})?.branch;
         let mut rows = Vec::new();
         for &computed in computed {
             let force = computed.0;
@@ -279,7 +279,7 @@ pub fn with_many_harmonics(screen: &mut impl Write) -> Result<(), Box<dyn Error>
             force,
             ..Parameters::default()
         };
-        let peak = Response::follow(&parameters.model()?, &solver, &range, &WANTED, |_| {})?.peak;
+        let peak = Response::follow(&parameters.model()?, &solver, &range, &REPORTED_DOFS, |_| {})?.peak;
         computed.push((force, peak.frequency, peak.amplitude()));
     }
     Ok(Overlay::new(&solver, &computed)?.show(screen)?)

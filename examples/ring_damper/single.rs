@@ -1,4 +1,4 @@
-//! One response as the flags describe it: a summary on the screen and, if wanted, a JSON file.
+//! One response as the flags describe it: a summary on the screen and, on request, a JSON file.
 
 use std::error::Error;
 use std::io::Write;
@@ -9,7 +9,7 @@ use hbvib::options::SolverOptions;
 use crate::flags::{self, Flag, Flags};
 use crate::json::write_json;
 use crate::mode;
-use crate::model::{DOFS, Parameters, WANTED};
+use crate::model::{DOFS, Parameters, REPORTED_DOFS};
 use crate::progress::{Bar, write_stderr};
 use crate::response::{Point, Range, Response};
 
@@ -21,7 +21,7 @@ pub const FLAGS: [Flag; 6] = [
     Flag::new(
         "--from",
         "Hz",
-        "begin of the range (below the resonance, 207 in the base case)",
+        "beginning of the range (below the resonance, 207 in the base case)",
     ),
     Flag::new(
         "--to",
@@ -36,7 +36,7 @@ pub const FLAGS: [Flag; 6] = [
     .repeatable(),
 ];
 
-/// One response that was asked for.
+/// One requested response.
 #[derive(Clone, Debug)]
 pub struct Request {
     parameters: Parameters,
@@ -46,7 +46,7 @@ pub struct Request {
 }
 
 impl Request {
-    /// Understands the flags.
+    /// Interprets the flags.
     ///
     /// # Errors
     ///
@@ -80,7 +80,7 @@ impl Request {
         })
     }
 
-    /// Computes the response, shows its peak and the solutions asked for, and writes the file.
+    /// Computes the response, shows its peak and the requested solutions, and writes the file.
     ///
     /// # Errors
     ///
@@ -88,15 +88,15 @@ impl Request {
     pub fn run(&self) -> Result<(), Box<dyn Error>> {
         let mut bar = Bar::new("Response, percent", 100);
         let model = self.parameters.model()?;
-        let response = Response::follow(&model, &self.solver, &self.range, &WANTED, |share| bar.set(share))?;
+        let response = Response::follow(&model, &self.solver, &self.range, &REPORTED_DOFS, |share| {
+            bar.set(share);
+        })?;
         bar.finish();
         if response.stalled {
             write_stderr("note: rounding kept the residual of some points above the solver's tolerance\n");
         }
         if response.missed {
-            write_stderr(
-                "note: some points miss the tolerance, or their error is unknown: their error_estimate tells\n",
-            );
+            write_stderr("note: some points miss the tolerance, or their error is unknown: see their error_estimate\n");
         }
         if let Some(path) = &self.json {
             write_json(path, &response.to_json("amplitude_b2_m", &DOFS)?)?;
@@ -120,13 +120,13 @@ fn show(screen: &mut impl Write, what: &str, point: &Point) -> std::io::Result<(
     writeln!(screen, "{what:<5}{frequency:.9} Hz   |X_1| of b2 {amplitude:.9e} m")
 }
 
-/// What the flags say of the harmonics.
+/// Solver options from the flags about the harmonics.
 ///
 /// # Errors
 ///
 /// A sentence naming the flag whose value cannot be used.
 pub fn solver_options(flags: &Flags) -> Result<SolverOptions, String> {
-    // Without a tolerance exactly so many harmonics, so that one H can be compared with another.
+    // Without a tolerance the number of harmonics is fixed, so that one H can be compared with another.
     let mut solver = SolverOptions::default().fixed();
     let above = |t: &f64| *t > 0.0 && *t < 1.0;
     let tolerance = flags.value("--tolerance", "a number above 0 and below 1", above)?;
@@ -152,7 +152,7 @@ pub fn solver_options(flags: &Flags) -> Result<SolverOptions, String> {
     Ok(solver)
 }
 
-/// Fills in the ends of the range that are not given, and checks the whole.
+/// Completes the range with the default ends, and checks the whole.
 fn complete(parameters: &Parameters, from: Option<f64>, to: Option<f64>, at: Vec<f64>) -> Result<Range, String> {
     let (low, high) = match (from, to) {
         (Some(from), Some(to)) => (from, to),
@@ -165,7 +165,7 @@ fn complete(parameters: &Parameters, from: Option<f64>, to: Option<f64>, at: Vec
         to: to.unwrap_or(high),
         at,
     };
-    // A downward sweep must be meant: it takes both ends.
+    // A downward sweep must be explicit: it requires both ends.
     if (from.is_none() || to.is_none()) && range.from >= range.to {
         let (given, other) = if from.is_some() {
             ("--from", "--to")

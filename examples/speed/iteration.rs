@@ -1,6 +1,6 @@
-//! Where the time of a Newton iteration goes as more harmonics are carried: one contact, odd harmonics.
+//! Times of the parts of a Newton iteration with an increasing number of harmonics: one contact, odd harmonics.
 //!
-//! All times are minima, of the processor's clock where other programs share it: read them as ratios.
+//! All times are minima: read them as ratios.
 
 use super::model;
 use hbvib::aft::{Evaluation, Evaluator};
@@ -8,10 +8,11 @@ use hbvib::condense::Condensed;
 use hbvib::continuation::Metric;
 use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::linalg::bordered::Bordered;
+use hbvib::linalg::linear_system::Jacobian;
 use hbvib::linalg::norm;
 use hbvib::options::SolverOptions;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
-use hbvib::problem::{InitialGuess, Linearisation, Problem};
+use hbvib::problem::{InitialGuess, Problem, Residual};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -29,10 +30,10 @@ const WAYS: [(usize, usize); 8] = [
     (255, 4096),
 ];
 
-/// Seconds that each part takes at least in all.
+/// Smallest total time of the measurement of a part, s.
 const LEAST: f64 = 0.15;
 
-/// Least seconds of one call.
+/// Shortest time of one call, s.
 fn time(mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box<dyn Error>> {
     let (begin, mut least) = (Instant::now(), f64::INFINITY);
     while begin.elapsed().as_secs_f64() < LEAST {
@@ -43,10 +44,10 @@ fn time(mut work: impl FnMut() -> Result<(), Box<dyn Error>>) -> Result<f64, Box
     Ok(least)
 }
 
-/// Microseconds of the parts of an iteration, and of a whole one.
+/// Times of the parts of an iteration, and of a whole iteration, µs.
 struct Parts {
     unknowns: usize,
-    /// Reversals of the motion, or its samples.
+    /// Turning points of the motion, or its samples.
     turning_points: f64,
     /// Force of the law and its Jacobian.
     law: f64,
@@ -78,7 +79,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     let n = problem.size();
     let mut v = vec![0.0; n + 1];
     v[n] = omega;
-    problem.start(InitialGuess::Stuck, omega, &mut v[..n])?;
+    problem.initial_guess(InitialGuess::Stuck, omega, &mut v[..n])?;
     let mut row = vec![0.0; n + 1];
     row[n] = 1.0;
     let mut corrector = Corrector::new(n, 1e-10, 50)?;
@@ -87,7 +88,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
         p: 4.0 * TAU,
     };
     let Outcome::Converged(found) = corrector.correct(&mut problem, &mut v, &row, metric, true, None)? else {
-        return Err("the point that is measured at was not found".into());
+        return Err("the point of the measurement was not found".into());
     };
     // In the plane across the branch, as in continuation.
     let metric = Metric {
@@ -109,26 +110,31 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
         Ok(())
     })?;
     let law = time(|| Ok(evaluator.evaluate(law, set, black_box(u), omega, &mut out)?))?;
-    let mut at = Linearisation::new(n)?;
+    let mut at = Residual::new(n)?;
+    let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
     let mut turn = false;
-    // Another frequency each time, as in continuation: the flexibility is part of an iteration.
+    // The frequency differs each time, as in continuation: the flexibility is part of an iteration.
     let mut other = || {
         turn = !turn;
         if turn { omega } else { omega * (1.0 + 1e-9) }
     };
-    let residual = time(|| Ok(problem.evaluate_residual(u, other(), &mut at)?))?;
-    let matrix = time(|| Ok(problem.evaluate(u, other(), &mut at)?))?;
+    let residual = time(|| Ok(problem.evaluate(u, other(), &mut at)?))?;
+    let matrix = time(|| {
+        problem.evaluate(u, other(), &mut at)?;
+        problem.fill(&mut jacobian, &mut active);
+        Ok(())
+    })?;
     let mut bordered = Bordered::new(n)?;
     let mut b = vec![1.0; n + 1];
     let dense = time(|| {
-        bordered.factor(&at.jacobian, &at.d_parameter, &at.active, (metric.u, metric.p), &row)?;
+        bordered.factor(&jacobian, &at.d_parameter, &active, (metric.u, metric.p), &row)?;
         bordered.solve(black_box(&mut b));
         Ok(())
     })?;
     let mut iterations = 0;
     let mut start = v.clone();
     let iteration = time(|| {
-        // As far away as a prediction is.
+        // The initial point is as far away as a prediction.
         for (s, v) in start.iter_mut().zip(&v[..n]) {
             *s = v * (1.0 + 1e-4);
         }
@@ -158,7 +164,7 @@ pub fn run() -> Result<(), Box<dyn Error>> {
     println!("Microseconds at 208.85 Hz; residual holds the two columns before it, matrix the residual");
     for force in [1.0, 5.0, 20.0] {
         println!("\nF = {force} N");
-        println!("  H    events  unknowns  reversals     law  residual    matrix     dense  iteration  exponent");
+        println!("  H    events  unknowns    turning     law  residual    matrix     dense  iteration  exponent");
         let mut last: Option<(usize, f64)> = None;
         for (highest, samples) in WAYS {
             let p = measure(force, highest, samples)?;

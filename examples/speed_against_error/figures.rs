@@ -1,4 +1,4 @@
-//! Time against error, one figure a system.
+//! Time against error, one figure for each system.
 
 use std::path::Path;
 
@@ -16,7 +16,8 @@ use crate::truth::ROUNDING;
 /// If a file cannot be written.
 pub fn draw(measured: &Measured, folder: &Path) -> Done {
     let place = |o: &Outcome| (o.error().max(o.own_error()).max(ROUNDING), 1e3 * o.seconds);
-    // Of a branch that went through the whole range, a frequency that was passed over does not tell the error.
+    // A way is shown if no common frequency is missing, or if it chooses its harmonics and its branch covers the
+    // whole range.
     let is_shown = |o: &Outcome| o.missing() == 0 || (o.way.is_automatic() && o.status == Status::Ok);
     let mut series = Vec::new();
     let mut add = |label: String, chosen: &dyn Fn(&Outcome) -> bool| {

@@ -1,8 +1,8 @@
-//! What ways of one kind take for a wanted error.
+//! Shortest times of ways of one kind for a requested error.
 
 use crate::measure::Outcome;
 
-/// Time and error of the ways that no other of them beats in both, from the quickest to the most exact.
+/// Time and error of the ways that no other way surpasses in both, from the quickest to the most accurate.
 #[derive(Debug)]
 pub struct Front(Vec<(f64, f64)>);
 
@@ -23,15 +23,15 @@ impl Front {
         Self(front)
     }
 
-    /// The time for an error, the logarithm of time being straight over that of the error between neighbours;
-    /// none where no way reaches it.
+    /// The time for an error, with the logarithm of time linear in that of the error between neighbours; `None` if
+    /// no way reaches the error.
     pub fn time(&self, error: f64) -> Option<f64> {
         let exact = self.0.iter().position(|w| w.1 <= error)?;
         let Some(before) = exact.checked_sub(1) else {
             return Some(self.0[0].0);
         };
         let ((t0, e0), (t1, e1)) = (self.0[before], self.0[exact]);
-        // What is exact to rounding has no logarithm, and no way between.
+        // An error of zero has no logarithm and is not interpolated.
         if e1 == 0.0 {
             return Some(t1);
         }
@@ -40,7 +40,7 @@ impl Front {
     }
 }
 
-/// The fixed way with the fewest harmonics whose error is not above the one given.
+/// The fixed way with the fewest harmonics whose error is at most the given one.
 pub fn fewest(outcomes: &[Outcome], error: f64) -> Option<&Outcome> {
     let mut fixed = outcomes.iter().filter(|o| !o.way.is_automatic() && o.way.samples == 0);
     fixed.find(|o| o.missing() == 0 && o.error() <= error)

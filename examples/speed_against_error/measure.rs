@@ -1,4 +1,4 @@
-//! How long a way takes for a whole response, and how wrong its points are.
+//! Time of a way for a whole response, and the errors of its points.
 
 use std::error::Error;
 use std::thread;
@@ -17,11 +17,11 @@ use crate::truth::{ROUNDING, Truth, fundamental};
 /// A way to compute a response.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Way {
-    /// Highest harmonic number; where a tolerance decides, that to begin with.
+    /// Highest harmonic number; where a tolerance chooses, the initial one.
     pub harmonics: usize,
-    /// Samples per period; 0 is as exact as the laws allow.
+    /// Samples per period; 0: as accurate as the laws allow.
     pub samples: usize,
-    /// Relative error wanted; 0 is exactly `harmonics`.
+    /// Requested relative error; 0: exactly `harmonics`.
     pub tolerance: f64,
 }
 
@@ -48,35 +48,35 @@ impl Way {
 pub struct Checked {
     /// Angular frequency.
     pub omega: f64,
-    /// Highest harmonic that it has.
+    /// Highest carried harmonic.
     pub harmonics: usize,
-    /// What the library tells of the error; NaN where that is unknown.
+    /// Error estimate of the library; NaN if it is unknown.
     pub estimate: f64,
-    /// The error; NaN where the way has no such solution, or the truth was not found.
+    /// The true error; NaN if the way has no such solution, or the truth was not found.
     pub error: f64,
 }
 
-/// What a way gives.
+/// Time and errors of a way.
 #[derive(Debug)]
 pub struct Outcome {
     pub way: Way,
-    /// Time of the whole response without estimates that were not asked for, s.
+    /// Time of the whole response without estimates that were not requested, s.
     pub seconds: f64,
     pub points: usize,
     pub status: Status,
     /// Smallest, median and largest of the highest harmonics of the points.
     pub used: [usize; 3],
-    /// Error estimates that the choice of harmonics made.
+    /// Number of error estimates for the choice of harmonics.
     pub estimates: usize,
     /// Highest harmonic of a fold.
     pub at_folds: usize,
     /// Solutions at the common frequencies.
     pub checked: Vec<Checked>,
-    /// Points of the branch itself, of ways that choose their harmonics.
+    /// Points of the branch itself, for ways that choose their harmonics.
     pub own: Vec<Checked>,
     /// Relative error of the largest peak.
     pub peak: f64,
-    /// Common frequencies at which the library tells that it does not know the error.
+    /// Number of common frequencies at which the library reports an unknown error.
     pub unknown: usize,
 }
 
@@ -86,30 +86,30 @@ impl Outcome {
         largest(&self.checked)
     }
 
-    /// Common frequencies at which the solution is missing.
+    /// Number of common frequencies at which the solution is missing.
     pub fn missing(&self) -> usize {
         self.checked.iter().filter(|c| c.error.is_nan()).count()
     }
 
-    /// Own points of which no converged solution was found.
+    /// Number of points of the branch for which no converged solution was found.
     pub fn unsolved(&self) -> usize {
         self.own.iter().filter(|c| c.error.is_nan()).count()
     }
 
-    /// The largest error of the branch's own points.
+    /// The largest error of the points of the branch itself.
     pub fn own_error(&self) -> f64 {
         largest(&self.own)
     }
 
-    /// Of how many solutions the ratio of estimated to true error lies within [0.3, 3] and within [0.1, 10], and
-    /// of how many it is known.
+    /// Numbers of solutions whose ratio of estimated to true error lies within [0.3, 3] and within [0.1, 10], and
+    /// number of solutions whose ratio is known.
     pub fn effectivity(&self, floor: f64) -> [usize; 3] {
         let ratios = self.checked.iter().chain(&self.own);
         let ratios = ratios.filter(|c| c.error > floor && c.estimate.is_finite());
         ratios.fold([0; 3], |[near, far, all], c| {
             let ratio = c.estimate / c.error;
             let within = |factor: f64| usize::from(ratio * factor >= 1.0 && ratio <= factor);
-            // 0.3 is not 1/3: the narrow band is [0.3, 3].
+            // The narrow band is [0.3, 3]; 0.3 is not 1/3.
             let narrow = usize::from((0.3..=3.0).contains(&ratio));
             [near + narrow, far + within(10.0), all + 1]
         })
@@ -135,11 +135,12 @@ pub fn sweep(system: &System, options: &SolverOptions, at: &[f64]) -> Result<Bra
     Ok(forced_response(&system.model, options, &range, &mut Hooks::default())?)
 }
 
-/// Most rounds of timing, and the time after which a way is no longer repeated, s.
+/// Largest number of timing rounds.
 const ROUNDS: usize = 9;
+/// Time after which a way is no longer repeated, s.
 const ENOUGH: f64 = 0.4;
 
-/// Times the ways alternately, so that what else the machine does meets all of them, and checks them.
+/// Times the ways alternately, so that other load of the machine affects all of them, and checks them.
 ///
 /// # Errors
 ///
@@ -164,7 +165,7 @@ pub fn all(system: &System, ways: &[Way], truth: &Truth) -> Result<Vec<Outcome>,
     Ok(outcomes)
 }
 
-/// Own points that are checked of a way that chooses its harmonics.
+/// Number of checked points of a branch whose way chooses its harmonics.
 const OWN: usize = 12;
 
 fn check(system: &System, way: Way, truth: &Truth) -> Result<Outcome, Box<dyn Error>> {
@@ -172,7 +173,7 @@ fn check(system: &System, way: Way, truth: &Truth) -> Result<Outcome, Box<dyn Er
     let at: Vec<f64> = truth.solutions.iter().map(|s| s.omega).collect();
     let branch = sweep(system, &options, &at)?;
     let checked = truth.solutions.iter().enumerate().map(|(i, solution)| {
-        // On a branch that folds, the solution that is meant.
+        // On a branch with folds, the solution nearest to the truth is compared.
         let distance = |s: &&Special| (fundamental(&branch, s.point) - solution.response).norm();
         let same = branch.at(i).iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
         same.map_or(
@@ -211,7 +212,7 @@ fn check(system: &System, way: Way, truth: &Truth) -> Result<Outcome, Box<dyn Er
     })
 }
 
-/// The error estimate of a stored point: the branch's own, where it has one.
+/// The error estimate of a stored point: the stored one, if the branch has it.
 fn estimate(system: &System, options: &SolverOptions, branch: &Branch, point: usize) -> f64 {
     if options.tolerance > 0.0 {
         return branch.error_estimate_at(point).unwrap_or(f64::NAN);
@@ -219,8 +220,8 @@ fn estimate(system: &System, options: &SolverOptions, branch: &Branch, point: us
     estimate_at(&system.model, options, branch, point).map_or(f64::NAN, |e| e.response)
 }
 
-/// Points of a branch, spread evenly, against the solution with the truth's harmonics that Newton's method finds from
-/// them; half of them on a thread of its own.
+/// Points of a branch, spread evenly, compared with the solution with the harmonics of the truth that Newton's
+/// method finds from them; half of them on a separate thread.
 fn own(system: &System, branch: &Branch, truth: &Truth) -> Vec<Checked> {
     let last = branch.points() - 1;
     let points: Vec<usize> = (0..OWN).map(|i| i * last / (OWN - 1)).collect();

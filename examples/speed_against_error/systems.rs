@@ -14,35 +14,35 @@ use crate::model::{B2, Parameters};
 
 /// A structure, the range of its response, and the ways in which that is computed.
 pub struct System {
-    /// Letter that names it in files.
+    /// Letter that identifies the system in files.
     pub key: char,
-    /// What it is.
+    /// Description.
     pub title: &'static str,
     /// Structure, contacts and forces.
     pub model: Model,
-    /// Angular frequencies between which the response is followed.
+    /// Range of angular frequency of the response.
     pub range: (f64, f64),
-    /// The degree of freedom whose fundamental counts.
+    /// The response degree of freedom.
     pub response: usize,
-    /// Highest harmonics tried, ascending, as exactly as the laws allow.
+    /// Highest harmonics of the fixed ways, ascending, as accurate as the laws allow.
     pub fixed: &'static [usize],
-    /// Highest harmonics tried with each of [`SAMPLES`].
+    /// Highest harmonics combined with each of [`SAMPLES`].
     pub sampled: &'static [usize],
-    /// Relative errors asked for.
+    /// Requested relative errors.
     pub tolerances: &'static [f64],
-    /// Harmonics and samples of the truth; with half as many it is checked.
+    /// Harmonics and samples of the truth, which is checked with half of them.
     pub truth: (usize, usize),
 }
 
-/// Samples per period that are tried.
+/// Samples per period of the sampled ways.
 pub const SAMPLES: [usize; 4] = [64, 256, 1024, 4096];
 
-/// Relative errors asked for.
+/// Requested relative errors.
 const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
 type Built = Result<System, Box<dyn Error>>;
 
-/// All of them.
+/// All systems.
 ///
 /// # Errors
 ///
@@ -51,7 +51,7 @@ pub fn all() -> Result<Vec<System>, Box<dyn Error>> {
     Ok(vec![blisk()?, duffing()?, stop()?, plane()?, beam()?])
 }
 
-/// The bladed disk with its friction ring, light against the frequencies where the ring resonates.
+/// The bladed disk with its light friction ring.
 fn blisk() -> Built {
     Ok(System {
         key: 'a',
@@ -102,7 +102,7 @@ fn stop() -> Built {
     })
 }
 
-/// A mass that is pressed on a rough plane, driven along both tangents and along the normal.
+/// A mass pressed on a rough plane, with forces along both tangents and along the normal.
 fn plane() -> Built {
     let mass = [1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0];
     let damping = mass.map(|m| 0.15 * m);
@@ -138,7 +138,7 @@ fn plane() -> Built {
 /// Free nodes of the beam, each with deflection and slope.
 const NODES: usize = 20;
 
-/// A steel cantilever whose every second node rubs on the ground.
+/// A steel cantilever with friction against the ground at every second node.
 fn beam() -> Built {
     const LENGTH: f64 = 0.8;
     const BENDING: f64 = 525.0;

@@ -15,10 +15,10 @@ use crate::truth::{ROUNDING, Truth};
 /// Errors at which exact events and samples are compared.
 const EQUAL: [f64; 3] = [1e-3, 1e-6, 1e-9];
 
-/// What every part of the program returns.
+/// Result of every part of the program.
 pub type Done = Result<(), Box<dyn Error>>;
 
-/// What was measured of one system.
+/// Measurements of one system.
 pub struct Measured {
     pub system: System,
     pub truth: Truth,
@@ -26,7 +26,7 @@ pub struct Measured {
 }
 
 impl Measured {
-    /// True errors below this say nothing: that of the truth is not far below its change, or it is rounding.
+    /// Smallest meaningful true error: smaller ones are not far above the error of the truth, or above rounding.
     fn floor(&self) -> f64 {
         self.truth.change.max(ROUNDING)
     }
@@ -127,14 +127,14 @@ impl Measured {
     /// Time by samples against that by exact events, at equal error.
     fn show_samples(&self, screen: &mut impl Write) -> Done {
         if self.system.sampled.is_empty() {
-            return Ok(writeln!(screen, "\nsamples: the law has no use for them")?);
+            return Ok(writeln!(screen, "\nsamples: the law does not use them")?);
         }
         let of = |sampled: bool| {
             let fixed = self.outcomes.iter().filter(|o| !o.way.is_automatic());
             Front::new(fixed.filter(move |o| (o.way.samples > 0) == sampled))
         };
         let (exact, sampled) = (of(false), of(true));
-        writeln!(screen, "\nerror   N by itself or exact, ms  N given, ms  ratio")?;
+        writeln!(screen, "\nerror   N automatic or exact, ms  N given, ms  ratio")?;
         for error in EQUAL {
             if error < self.floor() {
                 writeln!(screen, "{error:.0e}  the truth is not exact enough")?;
@@ -154,7 +154,7 @@ impl Measured {
     }
 }
 
-/// An error, unless it is below what is known.
+/// An error, unless it is below the smallest meaningful one.
 fn shown(error: f64, floor: f64) -> String {
     if error <= floor {
         format!("<{floor:.0e}")
@@ -163,7 +163,7 @@ fn shown(error: f64, floor: f64) -> String {
     }
 }
 
-/// What a way is called.
+/// Name of a way.
 fn name(outcome: &Outcome) -> String {
     let way = outcome.way;
     if way.is_automatic() {
@@ -175,7 +175,7 @@ fn name(outcome: &Outcome) -> String {
     }
 }
 
-/// Writes all ways to `ways.csv`, all solutions that were compared to `solutions.csv`. Systems count from 0.
+/// Writes all ways to `ways.csv`, all compared solutions to `solutions.csv`. Systems are numbered from 0.
 ///
 /// # Errors
 ///

@@ -12,14 +12,14 @@ use num_complex::Complex64;
 use crate::measure::sweep;
 use crate::systems::System;
 
-/// Relative error that rounding and the end of Newton's method may leave.
+/// Relative error by rounding and by the end of Newton's method.
 pub const ROUNDING: f64 = 1e-11;
 
-/// Frequencies at most.
+/// Largest number of frequencies.
 const MOST: usize = 25;
 
 /// Relative distance in frequency from a fold within which no solution is compared: at a fold the error at a fixed
-/// frequency is infinite, however exact the curve is.
+/// frequency is infinite, however accurate the curve is.
 const FOLD: f64 = 2e-3;
 
 /// Residual at which the truth counts as converged.
@@ -59,7 +59,8 @@ fn amplitude_of_peak(branch: &Branch) -> f64 {
 }
 
 impl Truth {
-    /// Spreads frequencies evenly over the points of a branch with many harmonics and solves there with the truth's.
+    /// Spreads frequencies evenly over the points of a branch with many harmonics and solves there with the
+    /// harmonics of the truth.
     ///
     /// # Errors
     ///
@@ -100,7 +101,8 @@ impl Truth {
         let peak = match peak {
             Some(p) => {
                 let about = (p.omega * (1.0 - 3e-4), p.omega * (1.0 + 3e-4));
-                // From the point of the curve before the peak, so that the same branch is met.
+                // The solution starts from the point of the curve before the peak, so that it stays on the same
+                // branch.
                 amplitude_of_peak(&solve_near(system, &branch, p.point, about, system.truth)?)
             }
             None => f64::NAN,

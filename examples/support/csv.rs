@@ -6,12 +6,12 @@ use std::fs;
 use std::io::{BufWriter, Write};
 use std::path::Path;
 
-/// Writes a header line and one line per row, each number with 17 significant digits, so that it
-/// can be read back exactly. The folder is made if it is missing.
+/// Writes a header line and one line per row, each number with 17 significant digits, so that it can be read back
+/// exactly. The folder is created if it is missing.
 ///
 /// # Errors
 ///
-/// If a row has another number of columns than the header, or the file cannot be written.
+/// If a row does not have the number of columns of the header, or the file cannot be written.
 pub fn write_csv(path: impl AsRef<Path>, header: &[&str], rows: &[Vec<f64>]) -> Result<(), Box<dyn Error>> {
     let path = path.as_ref();
     if let Some(row) = rows.iter().position(|row| row.len() != header.len()) {

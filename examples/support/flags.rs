@@ -1,4 +1,4 @@
-//! Strict command lines of flags with values: what is not understood is refused, by name.
+//! Strict command lines of flags with values: an unknown argument is refused by its name.
 #![allow(dead_code, reason = "each example uses a part of this module")]
 
 use std::ffi::OsString;
@@ -9,9 +9,9 @@ use std::str::FromStr;
 /// A flag that a program knows.
 #[derive(Clone, Copy, Debug)]
 pub struct Flag {
-    /// With its dashes.
+    /// Name with its dashes.
     pub name: &'static str,
-    /// What stands for its value in the help; empty for a flag without one.
+    /// Placeholder of its value in the help; empty for a flag without value.
     pub value: &'static str,
     /// Whether it may be given more than once.
     pub repeatable: bool,
@@ -30,7 +30,7 @@ impl Flag {
         }
     }
 
-    /// The same flag, to be given as often as wanted.
+    /// The same flag, which may be given repeatedly.
     pub const fn repeatable(self) -> Self {
         Self {
             repeatable: true,
@@ -46,7 +46,7 @@ pub struct Flags {
 }
 
 impl Flags {
-    /// Reads the arguments of a program, its own name left out.
+    /// Reads the arguments of a program, without the name of the program.
     ///
     /// # Errors
     ///
@@ -95,7 +95,7 @@ impl Flags {
         self.given.iter().find(|g| g.0 == name).map(|g| PathBuf::from(&g.1))
     }
 
-    /// Every value of a flag in the order given; `needs` says in words what `valid` checks.
+    /// Every value of a flag in the given order; `needs` describes the check of `valid` in words.
     ///
     /// # Errors
     ///
@@ -108,7 +108,7 @@ impl Flags {
             .collect()
     }
 
-    /// A finite number above 0 that is given once at most.
+    /// A finite number above 0 that is given at most once.
     ///
     /// # Errors
     ///
@@ -117,7 +117,7 @@ impl Flags {
         self.value(name, "a finite number above 0", is_positive)
     }
 
-    /// A finite number of at least 0 that is given once at most.
+    /// A finite number of at least 0 that is given at most once.
     ///
     /// # Errors
     ///
@@ -128,7 +128,7 @@ impl Flags {
         })
     }
 
-    /// The value of a flag that is given once at most.
+    /// The value of a flag that is given at most once.
     ///
     /// # Errors
     ///

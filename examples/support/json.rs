@@ -1,4 +1,4 @@
-//! JSON files whose numbers have 17 significant digits and which appear whole or not at all.
+//! JSON files whose numbers have 17 significant digits, written completely or not at all.
 #![allow(dead_code, reason = "each example uses a part of this module")]
 
 use std::error::Error;
@@ -19,8 +19,8 @@ pub fn number(value: f64) -> Result<Value, Box<dyn Error>> {
     Ok(Value::Number(number))
 }
 
-/// Writes a value like `serde_json` does, but floating-point numbers with 17 significant digits:
-/// they can be read back exactly, and every number shows its precision.
+/// Writes a value as `serde_json` does, but floating-point numbers with 17 significant digits: they can be read
+/// back exactly, and every number shows its precision.
 fn write_value(writer: &mut impl Write, value: &Value) -> io::Result<()> {
     match value {
         Value::Number(number) if number.is_f64() => match number.as_f64() {
@@ -52,8 +52,8 @@ fn write_value(writer: &mut impl Write, value: &Value) -> io::Result<()> {
     }
 }
 
-/// Writes a value and a line end to a file. A regular file is replaced in one step once the text
-/// is complete, so that a failure leaves what was there before, or nothing.
+/// Writes a value and a line end to a file. A regular file is replaced in one step once the text is complete, so
+/// that a failure leaves the previous file, or none.
 ///
 /// # Errors
 ///
@@ -61,13 +61,13 @@ fn write_value(writer: &mut impl Write, value: &Value) -> io::Result<()> {
 pub fn write_json(path: &Path, value: &Value) -> Result<(), Box<dyn Error>> {
     let failed = |e: io::Error| format!("{} cannot be written: {e}", path.display());
     match fs::metadata(path) {
-        // A pipe or device takes the text itself; to put a file in its place would destroy it.
+        // A pipe or device receives the text itself; a file in its place would destroy it.
         Ok(there) if !there.is_file() => {
             let file = File::options().write(true).open(path).map_err(failed)?;
             write_text(file, value).map_err(failed)?;
             Ok(())
         }
-        // Behind a symbolic link it is the file that is replaced, not the link.
+        // A symbolic link is kept; the file to which it points is replaced.
         Ok(_) => Ok(replace(&fs::canonicalize(path).map_err(failed)?, value).map_err(failed)?),
         Err(e) if e.kind() == ErrorKind::NotFound => Ok(replace(path, value).map_err(failed)?),
         Err(e) => Err(failed(e).into()),
@@ -92,7 +92,7 @@ fn replace(path: &Path, value: &Value) -> io::Result<()> {
         .and_then(|file| file.sync_all())
         .and_then(|()| fs::rename(&temporary, path));
     if done.is_err() {
-        // The first failure is the one to report.
+        // The first failure is reported.
         let _ = fs::remove_file(&temporary);
     }
     done

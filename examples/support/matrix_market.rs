@@ -1,8 +1,7 @@
 //! Strict reader of real MatrixMarket coordinate files, plain or gzipped.
 //!
-//! Every error names the file and the line. The format is that of Boisvert, Pozo and Remington,
-//! NISTIR 5935 (1996), with two restrictions that cost no honest writer anything: each entry
-//! stands on a line of its own, and none may be given twice.
+//! Every error names the file and the line. The format is that of Boisvert, Pozo and Remington, NISTIR 5935 (1996),
+//! with two restrictions that usual files satisfy: each entry has a line of its own, and none may be given twice.
 #![allow(dead_code, reason = "each example uses a part of this module")]
 
 use std::fs::File;
@@ -29,8 +28,8 @@ pub struct Matrix {
 }
 
 impl Matrix {
-    /// The matrix as the library takes it. What the file calls `general` is passed as
-    /// [`Part::Full`], so that a block which must be symmetric is checked to be.
+    /// The matrix as a view for the library. A `general` file is passed as [`Part::Full`], so that the symmetry of
+    /// a block that must be symmetric is checked.
     pub fn view(&self) -> MatrixView<'_> {
         MatrixView {
             rows: self.rows,
@@ -50,7 +49,7 @@ impl Matrix {
 ///
 /// # Errors
 ///
-/// A sentence naming the file, the line and what is wrong there.
+/// A sentence naming the file, the line and the defect.
 pub fn read(path: &Path) -> Result<Matrix, String> {
     let file = File::open(path).map_err(|e| format!("{}: cannot be opened: {e}", path.display()))?;
     let file = BufReader::new(file);
@@ -151,7 +150,7 @@ fn compress(path: &Path, rows: usize, cols: usize, symmetric: bool, mut entries:
     })
 }
 
-/// Reads the first line; whether the matrix is symmetric.
+/// Reads the first line; `true` if the matrix is symmetric.
 fn header<R: BufRead>(lines: &mut Lines<'_, R>) -> Result<bool, String> {
     if !lines.next()? {
         return Err(lines.wrong("the file is empty"));

@@ -30,12 +30,12 @@ const TITLE_TEXT: f64 = 22.0;
 const LABEL_TEXT: f64 = 19.0;
 const TICK_TEXT: f64 = 17.0;
 const LEGEND_TEXT: f64 = 16.0;
-/// Length of the line shown in an entry of the legend, and the place of the text after it.
+/// Length of the line in an entry of the legend, and the position of the text after it.
 const SAMPLE: (f64, f64) = (30.0, 40.0);
 
 type Outcome = Result<(), Box<dyn Error>>;
 
-/// How the points of a series are drawn.
+/// Style of the points of a series.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Style {
     /// A solid line through the points.
@@ -45,7 +45,7 @@ pub enum Style {
     Dashed,
     /// A symbol at every point.
     Markers,
-    /// A circle round every point, beside a dashed line of the same label.
+    /// A circle around every point, beside a dashed line of the same label.
     Rings,
     /// A large square at every point, for maps.
     Tiles,
@@ -54,12 +54,12 @@ pub enum Style {
 /// Named points of one curve. Points that are not finite interrupt the line.
 #[derive(Clone, Debug, Default)]
 pub struct Series {
-    /// Legend entry. Series with the same label share one entry and one colour, so a line and its
-    /// markers are two series of one label; an empty label has no entry.
+    /// Legend entry. Series with the same label share one entry and one colour, so that a line and its markers are
+    /// two series of one label; an empty label has no entry.
     pub label: String,
     /// Abscissa and ordinate of every point.
     pub points: Vec<(f64, f64)>,
-    /// How the points are drawn.
+    /// Style of the points.
     pub style: Style,
 }
 
@@ -95,7 +95,7 @@ pub struct Figure {
 }
 
 impl Figure {
-    /// Writes the figure to `stem.svg` and `stem.png`, making the folder if it is missing.
+    /// Writes the figure to `stem.svg` and `stem.png`, creating the folder if it is missing.
     ///
     /// # Errors
     ///
@@ -143,7 +143,7 @@ impl Figure {
             (false, false) => 0.0,
         };
         let mut x = Axis::new(points().map(|p| p.0), self.x_range, self.log_x, x_pad)?;
-        let shown = points().filter(|p| (0.0..=1.0).contains(&x.place(p.0)));
+        let shown = points().filter(|p| (0.0..=1.0).contains(&x.position(p.0)));
         let mut y = Axis::new(
             shown.map(|p| p.1),
             self.y_range,
@@ -178,7 +178,7 @@ impl Figure {
         let frame = [(left, top), (right, bottom)];
         self.draw_axes(pen, frame, &x, &y)?;
         let place = |p: &Point| {
-            let (u, v) = (x.place(p.0), y.place(p.1));
+            let (u, v) = (x.position(p.0), y.position(p.1));
             (left + u * (right - left), bottom - v * (bottom - top))
         };
         for series in &self.series {
@@ -230,8 +230,8 @@ impl Figure {
         x: &Axis,
         y: &Axis,
     ) -> Outcome {
-        let across = |v: f64| x0 + x.place(v) * (x1 - x0);
-        let up = |v: f64| y1 - y.place(v) * (y1 - y0);
+        let across = |v: f64| x0 + x.position(v) * (x1 - x0);
+        let up = |v: f64| y1 - y.position(v) * (y1 - y0);
         let vertical = |v: f64, c| pen.line(&[(across(v), y0), (across(v), y1)], c, 1.0);
         let horizontal = |v: f64, c| pen.line(&[(x0, up(v)), (x1, up(v))], c, 1.0);
         x.minor.iter().try_for_each(|v| vertical(*v, MINOR))?;

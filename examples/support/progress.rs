@@ -9,8 +9,8 @@ const INTERVAL: Duration = Duration::from_millis(100);
 
 /// Progress of one stage of a program, shown on standard error.
 ///
-/// The bar is drawn only if standard error is a terminal. In any case one line with the total and
-/// the time taken remains when the stage is finished.
+/// The bar is drawn only if standard error is a terminal. In any case one line with the total and the elapsed time
+/// remains when the stage ends.
 #[derive(Debug)]
 pub struct Bar {
     label: String,
@@ -35,7 +35,7 @@ impl Bar {
         bar
     }
 
-    /// Shows which fraction of the stage is done; values outside of 0 to 1 are clamped.
+    /// Shows the completed fraction of the stage; values outside 0 to 1 are clamped.
     #[allow(
         clippy::cast_precision_loss,
         clippy::cast_possible_truncation,
@@ -65,7 +65,7 @@ impl Bar {
         write_stderr(&format!("\r\x1b[K{label} [{done}{open}] {steps}/{total}{left}"));
     }
 
-    /// Ends the stage and leaves a line with its total and the time taken.
+    /// Ends the stage and leaves a line with its total and the elapsed time.
     pub fn finish(self) {
         let clear = if self.visible { "\r\x1b[K" } else { "" };
         let seconds = self.start.elapsed().as_secs_f64();
@@ -73,7 +73,7 @@ impl Bar {
     }
 }
 
-/// Writes to standard error; that it is closed is no reason to stop the program.
+/// Writes to standard error; a closed standard error does not stop the program.
 pub fn write_stderr(text: &str) {
     let mut stderr = std::io::stderr().lock();
     let _ = stderr.write_all(text.as_bytes()).and_then(|()| stderr.flush());

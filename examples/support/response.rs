@@ -16,18 +16,18 @@ use serde_json::{Map, Value};
 
 use crate::json::number;
 
-/// A range of frequency, and frequencies within it at which every solution is wanted, in Hz.
+/// A range of frequency, and frequencies within it at which every solution is listed, in Hz.
 #[derive(Clone, Debug, Default)]
 pub struct Range {
-    /// Where the response begins.
+    /// First frequency.
     pub from: f64,
-    /// Where it ends; it may lie below the begin.
+    /// Last frequency; it may lie below the first.
     pub to: f64,
-    /// In the order in which the solutions are to be listed.
+    /// Frequencies at which every solution is listed, in this order.
     pub at: Vec<f64>,
 }
 
-/// Every harmonic that is carried: its number, and `X_p` of each degree of freedom wanted.
+/// Every carried harmonic: its number, and `X_p` of each reported degree of freedom.
 pub type Harmonics = Vec<(usize, Vec<Complex64>)>;
 
 /// A solution: motion of sector 1, x(t) = Re Σ `X_p` exp(i p ω t).
@@ -37,21 +37,21 @@ pub struct Point {
     pub number: usize,
     /// Frequency of the force, Hz.
     pub frequency: f64,
-    /// Its motion.
+    /// Motion in each carried harmonic.
     pub harmonics: Harmonics,
-    /// Estimated relative error of `X_1` of the first degree of freedom wanted, where a tolerance chose the
-    /// harmonics; not finite where it is unknown.
+    /// Estimated relative error of `X_1` of the first reported degree of freedom, if a tolerance chose the
+    /// harmonics; not finite if it is unknown.
     pub error: Option<f64>,
 }
 
 impl Point {
-    /// `X_1` of the first degree of freedom wanted.
+    /// `X_1` of the first reported degree of freedom.
     pub fn fundamental(&self) -> Complex64 {
         let first = self.harmonics.iter().find(|h| h.0 == 1);
         first.map_or(Complex64::ZERO, |h| h.1[0])
     }
 
-    /// Its absolute value.
+    /// Absolute value of the fundamental.
     pub fn amplitude(&self) -> f64 {
         self.fundamental().norm()
     }
@@ -60,19 +60,19 @@ impl Point {
 /// A response over the whole of a range.
 #[derive(Debug)]
 pub struct Response {
-    /// The curve from exactly the begin to exactly the end.
+    /// The curve from exactly the first frequency to exactly the last.
     pub points: Vec<Point>,
-    /// The point of largest amplitude, an end of the range if it is there.
+    /// The point of largest amplitude, possibly an end of the range.
     pub peak: Point,
-    /// Every solution at the frequencies asked for, in the order asked.
+    /// Every solution at the requested frequencies, in the requested order.
     pub at: Vec<Point>,
-    /// Whether rounding kept the residual of a point above the solver's tolerance.
+    /// Whether rounding kept the residual of a point above the tolerance of the solver.
     pub stalled: bool,
-    /// Whether some point misses the tolerance.
+    /// Whether some point exceeds the tolerance.
     pub missed: bool,
     /// All that the library returned.
     pub branch: Branch,
-    /// Where the time went.
+    /// Time of the parts of the computation.
     pub times: Times,
 }
 
@@ -81,15 +81,15 @@ pub struct Response {
 pub struct Times {
     /// Condensation and the first point.
     pub first_point: Duration,
-    /// The points after the first, with the peaks and the frequencies asked for.
+    /// The points after the first, with the peaks and the requested frequencies.
     pub curve: Duration,
     /// Recovery of the motion from that of the contacts.
     pub recovery: Duration,
 }
 
 impl Response {
-    /// Follows the response of a model and reports the share of the range that is done. The first
-    /// of the degrees of freedom `wanted` is followed: its fundamental defines the peak.
+    /// Follows the response of a model and reports the completed share of the range. The first of the degrees of
+    /// freedom `reported` is the response degree of freedom: its fundamental defines the peak.
     ///
     /// # Errors
     ///
@@ -98,11 +98,11 @@ impl Response {
         model: &Model,
         solver: &SolverOptions,
         range: &Range,
-        wanted: &[usize],
+        reported: &[usize],
         mut progress: impl FnMut(f64),
     ) -> Result<Self, Box<dyn Error>> {
         let solver = SolverOptions {
-            response_dof: wanted.first().copied(),
+            response_dof: reported.first().copied(),
             ..*solver
         };
         let at: Vec<f64> = range.at.iter().map(|f| f * TAU).collect();
@@ -135,7 +135,7 @@ impl Response {
             .into());
         }
         let solved = begin.elapsed();
-        let mut response = Self::collect(branch, range, wanted)?;
+        let mut response = Self::collect(branch, range, reported)?;
         if solver.tolerance == 0.0 {
             response.forget_errors();
         }
@@ -148,8 +148,8 @@ impl Response {
         Ok(response)
     }
 
-    fn collect(branch: Branch, range: &Range, wanted: &[usize]) -> Result<Self, Box<dyn Error>> {
-        // Hz to rad/s and back may change the last digit: the frequencies given are kept as given.
+    fn collect(branch: Branch, range: &Range, reported: &[usize]) -> Result<Self, Box<dyn Error>> {
+        // The conversion from Hz to rad/s and back may change the last digit: given frequencies are kept exactly.
         let given = |omega: f64| {
             let mut known = [range.from, range.to].into_iter();
             let found = known.find(|f| (f * TAU).to_bits() == omega.to_bits());
@@ -157,7 +157,7 @@ impl Response {
         };
         let curve = branch.omega().iter().enumerate();
         let points: Vec<Point> = curve
-            .map(|(i, &omega)| point(&branch, i, given(omega), wanted))
+            .map(|(i, &omega)| point(&branch, i, given(omega), reported))
             .collect::<Result<_, _>>()?;
         let mut at = Vec::new();
         for (i, &frequency) in range.at.iter().enumerate() {
@@ -165,12 +165,12 @@ impl Response {
                 return Err(format!("no solution was found at {frequency} Hz").into());
             }
             for special in branch.at(i) {
-                at.push(point(&branch, special.point, frequency, wanted)?);
+                at.push(point(&branch, special.point, frequency, reported)?);
             }
         }
         let maxima = branch.peaks().iter();
         let maxima: Vec<Point> = maxima
-            .map(|p| point(&branch, p.point, given(p.omega), wanted))
+            .map(|p| point(&branch, p.point, given(p.omega), reported))
             .collect::<Result<_, _>>()?;
         let all = maxima.iter().chain(&points).chain(&at);
         let peak = all.reduce(|best, p| if p.amplitude() > best.amplitude() { p } else { best });
@@ -193,13 +193,12 @@ impl Response {
         }
     }
 
-    /// Newton iterations of the points on the curve, those of peaks and frequencies asked for not
-    /// counted.
+    /// Newton iterations of the points on the curve, without those of peaks and requested frequencies.
     pub fn iterations(&self) -> usize {
         self.branch.newton_iterations().iter().sum::<f64>() as usize
     }
 
-    /// The response as JSON; `amplitude` names the amplitude, `names` the degrees of freedom wanted.
+    /// The response as JSON; `amplitude` names the amplitude, `names` the reported degrees of freedom.
     ///
     /// # Errors
     ///
@@ -215,12 +214,14 @@ impl Response {
     }
 }
 
-fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Result<Point, Box<dyn Error>> {
+fn point(branch: &Branch, number: usize, frequency: f64, reported: &[usize]) -> Result<Point, Box<dyn Error>> {
     let carried = branch.carried_at(number).unwrap_or(&[]).iter().copied();
     let harmonics = match branch.response_at(number) {
-        // The response degree of freedom is at hand; others are recovered with the whole structure.
-        Some(response) if wanted == [branch.response_dof()] => carried.zip(response.iter().map(|&x| vec![x])).collect(),
-        _ => harmonics(branch, number, wanted)?,
+        // The motion of the response degree of freedom is stored; others are recovered with the whole structure.
+        Some(response) if reported == [branch.response_dof()] => {
+            carried.zip(response.iter().map(|&x| vec![x])).collect()
+        }
+        _ => harmonics(branch, number, reported)?,
     };
     Ok(Point {
         number,
@@ -235,11 +236,11 @@ fn point(branch: &Branch, number: usize, frequency: f64, wanted: &[usize]) -> Re
 /// # Errors
 ///
 /// If the library refuses the point.
-pub fn harmonics(branch: &Branch, number: usize, wanted: &[usize]) -> Result<Harmonics, Box<dyn Error>> {
+pub fn harmonics(branch: &Branch, number: usize, reported: &[usize]) -> Result<Harmonics, Box<dyn Error>> {
     let n = branch.ndof();
     let mut all = vec![Complex64::ZERO; (branch.harmonics() + 1) * n];
     branch.harmonics_at(number, &mut all)?;
-    let of = |p: usize| wanted.iter().map(|dof| all[p * n + dof]).collect();
+    let of = |p: usize| reported.iter().map(|dof| all[p * n + dof]).collect();
     Ok(branch
         .carried_at(number)
         .unwrap_or(&[])
@@ -260,12 +261,12 @@ fn point_to_json(point: &Point, amplitude: &str, names: &[&str]) -> Result<Value
     Ok(object.into())
 }
 
-/// The highest harmonic number that is carried.
+/// The highest carried harmonic number.
 pub fn highest(harmonics: &Harmonics) -> usize {
     harmonics.last().map_or(0, |h| h.0)
 }
 
-/// An error, null where it is unknown.
+/// An error, null if it is unknown.
 pub fn error_to_json(error: f64) -> Value {
     serde_json::Number::from_f64(error).map_or(Value::Null, Value::Number)
 }

@@ -19,7 +19,7 @@ struct Row {
 }
 
 impl Table {
-    /// Reads a file; blank lines are passed over.
+    /// Reads a file; blank lines are skipped.
     ///
     /// # Errors
     ///
@@ -90,7 +90,7 @@ impl Table {
         }
     }
 
-    /// The sentence for something wrong in a row.
+    /// The sentence for a defect in a row.
     pub fn wrong(&self, row: usize, what: &str) -> String {
         format!("{}, line {}: {what}", self.path.display(), self.rows[row].line)
     }

@@ -32,7 +32,7 @@ impl<'a> AtResolution<'a> {
         let range = (settings.start, settings.end);
         let problem = HarmonicBalance::new(&level.condensed, response, range, level.samples, given)?;
         Ok(Self {
-            corrector: Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?,
+            corrector: Corrector::new(problem.unknowns(), settings.tolerance, settings.max_iterations)?,
             response: try_vec(level.condensed.blocks().len(), Complex64::ZERO, "the response")?,
             problem,
             level,
@@ -303,7 +303,7 @@ fn record<'a>(
     (sampling_error, error): (f64, f64),
 ) -> Record<'a> {
     Record {
-        level,
+        resolution: level,
         omega: point.parameter(),
         motion: point.unknowns(),
         amplitude: point.amplitude,

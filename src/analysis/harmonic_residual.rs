@@ -1,5 +1,5 @@
-//! Residual and Jacobian at a caller's point, and a law on a prescribed motion: for callers with a
-//! continuation of their own, and for tests. Nothing is removed or condensed here.
+//! Residual and Jacobian at a point of the caller, and a law on a prescribed motion: for callers with a
+//! continuation of their own, and for tests. The problem is neither reduced nor condensed.
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::contact::{self, Contact};
@@ -7,7 +7,8 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, Wave, along, relative_row};
+use crate::model::spring::{Row, along, relative_row};
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 use num_complex::Complex64;
@@ -15,9 +16,9 @@ use num_complex::Complex64;
 /// Residual R_h = Z_h x_h + Wᴴ f_h − F_h of harmonic balance with harmonics 0 ..= H of all degrees
 /// of freedom, with its Jacobian and frequency derivative.
 ///
-/// `x` and `r` are (H + 1) × ndof, harmonic by harmonic. `jacobian`, where given, is real,
-/// column-major, of order 2(H + 1)·ndof over the pairs (Re, Im); `d_omega` is ∂R/∂ω. The imaginary
-/// part of the mean is no unknown: its rows read Im x₀ = 0.
+/// `x` and `r` are (H + 1) × ndof, harmonic by harmonic. `jacobian`, if given, is real, column-major, of order
+/// 2(H + 1)·ndof over the pairs (Re, Im); `d_omega` is ∂R/∂ω. The imaginary part of the mean is no unknown: its
+/// rows read Im x₀ = 0.
 ///
 /// # Errors
 /// `Dimension` and `NotFinite`, naming the array; those of the model's matrices.
@@ -58,7 +59,7 @@ pub fn forced_residual(
             );
         }
     }
-    // Everything that can fail is prepared before the caller's arrays are touched.
+    // All steps that can fail come before the arrays of the caller are changed.
     let contact = ContactTerms::new(model, solver, omega, x)?;
     let mut dynamic = Vec::new();
     for h in 0..=highest {
@@ -110,7 +111,7 @@ fn check_len(name: &str, len: usize, needed: usize) -> Result<()> {
     fail!(Dimension, "{name} has {len} entries, needs {needed}")
 }
 
-/// Adds the complex factor v as a 2 × 2 block; of the mean only the real row and column.
+/// Adds the complex factor v as a 2 × 2 block; for the mean only its real row and column.
 fn add_block(j: &mut [f64], order: usize, row: usize, column: usize, v: Complex64, mean: bool) {
     j[2 * column * order + 2 * row] += v.re;
     if !mean {
@@ -234,7 +235,7 @@ impl ContactTerms {
     }
 }
 
-/// ∂f/∂y of one direction of force by one of motion, inside the Jacobian of a law.
+/// ∂f/∂y of one direction of force by one direction of motion, within the Jacobian of a law.
 struct Block<'a> {
     set: &'a HarmonicSet,
     jacobian: &'a [f64],
@@ -294,11 +295,10 @@ fn evaluate(contact: &Contact, set: &HarmonicSet, samples: usize, omega: f64, pa
     Ok(evaluation)
 }
 
-/// Force coefficients of one law on prescribed relative motions with harmonics 0 ..= `harmonics`, and
-/// their real Jacobian over the pairs (Re, Im), column-major of order 2(H + 1)·d; `motion` and `force`
-/// are d × (H + 1), direction after direction. `samples` = 0 locates events exactly where the law has
-/// them. `omega` matters to laws that know velocities. The imaginary part of the mean has no effect
-/// and no force.
+/// Force coefficients of one law on prescribed relative motions with harmonics 0 ..= `harmonics`, and their real
+/// Jacobian over the pairs (Re, Im), column-major of order 2(H + 1)·d; `motion` and `force` are d × (H + 1),
+/// direction after direction. `samples` = 0 locates events exactly if the law has events. `omega` affects laws that
+/// depend on velocity. The imaginary part of the mean has no effect and no force.
 ///
 /// # Errors
 /// `Argument`, `Dimension` or `NotFinite`, naming the argument; those of callbacks.

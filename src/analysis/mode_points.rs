@@ -319,7 +319,7 @@ fn record<'a>(
     (amplitude, sampling_error, errors): Numbers,
 ) -> Record<'a> {
     Record {
-        level,
+        resolution: level,
         omega: Epmc::frequency_and_damping(linear, point.unknowns()).0,
         motion,
         amplitude,

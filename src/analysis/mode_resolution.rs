@@ -3,9 +3,10 @@
 use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
+use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
-use crate::problem::{Linearisation, Problem};
+use crate::problem::{Problem, Residual};
 use crate::results::Resolution;
 use crate::results::energy::{self, Balance};
 use crate::results::mode_branch::ModePoint;
@@ -25,7 +26,7 @@ pub(super) struct AtResolution<'a> {
     pub level: &'a Resolution,
     pub problem: Epmc<'a>,
     pub corrector: Corrector,
-    at: Linearisation,
+    at: Residual,
     /// Packed relative motions of the point evaluated last.
     pub motion: Vec<f64>,
     forces: Vec<f64>,
@@ -41,7 +42,7 @@ impl<'a> AtResolution<'a> {
         let unknowns = problem.size();
         Ok(Self {
             corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,
-            at: Linearisation::new(unknowns)?,
+            at: Residual::new(unknowns)?,
             motion: try_vec(unknowns - 2, 0.0, CONTEXT)?,
             forces: try_vec(unknowns - 2, 0.0, CONTEXT)?,
             weighted: try_vec(level.condensed.ndof(), Complex64::ZERO, CONTEXT)?,
@@ -67,7 +68,7 @@ impl<'a> AtResolution<'a> {
             tangent,
             amplitude,
             slope,
-            residual: norm(&at.residual) / at.scale,
+            residual: norm(&at.values) / at.scale,
             iterations: 0,
             step: 0.0,
             stalled: false,

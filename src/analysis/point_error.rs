@@ -1,4 +1,4 @@
-//! The error of stored points, see [`crate::error_estimate`].
+//! Error of stored points, see [`crate::error_estimate`].
 
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, fail};
@@ -10,16 +10,16 @@ use crate::options::{DampingForm, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
 
-/// Estimates how wrong a stored point of a branch is by the harmonics that it leaves out. `model` and `solver`
-/// are those that the branch was computed with.
+/// Estimates the error of a stored point of a branch by the harmonics that it neglects. `model` and `solver` are
+/// those of the computation of the branch.
 ///
-/// The estimate solves, once or a few times, the linear equations of a problem with more harmonics: at least
-/// twice as many, and all in which the structure gives way to its contacts. Where that is not affordable, or
-/// does not settle, the estimate is not certified and its errors are NaN.
+/// The estimate solves, once or a few times, the linear equations of a problem with more harmonics: at least twice
+/// as many, and all in which the structure is compliant. If that exceeds the limits, or does not converge, the
+/// estimate is not certified and its errors are NaN.
 ///
 /// # Errors
-/// `Index` for an unknown point, `Argument` for another model or other options than those of the branch,
-/// `Callback` for a law of the caller that gives up, `OutOfMemory`.
+/// `Index` for an unknown point, `Argument` for another model or other options than those of the branch, `Callback`
+/// for a law of the caller that fails, `OutOfMemory`.
 pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point: usize) -> Result<Estimate> {
     solver.check()?;
     let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
@@ -50,7 +50,7 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
         );
     }
     let solver = &SolverOptions { samples, ..*solver };
-    let condensed = branch.level_at(point);
+    let condensed = branch.condensed_at(point);
     let solved = Solved {
         condensed,
         motion,
@@ -84,7 +84,7 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
     estimator.at(&solved, at.log10_amplitude, at.damping_ratio)
 }
 
-/// Position of the harmonic whose amplitude a forced response tells: the lowest above zero.
+/// Position of the harmonic whose amplitude a forced response reports: the lowest above zero.
 pub(super) fn observed(condensed: &Condensed) -> usize {
     condensed.set().numbers().iter().position(|&h| h > 0).unwrap_or(0)
 }

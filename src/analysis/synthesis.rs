@@ -7,11 +7,12 @@
 //! > |ω₀² − Ω² + 2iDω₀Ω| a² = |X₁ᴴ F|,
 //! > Ω² = ω₀²(1 − 2D²) ± (|X₁ᴴF|²/a⁴ − 4D²ω₀⁴(1 − D²))^½:
 //!
-//! two frequencies at each amplitude, and the resonance where the root vanishes.
+//! These are two frequencies at each amplitude; they meet at the resonance, where the root vanishes.
 
 mod oscillator;
 mod resonance;
 
+pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
@@ -22,22 +23,7 @@ use crate::results::mode_branch::ModeData;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 
-/// A synthesised response at one frequency.
-#[derive(Clone, Copy, Debug)]
-pub struct SynthesisPoint {
-    /// Angular frequency Ω of the force.
-    pub omega: f64,
-    /// Fundamental of the branch's response degree of freedom, with the phase against the force.
-    pub response: Complex64,
-    /// Modal amplitude.
-    pub modal_amplitude: f64,
-    /// Natural angular frequency ω₀ at this amplitude.
-    pub natural_omega: f64,
-    /// Damping ratio at this amplitude, with what the options add.
-    pub damping_ratio: f64,
-}
-
-/// Where the synthesis may mislead.
+/// Validity of a synthesised resonance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Validity {
     /// Distance to the nearest other natural frequency of the wave, contacts anywhere between stuck
@@ -45,24 +31,25 @@ pub struct Validity {
     pub other_mode: f64,
     /// Share of the fundamental in the kinetic energy.
     pub fundamental_share: f64,
-    /// Several modes share the frequency of the linear mode.
+    /// True if several modes share the frequency of the linear mode.
     pub repeated: bool,
-    /// The amplitude falls along the branch here, beyond a fold.
+    /// True if the amplitude falls along the branch here, beyond a fold.
     pub turned: bool,
 }
 
-/// Share of the kinetic energy outside of the fundamental above which a higher harmonic resonates.
+/// Share of the kinetic energy outside the fundamental above which a higher harmonic resonates.
 const OUTSIDE: f64 = 0.01;
 
 impl Validity {
-    /// Another mode lies within the bandwidth of this one, or shares its frequency.
+    /// Whether another mode lies within the bandwidth of this one, or shares its frequency.
     #[must_use]
     pub fn another_mode(&self) -> bool {
         self.repeated || self.other_mode <= 1.0
     }
 
-    /// The mode resonates with another one in a higher harmonic: more than 1 % of its kinetic energy
-    /// lies there, or its amplitude has turned.
+    /// Whether the mode resonates with another one in a higher harmonic.
+    ///
+    /// This holds if more than 1 % of its kinetic energy lies in higher harmonics, or if its amplitude has turned.
     #[must_use]
     pub fn internal_resonance(&self) -> bool {
         self.turned || self.fundamental_share < 1.0 - OUTSIDE
@@ -76,21 +63,22 @@ pub struct SynthesisPeak {
     pub at: SynthesisPoint,
     /// log₁₀ of the amplitude as the branch measures it.
     pub log10_amplitude: f64,
-    /// Whether amplitude rises with force here. Where it does not, the resonance bounds a detached
-    /// response from below.
+    /// Whether the amplitude rises with the force here.
+    ///
+    /// If it does not, the resonance bounds a detached response from below.
     pub rising: bool,
-    /// Where this may mislead.
+    /// Validity of the resonance.
     pub validity: Validity,
 }
 
 /// A synthesised response.
 #[derive(Clone, Debug)]
 pub struct Synthesis {
-    /// The response by rising amplitude on the lower flank, then by falling amplitude on the upper
-    /// one, as far as the branch reaches.
+    /// The response in order of rising amplitude on the lower flank, then of falling amplitude on the upper one,
+    /// over the amplitudes of the branch.
     pub points: Vec<SynthesisPoint>,
-    /// Resonances, refined on the mode's equations, in the order of the branch. None where the force
-    /// is too small or too large for the amplitudes of the branch.
+    /// Resonances, refined on the mode's equations, in the order of the branch. Empty if the force is too small or
+    /// too large for the amplitudes of the branch.
     pub peaks: Vec<SynthesisPeak>,
 }
 
@@ -98,12 +86,12 @@ const CONTEXT: &str = "the synthesised response";
 
 /// Synthesises the response to the forces of `model` in the fundamental from a nonlinear mode.
 ///
-/// `model` is the one that the mode was computed from, or one with other forces or damping. Forces in
-/// other harmonics play no part.
+/// `model` is the one that the mode was computed from, or one with other forces or damping. Forces in other
+/// harmonics are ignored.
 ///
 /// # Errors
-/// `Unsupported` for a branch that is no mode; `Dimension` or `Argument` for a model of another size
-/// or another wave, without forces in the fundamental, or options out of range.
+/// `Unsupported` for a branch that is no mode; `Dimension` or `Argument` for a model of a different size or wave,
+/// without forces in the fundamental, or options out of range.
 pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Synthesis> {
     options.check()?;
     let Some(data) = branch.mode_data() else {
@@ -134,7 +122,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     let mut x = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
     for point in 0..branch.points() {
         recovery.go_to(point)?;
-        recovery.harmonic(branch.level_at(point).set().fundamental(), &mut x)?;
+        recovery.harmonic(branch.condensed_at(point).set().fundamental(), &mut x)?;
         let Some(numbers) = data.point(point) else {
             return fail!(Internal, "point {point} of the mode has no numbers");
         };
@@ -203,7 +191,7 @@ fn validity(data: &ModeData, state: &State, backwards: bool) -> Validity {
     let bandwidth = 2.0 * state.damping.abs() * omega;
     let mut distance = f64::INFINITY;
     for (j, &stuck) in info.stuck.iter().enumerate().filter(|(j, _)| *j != info.index) {
-        // A mode of which nothing slips lies at its stuck frequency, else somewhere below.
+        // A mode without slip has its stuck frequency, with slip a lower one.
         let free = info.free.get(j).copied().unwrap_or(stuck);
         let (low, high) = (stuck.min(free), stuck.max(free));
         distance = distance.min((low - omega).max(omega - high).max(0.0));

@@ -1,12 +1,12 @@
-//! Refusal of a forced response that no bounded motion has: an undamped resonance forced beyond its contacts, which
-//! [`crate::model::slip_capacity`] proves of the model. It is asked where no solution was found, and where a
+//! Refusal of a forced response without bounded solution: an undamped resonance forced beyond its slip capacity,
+//! which [`crate::model::slip_capacity`] proves of the model. The check runs if no solution was found, and if a
 //! branch ends on its way to infinity.
 
 use crate::error::{Error, Status};
 use crate::model::Model;
 
-/// Why there is no solution at an angular frequency, where that is known. What fails in the search for a reason is no
-/// reason.
+/// Reason why there is no solution at an angular frequency, if it is known. An error in the search for it is
+/// ignored.
 pub(super) fn reason(model: &Model, omega: f64) -> Option<Error> {
     let resonance = model.overload(omega).ok()??;
     Some(Error::new(

@@ -1,9 +1,9 @@
-//! Any point of a forced response against the library's own integration in time.
+//! Comparison of a point of a forced response with integration in time.
 //!
-//! The integration starts from the motion of the point and looks for its own steady state, so that what is
-//! left between the two is what harmonic balance leaves out: harmonics above H, and contact forces in them.
-//! All norms are root mean squares over the period and the degrees of freedom, ‖x‖² = |X₀|² + ½ Σₕ |Xₕ|², so
-//! that parts of a distance add up by their squares.
+//! The integration starts from the motion of the point and finds a steady state of its own, so that the difference
+//! is the error of harmonic balance: harmonics above H, and contact forces in them. All norms are root mean squares
+//! over the period and the degrees of freedom, ‖x‖² = |X₀|² + ½ Σₕ |Xₕ|², so that parts of a distance add up by
+//! their squares.
 
 use crate::analysis::time_response::{TimeResponse, time_response};
 use crate::error::{Result, Status, fail, try_vec};
@@ -14,23 +14,27 @@ use crate::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// How far a point is from the periodic motion that integration in time finds from it.
+/// Distance of a point from the periodic motion that integration in time finds from it.
 #[derive(Clone, Debug)]
 pub struct Verification {
     /// `Ok`, or `StoppedByCaller`: then all numbers compare with the last period, which is not steady.
     pub status: Status,
-    /// Whether the point counts as the same solution: [`Self::distance`] is at most
-    /// [`VerifyOptions::same_within`]. Where it is not, the integration went to another solution, or the point
-    /// has too few harmonics; a point with more of them tells which.
+    /// Whether the point counts as the same solution.
+    ///
+    /// The criterion is that [`Self::distance`] is at most [`VerifyOptions::same_within`]. If it is larger, the
+    /// integration reached another solution, or the point has too few harmonics; a point with more harmonics shows
+    /// which.
     pub same: bool,
-    /// Whether Newton's method did not converge from the point and periods were marched, which leaves an
-    /// unstable solution; always with [`crate::options::SteadyMethod::Marching`].
+    /// Whether periods were marched.
+    ///
+    /// This is so if Newton's method did not converge from the point, and always with
+    /// [`crate::options::SteadyMethod::Marching`]. Marching leaves an unstable solution.
     pub marched: bool,
     /// The harmonic h in which the response is compared: the lowest above the mean in which the point moves.
     pub harmonic: usize,
     /// Coefficient X_h of the response degree of freedom in time.
     pub response: Complex64,
-    /// |X_h of the point − X_h in time| / |X_h in time|, the error that the estimate of a point estimates.
+    /// |X_h of the point − X_h in time| / |X_h in time|: the error that the error estimate of a point approximates.
     pub response_error: f64,
     /// Distance of the harmonics 0 ..= H of all degrees of freedom over the motion in time.
     pub motion_error: f64,
@@ -38,11 +42,11 @@ pub struct Verification {
     pub above: f64,
     /// Distance of the whole motions over the motion in time: distance² = `motion_error`² + above².
     pub distance: f64,
-    /// What each harmonic 0 ..= H adds to `motion_error`, by squares.
+    /// Contribution of each harmonic 0 ..= H to `motion_error`; their squares sum to its square.
     pub harmonic_errors: Vec<f64>,
     /// Largest displacement of the response degree of freedom over the period in time.
     pub peak: f64,
-    /// Difference of the point's largest displacement from it, relative to it.
+    /// Relative difference of the largest displacement of the point from it.
     pub peak_error: f64,
     /// Largest change over a period of the motion in time, relative to its largest displacement and velocity:
     /// errors of this size are those of the integration.
@@ -60,8 +64,8 @@ pub struct Verification {
 /// Compares a stored point of a forced response with the periodic motion that [`time_response`] finds from
 /// it, at the point's frequency. `model` is the one that the branch was computed with. The point is not changed.
 ///
-/// Where several motions coexist the integration may end in another one than the point's: then `same` is
-/// false, `distance` says how far it is and `marched` whether Newton's method had failed.
+/// Where several motions coexist the integration may end in another one than that of the point: then `same` is
+/// false, `distance` is the distance of the two, and `marched` shows whether Newton's method failed.
 ///
 /// # Errors
 /// `Index` for an unknown point, `Argument` for another model than that of the branch, `Unsupported` for a point of a
@@ -115,7 +119,7 @@ pub fn verify(
     Ok(found)
 }
 
-/// Refuses a model that the branch cannot come from.
+/// Refuses a model that cannot be that of the branch.
 fn check_model(model: &Model, branch: &Branch) -> Result<()> {
     let (ours, theirs) = (model.structure().sectors(), branch.reduction().sectors);
     if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() || ours != theirs {
@@ -131,7 +135,7 @@ fn check_model(model: &Model, branch: &Branch) -> Result<()> {
     Ok(())
 }
 
-/// Fewest times of a period at which motions are compared.
+/// Smallest number of times of a period at which motions are compared.
 const FEWEST_TIMES: usize = 1024;
 
 /// Times per period of the highest harmonic.
@@ -156,8 +160,8 @@ fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) ->
         square += weight * y.iter().map(Complex64::norm_sqr).sum::<f64>();
     }
     let series = Series::new(time.samples.len() / ndof)?;
-    let rest = series.rest(&time);
-    let whole = (square + rest * rest).sqrt();
+    let part_above = series.part_above(&time);
+    let whole = (square + part_above * part_above).sqrt();
     for error in &mut errors {
         *error = over(*error, whole);
     }
@@ -166,7 +170,7 @@ fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) ->
     let at = harmonic * ndof + dof;
     let response = time.harmonics[at];
     let [own, peak] = series.peaks(x, &time, dof);
-    let distance = over((gap + rest * rest).sqrt(), whole);
+    let distance = over((gap + part_above * part_above).sqrt(), whole);
     Ok(Verification {
         status: time.status,
         same: distance <= same_within,
@@ -175,7 +179,7 @@ fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) ->
         response,
         response_error: over((x[at] - response).norm(), response.norm()),
         motion_error: over(gap.sqrt(), whole),
-        above: over(rest, whole),
+        above: over(part_above, whole),
         distance,
         harmonic_errors: errors,
         peak,
@@ -188,7 +192,7 @@ fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) ->
     })
 }
 
-/// A distance over a size: 0 where both vanish.
+/// Ratio of a distance to a size; 0 if both vanish.
 fn over(distance: f64, size: f64) -> f64 {
     if distance == 0.0 { 0.0 } else { distance / size }
 }
@@ -219,9 +223,9 @@ impl Series {
         sum.sum()
     }
 
-    /// Root mean square of what the motion in time has above H. It is taken from the differences themselves, not as
-    /// a difference of squares, which would lose half the digits.
-    fn rest(&self, time: &TimeResponse) -> f64 {
+    /// Root mean square of the part of the motion in time above H. It is computed from the differences themselves,
+    /// because a difference of squares would lose half the digits.
+    fn part_above(&self, time: &TimeResponse) -> f64 {
         let mut square = 0.0;
         for (i, samples) in time.samples.chunks_exact(time.ndof).enumerate() {
             for (dof, x) in samples.iter().enumerate() {

@@ -1,16 +1,17 @@
-//! The contacts of a model as they were when it was condensed, sorted by what a solver makes of them.
+//! The contacts of a model at the time of its condensation, classified by their treatment: active, linear springs,
+//! without force.
 
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push};
 use crate::model::{Model, copy};
 
-/// All contacts of a model. Those that are linear have no relative coordinate.
+/// All contacts of a model. Linear ones have no relative coordinate.
 #[derive(Clone, Debug, Default)]
 pub struct ContactClasses {
     all: Vec<Contact>,
     pub(super) active: Vec<usize>,
     pub(super) never_slipping: Vec<usize>,
-    /// The directions of the linear ones, as (contact, direction).
+    /// Directions of the linear contacts, as (contact, direction).
     pub(super) linear: Vec<(usize, usize)>,
     inert: usize,
 }

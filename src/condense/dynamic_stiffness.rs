@@ -1,4 +1,4 @@
-//! The dynamic stiffness Z_κ of one harmonic after the other, factorised.
+//! The dynamic stiffness Z_κ of one harmonic at a time, factorised.
 //!
 //! Z_κ = K + Wᴴ κ W − h²ω²M + ihωC, and in a nonlinear mode of damping ratio D the artificial
 //! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
@@ -12,29 +12,28 @@ use crate::linalg::sparse::Csc;
 use crate::model::spring::along;
 use num_complex::Complex64;
 
-/// By what a derivative of Z_κ is taken.
+/// Variable of a derivative of Z_κ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum By {
+pub(super) enum Variable {
     Omega,
     Damping,
 }
 
-/// Memory for factorising Z_κ of one harmonic after the other.
+/// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct DynamicStiffness {
     factor: Factor,
     /// Z_κ per harmonic.
     z: Vec<Csc>,
-    /// b − Z x, and memory for summing it exactly.
-    rest: Vec<Complex64>,
+    /// b − Z x, and memory for its exact sum.
+    remainder: Vec<Complex64>,
     sums: Vec<ComplexSum>,
     part: Vec<ComplexSum>,
 }
 
-/// Relative error of the relative motions at which a residual summed with its rounding errors is
-/// worth its cost.
+/// Relative error of the relative motions above which a residual summed with its rounding errors is worth its cost.
 const NOISE: f64 = 1e-12;
 
-/// Degrees of freedom up to which such a residual is never needed.
+/// Number of degrees of freedom up to which such a residual is never necessary.
 const PLAIN_UP_TO: usize = 100;
 
 impl DynamicStiffness {
@@ -56,7 +55,7 @@ impl DynamicStiffness {
         Ok(Self {
             factor: Factor::new(&first.reference, columns)?,
             z,
-            rest: try_vec(n, Complex64::ZERO, CONTEXT)?,
+            remainder: try_vec(n, Complex64::ZERO, CONTEXT)?,
             sums: try_vec(exact, ComplexSum::default(), CONTEXT)?,
             part: try_vec(exact, ComplexSum::default(), CONTEXT)?,
         })
@@ -66,7 +65,7 @@ impl DynamicStiffness {
     /// ratio.
     ///
     /// # Errors
-    /// `Singular` naming the harmonic, at an undamped resonance that no contact feels.
+    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact.
     pub fn factor(&mut self, condensed: &Condensed, i: usize, omega: Complex64, damping: f64) -> Result<()> {
         let block = &condensed.blocks()[i];
         let z = &mut self.z[i];
@@ -77,8 +76,7 @@ impl DynamicStiffness {
         self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega.re))
     }
 
-    /// Solves Z B = B (or Zᵀ) in place with the factors at hand, those of the i-th harmonic at
-    /// `omega`.
+    /// Solves Z X = B (or Zᵀ X = B) in place with the current factors, those of the i-th harmonic at `omega`.
     ///
     /// # Errors
     /// As [`Self::factor`].
@@ -95,11 +93,11 @@ impl DynamicStiffness {
             .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
     }
 
-    /// Refines a solution x of Z x = b with the factors at hand, those of the i-th harmonic at (ω, D).
+    /// Refines a solution x of Z x = b with the current factors, those of the i-th harmonic at (ω, D).
     ///
-    /// Near a resonance of Z_κ the rounding of a plain solution is many times that of the relative
-    /// motions that follow from it, and a mode is always near one. What the first step changes in
-    /// the relative motions tells whether rounding of the residual itself matters.
+    /// Near a resonance of Z_κ the rounding of a plain solution is many times that of the relative motions that
+    /// follow from it, and a mode is always near one. The change of the relative motions in the first step shows
+    /// whether rounding of the residual itself matters.
     ///
     /// # Errors
     /// As [`Self::factor`].
@@ -130,28 +128,28 @@ impl DynamicStiffness {
     ) -> Result<f64> {
         let block = &condensed.blocks()[i];
         let sum = Combination::value(block, at.0.into(), at.1);
-        self.rest.copy_from_slice(b);
+        self.remainder.copy_from_slice(b);
         if exact {
             sum.exact_product(block, x, &mut self.sums, &mut self.part);
-            for (rest, sum) in self.rest.iter_mut().zip(&mut self.sums) {
-                *rest = sum.subtracted_from(*rest);
+            for (remainder, sum) in self.remainder.iter_mut().zip(&mut self.sums) {
+                *remainder = sum.subtracted_from(*remainder);
             }
         } else {
             let pattern = &block.reference;
             for (j, x) in x.iter().enumerate() {
                 for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-                    self.rest[pattern.row_idx[at]] -= sum.at(block, at) * x;
+                    self.remainder[pattern.row_idx[at]] -= sum.at(block, at) * x;
                 }
             }
         }
-        let solved = self.factor.solve(&mut self.rest, false);
+        let solved = self.factor.solve(&mut self.remainder, false);
         solved.map_err(|e| at_harmonic(e, block, at.0))?;
         let mut change = (0.0_f64, 0.0_f64);
         for row in &block.rows {
-            change.0 = change.0.max(along(row, &self.rest).norm());
+            change.0 = change.0.max(along(row, &self.remainder).norm());
             change.1 = change.1.max(along(row, x).norm());
         }
-        for (x, d) in x.iter_mut().zip(&self.rest) {
+        for (x, d) in x.iter_mut().zip(&self.remainder) {
             *x += *d;
         }
         Ok(if change.0 == 0.0 { 0.0 } else { change.0 / change.1 })
@@ -164,7 +162,7 @@ struct Combination {
     reference: f64,
     damping: Complex64,
     mass: Complex64,
-    /// Factor of the structure's own stiffness, for artificial damping of that type.
+    /// Factor of the stiffness of the structure itself, for artificial damping of that type.
     own: Complex64,
 }
 
@@ -172,7 +170,7 @@ impl Combination {
     /// Z_κ
     fn value(block: &HarmonicBlock, omega: Complex64, damping: f64) -> Self {
         let hw = block.number as f64 * omega;
-        let artificial = Self::slope(block, omega, damping, By::Damping);
+        let artificial = Self::slope(block, omega, damping, Variable::Damping);
         Self {
             reference: 1.0,
             damping: Complex64::I * hw,
@@ -182,7 +180,7 @@ impl Combination {
     }
 
     /// ∂Z/∂ω or ∂Z/∂D
-    fn slope(block: &HarmonicBlock, omega: Complex64, damping: f64, by: By) -> Self {
+    fn slope(block: &HarmonicBlock, omega: Complex64, damping: f64, by: Variable) -> Self {
         let h = block.number as f64;
         let ih = Complex64::I * h;
         let zero = Self {
@@ -192,7 +190,7 @@ impl Combination {
             own: Complex64::ZERO,
         };
         match (by, &block.artificial) {
-            (By::Omega, artificial) => Self {
+            (Variable::Omega, artificial) => Self {
                 damping: ih,
                 mass: match artificial {
                     Artificial::Mass => -2.0 * (h + 2.0 * Complex64::I * damping) * h * omega,
@@ -200,17 +198,17 @@ impl Combination {
                 },
                 ..zero
             },
-            (By::Damping, Artificial::None) => zero,
-            (By::Damping, Artificial::Mass) => Self {
+            (Variable::Damping, Artificial::None) => zero,
+            (Variable::Damping, Artificial::Mass) => Self {
                 mass: -2.0 * ih * omega * omega,
                 ..zero
             },
-            (By::Damping, Artificial::Stiffness(_)) => Self { own: -2.0 * ih, ..zero },
+            (Variable::Damping, Artificial::Stiffness(_)) => Self { own: -2.0 * ih, ..zero },
         }
     }
 
-    /// sums ← Z x without rounding between its terms: the matrices are multiplied one by one, since
-    /// their sum is rounded anew at each frequency.
+    /// sums ← Z x without rounding between its terms: the matrices are multiplied one by one, since their sum is
+    /// rounded again at each frequency.
     fn exact_product(&self, block: &HarmonicBlock, x: &[Complex64], sums: &mut [ComplexSum], part: &mut [ComplexSum]) {
         let own = match &block.artificial {
             Artificial::Stiffness(own) => Some((self.own, own)),
@@ -249,7 +247,7 @@ pub(super) fn add_slope_product(
     condensed: &Condensed,
     i: usize,
     (omega, damping): (Complex64, f64),
-    by: By,
+    by: Variable,
     transposed: bool,
     x: &[Complex64],
     y: &mut [Complex64],

@@ -1,11 +1,11 @@
-//! Dynamic flexibility of one harmonic by factorisation: what the contacts and the response degree
-//! of freedom feel of contact forces and excitation, with its derivative by frequency.
+//! Dynamic flexibility of one harmonic by factorisation: response of the contacts and of the response degree of
+//! freedom to contact forces and excitation, with its derivative by frequency.
 //!
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
 use crate::condense::Condensed;
-use crate::condense::dynamic_stiffness::{By, DynamicStiffness, add_slope_product, product};
+use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, product};
 use crate::contact::relative_motion::Direction;
 use crate::error::{Result, try_vec};
 use crate::model::spring::{along, relative_row};
@@ -36,7 +36,7 @@ impl Table {
     }
 }
 
-/// Memory for factorising Z_κ of one harmonic after the other.
+/// Memory for the factorisation of Z_κ, one harmonic at a time.
 pub struct Workspace {
     dynamic: DynamicStiffness,
     damping: f64,
@@ -87,7 +87,15 @@ impl Workspace {
         self.dynamic.factor(condensed, i, omega, 0.0)?;
         for (v, transposed) in [(right, false), (left, true)] {
             self.product.fill(Complex64::ZERO);
-            add_slope_product(condensed, i, (omega, 0.0), By::Omega, transposed, v, &mut self.product);
+            add_slope_product(
+                condensed,
+                i,
+                (omega, 0.0),
+                Variable::Omega,
+                transposed,
+                v,
+                &mut self.product,
+            );
             v.copy_from_slice(&self.product);
             self.dynamic.solve(condensed, i, omega.re, v, transposed)?;
             let size = v.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
@@ -108,7 +116,15 @@ impl Workspace {
         right: &[Complex64],
     ) -> Complex64 {
         self.product.fill(Complex64::ZERO);
-        add_slope_product(condensed, i, (omega, 0.0), By::Omega, false, right, &mut self.product);
+        add_slope_product(
+            condensed,
+            i,
+            (omega, 0.0),
+            Variable::Omega,
+            false,
+            right,
+            &mut self.product,
+        );
         let slope: Complex64 = left.iter().zip(&self.product).map(|(a, b)| a * b).sum();
         product(condensed, i, omega, left, right) / slope
     }
@@ -128,10 +144,10 @@ impl Workspace {
         self.dynamic.solve(condensed, i, omega, &mut self.columns, false)
     }
 
-    /// Evaluates H of the i-th carried harmonic at `omega`, and ∂H/∂ω where `slopes` are wanted.
+    /// Evaluates H of the i-th carried harmonic at `omega`, and ∂H/∂ω if `slopes`.
     ///
     /// # Errors
-    /// `Singular` naming the harmonic, at an undamped resonance that no contact feels.
+    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact.
     pub fn evaluate(&mut self, condensed: &Condensed, i: usize, omega: f64, slopes: bool) -> Result<&Table> {
         self.dynamic.factor(condensed, i, omega.into(), self.damping)?;
         self.solve_columns(condensed, i, omega)?;
@@ -170,7 +186,7 @@ impl Workspace {
         {
             self.product.fill(Complex64::ZERO);
             let at = (omega.into(), self.damping);
-            add_slope_product(condensed, i, at, By::Omega, false, column, &mut self.product);
+            add_slope_product(condensed, i, at, Variable::Omega, false, column, &mut self.product);
             for (slope, solved) in table.iter_mut().zip(self.rows.chunks_exact(n)) {
                 let sum: Complex64 = solved.iter().zip(&self.product).map(|(a, b)| a * b).sum();
                 *slope = -sum;

@@ -1,5 +1,5 @@
-//! The flexibility tables of all carried harmonics at a frequency: by factorisation where that is
-//! cheap or a single frequency is wanted, interpolated along a sweep otherwise.
+//! The flexibility tables of all carried harmonics at a frequency: by factorisation for small structures or a
+//! single frequency, interpolated along a sweep otherwise.
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
@@ -18,7 +18,7 @@ pub struct FrequencyCache {
     workspace: Workspace,
     current: Vec<Table>,
     interpolations: Vec<FrequencyInterpolation>,
-    /// Frequency at which the tables hold, and whether they were made pointwise.
+    /// Frequency of the current tables; `true` if they were made pointwise.
     tabulated: Option<(f64, bool)>,
     pointwise: bool,
 }
@@ -49,25 +49,25 @@ impl FrequencyCache {
             current: tables,
             interpolations,
             tabulated: None,
-            // Without a sweep nobody follows a slope.
+            // Without a sweep no slope is used.
             pointwise: !sweep && condensed.ndof() > INTERPOLATE_ABOVE,
         })
     }
 
-    /// Tables by factorisation from now on, without slopes if that is dear.
+    /// Selects tables by factorisation from now on, without slopes if these are expensive.
     pub fn set_pointwise(&mut self, pointwise: bool) {
         if !self.interpolations.is_empty() {
             self.pointwise = pointwise;
         }
     }
 
-    /// The tables last made.
+    /// The tables made last.
     #[must_use]
     pub fn current(&self) -> &[Table] {
         &self.current
     }
 
-    /// Makes the tables at `omega`, unless they hold there already.
+    /// Makes the tables at `omega`, unless they are current.
     ///
     /// # Errors
     /// Those of [`Workspace::evaluate`].
@@ -86,7 +86,7 @@ impl FrequencyCache {
                 _ => false,
             };
             if !done {
-                // A derived clone_from would take new memory at each frequency.
+                // A derived clone_from would allocate at each frequency.
                 let found = workspace.evaluate(condensed, i, omega, !self.pointwise)?;
                 table.value.copy_from_slice(&found.value);
                 table.slope.copy_from_slice(&found.slope);

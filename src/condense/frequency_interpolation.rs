@@ -1,11 +1,11 @@
-//! The flexibility of a large structure along a sweep: Chebyshev panels instead of a factorisation
-//! per iteration.
+//! Interpolated flexibility of a large structure along a sweep: Chebyshev panels instead of a factorisation per
+//! iteration.
 //!
-//! What is interpolated is d(ω)·H(ω) with d = Π(ω − pₖ) over the resonances pₖ near the range, so
-//! that they are no obstacle. That is analytic off the other resonances, so on a panel that is short against its distance
-//! from them the Chebyshev series converges geometrically (Trefethen, Approximation Theory and
-//! Approximation Practice, 2013, ch. 8). Panels are laid where the sweep goes, as wide as the tail
-//! of the series allows; the derivative is that of the series.
+//! The interpolated function is d(ω)·H(ω) with d = Π(ω − pₖ) over the resonances pₖ near the range, which removes
+//! these poles. It is analytic away from the other resonances, so that on a panel that is short against its
+//! distance from them the Chebyshev series converges geometrically (Trefethen, Approximation Theory and
+//! Approximation Practice, 2013, ch. 8). Panels are added along the sweep, as wide as the tail of the series
+//! allows; the derivative is that of the series.
 
 use crate::condense::flexibility::Table;
 use crate::error::{Result, try_push, try_vec};
@@ -15,10 +15,10 @@ use std::f64::consts::PI;
 /// Samples per panel.
 const NODES: usize = 24;
 
-/// Attempts at one panel before it is taken as good as rounding allows, or given up.
+/// Attempts at one panel before it is accepted at the accuracy that rounding allows, or rejected.
 const MAX_ATTEMPTS: usize = 24;
 
-/// Tail up to which a panel that rounding keeps from converging is accepted.
+/// Largest tail at which a panel is accepted whose convergence rounding prevents.
 const NOISE: f64 = 1e-8;
 
 /// One interval with its series.
@@ -34,9 +34,9 @@ pub struct FrequencyInterpolation {
     outputs: usize,
     tolerance: f64,
     resonances: Vec<Complex64>,
-    /// Width that the next panel tries.
+    /// Width of the next attempt at a panel.
     width: f64,
-    /// Width of the panel laid last.
+    /// Width of the panel added last.
     last_width: f64,
     rising: bool,
     panels: Vec<Panel>,
@@ -45,13 +45,13 @@ pub struct FrequencyInterpolation {
     decay: [f64; NODES],
     /// cos(πm/(2N)) for m in one turn.
     cosines: [f64; 4 * NODES],
-    /// Factorisations used.
+    /// Number of factorisations.
     evaluations: usize,
 }
 
 impl FrequencyInterpolation {
-    /// For tables of `coordinates` contacts along a sweep over `range` = (start, end) with the
-    /// given `resonances` near it, with a relative error of `tolerance`.
+    /// Interpolation of tables of `coordinates` contacts along a sweep over `range` = (start, end) with the given
+    /// `resonances` near it, with a relative error of `tolerance`.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -63,7 +63,7 @@ impl FrequencyInterpolation {
             outputs,
             tolerance,
             resonances,
-            // One panel over all of it, with the room that lies behind its start.
+            // One panel over the whole range, with the margin behind its start.
             width: 1.1 * (end - start).abs(),
             last_width: 0.0,
             rising: end >= start,
@@ -75,17 +75,17 @@ impl FrequencyInterpolation {
         })
     }
 
-    /// Factorisations used so far.
+    /// Number of factorisations so far.
     #[must_use]
     pub fn evaluations(&self) -> usize {
         self.evaluations
     }
 
-    /// Fills `table` at `omega`; `sample` evaluates H by factorisation. `false`: no panel of
-    /// sensible width converged here.
+    /// Fills `table` at `omega`; `sample` evaluates H by factorisation. Returns `false` if no panel of acceptable
+    /// width converged here.
     ///
     /// # Errors
-    /// What `sample` reports, `OutOfMemory`.
+    /// Those of `sample`, `OutOfMemory`.
     pub fn evaluate(
         &mut self,
         omega: f64,
@@ -95,7 +95,7 @@ impl FrequencyInterpolation {
         let found = self.panels.iter().rposition(|p| p.low <= omega && omega <= p.high);
         let index = match found {
             Some(index) => index,
-            None => match self.lay(omega, &mut sample)? {
+            None => match self.add_panel(omega, &mut sample)? {
                 Some(panel) => {
                     try_push(&mut self.panels, panel, "the interpolated flexibility")?;
                     self.panels.len() - 1
@@ -124,8 +124,8 @@ impl FrequencyInterpolation {
         (d, slope)
     }
 
-    /// Lays a panel over `omega`, beside its neighbours.
-    fn lay(
+    /// Adds a panel over `omega`, beside its neighbours.
+    fn add_panel(
         &mut self,
         omega: f64,
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
@@ -144,7 +144,7 @@ impl FrequencyInterpolation {
             .fold(f64::INFINITY, f64::min);
         let mut last_tail = f64::INFINITY;
         for _ in 0..MAX_ATTEMPTS {
-            // A little room behind, should the corrector step back.
+            // A small margin behind, in case the corrector steps back.
             let back = 0.05 * self.width;
             let (low, high) = if self.rising {
                 let low = below.max(omega - back);
@@ -160,20 +160,20 @@ impl FrequencyInterpolation {
             let tail = self.decay[NODES - 2].max(self.decay[NODES - 1]);
             let stalled = tail > 0.3 * last_tail && tail < NOISE;
             if stalled {
-                // This is what rounding leaves of the factorisations: later panels need not try.
+                // This is the rounding error of the factorisations: later panels cannot be better.
                 self.tolerance = self.tolerance.max(2.0 * tail);
             }
             if tail <= self.tolerance {
                 let mut coefficients = try_vec(self.samples.len(), Complex64::ZERO, "the interpolated flexibility")?;
                 coefficients.copy_from_slice(&self.samples);
-                // On the way to a resonance each panel is shorter than the one before.
+                // Towards a resonance each panel is shorter than the one before.
                 let width = high - low;
                 let trend = if self.last_width > 0.0 {
                     width / self.last_width
                 } else {
                     1.0
                 };
-                self.width = width * trend.clamp(0.3, 1.0) * self.room().clamp(0.7, 4.0);
+                self.width = width * trend.clamp(0.3, 1.0) * self.possible_widening().clamp(0.7, 4.0);
                 self.last_width = width;
                 return Ok(Some(Panel {
                     low,
@@ -188,9 +188,9 @@ impl FrequencyInterpolation {
         Ok(None)
     }
 
-    /// How much wider a panel could have been. Its series reached the tolerance t at degree k, so
-    /// it converges like t^(1/k) per degree, and about as much slower as a panel is wider.
-    fn room(&self) -> f64 {
+    /// Factor by which a panel could have been wider. Its series reached the tolerance t at degree k, so that it
+    /// converges like t^(1/k) per degree, and about as much slower as the panel is wider.
+    fn possible_widening(&self) -> f64 {
         let last = self.decay.iter().rposition(|d| *d > 3.0 * self.tolerance);
         let needed = last.unwrap_or(0) + 2;
         let spare = 1.0 / needed as f64 - 1.0 / (NODES - 2) as f64;

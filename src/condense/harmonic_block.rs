@@ -1,25 +1,26 @@
-//! What one harmonic sees of the structure: its matrices on one pattern, and the rows of the contacts.
+//! One harmonic of the condensed model: the matrices on one pattern, and the rows of the contacts.
 
 use crate::condense::contact_classes::ContactClasses;
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, Wave, relative_row};
+use crate::model::spring::{Row, relative_row};
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// Matrix of the artificial damping of a nonlinear mode; see [`crate::condense::dynamic_stiffness`].
 #[derive(Clone, Debug)]
 pub enum Artificial {
-    /// A forced response has none.
+    /// No artificial damping, as in a forced response.
     None,
-    /// M, which every harmonic has.
+    /// The mass matrix M of the harmonic.
     Mass,
-    /// K of the structure alone, at the entries of the pattern.
+    /// The stiffness matrix K of the structure itself, at the entries of the pattern.
     Stiffness(Vec<Complex64>),
 }
 
-/// What one harmonic sees of the structure.
+/// Matrices, forces and contact rows of one harmonic.
 #[derive(Clone, Debug)]
 pub struct HarmonicBlock {
     /// Harmonic number h.
@@ -55,8 +56,8 @@ impl HarmonicBlock {
     }
 }
 
-/// The block of harmonic `number`, with contacts that never slip as springs, one row for each of the
-/// (contact, direction) pairs that stand for the coordinates, and their reference stiffness. No force and no
+/// The block of harmonic `number`, with contacts that never slip as springs, one row for each of the (contact,
+/// direction) pairs that represent the coordinates, and their reference stiffness. It has no force and no
 /// artificial damping yet.
 pub(super) fn harmonic_block(
     model: &Model,

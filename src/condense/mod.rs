@@ -1,5 +1,6 @@
 //! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
 
+mod condensation;
 mod condensed;
 pub mod contact_classes;
 pub mod dynamic_stiffness;
@@ -8,8 +9,10 @@ pub mod frequency_cache;
 pub mod frequency_interpolation;
 pub mod harmonic_block;
 pub mod modal_flexibility;
+mod reduction;
 mod relative_coordinates;
 pub mod resonance_poles;
 
-pub use condensed::{Condensed, Reduction, Reference};
+pub use condensed::{Condensed, Reference};
 pub use harmonic_block::{Artificial, HarmonicBlock};
+pub use reduction::Reduction;

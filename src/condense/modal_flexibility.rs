@@ -1,11 +1,10 @@
-//! Motion of the structure in one harmonic under contact forces alone, with what Newton's method
-//! needs to know of it: the flexibility of the contacts, and the derivatives by frequency and
-//! damping ratio.
+//! Motion of the structure in one harmonic under contact forces alone, with its derivatives for Newton's method: by
+//! the contact forces (the flexibility), by frequency and by damping ratio.
 //!
 //! x = −Z⁻¹ Wᴴ w, ∂x/∂w = −Z⁻¹ Wᴴ, ∂x/∂ω = −Z⁻¹ Z_ω x, ∂x/∂D = −Z⁻¹ Z_D x.
 
 use crate::condense::Condensed;
-use crate::condense::dynamic_stiffness::{By, DynamicStiffness, add_slope_product};
+use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product};
 use crate::error::{Result, try_vec};
 use num_complex::Complex64;
 
@@ -43,7 +42,7 @@ impl Modal {
     /// w = f − κ y.
     ///
     /// # Errors
-    /// `Singular` naming the harmonic, at an undamped resonance that no contact feels.
+    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact.
     pub fn solve(&mut self, condensed: &Condensed, i: usize, omega: f64, damping: f64, w: &[Complex64]) -> Result<()> {
         let n = self.x.len();
         let rows = &condensed.blocks()[i].rows;
@@ -61,7 +60,7 @@ impl Modal {
                 *x -= z * w;
             }
         }
-        // Newton's method would not get below the rounding of a plain solution on stiff structures.
+        // On stiff structures Newton's method would not get below the rounding of an unrefined solution.
         self.by_damping.fill(Complex64::ZERO);
         for (row, w) in rows.iter().zip(w) {
             for &(p, a) in row.iter().flatten() {
@@ -71,7 +70,10 @@ impl Modal {
         self.dynamic
             .refine(condensed, i, (omega, damping), &self.by_damping, &mut self.x)?;
         let at = (omega.into(), damping);
-        for (derivative, by) in [(&mut self.by_omega, By::Omega), (&mut self.by_damping, By::Damping)] {
+        for (derivative, by) in [
+            (&mut self.by_omega, Variable::Omega),
+            (&mut self.by_damping, Variable::Damping),
+        ] {
             derivative.fill(Complex64::ZERO);
             add_slope_product(condensed, i, at, by, false, &self.x, derivative);
             self.dynamic.solve(condensed, i, omega, derivative, false)?;

@@ -1,32 +1,36 @@
-//! The relative coordinates: contacts between the same two places share one.
+//! The relative coordinates: contacts between the same two degrees of freedom share one.
 
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::Model;
-use crate::model::spring::{Wave, along, relative_row};
+use crate::model::spring::{along, relative_row};
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// A direction of an active contact, and its relative coordinate.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct AssembledLaw {
+pub(super) struct AssembledDirection {
     pub contact: usize,
     pub direction: usize,
     pub coordinate: usize,
 }
 
 /// A contact and one of its directions.
-pub(super) type Pick = (usize, usize);
+pub(super) type ContactDirection = (usize, usize);
 
-/// Gathers the directions of active contacts on unique relative coordinates. They are returned contact
-/// after contact, then per coordinate the (contact, direction) that stands for it.
-pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<AssembledLaw>, Vec<Pick>)> {
+/// Assigns the directions of active contacts to unique relative coordinates. Returns the directions, contact after
+/// contact, and for each coordinate the (contact, direction) that represents it.
+pub(super) fn assign_coordinates(
+    model: &Model,
+    active: &[usize],
+) -> Result<(Vec<AssembledDirection>, Vec<ContactDirection>)> {
     const CONTEXT: &str = "the contacts";
     let sectors = model.structure().sectors() as i128;
     let mut assembled = Vec::new();
     for &contact in active {
         for direction in 0..model.contacts()[contact].directions() {
-            let new = AssembledLaw {
+            let new = AssembledDirection {
                 contact,
                 direction,
                 coordinate: 0,
@@ -34,7 +38,7 @@ pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<AssembledLa
             try_push(&mut assembled, new, CONTEXT)?;
         }
     }
-    let key = |p: AssembledLaw| {
+    let key = |p: AssembledDirection| {
         let c = &model.contacts()[p.contact];
         let sector = i128::from(c.sector_offset).rem_euclid(sectors);
         (c.direction(p.direction).key(), sector)
@@ -58,18 +62,18 @@ pub(super) fn gather(model: &Model, active: &[usize]) -> Result<(Vec<AssembledLa
     Ok((assembled, representatives))
 }
 
-/// Raises the stiffness of coordinates with springs whose stiffness grows and may be zero at rest, to that of the
-/// structure where they act, so that κ moves the poles whatever kt is. For a structure without
-/// stiffness of its own the inertia at `omega` tells the size.
+/// Raises the stiffness of coordinates with springs whose stiffness grows and may be zero at zero motion, to that
+/// of the structure at their degrees of freedom, so that κ moves the poles whatever kt is. For a structure without
+/// stiffness of its own the inertia at `omega` sets the size.
 pub(super) fn raise_for_springs(
     model: &Model,
     omega: f64,
     set: &HarmonicSet,
     never_slipping: &[usize],
-    assembled: &[AssembledLaw],
+    assembled: &[AssembledDirection],
     stiffness: &mut [f64],
 ) -> Result<()> {
-    let is_spring = |p: &&AssembledLaw| model.contacts()[p.contact].is_spring();
+    let is_spring = |p: &&AssembledDirection| model.contacts()[p.contact].is_spring();
     if !assembled.iter().any(|p| is_spring(&p)) {
         return Ok(());
     }
@@ -87,13 +91,12 @@ pub(super) fn raise_for_springs(
     Ok(())
 }
 
-/// Relative motion at a contact over the motions of its sides, 0 .. 1: how much the contact gives.
+/// Relative motion at a contact over the motions of its sides, 0 .. 1.
 ///
-/// A mode that hardly moves a contact hardly feels its stiffness, κ in its place neither, and the
-/// structure with κ would still resonate in the mode. With κ reduced to this share, about the
-/// dynamic stiffness of what hangs on the contact, the relative motion is no longer small and the
-/// resonance is damped.
-pub(super) fn give(model: &Model, (contact, direction): Pick, shape: &[Complex64]) -> f64 {
+/// A mode that hardly moves a contact hardly depends on its stiffness, nor on κ in its place, so that the structure
+/// with κ would still resonate in the mode. With κ reduced to this share, about the dynamic stiffness of the
+/// structure at the contact, the relative motion is no longer small and the resonance is damped.
+pub(super) fn relative_share(model: &Model, (contact, direction): ContactDirection, shape: &[Complex64]) -> f64 {
     let contact = &model.contacts()[contact];
     let phase = model.structure().phase(1, contact.sector_offset);
     let row = relative_row(&contact.direction(direction), phase);

@@ -1,9 +1,8 @@
 //! Resonances of Z_κ near a range of frequency: the complex ω at which Z_κ(ω) is singular.
 //!
-//! They start from the undamped modes of K + Wᴴ Re(κ) W, and two-sided inverse iteration moves them
-//! to where damping and the reference stiffness put them:
-//! p ← p − yᴴ Z x / (yᴴ Z′ x) with x ← Z⁻¹Z′x, y ← Z⁻ᴴZ′ᴴy
-//! (Ruhe 1973, Algorithms for the nonlinear eigenvalue problem, doi:10.1137/0710059).
+//! The iteration starts from the undamped modes of K + Wᴴ Re(κ) W; two-sided inverse iteration then includes
+//! damping and the complex reference stiffness: p ← p − yᴴ Z x / (yᴴ Z′ x) with x ← Z⁻¹Z′x, y ← Z⁻ᴴZ′ᴴy (Ruhe 1973,
+//! Algorithms for the nonlinear eigenvalue problem, doi:10.1137/0710059).
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
@@ -12,17 +11,17 @@ use crate::linalg::lanczos;
 use crate::linalg::sparse::{Csc, Form};
 use num_complex::Complex64;
 
-/// Modes that are looked at; a range beyond them is treated without poles.
+/// Number of modes considered; a range beyond them is treated without poles.
 const MODES: usize = 24;
 
-/// Iterations; convergence is cubic.
+/// Largest number of iterations; convergence is cubic.
 const MAX_ITERATIONS: usize = 8;
 
 /// Relative change of a pole that counts as converged.
 const TOLERANCE: f64 = 1e-12;
 
-/// The resonances of the i-th carried harmonic within `range` and one width of it on either side.
-/// Where they cannot be found the list is shorter; nothing depends on it but speed.
+/// The resonances of the i-th carried harmonic within `range` and one width of it on either side. Where some cannot
+/// be found the list is shorter, which affects the speed only.
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -80,13 +79,13 @@ fn refine(
     let mut right = shape;
     let mut last = f64::INFINITY;
     for _ in 0..MAX_ITERATIONS {
-        // `left` holds conj(y), so that yᴴ A x is a plain product.
+        // `left` holds conj(y), so that yᴴ A x is a product without conjugation.
         let step = workspace.resonance_step(condensed, i, p, &left, &right);
         if !step.is_finite() || step.norm() > 0.5 * p.norm() {
             return Ok(None);
         }
         p -= step;
-        // Rounding ends the convergence at about the condition of the eigenvalue.
+        // Rounding limits the convergence to about the condition of the eigenvalue.
         if step.norm() <= TOLERANCE * p.norm() || (step.norm() < 1e-8 * p.norm() && step.norm() > 0.1 * last) {
             return Ok(Some(p));
         }
@@ -94,7 +93,7 @@ fn refine(
         match workspace.inverse_step(condensed, i, p, &mut left, &mut right) {
             Ok(()) => {}
             Err(e) if e.status == Status::OutOfMemory => return Err(e),
-            // Singular to rounding: p is the resonance.
+            // The matrix is singular up to rounding: p is the resonance.
             Err(_) => return Ok(Some(p)),
         }
     }

@@ -3,9 +3,10 @@
 
 use crate::continuation::Metric;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
-use crate::linalg::bordered::{Bordered, Parts};
+use crate::linalg::linear_system::dense::DenseSystem;
+use crate::linalg::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
-use crate::problem::{Linearisation, Problem};
+use crate::problem::{Problem, Residual};
 use num_complex::Complex64;
 
 /// A solution that was found.
@@ -45,14 +46,14 @@ enum Factors {
     None,
     /// Those of the matrix of an earlier iteration.
     Earlier,
-    /// Those of the matrix at hand.
+    /// Those of the current matrix.
     Own,
 }
 
 /// Newton's method with its memory.
 pub struct Corrector {
-    at: Linearisation,
-    lu: Bordered,
+    at: Residual,
+    system: Box<dyn LinearSystem>,
     factors: Factors,
     step: Vec<f64>,
     trial: Vec<f64>,
@@ -84,8 +85,8 @@ impl Corrector {
     /// `OutOfMemory`.
     pub fn new(n: usize, tolerance: f64, max_iterations: usize) -> Result<Self> {
         Ok(Self {
-            at: Linearisation::new(n)?,
-            lu: Bordered::new(n)?,
+            at: Residual::new(n)?,
+            system: Box::new(DenseSystem::new(n)?),
             factors: Factors::None,
             step: try_vec(n + 1, 0.0, "Newton's method")?,
             trial: try_vec(n + 1, 0.0, "Newton's method")?,
@@ -135,14 +136,14 @@ impl Corrector {
             let residual = self.relative_residual();
             // The damping test compares steps by one matrix, that of the iteration.
             let reuse = iteration > 0 && !damped;
-            if !residual.is_finite() || !self.newton_step(metric, row, reuse)? {
+            if !residual.is_finite() || !self.newton_step(problem, metric, row, reuse)? {
                 return Ok(Outcome::Failed);
             }
             let size = norm(&self.step);
             let round_off = self.is_round_off(v, metric);
             let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
             if (residual <= self.tolerance && near) || round_off {
-                let found = self.finish(problem, v, (metric, row), iteration, residual)?;
+                let found = self.finish(problem, v, metric, iteration, residual)?;
                 return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
             }
             if iteration == self.max_iterations || (!damped && size > last_size) {
@@ -183,7 +184,7 @@ impl Corrector {
 
     /// ‖R‖ over the problem's scale; 0 where both vanish.
     fn relative_residual(&self) -> f64 {
-        let r = norm(&self.at.residual);
+        let r = norm(&self.at.values);
         if r == 0.0 { 0.0 } else { r / self.at.scale }
     }
 
@@ -195,42 +196,46 @@ impl Corrector {
             && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p)
     }
 
-    fn factor(&mut self, metric: Metric, row: &[f64]) -> Result<bool> {
-        let matrix = parts(&self.at, metric, row);
-        let found = self
-            .lu
-            .factor(matrix.jacobian, matrix.column, matrix.active, matrix.scales, row);
-        let factored = tolerate(found)?;
+    /// Takes over Newton's matrix at the point evaluated last.
+    fn update(&mut self, problem: &mut dyn Problem, metric: Metric, row: &[f64]) -> Result<()> {
+        let border = Border {
+            column: &self.at.d_parameter,
+            scales: (metric.u, metric.p),
+            row,
+        };
+        self.system.update(problem, border)
+    }
+
+    /// Factors the current matrix; `false` where it is singular.
+    fn factor(&mut self) -> Result<bool> {
+        let factored = tolerate(self.system.factor())?;
         self.factors = if factored { Factors::Own } else { Factors::None };
         Ok(factored)
     }
 
     /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
     /// earlier iteration may be reused where the matrix has hardly changed.
-    fn newton_step(&mut self, metric: Metric, row: &[f64], reuse: bool) -> Result<bool> {
+    fn newton_step(&mut self, problem: &mut dyn Problem, metric: Metric, row: &[f64], reuse: bool) -> Result<bool> {
         let n = self.step.len() - 1;
-        for (s, r) in self.step.iter_mut().zip(&self.at.residual) {
+        for (s, r) in self.step.iter_mut().zip(&self.at.values) {
             *s = -r;
         }
         self.step[n] = 0.0;
         self.factors = if reuse { Factors::Earlier } else { Factors::None };
-        self.solve(metric, row, STEP_ERROR)
+        self.update(problem, metric, row)?;
+        self.solve(problem, STEP_ERROR)
     }
 
-    /// Solves for `step` with the matrix at hand, by factors of an earlier one to the given error; `false` where it
+    /// Solves for `step` with the current matrix, by factors of an earlier one to the given error; `false` where it
     /// is singular.
-    fn solve(&mut self, metric: Metric, row: &[f64], error: f64) -> Result<bool> {
-        if self.factors == Factors::Earlier {
-            let matrix = parts(&self.at, metric, row);
-            if self.lu.refine(&matrix, error, &mut self.step) {
-                return Ok(true);
-            }
+    fn solve(&mut self, problem: &mut dyn Problem, error: f64) -> Result<bool> {
+        if self.factors == Factors::Earlier && self.system.solve_by_earlier_factors(error, &mut self.step) {
+            return Ok(true);
         }
-        if self.factors != Factors::Own && !self.factor(metric, row)? {
+        if self.factors != Factors::Own && !self.factor()? {
             return Ok(false);
         }
-        self.lu.solve(&mut self.step);
-        Ok(true)
+        self.system.solve(problem, &mut self.step)
     }
 
     /// Tries λ = min(1, 4·last), halving; returns the λ that was taken.
@@ -250,12 +255,12 @@ impl Corrector {
             let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
             self.failure = outcome.err().filter(|e| e.recoverable);
             if tolerate(outcome)? {
-                for (s, r) in self.next.iter_mut().zip(&self.at.residual) {
+                for (s, r) in self.next.iter_mut().zip(&self.at.values) {
                     *s = -r;
                 }
                 self.next[n] = 0.0;
-                self.lu.solve(&mut self.next);
-                let shrunk = norm(&self.next) <= (1.0 - 0.25 * damping) * size;
+                let solved = self.system.solve(problem, &mut self.next)?;
+                let shrunk = solved && norm(&self.next) <= (1.0 - 0.25 * damping) * size;
                 if shrunk || self.relative_residual() <= self.tolerance {
                     v.copy_from_slice(&self.trial);
                     return Ok(Some(damping));
@@ -271,9 +276,9 @@ impl Corrector {
     /// to be singular.
     fn finish(
         &mut self,
-        problem: &dyn Problem,
+        problem: &mut dyn Problem,
         v: &mut [f64],
-        (metric, row): (Metric, &[f64]),
+        metric: Metric,
         iterations: usize,
         residual: f64,
     ) -> Result<Option<Corrected>> {
@@ -282,7 +287,7 @@ impl Corrector {
         metric.unscale(&mut tangent);
         let (at_residual, correction) = problem.observe(&v[..n], &tangent);
         metric.add(v, 1.0, &self.step);
-        if !self.tangent(metric, row, &mut tangent)? {
+        if !self.tangent(problem, metric, &mut tangent)? {
             return Ok(None);
         }
         let (_, slope) = problem.observe(&v[..n], &tangent);
@@ -293,16 +298,16 @@ impl Corrector {
             amplitude: at_residual + correction,
             slope,
             tangent,
-            positive: self.lu.is_positive(),
+            positive: self.system.is_positive(),
         }))
     }
 
-    /// Unit tangent of the matrix at hand, in unscaled numbers; `false` where it is singular.
-    fn tangent(&mut self, metric: Metric, row: &[f64], tangent: &mut [f64]) -> Result<bool> {
+    /// Unit tangent of the current matrix, in unscaled numbers; `false` where it is singular.
+    fn tangent(&mut self, problem: &mut dyn Problem, metric: Metric, tangent: &mut [f64]) -> Result<bool> {
         let n = self.step.len() - 1;
         self.step.fill(0.0);
         self.step[n] = 1.0;
-        if !self.solve(metric, row, TANGENT_ERROR)? {
+        if !self.solve(problem, TANGENT_ERROR)? {
             return Ok(false);
         }
         let length = norm(&self.step);
@@ -327,21 +332,14 @@ impl Corrector {
         metric: Metric,
         tangent: &mut [f64],
     ) -> Result<Option<bool>> {
-        if !self.evaluates(problem, v)? || !self.factor(metric, row)? || !self.tangent(metric, row, tangent)? {
+        if !self.evaluates(problem, v)? {
             return Ok(None);
         }
-        Ok(Some(self.lu.is_positive()))
-    }
-}
-
-/// The matrix of a linearisation and a row.
-fn parts<'a>(at: &'a Linearisation, metric: Metric, row: &'a [f64]) -> Parts<'a> {
-    Parts {
-        jacobian: &at.jacobian,
-        column: &at.d_parameter,
-        active: &at.active,
-        scales: (metric.u, metric.p),
-        row,
+        self.update(problem, metric, row)?;
+        if !self.factor()? || !self.tangent(problem, metric, tangent)? {
+            return Ok(None);
+        }
+        Ok(Some(self.system.is_positive()))
     }
 }
 

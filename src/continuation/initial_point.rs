@@ -79,7 +79,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
     let mut v = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut failure = None;
     for kind in [InitialGuess::Given, InitialGuess::Stuck, InitialGuess::Reference] {
-        let exists = attempt(problem.start(kind, p, &mut v[..n]), false, &mut failure)?;
+        let exists = attempt(problem.initial_guess(kind, p, &mut v[..n]), false, &mut failure)?;
         let mut easy = None;
         if kind == InitialGuess::Stuck {
             if !exists {
@@ -156,17 +156,17 @@ fn homotopy(
     corrector: &mut Corrector,
     cancelled: Option<&dyn Fn() -> bool>,
 ) -> Result<Option<First>> {
-    let Some((begin, end)) = problem.begin_homotopy(settings.start, u)? else {
+    let Some(mut homotopy) = problem.homotopy(settings.start, u)? else {
         return Ok(None);
     };
-    let eased = Settings {
-        start: begin,
-        end,
+    let way = Settings {
+        start: homotopy.start,
+        end: homotopy.end,
         steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
-    let reached = follow(problem, &eased, u, corrector, cancelled);
-    problem.end_homotopy();
+    let reached = follow(&mut *homotopy.problem, &way, u, corrector, cancelled);
+    drop(homotopy);
     let Reached::End(v) = reached? else { return Ok(None) };
     at_last(problem, settings, v, Way::Homotopy, corrector, cancelled)
 }
@@ -215,7 +215,7 @@ fn from_anchors(
         ..*settings
     };
     for (kind, factor) in ANCHORS {
-        if !problem.start(kind, p, &mut anchor)? {
+        if !problem.initial_guess(kind, p, &mut anchor)? {
             continue;
         }
         for a in &mut anchor {
@@ -244,7 +244,7 @@ fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64, residual: f64) -> Result
         return Ok(false);
     }
     let mut linear = try_vec(u.len(), 0.0, CONTEXT)?;
-    let known = matches!(problem.start(InitialGuess::Reference, p, &mut linear), Ok(true));
+    let known = matches!(problem.initial_guess(InitialGuess::Reference, p, &mut linear), Ok(true));
     let (far, scale) = (norm(u), norm(&linear));
     Ok(known && scale > 0.0 && (far > FAR * scale || residual * far > UNBALANCED * scale))
 }

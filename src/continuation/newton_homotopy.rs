@@ -1,4 +1,4 @@
-//! The homotopy that a start falls back on: λ R(u) + (1 − λ)(u − a) = 0 at a fixed parameter of R, from
+//! Newton homotopy, on which the search for a first point falls back: λ R(u) + (1 − λ)(u − a) = 0 at a fixed parameter of R, from
 //! u = a at λ = 0 to R(u) = 0 at λ = 1.
 //!
 //! At λ = 0 there is one solution, and it is regular; for almost every anchor a the path from it ends at
@@ -13,7 +13,8 @@
 //! arc-length continuation like those of any branch.
 
 use crate::error::{Result, try_copy};
-use crate::problem::{InitialGuess, Linearisation, Problem};
+use crate::linalg::linear_system::Jacobian;
+use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 
 /// A problem at a fixed parameter, tied to an anchor; its parameter is λ.
@@ -21,6 +22,8 @@ pub struct NewtonHomotopy<'a> {
     problem: &'a mut dyn Problem,
     parameter: f64,
     anchor: Vec<f64>,
+    /// λ of the point last evaluated.
+    share: f64,
 }
 
 impl<'a> NewtonHomotopy<'a> {
@@ -32,49 +35,55 @@ impl<'a> NewtonHomotopy<'a> {
         Ok(Self {
             problem,
             parameter,
-            anchor: try_copy(anchor, "the start")?,
+            anchor: try_copy(anchor, "the first point")?,
+            share: 0.0,
         })
     }
 }
 
-impl Problem for NewtonHomotopy<'_> {
+impl Jacobian for NewtonHomotopy<'_> {
     fn size(&self) -> usize {
         self.problem.size()
     }
 
-    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+        self.problem.fill(matrix, active);
+        let n = active.len();
+        // A column of the identity stays one.
+        for (i, column) in matrix.chunks_exact_mut(n.max(1)).enumerate() {
+            if active[i] {
+                for j in &mut *column {
+                    *j *= self.share;
+                }
+                column[i] += 1.0 - self.share;
+            }
+        }
+    }
+}
+
+impl Problem for NewtonHomotopy<'_> {
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
         self.problem.evaluate(u, self.parameter, out)?;
-        let n = u.len();
-        let slopes = out.residual.iter_mut().zip(&mut out.d_parameter);
+        self.share = p;
+        let slopes = out.values.iter_mut().zip(&mut out.d_parameter);
         for ((r, d), (u, a)) in slopes.zip(u.iter().zip(&self.anchor)) {
             let free = u - a;
             *d = *r - free;
             *r = p * *r + (1.0 - p) * free;
         }
-        // A column of the identity stays one.
-        for (i, column) in out.jacobian.chunks_exact_mut(n.max(1)).enumerate() {
-            if out.active[i] {
-                for j in &mut *column {
-                    *j *= p;
-                }
-                column[i] += 1.0 - p;
-            }
-        }
         Ok(())
     }
 
-    /// Nothing: the way matters only for its end.
+    /// Zero: the way matters only for its end.
     fn observe(&self, _u: &[f64], _direction: &[f64]) -> (Complex64, Complex64) {
         (Complex64::ZERO, Complex64::ZERO)
     }
 
-    fn start(&mut self, _kind: InitialGuess, _p: f64, _u: &mut [f64]) -> Result<bool> {
+    fn initial_guess(&mut self, _kind: InitialGuess, _p: f64, _u: &mut [f64]) -> Result<bool> {
         Ok(false)
     }
 
-    fn begin_homotopy(&mut self, _p: f64, _u: &[f64]) -> Result<Option<(f64, f64)>> {
+    fn homotopy(&mut self, _p: f64, _u: &[f64]) -> Result<Option<Homotopy<'_>>> {
         Ok(None)
     }
-
-    fn end_homotopy(&mut self) {}
 }

@@ -2,10 +2,11 @@
 
 use crate::error::{Result, try_copy, try_vec};
 use crate::error_estimate::estimate::{CONTEXT, SHARE};
-use crate::error_estimate::extended_system::System;
+use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::linalg::norm;
+use crate::problem::Problem;
 
-/// Most Newton steps of a lift.
+/// Most Newton steps.
 const MOST_STEPS: usize = 24;
 
 /// Relative size of a first step that is as good as the last one where the extended harmonics are weak.
@@ -14,8 +15,8 @@ const SHORT: f64 = 0.1;
 /// Damping factor below which a step is taken as it is.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
-/// Where a lift ended.
-pub(super) struct ExtendedSystem {
+/// The end of the damped Newton method.
+pub(super) struct ExtendedSolution {
     /// Z, at which the problem was evaluated last.
     pub at: Vec<f64>,
     /// δ, the simplified Newton step from there.
@@ -28,7 +29,7 @@ pub(super) struct ExtendedSystem {
     pub missing: f64,
 }
 
-impl ExtendedSystem {
+impl ExtendedSolution {
     /// Z* = Z + δ
     pub fn corrected(&self) -> Result<Vec<f64>> {
         sum(&self.at, &self.next)
@@ -51,12 +52,12 @@ fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
 ///
 /// # Errors
 /// What the system reports, but for singular matrices and what another motion may not meet.
-pub(super) fn extend(
-    system: &mut dyn System,
+pub(super) fn extend<P: Problem>(
+    system: &mut ExtendedSystem<P>,
     start: &[f64],
     enough: impl Fn(&[f64], &[f64]) -> bool,
     weak: bool,
-) -> Result<Option<ExtendedSystem>> {
+) -> Result<Option<ExtendedSolution>> {
     let n = start.len();
     let mut z = try_copy(start, CONTEXT)?;
     let mut step = try_vec(n, 0.0, CONTEXT)?;
@@ -70,7 +71,7 @@ pub(super) fn extend(
         }
         let size = norm(&step);
         if weak && steps == 1 && size <= SHORT * norm(start) {
-            return Ok(Some(ExtendedSystem {
+            return Ok(Some(ExtendedSolution {
                 at: z,
                 next: step,
                 certified: true,
@@ -105,7 +106,7 @@ pub(super) fn extend(
         }
         let certified = enough(&change, &next);
         if certified || steps == MOST_STEPS {
-            return Ok(Some(ExtendedSystem {
+            return Ok(Some(ExtendedSolution {
                 at: z,
                 next,
                 certified,

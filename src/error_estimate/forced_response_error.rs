@@ -7,7 +7,7 @@ use crate::error_estimate::estimate::{
     CONTEXT, MOST_EXTENDED, MOST_UNKNOWNS, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
 };
 use crate::error_estimate::extended_newton::extend;
-use crate::error_estimate::extended_system::{Core, System};
+use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::{Corrected, Estimate, ExtendedModels, Solved};
 use crate::fourier::HarmonicSet;
 use crate::linalg::norm;
@@ -25,7 +25,7 @@ pub struct ForcedEstimator<'a> {
     cutoff: Option<CutoffHarmonic>,
     extended_models: &'a ExtendedModels,
     /// The problem extended last, with its slot on the shelf.
-    extended: Option<(usize, Core<'a>)>,
+    extended: Option<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -100,19 +100,16 @@ impl<'a> ForcedEstimator<'a> {
         let set = condensed.set();
         let core = set.numbers().partition_point(|&h| h <= extent.core);
         let mut system = match self.extended.take() {
-            Some((kept, system)) if kept == slot => system,
+            Some((kept, mut system)) if kept == slot => {
+                system.go_to(omega, core)?;
+                system
+            }
             _ => {
                 let samples = extended_options(&self.options, set.numbers().last().copied().unwrap_or(0)).samples;
-                Core::new(HarmonicBalance::new(
-                    condensed,
-                    self.response,
-                    (omega, omega),
-                    samples,
-                    None,
-                )?)?
+                let problem = HarmonicBalance::new(condensed, self.response, (omega, omega), samples, None)?;
+                ExtendedSystem::iterative(problem, omega, core)?
             }
         };
-        system.aim(omega, core)?;
         let found = on(&mut system, condensed, solved, extent, self.options.tol_residual);
         self.extended = Some((slot, system));
         found
@@ -120,7 +117,7 @@ impl<'a> ForcedEstimator<'a> {
 }
 
 fn on(
-    system: &mut Core<'_>,
+    system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     condensed: &Condensed,
     solved: &Solved<'_>,
     extent: Extent,
@@ -131,12 +128,12 @@ fn on(
         // Constant forces alone: nothing vibrates.
         return solved.exact(0.0).map(Some);
     }
-    let n = system.problem.size();
+    let n = system.problem.unknowns();
     let start = solved.extended(condensed, n, 1.0)?;
     if !system.evaluate(&start)? {
         return Ok(None);
     }
-    let residual = (&system.at.residual[..], system.at.scale);
+    let residual = (&system.at.values[..], system.at.scale);
     if misses_nothing(residual, set, solved.condensed.set(), tolerance) {
         return solved.exact(0.0).map(Some);
     }

@@ -7,13 +7,13 @@ use crate::error_estimate::estimate::{
     CONTEXT, MOST_UNKNOWNS, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
 };
 use crate::error_estimate::extended_newton::extend;
-use crate::error_estimate::extended_system::{System, Whole};
+use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::forced_response_error::{misses_nothing, relative};
 use crate::error_estimate::{Corrected, Estimate, Solved};
+use crate::linalg::linear_system::Jacobian;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
-use crate::problem::Problem;
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 
 /// How many more harmonics than needed a extended model may have to be used again.
@@ -117,16 +117,16 @@ impl<'a> ModeEstimator<'a> {
         let set = condensed.set();
         let highest = set.numbers().last().copied().unwrap_or(0);
         let samples = extended_options(&self.options, highest).samples;
-        let mut problem = Epmc::new(condensed, self.gauge, self.linear, samples)?;
+        let problem = Epmc::new(condensed, self.gauge, self.linear, samples)?;
         let n = problem.size();
-        let mut system = Whole::new(&mut problem, p)?;
+        let mut system = ExtendedSystem::dense(problem, p)?;
         let a = 10f64.powf(p);
         let mut start = solved.extended(condensed, n, 1.0 / a)?;
         Epmc::set_frequency_and_damping(self.linear, (solved.omega, damping), &mut start);
         if !system.evaluate(&start)? {
             return Ok(None);
         }
-        let residual = (&system.at.residual[..n - 2], system.at.scale);
+        let residual = (&system.at.values[..n - 2], system.at.scale);
         if misses_nothing(residual, set, solved.condensed.set(), self.options.tol_residual) {
             return solved.exact(damping).map(Some);
         }

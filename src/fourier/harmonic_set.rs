@@ -1,10 +1,9 @@
-//! Which harmonics are carried, how their coefficients are packed, and the one statement of the
-//! sign convention.
+//! The carried harmonics, the packing of their coefficients, and the sign convention.
 //!
-//! A real periodic signal is x(t) = Re Σₕ Xₕ e^{ihωt}. Its packed form is real: the mean X₀ where
-//! it is carried, then (Re Xₕ, Im Xₕ) for each carried h > 0 in ascending order. With the base g of
-//! the set (the common divisor of the carried harmonics) the signal has the period 2π/(gω); the
-//! reduced time τ = gωt and the reduced numbers p = h/g describe it over one turn.
+//! A real periodic signal is x(t) = Re Σₕ Xₕ e^{ihωt}. Its packed form is real: the mean X₀ if it is carried, then
+//! (Re Xₕ, Im Xₕ) for each carried h > 0 in ascending order. With the base g of the set (the common divisor of the
+//! carried harmonics) the signal has the period 2π/(gω); the reduced time τ = gωt and the reduced numbers p = h/g
+//! describe it over one turn.
 
 use crate::error::{Result, fail, try_copy, try_push};
 use num_complex::Complex64;
@@ -18,12 +17,11 @@ pub struct HarmonicSet {
 }
 
 impl HarmonicSet {
-    /// The harmonics that a forcing in `forced` can excite, none above `highest`.
+    /// The harmonics that a force in the harmonics `forced` can excite, none above `highest`.
     ///
-    /// Linear structures answer in the forced harmonics alone. A nonlinear law spreads the motion
-    /// over the multiples of their greatest common divisor g, and over its odd multiples only
-    /// where law and forcing are odd (f(−x) = −f(x), so x(t + π/(gω)) = −x(t) is a solution).
-    /// `keep_all` carries 0 … `highest` in any case.
+    /// Linear structures respond in the forced harmonics only. A nonlinear law spreads the motion over the
+    /// multiples of their greatest common divisor g, and over its odd multiples only where law and forcing are odd
+    /// (f(−x) = −f(x), so x(t + π/(gω)) = −x(t) is a solution). `keep_all` carries 0 … `highest` in any case.
     ///
     /// # Errors
     /// `Argument` when a forced harmonic lies above `highest`; `OutOfMemory`.
@@ -65,7 +63,7 @@ impl HarmonicSet {
         Self::excited(&[], highest, true, false, true)
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy, allocated fallibly.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -82,7 +80,7 @@ impl HarmonicSet {
         &self.numbers
     }
 
-    /// Position of the fundamental, harmonic 1, among the carried ones; 0 where it is not carried.
+    /// Position of the fundamental, harmonic 1, among the carried harmonics; 0 if it is not carried.
     #[must_use]
     pub fn fundamental(&self) -> usize {
         self.numbers.iter().position(|&h| h == 1).unwrap_or(0)
@@ -94,7 +92,7 @@ impl HarmonicSet {
         self.base
     }
 
-    /// Distance of neighbouring reduced numbers: 2 where only odd multiples are carried, else 1.
+    /// Distance between neighbouring reduced numbers: 2 if only odd multiples are carried, else 1.
     #[must_use]
     pub fn stride(&self) -> usize {
         self.stride
@@ -112,7 +110,7 @@ impl HarmonicSet {
         self.stride == 2
     }
 
-    /// Carried harmonics above zero.
+    /// Number of carried harmonics above zero.
     #[must_use]
     pub fn oscillating(&self) -> usize {
         self.numbers.len() - usize::from(self.has_mean())
@@ -169,8 +167,8 @@ impl HarmonicSet {
         }
     }
 
-    /// Copies packed signals of the harmonics `from`, times a factor; harmonics that only one of both has are
-    /// zero, or left out.
+    /// Copies packed signals of the harmonics `from`, times a factor. Harmonics that `from` lacks become zero;
+    /// those that this set lacks are dropped.
     pub fn transfer(&self, from: &Self, signals: &[f64], factor: f64, into: &mut [f64]) {
         into.fill(0.0);
         let (m, m2) = (from.packed_len().max(1), self.packed_len().max(1));
@@ -183,7 +181,7 @@ impl HarmonicSet {
         }
     }
 
-    /// A bound of the velocity of a packed signal at an angular frequency.
+    /// Upper bound of the velocity of a packed signal at an angular frequency.
     #[must_use]
     pub fn speed(&self, packed: &[f64], omega: f64) -> f64 {
         let at = |i: usize| self.numbers[i] as f64 * self.get(packed, i).norm();
@@ -225,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_forcing_and_law_excite_is_carried() {
+    fn only_harmonics_that_force_and_law_excite_are_carried() {
         assert_eq!(numbers(&[1], 7, true), [1, 3, 5, 7]);
         assert_eq!(numbers(&[1], 4, false), [0, 1, 2, 3, 4]);
         assert_eq!(numbers(&[3], 15, true), [3, 9, 15]);

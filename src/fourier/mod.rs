@@ -3,6 +3,8 @@
 mod harmonic_set;
 mod series;
 pub mod transform;
+mod turning_points;
 
 pub use harmonic_set::{HarmonicSet, gcd};
-pub use series::{Extremum, Jet, TurningPoints, crossing, jet};
+pub use series::{Jet, crossing, jet};
+pub use turning_points::{Extremum, TurningPoints};

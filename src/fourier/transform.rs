@@ -1,7 +1,7 @@
 //! Real Fourier series at equidistant samples and back, by a table of sines or by a fast transform.
 //!
-//! The n-th harmonic of samples sⱼ is (1/N)·Σ sⱼ e^{−inτⱼ}, τⱼ = 2πj/N. Where the second half of the
-//! turn repeats the first with or without opposite sign, only the first is held.
+//! The n-th harmonic of samples sⱼ is (1/N)·Σ sⱼ e^{−inτⱼ}, τⱼ = 2πj/N. Where the second half of the turn repeats
+//! the first, with equal or opposite sign, only the first is stored.
 
 use crate::error::{Result, check_memory, try_vec};
 use crate::fourier::HarmonicSet;
@@ -13,7 +13,7 @@ use std::sync::Arc;
 /// Products (samples times harmonics) up to which a table is quicker than a transform, as measured.
 const TABLE_LIMIT: usize = 1 << 12;
 
-/// What the second half of a turn is to the first, where only the first is held.
+/// Relation of the second half of a turn to the first, where only the first is stored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Half {
     /// It has opposite sign: odd harmonics.
@@ -22,7 +22,7 @@ pub(crate) enum Half {
     Repeats,
 }
 
-/// Where the samples of one signal lie among others: at `first + j·step`.
+/// Positions of the samples of one signal among those of others: `first + j·step`.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Lane {
     pub(crate) first: usize,
@@ -39,7 +39,7 @@ impl Lane {
 pub(crate) struct Transform {
     /// Samples of a turn.
     turn: usize,
-    /// Samples that are held: all, or the first half.
+    /// Stored samples: all, or the first half.
     held: usize,
     kind: Kind,
 }
@@ -57,17 +57,17 @@ enum Kind {
 }
 
 impl Transform {
-    /// Memory for at least `wanted` samples per turn, of which only the first half is held if `half`.
-    /// A fast transform takes the next number that is made of small factors.
+    /// Memory for at least `requested` samples per turn, of which only the first half is stored if `half`. A fast
+    /// transform takes the next number with small factors.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub(crate) fn new(set: &HarmonicSet, wanted: usize, half: bool) -> Result<Self> {
-        // Memory for a number of samples beyond all reason is refused before anything is done with it.
-        check_memory::<Complex64>(wanted.saturating_mul(8), "samples")?;
+    pub(crate) fn new(set: &HarmonicSet, requested: usize, half: bool) -> Result<Self> {
+        // Memory for an excessive number of samples is refused before any arithmetic with it.
+        check_memory::<Complex64>(requested.saturating_mul(8), "samples")?;
         // Half a turn is a whole number of samples.
-        let turn = if half { wanted.next_multiple_of(2) } else { wanted };
-        // Of half a turn only every other harmonic is asked for.
+        let turn = if half { requested.next_multiple_of(2) } else { requested };
+        // Half a turn determines every other harmonic only.
         let part = if half { 4 } else { 1 };
         let products = turn.saturating_mul(2 * set.highest_reduced() + 1) / part;
         if products <= TABLE_LIMIT {
@@ -84,7 +84,7 @@ impl Transform {
         for (n, pair) in rows.chunks_exact_mut(2 * held).enumerate() {
             let (cosines, sines) = pair.split_at_mut(held);
             for (j, (c, s)) in cosines.iter_mut().zip(sines).enumerate() {
-                // The angle reduced exactly: n·j modulo the samples of a turn.
+                // The angle is reduced exactly: n·j modulo the samples of a turn.
                 (*s, *c) = (TAU * ((n * j) % turn) as f64 / turn as f64).sin_cos();
             }
         }
@@ -96,9 +96,9 @@ impl Transform {
         })
     }
 
-    /// `turn` is even where half of it is held.
+    /// Fast transform over `turn` samples; `turn` is even where half of it is stored.
     fn fast(turn: usize, half: bool) -> Result<Self> {
-        // The planner asks for memory by itself, for a few arrays of the length.
+        // The planner allocates a few arrays of this length itself.
         check_memory::<Complex64>(turn.saturating_mul(8), "a transform")?;
         let mut planner = FftPlanner::new();
         let inverse = planner.plan_fft_inverse(turn);
@@ -116,7 +116,7 @@ impl Transform {
         })
     }
 
-    /// Samples that are held.
+    /// Number of stored samples.
     pub(crate) fn held(&self) -> usize {
         self.held
     }
@@ -159,9 +159,8 @@ impl Transform {
         }
     }
 
-    /// Writes the harmonics n = 0, 1, … of a real signal, as many as `harmonics` holds, at most
-    /// 2·highest + 1. Where half a turn is held, `half` says which of them there are; the others are
-    /// 0.
+    /// Writes the harmonics n = 0, 1, … of a real signal, as many as `harmonics` holds, at most 2·highest + 1.
+    /// Where half a turn is stored, `half` selects the harmonics that exist; the others are 0.
     pub(crate) fn analyse(&mut self, values: &[f64], lane: Lane, half: Half, harmonics: &mut [Complex64]) {
         let folded = self.held < self.turn;
         let first = usize::from(folded && half == Half::Opposite);
@@ -206,7 +205,7 @@ impl Transform {
     }
 }
 
-/// The next even number from `n` on without prime factors above 5.
+/// The smallest even number from `n` on without prime factors above 5.
 fn smooth_number(n: usize) -> usize {
     let smooth = |mut rest: usize| {
         for factor in [2, 3, 5] {
@@ -220,7 +219,7 @@ fn smooth_number(n: usize) -> usize {
     (n.max(2)..power).find(|&n| n % 2 == 0 && smooth(n)).unwrap_or(power)
 }
 
-/// Σ aⱼ bⱼ in eight sums, which the processor adds at once.
+/// Σ aⱼ bⱼ in eight partial sums, which the processor adds in parallel.
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let mut sums = [0.0; 8];
     let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
@@ -258,7 +257,7 @@ mod tests {
                     set
                 };
                 let highest = set.highest_reduced();
-                // Also with so few samples that harmonics are mistaken for others.
+                // Also with so few samples that aliasing occurs.
                 for turn in [2 * highest + 2, 4 * highest + 2, 6 * highest + 8, 128] {
                     for half in [false, set.is_odd()] {
                         let mut ways = [

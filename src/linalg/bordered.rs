@@ -1,15 +1,29 @@
 //! The bordered system [J r; tᵀ] of arc-length continuation: one factorisation serves the Newton
 //! step and the next tangent.
 //!
-//! Unknowns whose column of J is that of the identity (contacts that stick, seen from the stuck
-//! structure) are eliminated first: x_t = b_t − J_ta x_a − r_t x_p. What remains couples the others
-//! and the parameter.
+//! Unknowns whose column of J is that of the identity (contacts that stick, seen from the stuck structure) are
+//! eliminated first: x_t = b_t − J_ta x_a − r_t x_p. The remaining system couples the other unknowns and the
+//! parameter.
 
 mod factor_reuse;
 
 use crate::error::{Result, try_vec};
-pub use crate::linalg::bordered::factor_reuse::Parts;
 use crate::linalg::lu::Lu;
+
+/// The parts of the matrix [J·u, r·p; row].
+#[derive(Clone, Copy)]
+pub struct Parts<'a> {
+    /// J, column-major.
+    pub jacobian: &'a [f64],
+    /// r
+    pub column: &'a [f64],
+    /// For each unknown: its column of J differs from that of the identity.
+    pub active: &'a [bool],
+    /// Scales of the unknowns and of the parameter: u and p.
+    pub scales: (f64, f64),
+    /// The row.
+    pub row: &'a [f64],
+}
 
 /// LU factors of the (n + 1) × (n + 1) matrix [J r; tᵀ].
 pub struct Bordered {
@@ -24,7 +38,7 @@ pub struct Bordered {
     border: Vec<f64>,
     u_scale: f64,
     reduced: Vec<f64>,
-    /// Right side, change and scaled unknowns of a refinement.
+    /// Right-hand side, change and scaled unknowns of a refinement.
     known: Vec<f64>,
     change: Vec<f64>,
     scaled: Vec<f64>,
@@ -56,8 +70,8 @@ impl Bordered {
         Ok(bordered)
     }
 
-    /// Factors [J·u_scale, r·p_scale; row] with J (n × n, column-major) and the column r.
-    /// `is_active` says of each unknown whether its column of J differs from the identity's.
+    /// Factors [J·u_scale, r·p_scale; row] with J (n × n, column-major) and the column r. `is_active` marks the
+    /// unknowns whose column of J differs from that of the identity.
     ///
     /// # Errors
     /// `Singular`.
@@ -106,8 +120,9 @@ impl Bordered {
         self.lu.factor()
     }
 
-    /// Whether the determinant of the factored matrix is positive. With t the solution for
-    /// (0, …, 0, 1) that of [J r; tᵀ] has the same sign.
+    /// Whether the determinant of the factored matrix is positive.
+    ///
+    /// With t the solution for (0, …, 0, 1), the determinant of [J r; tᵀ] has the same sign.
     #[must_use]
     pub fn is_positive(&self) -> bool {
         self.lu.is_positive()

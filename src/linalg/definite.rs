@@ -1,5 +1,5 @@
-//! Whether a large sparse matrix is positive definite. Lanczos iteration would not tell: it meets a
-//! negative direction by chance only.
+//! Test of a large sparse matrix for positive definiteness, by a Cholesky factorisation. Lanczos iteration would
+//! find a negative direction by chance only.
 
 use crate::error::{Error, Result, fail, try_push, try_vec};
 use crate::linalg::sparse::{Csc, Form};
@@ -10,7 +10,7 @@ use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Par, Side};
 use num_complex::Complex64;
 
-/// What is added to the diagonal, relative to it: rounding must not make a singular matrix fail.
+/// Relative addition to the diagonal, so that rounding does not make a singular matrix fail.
 const MARGIN: f64 = 1e-10;
 
 const CONTEXT: &str = "a Cholesky factorisation";
@@ -29,15 +29,16 @@ pub fn check_mass(m: &Csc) -> Result<()> {
         if diagonal < 0.0 || (diagonal == 0.0 && !alone) {
             return negative(j);
         }
-        // A row without mass is taken out by a one of its own.
+        // A row without mass is decoupled by a unit entry on the diagonal.
         let added = if alone { 1.0 } else { MARGIN * diagonal };
         try_push(&mut margin, (j, j, added.into()), CONTEXT)?;
     }
     first_bad_pivot(m, margin)?.map_or(Ok(()), negative)
 }
 
-/// Whether a Hermitian stiffness matrix resists every motion, by a Cholesky factorisation of
-/// K − 1e-10 diag(K).
+/// Whether a Hermitian stiffness matrix resists every motion.
+///
+/// The test is a Cholesky factorisation of K − 1e-10 diag(K).
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -49,7 +50,7 @@ pub fn resists_all_motion(k: &Csc) -> Result<bool> {
     Ok(first_bad_pivot(k, margin)?.is_none())
 }
 
-/// The pivot at which a Cholesky factorisation of a + margin breaks down; `None`: it does not.
+/// Pivot at which a Cholesky factorisation of a + margin breaks down; `None` where it succeeds.
 fn first_bad_pivot(a: &Csc, margin: Vec<(usize, usize, Complex64)>) -> Result<Option<usize>> {
     let n = a.rows;
     let margin = Csc::from_triplets(n, n, margin)?;

@@ -29,7 +29,7 @@ const MASSLESS: f64 = 1e-12;
 /// onto the directions with mass, `NoConvergence` from the eigensolver.
 pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>) -> Result<Pairs> {
     let n = k.nrows();
-    // The common case, M positive definite: L⁻¹ K L⁻ᴴ keeps the sparsest rounding.
+    // The common case, M positive definite: L⁻¹ K L⁻ᴴ has the smallest rounding error.
     if let Some(cholesky) = Cholesky::new(m.clone()) {
         let l = cholesky.l();
         let diagonal = l.diagonal().map(|x| x.re);

@@ -1,5 +1,5 @@
-//! Factors of a complex matrix in sparse storage: densely for small or full matrices, sparsely for
-//! large ones.
+//! Factors of a complex matrix in sparse storage: dense factors for small or full matrices, sparse ones for large
+//! matrices.
 
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::linalg::lu::Lu;
@@ -17,7 +17,7 @@ const DENSE_UP_TO: usize = 200;
 /// Share of stored entries above which a larger matrix is treated as dense.
 const DENSE_FILL: f64 = 0.1;
 
-/// Factors of one matrix after the other, all of one order.
+/// Factors of one matrix at a time, all matrices of the same order.
 pub struct Factor {
     kind: Kind,
 }
@@ -162,7 +162,7 @@ fn describe(e: &LuError, n: usize) -> Error {
     match e {
         LuError::SymbolicSingular { index } => Error::new(
             Status::Singular,
-            format_args!("a linear system of {n} unknowns is singular: nothing stands in row {index}"),
+            format_args!("a linear system of {n} unknowns is singular: row {index} is empty"),
         ),
         LuError::Generic(_) => Error::out_of_memory("a sparse factorisation"),
     }

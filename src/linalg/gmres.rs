@@ -1,13 +1,13 @@
-//! The generalised minimal residual method (Saad & Schultz 1986, doi:10.1137/0907058) for a matrix that is
-//! only known by its products.
+//! The generalised minimal residual method (Saad & Schultz 1986, doi:10.1137/0907058) for a matrix that is known
+//! only by its products with vectors.
 
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::norm;
 
 const CONTEXT: &str = "an iterative linear solution";
 
-/// Solves A x = b with x = 0 as the start, until ‖b − A x‖ ≤ tolerance·‖b‖; `product` fills A v. Returns whether it
-/// came so far within `most` products; b then holds x.
+/// Solves A x = b from x = 0 until ‖b − A x‖ ≤ tolerance·‖b‖; `product` computes A v. Returns `true` if that took
+/// at most `most` products; b then holds x.
 ///
 /// # Errors
 /// `OutOfMemory`, and those of the products.
@@ -37,7 +37,7 @@ pub fn gmres(
         let mut v = try_vec(b.len(), 0.0, CONTEXT)?;
         product(&basis[k], &mut v)?;
         let mut column = try_vec(k + 1, 0.0, CONTEXT)?;
-        // Twice, for the sake of rounding.
+        // Twice, because of rounding.
         for _ in 0..2 {
             for (h, q) in column.iter_mut().zip(&basis) {
                 let along: f64 = q.iter().zip(&v).map(|(q, v)| q * v).sum();
@@ -101,7 +101,7 @@ mod tests {
     use super::gmres;
 
     #[test]
-    fn solves_a_system_near_the_identity_in_few_products_and_any_in_as_many_as_it_has_unknowns() {
+    fn a_system_near_the_identity_takes_few_products_and_any_system_as_many_as_unknowns() {
         let n = 30;
         for (size, most) in [(0.02, 12), (1.0, n)] {
             let a = |i: usize, j: usize| f64::from(u8::from(i == j)) + size * ((i * 7 + j * 3) as f64 * 0.61).sin();
@@ -127,7 +127,7 @@ mod tests {
     }
 
     #[test]
-    fn tells_when_it_has_not_come_so_far() {
+    fn an_unfinished_solution_is_reported() {
         let mut b = [1.0, 0.0, 0.0, 0.0];
         let turn = |v: &[f64], out: &mut [f64]| {
             for (i, out) in out.iter_mut().enumerate() {

@@ -1,9 +1,9 @@
 //! The lowest eigenpairs of a large sparse pencil K φ = λ M φ by shift-invert Lanczos.
 //!
-//! The operator (K + σM)⁻¹ M is self-adjoint in the M-inner product; its largest eigenvalues
-//! 1/(λ + σ) belong to the lowest λ (Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2).
-//! The basis is kept orthogonal in full. Repeated eigenvalues need a start for each copy: after
-//! convergence the search starts anew, orthogonal to what was found, until nothing larger comes.
+//! The operator (K + σM)⁻¹ M is self-adjoint in the M-inner product; its largest eigenvalues 1/(λ + σ) belong to
+//! the lowest λ (Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2). The basis is kept orthogonal in
+//! full. Repeated eigenvalues need a starting vector for each copy: after convergence the search starts again,
+//! orthogonal to the vectors found, until it finds no larger eigenvalue.
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::eigen::Pairs;
@@ -15,7 +15,7 @@ use num_complex::Complex64;
 /// Relative residual of an eigenvalue of the operator that counts as converged.
 const TOLERANCE: f64 = 1e-13;
 
-/// Share of a vector outside the space of the others that is rounding and no more.
+/// Share of a vector outside the space of the others below which it is rounding only.
 const EXHAUSTED: f64 = 1e-12;
 
 /// Lanczos steps per search, besides twice the number of eigenvalues.
@@ -24,8 +24,8 @@ const EXTRA_STEPS: usize = 120;
 /// The `count` lowest eigenpairs of Hermitian K and positive semidefinite M, mass-normalised.
 ///
 /// # Errors
-/// `Singular` when K + σM is, `NotPositiveDefinite` when M is negative somewhere,
-/// `NoConvergence`, `OutOfMemory`.
+/// `Singular` when K + σM is singular, `NotPositiveDefinite` when M is negative in some direction, `NoConvergence`,
+/// `OutOfMemory`.
 pub fn lowest(k: &Csc, m: &Csc, count: usize) -> Result<Pairs> {
     let n = k.rows;
     let diagonal = |a: &Csc| (0..n).map(|i| a.get(i, i).re).sum::<f64>();
@@ -33,8 +33,8 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize) -> Result<Pairs> {
     if heavy <= 0.0 {
         return fail!(NotPositiveDefinite, "mass matrix is zero: there is no vibration mode");
     }
-    // A shift far below the typical stiffness per mass: rigid bodies become regular, and the
-    // lowest eigenvalues stay well apart from the rest.
+    // A shift far below the typical stiffness per mass makes K + σM regular for rigid bodies and leaves the lowest
+    // eigenvalues well separated from the rest.
     let shift = 1e-7 * stiff / heavy;
     let shifted = Csc::sum(n, &[(Complex64::ONE, k, Form::Plain), (shift.into(), m, Form::Plain)])?;
     let mut search = Search {
@@ -46,7 +46,7 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize) -> Result<Pairs> {
     for round in 0..=count {
         let before = search.smallest(count);
         let new = search.run(count, round)?;
-        // Done when the last search brought nothing that belongs among the lowest.
+        // The search ends when the last run found nothing that belongs among the lowest.
         if search.found.len() >= count && new <= before * (1.0 + 1e-9) {
             break;
         }
@@ -78,8 +78,8 @@ impl Search<'_> {
         values.get(count - 1).copied().unwrap_or(0.0)
     }
 
-    /// One Lanczos run orthogonal to what was found; keeps its converged pairs and returns the
-    /// largest new eigenvalue.
+    /// One Lanczos run orthogonal to the vectors found; it stores its converged pairs and returns the largest new
+    /// eigenvalue.
     fn run(&mut self, count: usize, round: usize) -> Result<f64> {
         let n = self.mass.rows;
         let steps = (2 * count + EXTRA_STEPS).min(n - self.found.len());
@@ -90,7 +90,7 @@ impl Search<'_> {
         let mut weighted: Vec<Vec<Complex64>> = Vec::new();
         let (mut alpha, mut beta) = (Vec::new(), Vec::new());
         let mut v = start(n, round)?;
-        // One application puts the start into the range of the operator, free of massless motion.
+        // One application moves the starting vector into the range of the operator, free of massless motion.
         self.apply(&mut v)?;
         for _ in 0..steps {
             let before = dot(&v, &self.times_mass(&v)?).re.max(0.0).sqrt();
@@ -101,7 +101,7 @@ impl Search<'_> {
                 return fail!(NotPositiveDefinite, "mass matrix is not positive semidefinite");
             }
             let norm = square.max(0.0).sqrt();
-            // Few masses have few modes: what is left of the vector is rounding then.
+            // A structure with few masses has few modes: the remaining vector is rounding then.
             if norm <= EXHAUSTED * before || norm <= 1e-14 * beta.first().copied().unwrap_or(0.0) {
                 break;
             }
@@ -190,7 +190,7 @@ impl Search<'_> {
         }
         let mut largest = 0.0_f64;
         for (mu, bound, s) in self.ritz(alpha, beta, v, basis, weighted)?.into_iter().take(count) {
-            // The error of the eigenvalue is the square of the bound; vectors need it small too.
+            // The error of the eigenvalue is the square of the bound; vectors need a small bound too.
             if mu <= 0.0 || bound > 1e-8 * mu {
                 break;
             }
@@ -226,7 +226,7 @@ impl Search<'_> {
         Ok(mv)
     }
 
-    /// Removes from v, twice, its parts along the basis and along what was found.
+    /// Removes from v, twice, its components along the basis and along the vectors found.
     fn orthogonalise(&self, v: &mut [Complex64], basis: &[Vec<Complex64>], weighted: &[Vec<Complex64>]) {
         for _ in 0..2 {
             for (q, mq) in basis.iter().zip(weighted) {
@@ -250,7 +250,7 @@ fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
     }
 }
 
-/// A start without structure, the same on every run.
+/// A starting vector without structure, the same on every run.
 fn start(n: usize, round: usize) -> Result<Vec<Complex64>> {
     let mut v = try_vec(n, Complex64::ZERO, "the eigenvectors")?;
     let mut state = 0x9e37_79b9_7f4a_7c15_u64 ^ (round as u64 + 1);

@@ -1,8 +1,8 @@
-//! Linear systems that may be singular: Householder's factors with column pivoting.
+//! Linear systems that may be singular, by Householder factorisation with column pivoting.
 //!
-//! A P = Q R with the diagonal of R falling tells the rank (Businger & Golub 1965,
-//! doi:10.1007/BF01436084). Of all solutions the shortest is taken: unlike elimination it does not move
-//! along what the equations leave open.
+//! A P = Q R with a decreasing diagonal of R shows the rank (Businger & Golub 1965, doi:10.1007/BF01436084). The
+//! solution of minimum norm is chosen: unlike that of elimination, it has no component along directions that the
+//! equations leave undetermined.
 
 use crate::error::{Result, try_vec};
 
@@ -11,7 +11,7 @@ pub struct LeastSquares {
     n: usize,
     a: Vec<f64>,
     order: Vec<usize>,
-    /// Squared lengths of what is left of the columns.
+    /// Squared lengths of the remaining parts of the columns.
     lengths: Vec<f64>,
     solution: Vec<f64>,
 }
@@ -32,13 +32,13 @@ impl LeastSquares {
         })
     }
 
-    /// The matrix, column-major, to be filled before [`Self::solve`], which uses it up.
+    /// The matrix, column-major, to be filled before [`Self::solve`], which overwrites it.
     pub fn matrix(&mut self) -> &mut [f64] {
         &mut self.a
     }
 
-    /// Solves A x ≈ b in place and returns the rank that was found: directions of A that are shorter than
-    /// `threshold` times the longest count as none.
+    /// Solves A x ≈ b in place and returns the numerical rank: directions of A that are shorter than `threshold`
+    /// times the longest do not count.
     pub fn solve(&mut self, b: &mut [f64], threshold: f64) -> usize {
         let n = self.n;
         let a = &mut self.a;
@@ -48,7 +48,7 @@ impl LeastSquares {
             *p = j;
         }
         for k in 0..n {
-            // Anew at each step: updated lengths would drown in rounding where the rank shows.
+            // Computed again at each step: updated lengths would be dominated by rounding where the rank shows.
             for (length, column) in self.lengths.iter_mut().zip(a.chunks_exact(n)).skip(k) {
                 *length = column[k..].iter().map(|x| x * x).sum();
             }
@@ -88,7 +88,7 @@ impl LeastSquares {
         let (r, open) = a.split_at_mut(rank * n);
         back(r, n, rank, b);
         b[rank..].fill(0.0);
-        // Columns (−R₁⁻¹R₂, 1) span what is open; made orthonormal, they take their part of b away.
+        // Columns (−R₁⁻¹R₂, 1) span the null space; they are made orthonormal, and their component of b is removed.
         for k in 0..n - rank {
             let (before, this) = open.split_at_mut(k * n);
             let this = &mut this[..n];
@@ -123,7 +123,7 @@ fn back(r: &[f64], n: usize, rank: usize, b: &mut [f64]) {
     }
 }
 
-/// Takes the part of b along a unit vector away.
+/// Removes the component of b along a unit vector.
 fn remove(unit: &[f64], b: &mut [f64]) {
     let share: f64 = unit.iter().zip(b.iter()).map(|(u, b)| u * b).sum();
     for (b, u) in b.iter_mut().zip(unit) {
@@ -136,7 +136,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn regular_systems_are_solved_and_open_directions_left_alone() {
+    fn regular_systems_are_solved_and_undetermined_directions_stay_zero() {
         let n = 6;
         let a: Vec<f64> = (0..n * n).map(|k| ((k * k + 5 * k + 1) as f64 * 0.61).sin()).collect();
         let x: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5).cos()).collect();
@@ -149,7 +149,7 @@ mod tests {
         for (b, x) in b.iter().zip(&x) {
             assert!((b - x).abs() < 1e-12);
         }
-        // A column that is the sum of two others: one direction less, the equations still hold.
+        // A column that is the sum of two others: the rank falls by one, and the equations still hold.
         let mut singular = a.clone();
         for i in 0..n {
             singular[4 * n + i] = singular[n + i] + singular[2 * n + i];
@@ -158,7 +158,7 @@ mod tests {
         system.matrix().copy_from_slice(&singular);
         let mut found = right.clone();
         assert_eq!(system.solve(&mut found, 1e-12), n - 1);
-        // Across what is open, e₁ + e₂ − e₄.
+        // Orthogonal to the null space e₁ + e₂ − e₄.
         assert!((found[1] + found[2] - found[4]).abs() < 1e-12);
         for (a, b) in times(&singular, &found).iter().zip(&right) {
             assert!((a - b).abs() < 1e-12);

@@ -1,7 +1,7 @@
 //! LU factorisation with partial pivoting, in place and without allocation, real or complex.
 //!
-//! Small matrices use plain loops, which the compiler vectorises and which need no set-up; larger
-//! ones faer's blocked kernels.
+//! Small matrices use plain loops, which the compiler vectorises and which need no set-up; larger ones use the
+//! blocked kernels of faer.
 
 use crate::error::{Error, Result, fail, try_vec};
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -11,7 +11,7 @@ use faer::{Conj, MatMut, MatRef, Par};
 use nalgebra::ComplexField;
 use num_complex::Complex64;
 
-/// Scalars that occur: `f64` and [`Complex64`].
+/// Scalars of the matrices: `f64` and [`Complex64`].
 pub trait Scalar: ComplexField<RealField = f64> + faer::traits::ComplexField + Copy {
     /// |re| + |im|: as good as the modulus for choosing a pivot, and cheaper.
     fn size(self) -> f64;
@@ -34,7 +34,7 @@ const BLOCKED_ABOVE: usize = 32;
 
 const CONTEXT: &str = "an LU factorisation";
 
-/// Memory that the blocked kernels want.
+/// Memory for the blocked kernels.
 struct Blocked {
     forward: Vec<usize>,
     backward: Vec<usize>,
@@ -94,7 +94,7 @@ impl<T: Scalar> Lu<T> {
         &mut self.a[..self.n * self.n]
     }
 
-    /// Changes the order of the matrix, up to the one that memory was asked for.
+    /// Changes the order of the matrix, up to the order given to [`Self::new`].
     pub fn set_order(&mut self, n: usize) {
         self.n = n.min(self.pivots.len());
     }
@@ -111,8 +111,8 @@ impl<T: Scalar> Lu<T> {
         for j in 0..n {
             let (left, right) = self.a.split_at_mut(j * n);
             let column = &mut right[..n];
-            // Left-looking: bring column j up to date with the columns already factored, whose
-            // rows carry every interchange so far.
+            // Left-looking: update column j with the columns already factored, whose rows include every interchange
+            // so far.
             for k in 0..j {
                 column.swap(k, self.pivots[k]);
             }
@@ -152,7 +152,7 @@ impl<T: Scalar> Lu<T> {
 
     fn factor_blocked(&mut self) -> Result<()> {
         let n = self.n;
-        // In stretches without a way out, which the compiler vectorises.
+        // In stretches without early exit, which the compiler vectorises.
         let broken = |part: &[T]| part.iter().fold(false, |found, x| found | !x.size().is_finite());
         if self.a[..n * n].chunks(1024).any(broken) {
             return singular(n, 0, f64::NAN);
@@ -174,13 +174,13 @@ impl<T: Scalar> Lu<T> {
                 return singular(n, j, size);
             }
         }
-        // The permutation as interchanges: position k takes row forward[k] from where it has got
-        // to. `backward` is borrowed as the map from rows to positions and restored after.
+        // The permutation as interchanges: position k takes row forward[k] from its current position. `backward`
+        // serves as the map from rows to positions and is restored afterwards.
         let (rows, position) = (&mut self.pivots[..n], &mut blocked.backward[..n]);
         for (k, p) in position.iter_mut().enumerate() {
             *p = k;
         }
-        // rows[k] holds which row stands at k until its interchange is known.
+        // rows[k] holds the row at position k until its interchange is known.
         for (k, r) in rows.iter_mut().enumerate() {
             *r = k;
         }

@@ -1,10 +1,10 @@
-//! The borrowed matrix that callers hand in, and the one home of its checks.
+//! A matrix borrowed from the caller, and its checks.
 
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::linalg::sparse::{Csc, Form};
 use num_complex::Complex64;
 
-/// How the entries lie in memory.
+/// Layout of the entries in memory.
 #[derive(Clone, Copy, Debug)]
 pub enum Storage<'a> {
     /// Dense, column after column, `ld` elements apart (`0`: packed).
@@ -51,7 +51,7 @@ impl Values<'_> {
     }
 }
 
-/// Which part of the matrix is given, and what is promised of it.
+/// The part of the matrix that is given, and its symmetry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// All entries of a symmetric or Hermitian matrix; the symmetry is checked.
@@ -64,7 +64,7 @@ pub enum Part {
     General,
 }
 
-/// A borrowed matrix: copied in, never kept.
+/// A borrowed matrix: its entries are copied, the reference is never kept.
 #[derive(Clone, Copy, Debug)]
 pub struct MatrixView<'a> {
     /// Number of rows.
@@ -81,7 +81,7 @@ pub struct MatrixView<'a> {
     pub index_base: usize,
 }
 
-/// Symmetry gaps up to this share of the largest entry are rounding and are averaged away.
+/// Deviations from symmetry up to this share of the largest entry are rounding and are removed by averaging.
 const SYMMETRY_TOLERANCE: f64 = 1e-10;
 
 impl<'a> MatrixView<'a> {
@@ -114,8 +114,8 @@ impl<'a> MatrixView<'a> {
         self
     }
 
-    /// Checks the view and copies it; `name` ("stiffness") opens every error sentence, `order` is
-    /// the number of rows and columns wanted.
+    /// Checks the view and copies it; `name` ("stiffness") begins every error sentence, `order` is the required
+    /// number of rows and columns.
     ///
     /// # Errors
     /// `Dimension`, `Index`, `NotFinite`, `NotHermitian` or `OutOfMemory`, naming the place.
@@ -207,7 +207,7 @@ impl<'a> MatrixView<'a> {
         for j in 0..self.cols {
             let range = (col_ptr[j] - base) as usize..(col_ptr[j + 1] - base) as usize;
             for (k, &given) in range.clone().zip(&row_idx[range]) {
-                // Wraps for the lowest i64 alone, and then to a row that no matrix has.
+                // This wraps for the lowest i64 only, and then to a row that no matrix has.
                 let row = given.wrapping_sub(base);
                 if row < 0 || row >= self.rows as i64 {
                     return fail!(
@@ -222,7 +222,7 @@ impl<'a> MatrixView<'a> {
         Ok(entries)
     }
 
-    /// Keeps an entry, and its mirror image where one triangle stands for both.
+    /// Stores an entry, and its mirror image where one triangle represents both.
     fn take(
         &self,
         name: &str,

@@ -1,4 +1,4 @@
-//! Algebra without mechanics: matrix input, sparse storage, LU factors, eigenvalues.
+//! Linear algebra: matrix input, sparse storage, factorisations, iterative solution, eigenvalues.
 
 pub mod bordered;
 pub mod definite;
@@ -7,6 +7,7 @@ pub mod factor;
 pub mod gmres;
 pub mod lanczos;
 pub mod least_squares;
+pub mod linear_system;
 pub mod lu;
 pub mod matrix_view;
 pub mod quadratic;
@@ -49,7 +50,7 @@ pub fn power_of_two(x: f64) -> f64 {
 /// Order up to which plain loops multiply as fast as vector instructions chosen at run time.
 const LOOPS_UP_TO: usize = 32;
 
-/// out += factor·A x for a column-major A of as many rows as `out` has numbers.
+/// out += factor·A x for a column-major A with `out.len()` rows.
 pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
     let rows = out.len();
     if rows > LOOPS_UP_TO {

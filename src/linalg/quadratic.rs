@@ -1,10 +1,10 @@
-//! The form xᴴ A x and the product A x, accurate though their terms cancel: for a motion that hardly
-//! strains a stiff structure they are smaller than the rounding of their largest term.
+//! The form xᴴ A x and the product A x, accurate under cancellation: for a motion that hardly strains a stiff
+//! structure they are smaller than the rounding error of their largest term.
 
 use crate::linalg::sparse::Csc;
 use num_complex::Complex64;
 
-/// A sum with its rounding errors kept apart (Ogita, Rump & Oishi 2005, doi:10.1137/030601818).
+/// A sum with its rounding errors accumulated separately (Ogita, Rump & Oishi 2005, doi:10.1137/030601818).
 #[derive(Clone, Copy, Debug, Default)]
 struct Sum {
     value: f64,
@@ -36,8 +36,8 @@ impl Sum {
     }
 }
 
-/// a·b − product exactly, by halves of the factors (Dekker 1971, doi:10.1007/BF01397083). A fused
-/// multiply-add says the same, but is a slow call on processors that are not known to have one.
+/// a·b − product exactly, by halves of the factors (Dekker 1971, doi:10.1007/BF01397083). A fused multiply-add
+/// gives the same, but is a slow call on processors that are not known to have one.
 fn rounding_of(a: f64, b: f64, product: f64) -> f64 {
     let halves = |x: f64| {
         let c = 134_217_729.0 * x;
@@ -77,7 +77,7 @@ pub struct ComplexSum {
 }
 
 impl ComplexSum {
-    /// Adds a·b; an entry `a` without imaginary part, as most have none, costs half.
+    /// Adds a·b; an entry `a` without imaginary part, the usual case, costs half.
     fn add_product(&mut self, a: Complex64, b: Complex64) {
         self.re.add_product(a.re, b.re);
         self.im.add_product(a.re, b.im);
@@ -110,15 +110,15 @@ impl ComplexSum {
     }
 }
 
-/// xᴴ A x of any matrix, given by its values at the entries of a pattern. The imaginary part is
-/// what the skew part leaves: rounding of the squares of the numbers for a Hermitian matrix.
+/// xᴴ A x of any matrix, given by its values at the entries of a pattern. The imaginary part comes from the skew
+/// part of A; for a Hermitian matrix it is rounding of second order.
 #[must_use]
 pub fn form(pattern: &Csc, values: &[Complex64], x: &[Complex64]) -> Complex64 {
     let mut form = ComplexSum::default();
     for (j, &xj) in x.iter().enumerate() {
         let mut column = ComplexSum::default();
         for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
-            // A pattern may hold several matrices, of which the mass is often diagonal.
+            // A pattern may hold several matrices; the mass matrix among them is often diagonal.
             if values[at] != Complex64::ZERO {
                 column.add_product(values[at], x[pattern.row_idx[at]].conj());
             }

@@ -1,4 +1,4 @@
-//! Compressed sparse columns with complex values: the one storage of structural matrices.
+//! Compressed sparse columns with complex values: the storage of all structural matrices.
 
 use crate::error::{Result, try_extend, try_push, try_vec};
 use num_complex::Complex64;
@@ -31,7 +31,7 @@ pub enum Form {
 }
 
 impl Csc {
-    /// From (row, column, value) triplets; duplicates are summed, as finite elements have them.
+    /// From (row, column, value) triplets; duplicates are summed, as in the assembly of finite elements.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -84,7 +84,7 @@ impl Csc {
         Self::from_triplets(n, n, entries)
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy, allocated fallibly.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -120,6 +120,16 @@ impl Csc {
         }
     }
 
+    /// A x; `context` names the purpose of its memory in an error.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn times(&self, x: &[Complex64], context: &str) -> Result<Vec<Complex64>> {
+        let mut y = try_vec(x.len(), Complex64::ZERO, context)?;
+        self.multiply_add(Complex64::ONE, x, &mut y);
+        Ok(y)
+    }
+
     /// Adds c·A to a dense column-major matrix.
     pub fn add_to_dense(&self, c: Complex64, dense: &mut [Complex64]) {
         for j in 0..self.cols {
@@ -129,7 +139,7 @@ impl Csc {
         }
     }
 
-    /// The values of this matrix at the places of `pattern`, which must hold all of its own.
+    /// The values of this matrix at the entries of `pattern`, which must contain all entries of this matrix.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -168,7 +178,7 @@ impl Csc {
             .map_or(Complex64::ZERO, |k| self.values[range.start + k])
     }
 
-    /// The position (row, column) that is worst in A = Aᴴ, with |aᵢⱼ − conj(aⱼᵢ)|.
+    /// The position (row, column) with the largest deviation from A = Aᴴ, and the deviation |aᵢⱼ − conj(aⱼᵢ)|.
     #[must_use]
     pub fn worst_hermitian_pair(&self) -> (usize, usize, f64) {
         let mut worst = (0, 0, 0.0);

@@ -1,9 +1,8 @@
-//! Waves on a cyclic structure. The one home of the sign of a phase.
+//! Waves on a cyclic structure, with the sign convention of their phase.
 //!
-//! In the wave of engine order EO sector s + 1 lags: x_{s+1,h} = e^{−ihφ} x_{s,h}, φ = 2π·EO/N with
-//! the signed EO. Harmonic h therefore lives on nodal diameter h·EO mod N, and sees
-//! A_h = A₀ + A₁ e^{−ihφ} + A₋₁ e^{+ihφ} (Thomas 1979, doi:10.1002/nme.1620140107; Wildheim 1979,
-//! doi:10.1115/1.3424673).
+//! In the wave of engine order EO sector s + 1 lags: x_{s+1,h} = e^{−ihφ} x_{s,h}, φ = 2π·EO/N with the signed EO.
+//! Harmonic h therefore belongs to nodal diameter h·EO mod N, and its matrices are A_h = A₀ + A₁ e^{−ihφ} + A₋₁
+//! e^{+ihφ} (Thomas 1979, doi:10.1002/nme.1620140107; Wildheim 1979, doi:10.1115/1.3424673).
 
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
@@ -18,8 +17,8 @@ impl Structure {
         (i128::from(harmonic) * i128::from(self.engine_order())).rem_euclid(n) as usize
     }
 
-    /// The nodal diameter 0 ..= N/2 of a wave of `waves` waves per turn, and whether it runs
-    /// against the sense in which sector s + 1 lags.
+    /// The nodal diameter 0 ..= N/2 of a wave of `waves` waves per turn; `true` if it travels against the sense in
+    /// which sector s + 1 lags.
     #[must_use]
     pub fn fold(&self, waves: i64) -> (usize, bool) {
         let n = self.sectors();
@@ -37,8 +36,8 @@ impl Structure {
         self.fold(self.residue(harmonic as i64) as i64).0
     }
 
-    /// The lowest harmonic above 0 in which all sectors move alike: n·EO is a multiple of N for its
-    /// multiples alone. 1 for a plain structure.
+    /// The lowest harmonic above 0 in which all sectors move alike: n·EO is a multiple of N only for multiples n of
+    /// it. 1 for a plain structure.
     #[must_use]
     pub fn in_step(&self) -> usize {
         let (mut divisor, mut rest) = (self.sectors(), self.residue(1));
@@ -48,8 +47,7 @@ impl Structure {
         self.sectors() / divisor
     }
 
-    /// e^{−i·offset·hφ}: motion of sector s + offset over that of sector s, exact at the
-    /// quarters of a turn.
+    /// e^{−i·offset·hφ}: motion of sector s + offset over that of sector s, exact at quarter turns.
     #[must_use]
     pub fn phase(&self, harmonic: usize, offset: i64) -> Complex64 {
         self.wave_phase(self.residue(harmonic as i64), offset)
@@ -76,8 +74,8 @@ impl Structure {
         i128::from(offset).rem_euclid(self.sectors() as i128) == 0
     }
 
-    /// The matrix that harmonic `harmonic` of the wave sees; the damping includes Rayleigh's part,
-    /// and the mean sees the real part of complex matrices.
+    /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh damping; the mean has the real
+    /// part of complex matrices.
     ///
     /// # Errors
     /// `Argument` when the nodal diameter of the harmonic was not given; `OutOfMemory`.

@@ -1,9 +1,8 @@
-//! The linear mode, contacts stuck, of a damped structure that artificial damping keeps periodic.
+//! The linear mode, with stuck contacts, of a damped structure that artificial damping keeps periodic.
 //!
-//! Real ω and D and a complex shape x solve
-//! (K + iωC − ω²(1 + 2iD) M) x = 0, or (K − 2iD Kₛ + iωC − ω² M) x = 0 with Kₛ the structure's own
-//! stiffness. One complex equation settles the two real unknowns: inverse iteration on a problem
-//! that is nonlinear in its eigenvalue (Neumaier 1985, doi:10.1137/0722055).
+//! Real ω and D and a complex shape x solve (K + iωC − ω²(1 + 2iD) M) x = 0, or (K − 2iD Kₛ + iωC − ω² M) x = 0
+//! with Kₛ the structure's own stiffness. One complex equation determines the two real unknowns. The method is
+//! inverse iteration on a problem that is nonlinear in its eigenvalue (Neumaier 1985, doi:10.1137/0722055).
 
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::linalg::factor::Factor;
@@ -11,8 +10,8 @@ use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
-use crate::model::mode_selection::{SelectedMode, times};
-use crate::model::spring::Wave;
+use crate::model::mode_selection::SelectedMode;
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use crate::options::DampingForm;
 use num_complex::Complex64;
@@ -22,30 +21,30 @@ use num_complex::Complex64;
 pub struct DampedMode {
     /// Angular frequency ω, rad per time unit.
     pub omega: f64,
-    /// Damping ratio D of the artificial damping: positive where the structure's own takes energy.
+    /// Damping ratio D of the artificial damping: positive where the damping of the structure dissipates energy.
     pub damping: f64,
     /// Shape with xᴴ M x = 1 over one sector, in phase with the undamped one.
     pub shape: Vec<Complex64>,
 }
 
-/// Relative distance of the shift from the frequency. Close by, each step gains so many digits; on
-/// it, the factors would be singular.
+/// Relative distance of the shift from the frequency. Each step gains the digits of this distance; with a shift at
+/// the frequency itself the factors would be singular.
 const OFFSET: f64 = 1e-8;
 
-/// The same for repeated frequencies. A shift too close would mix modes that only rounding tells
-/// apart, and lose the mixture of the start.
+/// The same for repeated frequencies. A closer shift would mix modes that differ by rounding only, and lose the
+/// mixture of the initial mode.
 const OFFSET_REPEATED: f64 = 1e-5;
 
-/// Most steps.
+/// Largest number of steps.
 const MAX_STEPS: usize = 30;
 
-/// Residual relative to its terms that rounding may leave.
+/// Largest residual by rounding, relative to its terms.
 const ROUNDING: f64 = 1e-12;
 
-/// The same, relative to the inertia, for a mixture of frequencies that only nearly are equal.
+/// The same, relative to the inertia, for a mixture of modes whose frequencies are nearly equal.
 const NEARLY_EQUAL: f64 = 3e-8;
 
-/// Strain energy of the structure itself, relative to that of the mode, that is rounding.
+/// Largest strain energy of the structure itself, relative to that of the mode, that counts as rounding.
 const NO_STRAIN: f64 = 1e-12;
 
 const CONTEXT: &str = "the damped mode";
@@ -58,10 +57,10 @@ fn no_artificial_damping<T>() -> Result<T> {
 }
 
 impl Model {
-    /// The mode with the structure's damping, contacts stuck, that grows out of `start`, a mode of
-    /// [`Self::select_mode`]. Without damping it is `start`, and D is 0 exactly.
+    /// The mode of the damped structure with stuck contacts that continues `start`, a mode of
+    /// [`Self::select_mode`]. Without damping it is `start`, and D is exactly 0.
     ///
-    /// A mixture of modes of equal frequency is kept where the damping leaves it a mode.
+    /// A mixture of modes of equal frequency is kept if it is also a mode of the damped structure.
     ///
     /// # Errors
     /// `NoConvergence` where the damping is so strong that no mode is reached; `Singular` where
@@ -91,7 +90,7 @@ impl Model {
         };
         let conservative = problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
         if conservative && problem.damping.max_abs() == 0.0 {
-            // Friction will need what linear damping does not.
+            // Linear damping does not need the artificial damping here, but friction will.
             let strain = quadratic(&problem.own, &undamped.shape);
             if form == DampingForm::Stiffness && strain.abs() <= NO_STRAIN * undamped.omega * undamped.omega {
                 return no_artificial_damping();
@@ -179,15 +178,15 @@ impl Damped {
         Ok(columns)
     }
 
-    /// Newton's method on A(ω, D) x = 0, vᴴ x = 1 with v = M φ, its factors those of a shift nearby:
-    /// x changes by A⁻¹(A x + dω ∂A/∂ω x + dD ∂A/∂D x), and v is orthogonal to the change.
+    /// Newton's method on A(ω, D) x = 0, vᴴ x = 1 with v = M φ, with the factors at a shift nearby: x changes by
+    /// A⁻¹(A x + dω ∂A/∂ω x + dD ∂A/∂D x), and v is orthogonal to the change.
     fn follow(&self, start: &DampedMode, offset: f64) -> Result<DampedMode> {
         let n = self.mass.rows;
         let mut mode = DampedMode {
             shape: try_copy(&start.shape, CONTEXT)?,
             ..*start
         };
-        let v = times(&self.mass, &start.shape)?;
+        let v = self.mass.times(&start.shape, CONTEXT)?;
         let project = |z: &[Complex64]| -> Complex64 { v.iter().zip(z).map(|(v, z)| v.conj() * z).sum() };
         let mut factor = Factor::new(&self.matrix(mode.omega, 0.0)?, 3)?;
         let mut last = f64::INFINITY;
@@ -221,7 +220,7 @@ impl Damped {
                 );
             }
             let change = change / size + d_omega.abs() / mode.omega + d_damping.abs();
-            // Done at the level of rounding, or where the steps have come to rest above it.
+            // The iteration ends at the level of rounding, or where the steps stop decreasing above it.
             if change <= 2e-15 || (change < 1e-9 && change > 0.5 * last) {
                 break;
             }
@@ -234,7 +233,7 @@ impl Damped {
         Ok(mode)
     }
 
-    /// Whether A x = 0 but for rounding, or for the difference of frequencies that count as equal.
+    /// Whether A x = 0 up to rounding, or up to the difference of frequencies that count as equal.
     fn residual(&self, mode: &DampedMode, repeated: bool) -> Result<bool> {
         let n = self.mass.rows;
         let mut sum = try_vec(n, Complex64::ZERO, CONTEXT)?;

@@ -39,7 +39,7 @@ impl Excitation {
         try_push(&mut self.forces, Force { dof, harmonic, value }, "the forces")
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy, allocated fallibly.
     pub(super) fn try_clone(&self) -> Result<Self> {
         let mut copy = Self::default();
         try_extend(&mut copy.forces, &self.forces, "the forces")?;

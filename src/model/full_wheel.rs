@@ -1,16 +1,16 @@
-//! The wheel as one structure in time: as many sectors as a travelling wave needs until it repeats.
+//! The wheel as one structure in time: the sectors of one repetition of a travelling wave.
 //!
-//! With g = gcd(EO, N) the sectors s and s + N/g move alike in every harmonic, so that n = N/g
-//! sectors closed to a ring carry the whole wave. In time the wave is a shift: sector s + 1 does what
-//! sector s did a part EO/N of the period before, whatever the harmonics,
-//! x_{s+1}(t) = x_s(t − T·EO/N); see Thomas 1979, doi:10.1002/nme.1620140107.
+//! With g = gcd(EO, N) the sectors s and s + N/g move alike in every harmonic, so that n = N/g sectors closed to a
+//! ring represent the whole wave. In time the wave is a shift: sector s + 1 repeats the motion of sector s with a
+//! delay of EO/N periods, whatever the harmonics, x_{s+1}(t) = x_s(t − T·EO/N); see Thomas 1979,
+//! doi:10.1002/nme.1620140107.
 
 use crate::error::{Result, fail, try_push};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
-/// Entries of a transform over nodal diameters that are this small against the largest are rounding.
+/// Entries of a transform over nodal diameters below this share of the largest are rounding.
 const ROUNDING: f64 = 1e-14;
 
 impl Structure {
@@ -21,8 +21,8 @@ impl Structure {
         self.in_step()
     }
 
-    /// The number j of sectors, below [`Self::repeating_sectors`] n, after which the motion comes later
-    /// by the n-th part of the period: x_{s+j}(t + T/n) = x_s(t). It solves j·EO/g = 1 modulo n.
+    /// The number j of sectors, below [`Self::repeating_sectors`] n, after which the motion is delayed by the n-th
+    /// part of the period: x_{s+j}(t + T/n) = x_s(t). It solves j·EO/g = 1 modulo n.
     #[must_use]
     pub fn sectors_per_part(&self) -> usize {
         let n = self.repeating_sectors();
@@ -31,12 +31,12 @@ impl Structure {
         (0..n).find(|j| (j * waves) % n == 1 % n).unwrap_or(0)
     }
 
-    /// M, C or K of [`Self::repeating_sectors`] sectors closed to a ring, sector after sector; the damping
-    /// includes Rayleigh's part.
+    /// M, C or K of [`Self::repeating_sectors`] sectors closed to a ring, sector after sector; the damping includes
+    /// Rayleigh damping.
     ///
     /// # Errors
-    /// `Unsupported` for complex matrices, which mean nothing in time; `Argument` when a nodal diameter
-    /// was not given; `OutOfMemory`.
+    /// `Unsupported` for complex matrices, which have no meaning in time; `Argument` when a nodal diameter was not
+    /// given; `OutOfMemory`.
     pub fn unrolled(&self, which: MatrixKind) -> Result<Csc> {
         let (alpha, beta) = self.rayleigh;
         let own = if self.blocks[which as usize].diameters.is_empty() {
@@ -71,7 +71,7 @@ impl Structure {
         Ok(own)
     }
 
-    /// Places the blocks of a sector all around.
+    /// Places the blocks of a sector around the ring.
     fn sectors_around(&self, which: MatrixKind) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let blocks = &self.blocks[which as usize];

@@ -8,7 +8,7 @@ use crate::linalg::lanczos;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::spring::Wave;
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -18,30 +18,30 @@ use num_complex::Complex64;
 pub enum ContactState {
     /// Without force.
     Free,
-    /// Linear springs of stiffness kt, as at small motion.
+    /// Linear springs of their stiffness at small motion.
     Stuck,
 }
 
 /// Natural modes in ascending order of frequency.
 #[derive(Clone, Debug)]
 pub struct LinearModes {
-    /// Natural angular frequencies; rigid-body modes come out near zero.
+    /// Natural angular frequencies; those of rigid-body modes are near zero.
     pub omega: Vec<f64>,
     /// Mass-normalised shapes (φᴴ M φ = 1 over one sector), one after the other, ndof each.
     pub shapes: Vec<Complex64>,
 }
 
-/// Degrees of freedom up to which all modes are found by dense algebra, whose rounding is relative
-/// to the highest frequency: on finer meshes too coarse for the lowest ones.
+/// Degrees of freedom up to which all modes are found by dense algebra. Its rounding is relative to the highest
+/// frequency, which on finer meshes is too inaccurate for the lowest frequencies.
 const DENSE_UP_TO: usize = 100;
 
 /// Rigid-body modes of a body in space.
 const RIGID_MODES: usize = 6;
 
-/// Largest ω² of a rigid motion, over that of the stiffest degree of freedom alone.
+/// Largest ω² of a rigid motion, relative to that of the stiffest degree of freedom alone.
 const RIGID: f64 = 1e-10;
 
-/// Most square matrices that [`eigen::generalised`] holds at a time.
+/// Largest number of square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
 
 /// K and M of a wave, checked to be Hermitian.
@@ -63,10 +63,10 @@ impl Model {
         self.pencil(Wave::Diameter(diameter), contacts)?.lowest(count)
     }
 
-    /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave
-    /// whose sector s + 1 lags. Motion without mass has no mode, so a singular mass matrix gives
-    /// fewer modes than degrees of freedom. Dense algebra: meant for up to a few hundred degrees of
-    /// freedom; [`Self::lowest_modes`] is for more.
+    /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave whose sector
+    /// s + 1 lags. Motion without mass has no mode, so that a singular mass matrix gives fewer modes than degrees
+    /// of freedom. Dense algebra is meant for up to a few hundred degrees of freedom; [`Self::lowest_modes`] serves
+    /// larger structures.
     ///
     /// # Errors
     /// `Argument` for a diameter out of range, `NotHermitian` when K or M is not, and those of
@@ -75,9 +75,9 @@ impl Model {
         self.pencil(Wave::Diameter(diameter), contacts)?.all()
     }
 
-    /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency
-    /// without contacts is zero, up to rounding. At most six are counted for a large structure. 0 for a
-    /// structure whose stiffness is not Hermitian, where it is not known.
+    /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without
+    /// contacts is zero, up to rounding. At most six are counted for a large structure. 0 for a structure whose
+    /// stiffness is not Hermitian, where the number is not known.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of the eigensolvers.
@@ -89,7 +89,7 @@ impl Model {
         if resists_all_motion(&pencil.stiffness)? {
             return Ok(0);
         }
-        // The stiffest degree of freedom by itself tells what is small.
+        // The stiffest degree of freedom alone sets the scale.
         let (k, m) = (&pencil.stiffness, &pencil.mass);
         let own = |j| (k.get(j, j).re, m.get(j, j).re);
         let heavy = (0..k.rows).map(own).filter(|&(_, mass)| mass > 0.0);
@@ -141,7 +141,7 @@ impl Model {
 }
 
 impl Pencil {
-    /// Whether dense algebra finds all modes anyway when `count` of them are wanted.
+    /// Whether a request for `count` modes is answered by dense algebra, which finds all.
     pub fn finds_all(&self, count: usize) -> bool {
         let n = self.mass.rows;
         n <= DENSE_UP_TO || count > n / 4
@@ -165,7 +165,7 @@ impl Pencil {
     /// All modes, by dense algebra.
     fn all(&self) -> Result<LinearModes> {
         let n = self.mass.rows;
-        // The eigensolver's matrices are nalgebra's, which ends the process where memory ends.
+        // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
         let dense = |a: &Csc| {
             let mut d = DMatrix::<Complex64>::zeros(n, n);
@@ -176,8 +176,8 @@ impl Pencil {
         Ok(LinearModes::from(pairs))
     }
 
-    /// φᴴKφ / φᴴMφ. The eigenvalue is stationary in the vector, so that its quotient is far more
-    /// exact; only this tells a rigid motion of a stiff structure from a slow one.
+    /// φᴴKφ / φᴴMφ. The quotient is stationary at the eigenvector and so far more accurate than the vector; only it
+    /// distinguishes a rigid motion of a stiff structure from a slow one.
     pub fn quotient(&self, shape: &[Complex64]) -> f64 {
         quadratic(&self.stiffness, shape) / quadratic(&self.mass, shape)
     }

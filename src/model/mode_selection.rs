@@ -1,15 +1,14 @@
-//! The linear mode, contacts stuck, that a nonlinear mode starts from, in the wave of the model's
-//! engine order.
+//! The linear mode with stuck contacts from which a nonlinear mode starts, in the wave of the engine order of the
+//! model.
 
-use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec};
+use crate::error::{Result, Status, fail, try_copy, try_extend, try_push};
 use crate::linalg::definite;
 use crate::linalg::inner;
 use crate::linalg::quadratic::quadratic;
-use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::{ContactState, LinearModes, Pencil};
 use crate::model::repeated_modes::{self, Multiple};
-use crate::model::spring::Wave;
+use crate::model::spring_stiffness::Wave;
 use crate::options::ModeChoice;
 use num_complex::Complex64;
 use std::ops::Range;
@@ -17,40 +16,40 @@ use std::ops::Range;
 /// A natural mode with the contacts stuck.
 #[derive(Clone, Debug)]
 pub struct SelectedMode {
-    /// Its number, from 0 by rising stuck frequency; of equal frequencies the first, unless the
-    /// number was asked for.
+    /// Its number, from 0 by rising stuck frequency; the first of equal frequencies, unless the number was
+    /// requested.
     pub index: usize,
     /// Its angular frequency, rad per time unit.
     pub omega: f64,
-    /// Its shape, φᴴ M φ = 1 over one sector. The degree of freedom that moves most is real and
-    /// positive, but for [`Multiple::Projected`], which keeps the phase of the shape given.
+    /// Its shape, φᴴ M φ = 1 over one sector. The degree of freedom that moves most is real and positive, except
+    /// with [`Multiple::Projected`], which keeps the phase of the given shape.
     pub shape: Vec<Complex64>,
-    /// How many modes share the frequency.
+    /// Number of modes of this frequency.
     pub multiplicity: usize,
-    /// What was done about that.
+    /// Choice among the modes of this frequency.
     pub multiple: Multiple,
-    /// The stuck frequencies known, ascending: all of a small structure, the lowest of a large one.
+    /// The known stuck frequencies, ascending: all of a small structure, the lowest of a large one.
     pub stuck: Vec<f64>,
-    /// As many frequencies with the contacts removed; empty where these could not be found.
+    /// The same number of frequencies with the contacts removed; empty if they could not be found.
     pub free: Vec<f64>,
 }
 
 /// Frequencies that differ by no more than this, relative, count as equal.
 const EQUAL: f64 = 1e-8;
 
-/// Strain energy, relative to the sum of its terms' moduli, that is rounding and no more.
+/// Largest strain energy, relative to the sum of the moduli of its terms, that counts as rounding.
 const NO_STRAIN: f64 = 1e-14;
 
-/// Modes of a large structure among which a given shape is looked for.
+/// Number of modes of a large structure with which a given shape is compared.
 const COMPARED: usize = 40;
 
 const CONTEXT: &str = "the start mode";
 
 impl Model {
-    /// The linear mode of the engine-order wave, contacts stuck, that `choice` names.
+    /// The linear mode of the engine-order wave with stuck contacts that `choice` selects.
     ///
-    /// Equal frequencies (within 1e-8, relative) leave the shape open; see [`Multiple`].
-    /// [`ModeChoice::Near`] and [`ModeChoice::Shape`] take them as one.
+    /// Equal frequencies (within 1e-8, relative) do not determine the shape; see [`Multiple`]. [`ModeChoice::Near`]
+    /// and [`ModeChoice::Shape`] treat them as one.
     ///
     /// # Errors
     /// Those of [`ModeChoice::check`]; `Index` for a mode that does not exist; `Argument` for a
@@ -59,7 +58,7 @@ impl Model {
     pub fn select_mode(&self, choice: ModeChoice<'_>) -> Result<SelectedMode> {
         choice.check(self.ndof())?;
         let pencil = self.pencil(Wave::Harmonic(1), ContactState::Stuck)?;
-        let (known, chosen) = Known::find(&pencil, choice)?;
+        let (known, chosen) = KnownModes::find(&pencil, choice)?;
         known.check_frequency(chosen.index)?;
         let n = self.ndof();
         let shapes = &known.modes.shapes[chosen.cluster.start * n..chosen.cluster.end * n];
@@ -67,7 +66,7 @@ impl Model {
             repeated_modes::resolve(&pencil, shapes, chosen.index - chosen.cluster.start, chosen.projection)?;
         let free = self
             .pencil(Wave::Harmonic(1), ContactState::Free)
-            .and_then(|free| sharpened(&free, known.modes.omega.len()));
+            .and_then(|free| lowest_by_quotient(&free, known.modes.omega.len()));
         Ok(SelectedMode {
             index: chosen.index,
             omega: known.modes.omega[chosen.index],
@@ -84,27 +83,27 @@ impl Model {
     }
 }
 
-/// The mode chosen, and those of its frequency.
-struct Chosen {
+/// The chosen mode, and the modes of its frequency.
+struct ChosenMode {
     index: usize,
     cluster: Range<usize>,
-    /// Parts of the given shape along the modes of the cluster.
+    /// Components of the given shape along the modes of the cluster.
     projection: Option<Vec<Complex64>>,
 }
 
-/// Modes that are known so far.
-struct Known<'a> {
+/// The modes that are known so far.
+struct KnownModes<'a> {
     pencil: &'a Pencil,
     modes: LinearModes,
-    /// Whether there are no others.
+    /// The structure has no other modes.
     all: bool,
 }
 
-impl<'a> Known<'a> {
-    /// As many modes as it takes to choose.
-    fn find(pencil: &'a Pencil, choice: ModeChoice<'_>) -> Result<(Self, Chosen)> {
+impl<'a> KnownModes<'a> {
+    /// Computes as many modes as the choice requires.
+    fn find(pencil: &'a Pencil, choice: ModeChoice<'_>) -> Result<(Self, ChosenMode)> {
         let n = pencil.mass.rows;
-        // A positive semidefinite matrix has no more rank than positive entries on its diagonal.
+        // The rank of a positive semidefinite matrix is at most the number of positive entries on its diagonal.
         let heavy = (0..n).filter(|&i| pencil.mass.get(i, i).re > 0.0).count();
         let mut count = match choice {
             ModeChoice::Index(k) => {
@@ -121,7 +120,7 @@ impl<'a> Known<'a> {
         }
         loop {
             let dense = pencil.finds_all(count);
-            let modes = sharpened(pencil, if dense { n } else { count })?;
+            let modes = lowest_by_quotient(pencil, if dense { n } else { count })?;
             let known = Self {
                 pencil,
                 all: dense || modes.omega.len() < count,
@@ -134,8 +133,8 @@ impl<'a> Known<'a> {
         }
     }
 
-    /// `None`: more modes must be known.
-    fn choose(&self, choice: ModeChoice<'_>) -> Result<Option<Chosen>> {
+    /// Selects a mode; `None`: more modes must be known.
+    fn choose(&self, choice: ModeChoice<'_>) -> Result<Option<ChosenMode>> {
         let omega = &self.modes.omega;
         let Some(&highest) = omega.last() else {
             return fail!(NotPositiveDefinite, "mass matrix is zero: there is no vibration mode");
@@ -150,33 +149,33 @@ impl<'a> Known<'a> {
                 };
             }
             ModeChoice::Index(k) => (k, self.cluster(k)),
-            ModeChoice::Near(wanted) => {
-                if !self.all && highest <= wanted {
+            ModeChoice::Near(requested) => {
+                if !self.all && highest <= requested {
                     return Ok(None);
                 }
-                let distance = |&i: &usize| (omega[i] - wanted).abs();
+                let distance = |&i: &usize| (omega[i] - requested).abs();
                 let nearest = (0..omega.len()).min_by(|i, j| distance(i).total_cmp(&distance(j)));
                 let cluster = self.cluster(nearest.unwrap_or(0));
                 (cluster.start, cluster)
             }
             ModeChoice::Shape(shape) => {
-                let (cluster, parts) = self.most_alike(shape)?;
-                projection = Some(parts);
+                let (cluster, components) = self.most_similar(shape)?;
+                projection = Some(components);
                 (cluster.start, cluster)
             }
         };
-        // Equal frequencies may go on beyond the last one known.
+        // More equal frequencies may follow the last known one.
         if !self.all && cluster.end == omega.len() {
             return Ok(None);
         }
-        Ok(Some(Chosen {
+        Ok(Some(ChosenMode {
             index,
             cluster,
             projection,
         }))
     }
 
-    /// The modes whose frequency is that of mode `k`.
+    /// The modes with the frequency of mode `k`.
     fn cluster(&self, k: usize) -> Range<usize> {
         let omega = &self.modes.omega;
         let equal = |i: usize| omega[i + 1] - omega[i] <= EQUAL * omega[i + 1];
@@ -190,29 +189,28 @@ impl<'a> Known<'a> {
         start..end
     }
 
-    /// The modes of one frequency that hold most of the modal mass of `shape`, and its parts along
-    /// them.
-    fn most_alike(&self, shape: &[Complex64]) -> Result<(Range<usize>, Vec<Complex64>)> {
+    /// The modes of one frequency that hold most of the modal mass of `shape`, and its components along them.
+    fn most_similar(&self, shape: &[Complex64]) -> Result<(Range<usize>, Vec<Complex64>)> {
         let n = shape.len();
-        // Any size may come in, so that squares might overflow.
+        // The shape may have any size, so that squares might overflow.
         let size = shape.iter().fold(0.0_f64, |m, z| m.max(z.re.abs()).max(z.im.abs()));
         let mut scaled = try_copy(shape, CONTEXT)?;
         for z in &mut scaled {
             *z /= size;
         }
         let mass = quadratic(&self.pencil.mass, &scaled);
-        let weighted = times(&self.pencil.mass, &scaled)?;
-        let mut parts = Vec::new();
+        let weighted = self.pencil.mass.times(&scaled, CONTEXT)?;
+        let mut components = Vec::new();
         for mode in self.modes.shapes.chunks_exact(n) {
             let part = inner(mode, &weighted);
-            try_push(&mut parts, part, CONTEXT)?;
+            try_push(&mut components, part, CONTEXT)?;
         }
         let (mut best, mut most) = (0..0, 0.0);
         let mut at = 0;
-        while at < parts.len() {
+        while at < components.len() {
             let cluster = self.cluster(at);
             at = cluster.end;
-            let share: f64 = parts[cluster.clone()].iter().map(Complex64::norm_sqr).sum();
+            let share: f64 = components[cluster.clone()].iter().map(Complex64::norm_sqr).sum();
             if share > most {
                 (best, most) = (cluster, share);
             }
@@ -221,11 +219,11 @@ impl<'a> Known<'a> {
             return fail!(
                 Argument,
                 "shape is unlike each of the {} lowest modes, or moves no mass",
-                parts.len()
+                components.len()
             );
         }
         let mut along = Vec::new();
-        try_extend(&mut along, &parts[best.clone()], CONTEXT)?;
+        try_extend(&mut along, &components[best.clone()], CONTEXT)?;
         Ok((best, along))
     }
 
@@ -260,8 +258,8 @@ fn no_such_mode<T>(index: usize, count: usize) -> Result<T> {
     )
 }
 
-/// The `count` lowest modes with frequencies from the quotient of their shapes.
-fn sharpened(pencil: &Pencil, count: usize) -> Result<LinearModes> {
+/// The `count` lowest modes, with frequencies from the Rayleigh quotients of their shapes.
+fn lowest_by_quotient(pencil: &Pencil, count: usize) -> Result<LinearModes> {
     let n = pencil.mass.rows;
     let modes = pencil.lowest(count)?;
     let mut order = Vec::new();
@@ -275,11 +273,4 @@ fn sharpened(pencil: &Pencil, count: usize) -> Result<LinearModes> {
         try_extend(&mut shapes, &modes.shapes[i * n..(i + 1) * n], CONTEXT)?;
     }
     Ok(LinearModes { omega, shapes })
-}
-
-/// A x
-pub(super) fn times(a: &Csc, x: &[Complex64]) -> Result<Vec<Complex64>> {
-    let mut y = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
-    a.multiply_add(Complex64::ONE, x, &mut y);
-    Ok(y)
 }

@@ -1,5 +1,5 @@
-//! What a model asks of a contact or spring before it takes it in: degrees of freedom that exist, none
-//! of them twice, and two different sides.
+//! Checks of a contact or spring before the model stores it: degrees of freedom that exist, none of them twice, and
+//! two different sides.
 
 use crate::contact::Contact;
 use crate::contact::relative_motion::Direction;
@@ -40,7 +40,7 @@ impl Model {
             self.check_dof(list, i, dof)?;
             try_push(&mut places, (dof, i), "a list of degrees of freedom")?;
         }
-        // Neighbours in order find a repetition in a long list, too.
+        // Sorted neighbours reveal a repetition in a long list, too.
         places.sort_unstable();
         match places.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             Some(pair) => twice(list, pair[0].1, pair[1].1, pair[0].0),

@@ -1,33 +1,31 @@
-//! The shape of a mode whose frequency is repeated: any mixture of the modes of that frequency is
-//! a mode, so a rule must choose, and the result tells which.
+//! The shape of a mode whose frequency is repeated: any mixture of the modes of that frequency is a mode, so that a
+//! rule must choose one, and the result names the rule.
 
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::quadratic::quadratic;
 use crate::model::linear_modes::Pencil;
-use crate::model::mode_selection::times;
 use num_complex::Complex64;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// How the shape was chosen among the modes of one frequency.
+/// Rule that chose the shape among the modes of one frequency.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Multiple {
-    /// The frequency is simple: there was nothing to choose.
+    /// The frequency is simple: no choice was necessary.
     Single,
-    /// Two real modes φ₁, φ₂, M-orthonormal: (φ₁ + iφ₂)/√2, in which all equal parts of a rotational
-    /// structure move alike. It does not depend on the basis but for its sense: that of the lower
-    /// number is the one in which degrees of freedom of higher number lag,
-    /// Im Σ_{i<j} φᵢ* φⱼ < 0, that of the upper number runs against it. Where this sum vanishes the
-    /// sense is as it comes.
+    /// Two real modes φ₁, φ₂, M-orthonormal: (φ₁ + iφ₂)/√2, in which all equal parts of a rotational structure move
+    /// alike. It does not depend on the basis except for its sense of travel: in the mode of the lower number
+    /// degrees of freedom of higher number lag, Im Σ_{i<j} φᵢ* φⱼ < 0; the mode of the upper number travels against
+    /// it. Where this sum vanishes the sense is arbitrary.
     TravellingWave,
     /// The mass-weighted projection of the given shape.
     Projected,
-    /// The mode that was found first: more than two modes, or complex matrices. Another machine may
-    /// find another one.
+    /// The mode that was found first: more than two modes, or complex matrices. Another machine may find a
+    /// different one.
     First,
 }
 
-/// The mass-normalised shape of mode number `member` among those of one frequency (`shapes`, one
-/// after the other); `projection`: parts of the given shape along them.
+/// The mass-normalised shape of mode number `member` among those of one frequency (`shapes`, one after the other);
+/// `projection`: components of the given shape along them.
 pub(super) fn resolve(
     pencil: &Pencil,
     shapes: &[Complex64],
@@ -63,10 +61,10 @@ pub(super) fn resolve(
         _ => (try_copy(shapes, CONTEXT)?, Multiple::Single),
     };
     if multiple != Multiple::Projected {
-        turn(&mut shape);
+        make_largest_real(&mut shape);
     }
     if multiple == Multiple::Single && real {
-        // A real mode but for rounding.
+        // A real mode up to rounding.
         for z in &mut shape {
             z.im = 0.0;
         }
@@ -80,8 +78,8 @@ pub(super) fn resolve(
 
 const CONTEXT: &str = "the start mode";
 
-/// Makes the entry that moves most real and positive; of entries alike, the first.
-fn turn(shape: &mut [Complex64]) {
+/// Makes the largest entry real and positive; the first of several of equal size.
+fn make_largest_real(shape: &mut [Complex64]) {
     let largest = shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
     if let Some(&z) = shape.iter().find(|z| z.norm() >= (1.0 - 1e-6) * largest) {
         let back = z.conj() / z.norm();
@@ -97,10 +95,10 @@ fn conjugate(shape: &mut [Complex64]) {
     }
 }
 
-/// (φ₁ ± iφ₂)/√2 of two modes of real matrices, in the sense in which later entries lag.
+/// (φ₁ ± iφ₂)/√2 of two modes of real matrices, in the sense of travel in which later entries lag.
 fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>> {
     let n = pencil.mass.rows;
-    // The modes come with any phase, each and mixed: their real and imaginary parts span the space.
+    // The modes have arbitrary phases and may be mixed: their real and imaginary parts span the space.
     let mut candidates = Vec::new();
     for mode in shapes.chunks_exact(n) {
         for part in [|z: &Complex64| z.re, |z: &Complex64| z.im] {
@@ -111,8 +109,8 @@ fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>>
             try_push(&mut candidates, x, CONTEXT)?;
         }
     }
-    let first = take_longest(pencil, &mut candidates);
-    let weighted = times(&pencil.mass, &first)?;
+    let first = take_largest(pencil, &mut candidates);
+    let weighted = pencil.mass.times(&first, CONTEXT)?;
     for _ in 0..2 {
         for x in &mut candidates {
             let part: f64 = x.iter().zip(&weighted).map(|(x, w)| x.re * w.re).sum();
@@ -121,7 +119,7 @@ fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>>
             }
         }
     }
-    let second = take_longest(pencil, &mut candidates);
+    let second = take_largest(pencil, &mut candidates);
     let mut wave = first;
     for (w, s) in wave.iter_mut().zip(&second) {
         *w = Complex64::new(w.re, s.re) * FRAC_1_SQRT_2;
@@ -138,16 +136,16 @@ fn lagging_wave(pencil: &Pencil, shapes: &[Complex64]) -> Result<Vec<Complex64>>
     Ok(wave)
 }
 
-/// Takes out the vector of largest modal mass and normalises it.
-fn take_longest(pencil: &Pencil, candidates: &mut Vec<Vec<Complex64>>) -> Vec<Complex64> {
-    let (mut longest, mut square) = (0, 0.0);
+/// Removes the vector of largest modal mass from the candidates and normalises it.
+fn take_largest(pencil: &Pencil, candidates: &mut Vec<Vec<Complex64>>) -> Vec<Complex64> {
+    let (mut largest_index, mut square) = (0, 0.0);
     for (i, x) in candidates.iter().enumerate() {
         let s = quadratic(&pencil.mass, x);
         if s > square {
-            (longest, square) = (i, s);
+            (largest_index, square) = (i, s);
         }
     }
-    let mut x = candidates.swap_remove(longest);
+    let mut x = candidates.swap_remove(largest_index);
     for z in &mut x {
         *z /= square.sqrt();
     }

@@ -1,9 +1,8 @@
-//! Why a structure may have no bounded response: a resonance without damping, forced beyond what its
-//! contacts can take.
+//! Slip capacity: the largest force that slipping contacts can balance at an undamped resonance. A force beyond it
+//! has no bounded response.
 //!
-//! Let φ be a motion that the structure without its contacts does not resist at hω: φᴴ Z = 0 with
-//! Z = K − h²ω²M + ihωC. Harmonic h of the equation of motion, Z X + Wᴴ f = F, then leaves of itself, whatever the
-//! motion,
+//! Let φ be a motion that the structure without its contacts does not resist at hω: φᴴ Z = 0 with Z = K − h²ω²M +
+//! ihωC. Projected on φ, harmonic h of the equation of motion, Z X + Wᴴ f = F, becomes, for any motion,
 //!
 //! > φᴴ F = Σ conj(w φ) f,
 //!
@@ -11,8 +10,9 @@
 //! harmonic than that of a square wave, 4L/π, and no larger mean than L. Where |φᴴ F| is above Σ |w φ| 4L/π
 //! nothing bounded solves the equation, in time or in any number of harmonics.
 //!
-//! A resonance is met to rounding only. With r = φᴴ Z and the excess e of the force over the capacity, |r|·|X| ≥ e
-//! for any solution X: a bound of the motion from below, which tells how near is near enough.
+//! A frequency coincides with a resonance up to rounding only. With r = φᴴ Z and the excess e of the force over the
+//! capacity, |r|·|X| ≥ e for any solution X. This lower bound of the motion decides whether the frequency is close
+//! enough.
 
 use crate::contact::Role;
 use crate::error::{Result, Status, try_copy, try_vec};
@@ -20,7 +20,8 @@ use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Wave, along, relative_row};
+use crate::model::spring::{along, relative_row};
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -32,39 +33,39 @@ pub struct Resonance {
     pub harmonic: usize,
     /// The motion φ, its largest component of modulus 1.
     pub shape: Vec<Complex64>,
-    /// Force on it, |φᴴ F|.
+    /// Force along φ, |φᴴ F|.
     pub force: f64,
-    /// The most that the contacts can take of it; infinite where one of them has a force without bound.
+    /// Largest part of the force that the contacts can balance; infinite if one of them has an unbounded force.
     pub slip_capacity: f64,
-    /// Largest motion that any solution has at least, over that which the force gives to the inertia alone.
+    /// Lower bound of the motion of any solution, relative to the motion of the inertia alone under the force.
     pub growth: f64,
 }
 
-/// Relative distance of the shift from the frequency squared.
+/// Relative distance of the shift from the squared frequency.
 const SHIFT: f64 = 1e-8;
 
-/// Most steps of the inverse iteration, each of which gains the digits of [`SHIFT`].
+/// Number of steps of the inverse iteration, each of which gains the digits of [`SHIFT`].
 const MAX_STEPS: usize = 6;
 
 /// Rounding of the force and of the capacity, relative to the sizes of their terms.
 const ROUNDING: f64 = 1e-12;
 
-/// Growth that is no motion any more: it asks for more digits of frequency and stiffness than there are.
-const BEYOND: f64 = 1e10;
+/// Growth beyond which no motion is possible: it would require more digits of frequency and stiffness than exist.
+const UNBOUNDED_GROWTH: f64 = 1e10;
 
 const CONTEXT: &str = "the resonance";
 
 impl Resonance {
-    /// Whether no bounded motion carries the force.
+    /// Whether no bounded motion balances the force.
     #[must_use]
     pub fn is_overloaded(&self) -> bool {
-        self.growth >= BEYOND
+        self.growth >= UNBOUNDED_GROWTH
     }
 }
 
 impl Model {
     /// The resonance without damping that keeps the model from a bounded response at the angular frequency `omega`,
-    /// if one is known to do so.
+    /// if one is found.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of [`Self::sprung_stiffness`].
@@ -107,7 +108,8 @@ impl Model {
             Csc::sum(n, &terms)
         };
         let z = dynamic(-w * w)?;
-        // The force itself begins: of repeated resonances it picks the motion that it works on most.
+        // The force itself is the starting vector: among repeated resonances it selects the motion on which it does
+        // most work.
         let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
         self.excitation().add_to(harmonic, 1.0, &mut forces);
         let Some(shape) = left_null(&dynamic(-w * w - SHIFT * square)?, &mass, &forces)? else {
@@ -125,7 +127,7 @@ impl Model {
         let excess = force - slip_capacity * (1.0 + ROUNDING) - ROUNDING * size;
         let inertia = square * quadratic(&mass, &shape);
         let growth = if excess > 0.0 && inertia > 0.0 {
-            // Without any resistance it is infinite.
+            // Without any resistance the growth is infinite.
             excess / resistance * (inertia / force)
         } else {
             0.0
@@ -139,7 +141,7 @@ impl Model {
         }))
     }
 
-    /// The most that the contacts can take of a force on the motion φ in a harmonic: Σ |w φ| 4L/π.
+    /// Largest part of a force along the motion φ in a harmonic that the contacts can balance: Σ |w φ| 4L/π.
     fn slip_capacity(&self, harmonic: usize, shape: &[Complex64]) -> f64 {
         let wave = if harmonic == 0 { 1.0 } else { 4.0 / PI };
         let mut sum = 0.0;
@@ -147,7 +149,7 @@ impl Model {
             let phase = self.structure().phase(harmonic, contact.sector_offset);
             for k in 0..contact.directions() {
                 let motion = along(&relative_row(&contact.direction(k), phase), shape).norm();
-                // A contact that the motion leaves alone takes nothing of it, whatever its force.
+                // A contact without relative motion contributes nothing, whatever its force.
                 if motion > 0.0 {
                     sum += wave * contact.largest_force() * motion;
                 }
@@ -157,8 +159,8 @@ impl Model {
     }
 }
 
-/// φ with φᴴ Z = 0 as nearly as rounding lets it, from the force: inverse iteration φ ← S⁻ᴴ M φ with S = Z − ε M,
-/// whose limit does not depend on ε. `None` where it leads nowhere.
+/// φ with φᴴ Z = 0 up to rounding, by inverse iteration φ ← S⁻ᴴ M φ from the force, with S = Z − ε M; the limit
+/// does not depend on ε. `None` where the iteration finds none.
 fn left_null(shifted: &Csc, mass: &Csc, force: &[Complex64]) -> Result<Option<Vec<Complex64>>> {
     match iterate(shifted, mass, force) {
         Err(e) if e.status == Status::Singular => Ok(None),

@@ -5,13 +5,13 @@ use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::Csc;
 
-/// Most degrees of freedom that are accepted.
+/// Largest accepted number of degrees of freedom.
 pub const MAX_DOF: usize = 1 << 31;
 
-/// Most sectors that are accepted.
+/// Largest accepted number of sectors.
 pub const MAX_SECTORS: usize = 1 << 20;
 
-/// Which of the structure's matrices.
+/// A matrix of the structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MatrixKind {
     /// M
@@ -32,16 +32,16 @@ impl MatrixKind {
     }
 }
 
-/// One of M, C, K as it was given.
+/// One of M, C, K in the form in which it was given.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
-    /// The sector on itself.
+    /// Rows and columns of the same sector.
     pub own: Option<Csc>,
     /// Rows of sector s, columns of s + 1.
     pub next: Option<Csc>,
     /// Rows of sector s, columns of s − 1; `None`: the transpose of `next`.
     pub previous: Option<Csc>,
-    /// Per nodal diameter 0 ..= N/2 instead of blocks.
+    /// Matrices per nodal diameter 0 ..= N/2, instead of blocks.
     pub diameters: Vec<Option<Csc>>,
 }
 
@@ -96,7 +96,7 @@ impl Structure {
         self.rayleigh != (0.0, 0.0) || given.flatten().any(|a| !a.is_empty())
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy, allocated fallibly.
     pub(super) fn try_clone(&self) -> Result<Self> {
         let [mass, damping, stiffness] = &self.blocks;
         Ok(Self {
@@ -174,7 +174,7 @@ impl Structure {
         Ok(())
     }
 
-    /// A coupling block is a general matrix whatever the view says of itself.
+    /// A coupling block is a general matrix, whatever part the view declares.
     fn coupling(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<Csc> {
         if self.sectors == 1 {
             return fail!(

@@ -1,17 +1,17 @@
 //! Options of a time integration.
 
 use crate::error::{Result, fail};
-use crate::options::{MAX_HARMONIC, MAX_SAMPLES};
+use crate::options::solver_options::{MAX_HARMONIC, MAX_SAMPLES};
 use num_complex::Complex64;
 
-/// How a steady state is sought in time.
+/// Method that finds a steady state in time.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SteadyMethod {
-    /// Newton's method on the map from the begin of a period to its end, with marching between where it
-    /// fails.
+    /// Newton's method on the map from the beginning of a period to its end; where it fails, some periods are
+    /// marched before the next attempt.
     #[default]
     Shooting,
-    /// Period after period until nothing changes any more: the state that a machine would reach.
+    /// Period after period until the motion repeats: the state that a machine would reach.
     Marching,
 }
 
@@ -20,20 +20,20 @@ pub enum SteadyMethod {
 pub struct TimeOptions<'a> {
     /// Angular frequency of harmonic 1, rad per time unit, above zero.
     pub omega: f64,
-    /// How the steady state is sought.
+    /// Method that finds the steady state.
     pub method: SteadyMethod,
-    /// Highest harmonic that is given out; it does not touch the accuracy of the others.
+    /// Highest harmonic that is returned; it does not affect the accuracy of the others.
     pub harmonics: usize,
-    /// Equidistant times per period at which the motion is given out; 0: none.
+    /// Number of equidistant times per period at which the motion is returned; 0: none.
     pub samples: usize,
-    /// Largest change over one period, relative to the largest displacement and velocity, of a steady
-    /// state. With [`SteadyMethod::Shooting`] a last Newton correction follows. It also bounds the local
-    /// error of each step where a smooth law is integrated; otherwise steps are exact to rounding.
+    /// Largest change of a steady state over one period, relative to the largest displacement and velocity. With
+    /// [`SteadyMethod::Shooting`] a last Newton correction follows. It also bounds the local error of each step
+    /// where a smooth law is integrated; otherwise steps are exact to rounding.
     pub tolerance: f64,
-    /// Cap on the periods that are integrated.
+    /// Largest number of integrated periods.
     pub max_periods: usize,
-    /// Motion to start from: complex, (H + 1) × ndof of any H, harmonic by harmonic, as of a branch's
-    /// point; `None`: rest.
+    /// Initial motion: complex, (H + 1) × ndof of any H, harmonic by harmonic, as at a point of a branch; `None`:
+    /// zero displacement and velocity.
     pub start: Option<&'a [Complex64]>,
 }
 
@@ -103,11 +103,11 @@ fn check_search(tolerance: f64, max_periods: usize) -> Result<()> {
 /// Options of the check of a point by integration in time.
 #[derive(Clone, Copy, Debug)]
 pub struct VerifyOptions {
-    /// How the steady state is sought. Shooting finds the point's own solution where it is unstable, too.
+    /// Method that finds the steady state. Shooting finds the point's own solution where it is unstable, too.
     pub method: SteadyMethod,
     /// See [`TimeOptions::tolerance`].
     pub tolerance: f64,
-    /// Cap on the periods that are integrated.
+    /// Largest number of integrated periods.
     pub max_periods: usize,
     /// Largest distance from the motion found in time, relative to that motion, at which the point counts as
     /// the same solution.

@@ -1,10 +1,10 @@
-//! A nonlinear mode as a [`Problem`]: extended periodic motion, in which an artificial negative
+//! Extended periodic motion concept (EPMC): a nonlinear mode as a [`Problem`], in which an artificial negative
 //! damping balances the losses of the structure and its contacts (Krack 2015,
 //! doi:10.1016/j.compstruc.2015.03.008).
 //!
-//! M ẍ + (C − 2DωM) ẋ + K x + f(x) = 0, or −ζK ẋ with D = ζω/2. With x = a·x̂ unknown are the
+//! M ẍ + (C − 2DωM) ẋ + K x + f(x) = 0, or −ζK ẋ with D = ζω/2. With x = a·x̂ the unknowns are the
 //! packed relative motions ŷ, the frequency ω and the damping ratio D; the parameter is log₁₀ a.
-//! A law sees the amplitude by scaling alone, f̂(ŷ) = f(a ŷ)/a, as it does where it is eased by 1/a;
+//! The amplitude enters a law by scaling alone, f̂(ŷ) = f(a ŷ)/a, the law scaled by s = 1/a;
 //! hence ∂f̂/∂log₁₀a = −ln 10·∂f̂/∂ln s.
 //!
 //! > R = ŷ_h − W x̂_h,  x̂_h = −Z_h(ω, D)⁻¹ Wᴴ (f̂_h − κ ŷ_h),
@@ -15,10 +15,12 @@
 use crate::condense::Condensed;
 use crate::condense::modal_flexibility::Modal;
 use crate::error::{Result, fail, try_vec};
+use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
 use crate::model::spring::{Row, along};
 use crate::problem::contact_forces::ContactForces;
-use crate::problem::{InitialGuess, Linearisation, Problem, put};
+use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
+use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};
 use num_complex::Complex64;
 use std::f64::consts::LN_10;
 
@@ -69,16 +71,19 @@ pub struct Epmc<'a> {
     modal: Modal,
     gauge: &'a Gauge,
     linear: &'a LinearMode,
-    /// Fixed log₁₀ a while the parameter is the logarithm of a further factor on the laws.
-    eased_at: Option<f64>,
     /// x̂ of all carried harmonics, as last evaluated.
     x: Vec<Complex64>,
     weighted: Vec<Complex64>,
     w: Vec<Complex64>,
     /// One number per coordinate, for a column of the Jacobian.
     sum: Vec<Complex64>,
-    /// G of one harmonic, column-major.
+    /// G of one harmonic after the other, column-major.
     flexibility: Vec<Complex64>,
+    /// Columns of the Jacobian that belong to the unknowns of ω and D, and the parts of its last two rows that belong
+    /// to contact forces: amplitude and phase per force.
+    by_omega: Vec<f64>,
+    by_damping: Vec<f64>,
+    gauge_rows: Vec<[Complex64; 2]>,
 }
 
 impl<'a> Epmc<'a> {
@@ -89,18 +94,28 @@ impl<'a> Epmc<'a> {
     pub fn new(condensed: &'a Condensed, gauge: &'a Gauge, linear: &'a LinearMode, samples: usize) -> Result<Self> {
         const CONTEXT: &str = "the nonlinear mode";
         let n = condensed.ndof();
+        let unknowns = condensed.coordinates().saturating_mul(condensed.set().packed_len()) + 2;
         Ok(Self {
             condensed,
             forces: ContactForces::new(condensed, samples)?,
             modal: Modal::new(condensed)?,
             gauge,
             linear,
-            eased_at: None,
             x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
             weighted: try_vec(n, Complex64::ZERO, CONTEXT)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
-            flexibility: try_vec(condensed.coordinates().saturating_pow(2), Complex64::ZERO, CONTEXT)?,
+            flexibility: try_vec(
+                condensed
+                    .coordinates()
+                    .saturating_pow(2)
+                    .saturating_mul(condensed.blocks().len()),
+                Complex64::ZERO,
+                CONTEXT,
+            )?,
+            by_omega: try_vec(unknowns, 0.0, CONTEXT)?,
+            by_damping: try_vec(unknowns, 0.0, CONTEXT)?,
+            gauge_rows: try_vec(condensed.coordinates(), [Complex64::ZERO; 2], CONTEXT)?,
         })
     }
 
@@ -206,56 +221,41 @@ impl<'a> Epmc<'a> {
         }
     }
 
-    /// Amplitude and phase, with their derivatives, in the last two rows of the system.
-    fn fix_gauge(&mut self, rates: (f64, f64), by_parameter: f64, out: &mut Linearisation) {
+    /// Amplitude and phase in the last two rows of the system, with their derivatives by all but the motions.
+    fn fix_gauge(&mut self, rates: (f64, f64), by_parameter: f64, out: &mut Residual) {
         self.weigh();
-        let n = out.residual.len();
+        let n = out.values.len();
         let (amplitude, phase) = (n - 2, n - 1);
         let i = self.condensed.set().fundamental();
         let dof = self.gauge.reference_dof;
         let scale = self.condensed.length() / self.linear.shape[dof].norm();
         let x = self.modal.x();
-        out.residual[amplitude] = inner(&self.weighted, x).re - 1.0;
-        out.residual[phase] = scale * x[dof].im;
+        out.values[amplitude] = inner(&self.weighted, x).re - 1.0;
+        out.values[phase] = scale * x[dof].im;
         for c in 0..self.condensed.coordinates() {
             let column = self.modal.column(c);
             // x̂ changes by −column·dw; Im z = Re(−i z).
             let size = -2.0 * inner(&self.weighted, column);
             let turn = Complex64::I * scale * column[dof];
-            let eased = self.forces.d_ln_scale(c, i) * by_parameter;
+            self.gauge_rows[c] = [size, turn];
+            let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
             for (row, g) in [(amplitude, size), (phase, turn)] {
-                self.forces.couple_scalar(i, (row, c), g, &mut out.jacobian, n);
-                out.d_parameter[row] += (g * eased).re;
-                out.jacobian[(n - 2) * n + row] += rates.0 * (g * self.forces.by_omega(c, i)).re;
+                out.d_parameter[row] += (g * d_scale).re;
+                self.by_omega[row] += rates.0 * (g * self.forces.by_omega(c, i)).re;
             }
         }
         for (column, rate, dx) in [
-            (n - 2, rates.0, self.modal.by_omega()),
-            (n - 1, rates.1, self.modal.by_damping()),
+            (&mut self.by_omega, rates.0, self.modal.by_omega()),
+            (&mut self.by_damping, rates.1, self.modal.by_damping()),
         ] {
-            out.jacobian[column * n + amplitude] += 2.0 * rate * inner(&self.weighted, dx).re;
-            out.jacobian[column * n + phase] += rate * scale * dx[dof].im;
+            column[amplitude] += 2.0 * rate * inner(&self.weighted, dx).re;
+            column[phase] += rate * scale * dx[dof].im;
         }
     }
-}
 
-impl Problem for Epmc<'_> {
-    fn size(&self) -> usize {
-        self.condensed.coordinates() * self.condensed.set().packed_len() + 2
-    }
-
-    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
-        // f̂ depends on the parameter through ln s: s = 1/a, or s = e^p/a in a homotopy.
-        let by_parameter = match self.eased_at {
-            None => {
-                self.forces.set_scale(10f64.powf(-p));
-                -LN_10
-            }
-            Some(log10) => {
-                self.forces.set_scale(10f64.powf(-log10) * p.exp());
-                1.0
-            }
-        };
+    /// Residual for laws scaled by s, and its derivative by a parameter p with ∂ln s/∂p = `by_parameter`.
+    fn evaluate_scaled(&mut self, u: &[f64], s: f64, by_parameter: f64, out: &mut Residual) -> Result<()> {
+        self.forces.set_scale(s);
         let n = u.len();
         let motion = &u[..n - 2];
         let (omega, damping) = Self::frequency_and_damping(self.linear, u);
@@ -267,13 +267,10 @@ impl Problem for Epmc<'_> {
         let set = self.condensed.set();
         let m = set.packed_len();
         let coordinates = self.condensed.coordinates();
-        out.residual[..n - 2].copy_from_slice(motion);
+        out.values[..n - 2].copy_from_slice(motion);
         out.d_parameter.fill(0.0);
-        out.jacobian.fill(0.0);
-        out.active.fill(true);
-        for k in 0..n - 2 {
-            out.jacobian[k * n + k] = 1.0;
-        }
+        self.by_omega.fill(0.0);
+        self.by_damping.fill(0.0);
         let dofs = self.condensed.ndof();
         let mut largest = 0.0_f64;
         for (i, block) in self.condensed.blocks().iter().enumerate() {
@@ -287,27 +284,25 @@ impl Problem for Epmc<'_> {
             largest = self.modal.x().iter().fold(largest, |m, z| m.max(z.norm()));
             for (r, row) in block.rows.iter().enumerate() {
                 let position = r * m + at;
-                put(&mut out.residual, position, mean, -along(row, self.modal.x()));
+                put(&mut out.values, position, mean, -along(row, self.modal.x()));
                 for (column, rate, dx) in [
-                    (n - 2, rates.0, self.modal.by_omega()),
-                    (n - 1, rates.1, self.modal.by_damping()),
+                    (&mut self.by_omega, rates.0, self.modal.by_omega()),
+                    (&mut self.by_damping, rates.1, self.modal.by_damping()),
                 ] {
-                    put(&mut out.jacobian[column * n..], position, mean, -rate * along(row, dx));
+                    put(column, position, mean, -rate * along(row, dx));
                 }
                 for c in 0..coordinates {
                     let g = along(row, self.modal.column(c));
-                    self.flexibility[c * coordinates + r] = g;
-                    let eased = self.forces.d_ln_scale(c, i) * by_parameter;
-                    put(&mut out.d_parameter, position, mean, g * eased);
-                    let column = &mut out.jacobian[(n - 2) * n..];
-                    put(column, position, mean, rates.0 * g * self.forces.by_omega(c, i));
+                    self.flexibility[(i * coordinates + c) * coordinates + r] = g;
+                    let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
+                    put(&mut out.d_parameter, position, mean, g * d_scale);
+                    put(
+                        &mut self.by_omega,
+                        position,
+                        mean,
+                        rates.0 * g * self.forces.by_omega(c, i),
+                    );
                 }
-            }
-            for (k, column) in out.jacobian.chunks_exact_mut(n).take(n - 2).enumerate() {
-                let flexibility = (|_| &self.flexibility[..], coordinates);
-                let column = &mut column[..n - 2];
-                self.forces
-                    .couple(i..i + 1, (k / m, k % m), flexibility, &mut self.sum, column);
             }
             if block.number == 1 {
                 self.fix_gauge(rates, by_parameter, out);
@@ -317,6 +312,58 @@ impl Problem for Epmc<'_> {
         out.scale = 1.0 + norm(motion) + OF_MOTION * largest * (coordinates as f64).sqrt();
         Ok(())
     }
+}
+
+impl Jacobian for Epmc<'_> {
+    fn size(&self) -> usize {
+        self.condensed.coordinates() * self.condensed.set().packed_len() + 2
+    }
+
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+        let n = active.len();
+        let set = self.condensed.set();
+        let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());
+        active.fill(true);
+        matrix.fill(0.0);
+        for k in 0..n - 2 {
+            matrix[k * n + k] = 1.0;
+        }
+        let square = coordinates * coordinates;
+        for i in 0..self.condensed.blocks().len() {
+            let flexibility = &self.flexibility[i * square..(i + 1) * square];
+            for (k, column) in matrix.chunks_exact_mut(n).take(n - 2).enumerate() {
+                let flexibility = (|_| flexibility, coordinates);
+                let column = &mut column[..n - 2];
+                self.forces
+                    .couple(i..i + 1, (k / m, k % m), flexibility, &mut self.sum, column);
+            }
+        }
+        let fundamental = set.fundamental();
+        for (c, rows) in self.gauge_rows.iter().enumerate() {
+            for (row, &g) in [n - 2, n - 1].into_iter().zip(rows) {
+                self.forces.couple_scalar(fundamental, (row, c), g, matrix, n);
+            }
+        }
+        matrix[(n - 2) * n..(n - 1) * n].copy_from_slice(&self.by_omega);
+        matrix[(n - 1) * n..].copy_from_slice(&self.by_damping);
+    }
+}
+
+impl AlongPath for Epmc<'_> {
+    /// The fixed parameter is log₁₀ a; along the path s = e^p/a.
+    fn evaluate_along(&mut self, _path: Path, log10: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
+        self.evaluate_scaled(u, 10f64.powf(-log10) * p.exp(), 1.0, out)
+    }
+
+    fn observe_along(&self, _path: Path, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
+        self.observe(u, direction)
+    }
+}
+
+impl Problem for Epmc<'_> {
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
+        self.evaluate_scaled(u, 10f64.powf(-p), -LN_10, out)
+    }
 
     /// 1 plus the damping ratio above that of the linear mode, in units that count.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
@@ -324,7 +371,7 @@ impl Problem for Epmc<'_> {
         ((1.0 + u[n - 1]).into(), direction[n - 1].into())
     }
 
-    fn start(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
+    fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
         if kind != InitialGuess::Stuck {
             return Ok(false);
         }
@@ -332,7 +379,7 @@ impl Problem for Epmc<'_> {
         Ok(true)
     }
 
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
+    fn homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<Homotopy<'_>>> {
         let mut factor = self.forces.linearisation_scale(&u[..u.len() - 2], self.linear.omega)?;
         if self.forces.have_known_linear_range() {
             factor *= 10f64.powf(p);
@@ -341,11 +388,6 @@ impl Problem for Epmc<'_> {
         if !(start > 0.0 && start.is_finite()) {
             return Ok(None);
         }
-        self.eased_at = Some(p);
-        Ok(Some((start, 0.0)))
-    }
-
-    fn end_homotopy(&mut self) {
-        self.eased_at = None;
+        Ok(Some(PathHomotopy::between((start, 0.0), self, Path::ScaledLaws, p)))
     }
 }

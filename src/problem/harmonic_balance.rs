@@ -1,52 +1,47 @@
-//! The forced response as a [`Problem`]: unknown are the packed relative motions of the contacts,
-//! the parameter is the angular frequency. In the start's homotopies it is ln s, where every law is
-//! seen as s·f(y/s), or a factor on the forces that vibrate.
+//! The forced response as a [`Problem`]: the unknowns are the packed relative motions of the contacts,
+//! the parameter is the angular frequency ω, or in a homotopy that of its [`Path`].
 //!
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y) + G ∂f/∂ω.
-
-mod newton_products;
 
 use crate::condense::Condensed;
 use crate::condense::frequency_cache::FrequencyCache;
 use crate::error::{Result, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::linalg::linear_system::{Jacobian, MatrixFree};
+use crate::linalg::lu::Lu;
 use crate::linalg::norm;
 use crate::problem::contact_forces::ContactForces;
-pub use crate::problem::harmonic_balance::newton_products::packed_up_to;
+use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
+use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};
 use crate::problem::static_force::static_force;
-use crate::problem::{InitialGuess, Linearisation, Problem, put};
 use num_complex::Complex64;
-
-/// What the parameter means.
-#[derive(Clone, Copy, Debug)]
-enum Parameter {
-    Omega,
-    /// ln of the factor by which the laws see a smaller amplitude, at a fixed frequency.
-    Scale {
-        omega: f64,
-    },
-    /// Factor on the forces that vibrate, at a fixed frequency; constant ones act in full.
-    Load {
-        omega: f64,
-    },
-}
 
 /// The forced response of a condensed model.
 pub struct HarmonicBalance<'a> {
-    condensed: &'a Condensed,
-    forces: ContactForces<'a>,
-    tables: FrequencyCache,
-    parameter: Parameter,
+    pub(super) condensed: &'a Condensed,
+    pub(super) forces: ContactForces<'a>,
+    pub(super) tables: FrequencyCache,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
     /// Whether the static solution is not zero, because a contact presses or a law pushes at rest.
     loaded_at_rest: bool,
     /// One number per coordinate, for a column of the Jacobian.
-    sum: Vec<Complex64>,
+    pub(super) sum: Vec<Complex64>,
     /// G as [`ContactForces::couple_all`] wants it.
     flexibility: Vec<Complex64>,
     /// One packed signal.
     change: Vec<f64>,
+    pub(super) products: ProductMemory,
+}
+
+/// Memory of products with the Jacobian, made when they are first asked for.
+#[derive(Default)]
+pub(super) struct ProductMemory {
+    pub column: Vec<f64>,
+    pub change: Vec<f64>,
+    /// Contact Jacobians that were kept.
+    pub kept: Vec<f64>,
 }
 
 impl<'a> HarmonicBalance<'a> {
@@ -74,13 +69,13 @@ impl<'a> HarmonicBalance<'a> {
             condensed,
             forces: ContactForces::new(condensed, samples)?,
             tables: FrequencyCache::new(condensed, response, range)?,
-            parameter: Parameter::Omega,
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
             loaded_at_rest,
             sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             flexibility: try_vec(flexibility, Complex64::ZERO, CONTEXT)?,
             change: try_vec(set.packed_len(), 0.0, CONTEXT)?,
+            products: ProductMemory::default(),
         })
     }
 
@@ -98,32 +93,20 @@ impl<'a> HarmonicBalance<'a> {
         self.forces.sampling_error(u, omega)
     }
 
-    /// What [`Problem::evaluate`] finds, without the Jacobian, for which `out` needs no memory.
-    ///
-    /// # Errors
-    /// As there.
-    pub fn evaluate_residual(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
-        let omega = match self.parameter {
-            Parameter::Omega => {
-                self.forces.set_scale(1.0);
-                p
-            }
-            Parameter::Scale { omega } => {
-                self.forces.set_scale(p.exp());
-                omega
-            }
-            Parameter::Load { omega } => {
-                self.forces.set_scale(1.0);
-                omega
-            }
+    /// Residual at the frequency `omega` and its derivative by ω, or by the parameter `p` of a path.
+    fn evaluate_at(&mut self, u: &[f64], omega: f64, path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
+        let scale = match path {
+            Some((Path::ScaledLaws, p)) => p.exp(),
+            Some((Path::GrowingLoad, _)) | None => 1.0,
         };
+        self.forces.set_scale(scale);
         self.tables.tabulate(self.condensed, omega)?;
         self.forces.evaluate(u, omega)?;
         let set = self.condensed.set();
         let m = set.packed_len();
         let coordinates = self.condensed.coordinates();
         let outputs = coordinates + 1;
-        out.residual.copy_from_slice(u);
+        out.values.copy_from_slice(u);
         out.d_parameter.fill(0.0);
         let mut linear = 0.0_f64;
         for (i, table) in self.tables.current().iter().enumerate() {
@@ -133,16 +116,16 @@ impl<'a> HarmonicBalance<'a> {
                 let r = row * m + at;
                 let y_lin = table.value[coordinates * outputs + row];
                 linear += y_lin.norm_sqr();
-                match self.parameter {
-                    Parameter::Omega => {
-                        put(&mut out.residual, r, mean, -y_lin);
+                match path {
+                    None => {
+                        put(&mut out.values, r, mean, -y_lin);
                         put(&mut out.d_parameter, r, mean, -table.slope[coordinates * outputs + row]);
                     }
-                    Parameter::Load { .. } if !mean => {
-                        put(&mut out.residual, r, mean, -p * y_lin);
+                    Some((Path::GrowingLoad, p)) if !mean => {
+                        put(&mut out.values, r, mean, -p * y_lin);
                         put(&mut out.d_parameter, r, mean, -y_lin);
                     }
-                    Parameter::Scale { .. } | Parameter::Load { .. } => put(&mut out.residual, r, mean, -y_lin),
+                    Some(_) => put(&mut out.values, r, mean, -y_lin),
                 }
             }
             for column in 0..coordinates {
@@ -150,18 +133,18 @@ impl<'a> HarmonicBalance<'a> {
                     continue;
                 }
                 let w = self.forces.minus_reference(u, column, i);
-                let (eased, by_omega) = (self.forces.d_ln_scale(column, i), self.forces.by_omega(column, i));
+                let (by_scale, by_omega) = (self.forces.d_ln_scale(column, i), self.forces.by_omega(column, i));
                 for row in 0..coordinates {
                     let r = row * m + at;
                     let g = table.value[column * outputs + row];
-                    put(&mut out.residual, r, mean, g * w);
-                    match self.parameter {
-                        Parameter::Omega => {
+                    put(&mut out.values, r, mean, g * w);
+                    match path {
+                        None => {
                             let slope = table.slope[column * outputs + row] * w + g * by_omega;
                             put(&mut out.d_parameter, r, mean, slope);
                         }
-                        Parameter::Scale { .. } => put(&mut out.d_parameter, r, mean, g * eased),
-                        Parameter::Load { .. } => {}
+                        Some((Path::ScaledLaws, _)) => put(&mut out.d_parameter, r, mean, g * by_scale),
+                        Some((Path::GrowingLoad, _)) => {}
                     }
                 }
             }
@@ -170,33 +153,33 @@ impl<'a> HarmonicBalance<'a> {
         Ok(())
     }
 
-    /// ∂R/∂y = I + G (∂f/∂y − κ); what no force feels that counts keeps the column of the identity.
-    fn assemble(&mut self, out: &mut Linearisation) {
-        let set = self.condensed.set();
-        let (m, harmonics) = (set.packed_len(), set.numbers().len());
+    /// The observed amplitude and its derivative along a direction, the last number of which belongs to ω or to a path.
+    fn observe_at(&self, u: &[f64], direction: &[f64], path: Option<Path>) -> (Complex64, Complex64) {
         let coordinates = self.condensed.coordinates();
-        let n = out.residual.len();
-        self.forces.mark_active(&mut out.active);
-        if out.active.contains(&true) {
-            for (i, table) in self.tables.current().iter().enumerate() {
-                let forces = table.value.chunks_exact(coordinates + 1).take(coordinates);
-                for (force, column) in forces.enumerate() {
-                    let first = force * coordinates * harmonics + i;
-                    let to = self.flexibility[first..].iter_mut().step_by(harmonics);
-                    for (to, g) in to.zip(&column[..coordinates]) {
-                        *to = *g;
-                    }
-                }
-            }
+        let outputs = coordinates + 1;
+        let i = self.observed;
+        let table = &self.tables.current()[i];
+        let along_p = direction[u.len()];
+        let rate = |z: Complex64| match path {
+            None => z * along_p,
+            Some(_) => Complex64::ZERO,
+        };
+        let excited = coordinates * outputs + coordinates;
+        let mut z = table.value[excited];
+        let mut dz = rate(table.slope[excited]);
+        for c in (0..coordinates).filter(|&c| !self.forces.is_inactive(c)) {
+            let w = self.forces.minus_reference(u, c, i);
+            let g = table.value[c * outputs + coordinates];
+            let mut dw = self.forces.along(direction, c, i);
+            dw += match path {
+                None => self.forces.by_omega(c, i) * along_p,
+                Some(Path::ScaledLaws) => self.forces.d_ln_scale(c, i) * along_p,
+                Some(Path::GrowingLoad) => Complex64::ZERO,
+            };
+            z -= g * w;
+            dz -= g * dw + rate(table.slope[c * outputs + coordinates]) * w;
         }
-        for (k, column) in out.jacobian.chunks_exact_mut(n.max(1)).enumerate() {
-            column.fill(0.0);
-            column[k] = 1.0;
-            if out.active[k] {
-                self.forces
-                    .couple_all((k / m, k % m), &self.flexibility, &mut self.change, column);
-            }
-        }
+        (z, dz)
     }
 
     /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
@@ -205,6 +188,24 @@ impl<'a> HarmonicBalance<'a> {
         for (c, w) in w.iter_mut().enumerate() {
             *w = self.forces.minus_reference(u, c, i);
         }
+    }
+
+    /// Number of unknowns.
+    #[must_use]
+    pub fn unknowns(&self) -> usize {
+        self.condensed.unknowns()
+    }
+
+    /// The carried harmonics.
+    #[must_use]
+    pub fn set(&self) -> &'a HarmonicSet {
+        self.condensed.set()
+    }
+
+    /// The contact forces at the point last evaluated.
+    #[must_use]
+    pub fn forces(&self) -> &ContactForces<'a> {
+        &self.forces
     }
 
     /// Harmonics of the response degree of freedom at the point last evaluated, in the order in
@@ -221,68 +222,85 @@ impl<'a> HarmonicBalance<'a> {
     }
 }
 
-impl Problem for HarmonicBalance<'_> {
+impl Jacobian for HarmonicBalance<'_> {
     fn size(&self) -> usize {
-        self.condensed.coordinates() * self.condensed.set().packed_len()
+        self.unknowns()
     }
 
-    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Linearisation) -> Result<()> {
-        self.evaluate_residual(u, p, out)?;
-        self.assemble(out);
-        Ok(())
+    /// ∂R/∂y = I + G (∂f/∂y − κ); a motion on which no force depends keeps the column of the identity.
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+        let set = self.condensed.set();
+        let (m, harmonics) = (set.packed_len(), set.numbers().len());
+        let coordinates = self.condensed.coordinates();
+        let n = active.len();
+        self.forces.mark_active(active);
+        if active.contains(&true) {
+            for (i, table) in self.tables.current().iter().enumerate() {
+                let forces = table.value.chunks_exact(coordinates + 1).take(coordinates);
+                for (force, column) in forces.enumerate() {
+                    let first = force * coordinates * harmonics + i;
+                    let to = self.flexibility[first..].iter_mut().step_by(harmonics);
+                    for (to, g) in to.zip(&column[..coordinates]) {
+                        *to = *g;
+                    }
+                }
+            }
+        }
+        for (k, column) in matrix.chunks_exact_mut(n.max(1)).enumerate() {
+            column.fill(0.0);
+            column[k] = 1.0;
+            if active[k] {
+                self.forces
+                    .couple_all((k / m, k % m), &self.flexibility, &mut self.change, column);
+            }
+        }
+    }
+
+    fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
+        Some(self)
+    }
+}
+
+impl AlongPath for HarmonicBalance<'_> {
+    fn evaluate_along(&mut self, path: Path, omega: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
+        self.evaluate_at(u, omega, Some((path, p)), out)
+    }
+
+    fn observe_along(&self, path: Path, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
+        self.observe_at(u, direction, Some(path))
+    }
+}
+
+impl Problem for HarmonicBalance<'_> {
+    fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
+        self.evaluate_at(u, p, None, out)
     }
 
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let coordinates = self.condensed.coordinates();
-        let outputs = coordinates + 1;
-        let i = self.observed;
-        let table = &self.tables.current()[i];
-        let along_p = direction[u.len()];
-        let rate = |z: Complex64| match self.parameter {
-            Parameter::Omega => z * along_p,
-            Parameter::Scale { .. } | Parameter::Load { .. } => Complex64::ZERO,
-        };
-        let excited = coordinates * outputs + coordinates;
-        let mut z = table.value[excited];
-        let mut dz = rate(table.slope[excited]);
-        for c in (0..coordinates).filter(|&c| !self.forces.is_inactive(c)) {
-            let w = self.forces.minus_reference(u, c, i);
-            let g = table.value[c * outputs + coordinates];
-            let mut dw = self.forces.along(direction, c, i);
-            dw += match self.parameter {
-                Parameter::Omega => self.forces.by_omega(c, i) * along_p,
-                Parameter::Scale { .. } => self.forces.d_ln_scale(c, i) * along_p,
-                Parameter::Load { .. } => Complex64::ZERO,
-            };
-            z -= g * w;
-            dz -= g * dw + rate(table.slope[c * outputs + coordinates]) * w;
-        }
-        (z, dz)
+        self.observe_at(u, direction, None)
     }
 
-    fn start(&mut self, kind: InitialGuess, p: f64, u: &mut [f64]) -> Result<bool> {
+    fn initial_guess(&mut self, kind: InitialGuess, p: f64, u: &mut [f64]) -> Result<bool> {
         match kind {
             InitialGuess::Given => {
                 let Some(given) = &self.given else { return Ok(false) };
                 u.copy_from_slice(given);
                 Ok(true)
             }
-            // What presses at rest has no solution of the form that scales: the load must grow.
+            // A contact that presses at rest has no solution of the form that scales: the load must grow.
             InitialGuess::Stuck if self.loaded_at_rest => Ok(false),
             InitialGuess::Stuck => {
                 // At motions far smaller every law is linear: one Newton step from rest.
                 u.fill(0.0);
-                let mut at = Linearisation::new(u.len())?;
-                self.parameter = Parameter::Scale { omega: p };
-                let evaluated = self.evaluate(u, f64::INFINITY, &mut at);
-                self.parameter = Parameter::Omega;
-                evaluated?;
-                let mut lu = crate::linalg::lu::Lu::new(u.len(), 1)?;
-                lu.matrix().copy_from_slice(&at.jacobian);
+                let mut at = Residual::new(u.len())?;
+                self.evaluate_at(u, p, Some((Path::ScaledLaws, f64::INFINITY)), &mut at)?;
+                let mut lu = Lu::new(u.len(), 1)?;
+                let mut active = try_vec(u.len(), true, "the initial guess")?;
+                self.fill(lu.matrix(), &mut active);
                 if lu.factor().is_err() {
                     return Ok(false);
                 }
-                for (u, r) in u.iter_mut().zip(&at.residual) {
+                for (u, r) in u.iter_mut().zip(&at.values) {
                     *u = -r;
                 }
                 lu.solve(u);
@@ -304,25 +322,18 @@ impl Problem for HarmonicBalance<'_> {
         }
     }
 
-    fn begin_homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<(f64, f64)>> {
+    fn homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<Homotopy<'_>>> {
         if self.loaded_at_rest {
-            self.parameter = Parameter::Load { omega: p };
-            return Ok(Some((0.0, 1.0)));
+            return Ok(Some(PathHomotopy::between((0.0, 1.0), self, Path::GrowingLoad, p)));
         }
         let start = (1.01 * self.forces.linearisation_scale(u, p)?).ln();
         if !(start > 0.0 && start.is_finite()) {
             return Ok(None);
         }
-        self.parameter = Parameter::Scale { omega: p };
-        Ok(Some((start, 0.0)))
+        Ok(Some(PathHomotopy::between((start, 0.0), self, Path::ScaledLaws, p)))
     }
 
-    fn end_homotopy(&mut self) {
-        self.parameter = Parameter::Omega;
-        self.forces.set_scale(1.0);
-    }
-
-    /// Where damping takes the power of the forces; without it resonances are the exception.
+    /// Damping takes the power of the forces; without it resonances are the exception.
     fn is_bounded(&self) -> bool {
         true
     }

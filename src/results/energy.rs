@@ -1,13 +1,12 @@
 //! Energies and losses of a periodic motion x(t) = Re Σₕ Xₕ e^{ihωt}, from its harmonics.
 //!
-//! With v_h = ihωX_h the kinetic energy is k(t) = ½ v·Mv and the strain energy u(t) = ½ x·Kx; K holds
-//! springs and contacts that never slip, while contacts that may slip have no part in it: they store
-//! and dissipate. The means follow from forms X_hᴴ A_h X_h, the losses per cycle from
-//! ∮ f ẋ dt = π Σₕ h Im(F_h conj(X_h)).
+//! With v_h = ihωX_h the kinetic energy is k(t) = ½ v·Mv and the strain energy u(t) = ½ x·Kx; K includes springs
+//! and contacts that never slip, but not contacts that may slip, which both store and dissipate energy. The means
+//! follow from forms X_hᴴ A_h X_h, the losses per cycle from ∮ f ẋ dt = π Σₕ h Im(F_h conj(X_h)).
 //!
-//! Everything is of one sector in the solver's units; a sector is credited with half of what couples
-//! it to its neighbours, so that N sectors make the wheel. In the wheel's sum of k or u, whose
-//! harmonic n lags by n·2π·EO/N from sector to sector, only the harmonics with n·EO ≡ 0 mod N stay.
+//! All quantities are those of one sector in the units of the solver. A sector includes half of its couplings to
+//! its neighbours, so that N sectors make the wheel. In the sum of k or u over the wheel, whose harmonic n lags by
+//! n·2π·EO/N from sector to sector, only the harmonics with n·EO ≡ 0 mod N remain.
 
 use crate::condense::Condensed;
 use crate::error::{Error, Result, try_vec};
@@ -17,25 +16,25 @@ use crate::linalg::quadratic::{ComplexSum, form, product};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Energies and losses of one sector that need no look along the period.
+/// Energies and losses of one sector that follow without a scan of the period.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Balance {
     /// Σ_{h>0} ½ (hω)² X_hᴴ M_h X_h, twice the mean kinetic energy.
     pub twice_mean_kinetic: f64,
-    /// Mean strain energy of the linear structure, with springs and contacts that never slip and
-    /// without the other contacts.
+    /// Mean strain energy of the linear structure, with springs and contacts that never slip, without the other
+    /// contacts.
     pub potential_mean: f64,
-    /// Work per cycle that damping, and stiffness without symmetry, take from the motion.
+    /// Work per cycle that damping, and stiffness without symmetry, dissipate.
     pub structural_loss: f64,
     /// Work per cycle of the contacts that may slip.
     pub friction_loss: f64,
 }
 
-/// Balance of a motion `x` (carried harmonics × ndof) at `omega`, whose contacts move by `motion`
-/// under `forces` (packed harmonics per coordinate); all in the solver's units. Takes no memory.
+/// Balance of a motion `x` (carried harmonics × ndof) at `omega`, whose contacts move by `motion` under `forces`
+/// (packed harmonics per coordinate); all in the units of the solver. It does not allocate.
 ///
-/// The forms are summed with their rounding errors: a stiff structure that moves almost rigidly has
-/// little of the energy of its largest term, and undamped structures must not seem to dissipate.
+/// The forms are summed with their rounding errors: a stiff structure that moves almost rigidly has little of the
+/// energy of its largest term, and undamped structures must not appear to dissipate.
 #[must_use]
 pub fn balance(condensed: &Condensed, omega: f64, x: &[Complex64], forces: &[f64], motion: &[f64]) -> Balance {
     let mut sum = Balance::default();
@@ -75,9 +74,8 @@ pub struct Peaks {
     pub wheel_potential: f64,
 }
 
-/// Largest energies of a motion `x` (carried harmonics × ndof) at `omega`, in the solver's units.
-/// They are sought among all extrema of the energy's Fourier series, which ends at twice the
-/// highest harmonic of the motion.
+/// Largest energies of a motion `x` (carried harmonics × ndof) at `omega`, in the solver's units. The search covers
+/// all extrema of the energy's Fourier series, which ends at twice the highest harmonic of the motion.
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -136,7 +134,7 @@ impl Series {
         let highest = motion.numbers().last().copied().unwrap_or(0);
         let set = HarmonicSet::all(2 * highest)?;
         let mut extrema = Vec::new();
-        // As many as the derivative can have roots, and a few that are rounding.
+        // The derivative has at most this number of roots, a few of them by rounding.
         extrema
             .try_reserve(4 * highest + 4)
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
@@ -149,7 +147,7 @@ impl Series {
         })
     }
 
-    /// ½ Σ a(t) b(t) over n degrees of freedom: harmonics h of a and m of b meet in h + m and h − m.
+    /// ½ Σ a(t) b(t) over n degrees of freedom: harmonics h of a and m of b contribute to h + m and h − m.
     fn set_half_product(&mut self, numbers: &[usize], a: &[Complex64], b: &[Complex64], n: usize) {
         self.coefficients.fill(Complex64::ZERO);
         for (&h, a) in numbers.iter().zip(a.chunks_exact(n)) {
@@ -165,7 +163,7 @@ impl Series {
         }
     }
 
-    /// Makes the series of one sector that of all of them.
+    /// Turns the series of one sector into that of all sectors.
     fn add_sectors(&mut self, sectors: usize, in_step: usize) {
         for (n, c) in self.coefficients.iter_mut().enumerate() {
             *c = if n % in_step == 0 {
@@ -176,7 +174,7 @@ impl Series {
         }
     }
 
-    /// Its largest value, the mean where it is constant.
+    /// Largest value of the series; its mean if it is constant.
     fn maximum(&mut self) -> f64 {
         for (i, &c) in self.coefficients.iter().enumerate() {
             self.set.set(&mut self.packed, i, c);

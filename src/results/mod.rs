@@ -1,17 +1,21 @@
-//! Results: the stored points of a branch, and the numbers that follow from them.
+//! Results: the stored points of a branch, and the quantities derived from them.
 
 mod branch;
+mod branch_recording;
 pub mod contact_loops;
 pub mod energy;
 pub mod mode_branch;
+mod mode_fields;
 mod point_energy;
 mod point_error_fields;
+mod point_harmonics;
 mod point_resolution;
 mod recovery;
 mod time_history;
 
-pub(crate) use branch::SpecialKind;
-pub use branch::{Branch, Record, Special};
+pub use branch::{Branch, Special};
+pub use branch_recording::Record;
+pub(crate) use branch_recording::SpecialKind;
 pub use point_energy::Energy;
 pub use point_resolution::Resolution;
 pub(crate) use recovery::Recovery;

@@ -1,32 +1,31 @@
-//! What a nonlinear mode holds beside the points that every branch has.
+//! Data of a nonlinear mode beside the points that every branch has.
 
 use crate::error::{Error, Result, try_extend, try_push};
 use crate::model::repeated_modes::Multiple;
 use crate::options::Amplitude;
 use crate::problem::epmc::{Gauge, LinearMode};
-use crate::results::Branch;
 use std::f64::consts::PI;
 
-/// Where a nonlinear mode started.
+/// Initial linear mode of a nonlinear mode.
 #[derive(Clone, Debug)]
 pub struct ModeInfo {
-    /// Number of the linear mode, from 0 by rising frequency with the contacts at rest.
+    /// Number of the linear mode, from 0 by rising frequency with stuck contacts.
     pub index: usize,
     /// Its angular frequency without damping.
     pub omega: f64,
-    /// How many modes share that frequency.
+    /// Number of modes of that frequency.
     pub multiplicity: usize,
-    /// How one of them was chosen.
+    /// Rule that chose one of them.
     pub multiple: Multiple,
     /// Degree of freedom whose fundamental is real.
     pub reference_dof: usize,
-    /// Waves per turn of the fundamental: the signed engine order that it was computed for.
+    /// Waves per turn of the fundamental: the signed engine order of the computation.
     pub engine_order: i64,
-    /// What the parameter measures.
+    /// Quantity that the parameter measures.
     pub amplitude: Amplitude,
-    /// log₁₀ of the amplitude up to which all contacts stick; −∞ where a law is never linear.
+    /// log₁₀ of the amplitude up to which all contacts stick; −∞ if a law is never linear.
     pub linear_up_to: f64,
-    /// Natural frequencies of the wave with the contacts at rest, as far as they were found.
+    /// Natural frequencies of the wave with stuck contacts, as far as they were found.
     pub stuck: Vec<f64>,
     /// The same with the contacts removed.
     pub free: Vec<f64>,
@@ -43,26 +42,26 @@ pub struct ModePoint {
     pub damping_ratio: f64,
     /// T = Σ ½(hω)² X_hᴴ M X_h, twice the mean kinetic energy.
     pub energy: f64,
-    /// The fundamental's share of it.
+    /// Share of the fundamental in it.
     pub fundamental_share: f64,
     /// Work of friction per cycle.
     pub friction_loss: f64,
-    /// Work of the structure's damping per cycle.
+    /// Work per cycle of the damping of the structure.
     pub structural_loss: f64,
-    /// Mass-weighted assurance |X₁ᴴ M Y₁|²/(X₁ᴴMX₁·Y₁ᴴMY₁) with the point before; 1 for the first.
+    /// Mass-weighted assurance |X₁ᴴ M Y₁|²/(X₁ᴴMX₁·Y₁ᴴMY₁) with the previous point; 1 for the first.
     pub assurance: f64,
 }
 
 impl ModePoint {
-    /// All losses over 4πT. With artificial damping of mass form the balance of work makes it
-    /// equal to the damping ratio, whatever the number of harmonics.
+    /// All losses over 4πT. With artificial damping of mass form the balance of work makes this equal to the
+    /// damping ratio, whatever the number of harmonics.
     #[must_use]
     pub fn energy_damping_ratio(&self) -> f64 {
         (self.friction_loss + self.structural_loss) / (4.0 * PI * self.energy)
     }
 }
 
-/// The mode's part of a branch.
+/// Data of a nonlinear mode in a branch.
 #[derive(Debug)]
 pub(crate) struct ModeData {
     pub info: ModeInfo,
@@ -70,15 +69,15 @@ pub(crate) struct ModeData {
     pub gauge: Gauge,
     /// The range of log₁₀ amplitude.
     pub range: (f64, f64),
-    /// The numbers of all stored points, an array for each of them, so that they can be borrowed.
+    /// The numbers of all stored points, one array for each field, so that fields can be borrowed.
     fields: [Vec<f64>; FIELDS],
     /// Unknowns and parameter of each point of the curve, then its tangent.
     states: Vec<f64>,
-    /// Where the state of each point begins.
+    /// Offset of the state of each point.
     begins: Vec<usize>,
 }
 
-/// Numbers of a [`ModePoint`].
+/// Number of fields of a [`ModePoint`].
 const FIELDS: usize = 8;
 
 impl ModeData {
@@ -94,7 +93,7 @@ impl ModeData {
         }
     }
 
-    /// Stores a point; nothing is stored where memory ends.
+    /// Stores a point, or nothing if memory is exhausted.
     pub fn push(&mut self, point: ModePoint) -> Result<()> {
         const CONTEXT: &str = "the points of the mode";
         for field in &mut self.fields {
@@ -116,7 +115,7 @@ impl ModeData {
         Ok(())
     }
 
-    /// Keeps the state of a point of the curve.
+    /// Stores the state of a point of the curve.
     pub fn push_state(&mut self, v: &[f64], tangent: &[f64]) -> Result<()> {
         try_push(&mut self.begins, self.states.len(), "the points of the mode")?;
         try_extend(&mut self.states, v, "the points of the mode")?;
@@ -131,6 +130,12 @@ impl ModeData {
         Some(both.split_at(both.len() / 2))
     }
 
+    /// A field at each stored point.
+    pub fn field(&self, field: ModeField) -> &[f64] {
+        &self.fields[field as usize]
+    }
+
+    /// The numbers of a stored point.
     pub fn point(&self, point: usize) -> Option<ModePoint> {
         let at = |field: ModeField| self.fields[field as usize].get(point).copied();
         Some(ModePoint {
@@ -146,7 +151,7 @@ impl ModeData {
     }
 }
 
-/// Fields of a mode that can be borrowed.
+/// Field of a mode.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ModeField {
     /// [`ModePoint::log10_amplitude`]
@@ -165,37 +170,4 @@ pub enum ModeField {
     Assurance,
     /// [`ModePoint::fundamental_share`]
     FundamentalShare,
-}
-
-impl Branch {
-    /// Where the mode started; `None` for a forced response.
-    #[must_use]
-    pub fn mode(&self) -> Option<&ModeInfo> {
-        self.mode.as_ref().map(|m| &m.info)
-    }
-
-    /// A field of the mode at each point of the curve; `None` for a forced response.
-    #[must_use]
-    pub fn mode_field(&self, field: ModeField) -> Option<&[f64]> {
-        self.mode.as_ref().map(|m| &m.fields[field as usize][..self.points()])
-    }
-
-    /// The mode's numbers at a stored point, special ones included.
-    #[must_use]
-    pub fn mode_at(&self, point: usize) -> Option<ModePoint> {
-        self.mode.as_ref().and_then(|m| m.point(point))
-    }
-
-    /// Damping ratio at a stored point; 0 for a forced response.
-    pub(super) fn damping_at(&self, point: usize) -> f64 {
-        self.mode_at(point).map_or(0.0, |p| p.damping_ratio)
-    }
-
-    pub(crate) fn mode_data(&self) -> Option<&ModeData> {
-        self.mode.as_ref()
-    }
-
-    pub(crate) fn mode_data_mut(&mut self) -> Option<&mut ModeData> {
-        self.mode.as_mut()
-    }
 }

@@ -28,7 +28,7 @@ pub struct Energy {
     pub wheel_potential_mean: f64,
     /// Potential energy of the wheel, largest over the period.
     pub wheel_potential_peak: f64,
-    /// Work per cycle and sector that damping, and stiffness without symmetry, take from the motion.
+    /// Work per cycle and sector that damping, and stiffness without symmetry, dissipate.
     pub structural_loss: f64,
     /// Work per cycle and sector of the contacts that may slip.
     pub friction_loss: f64,
@@ -42,13 +42,13 @@ impl Branch {
     pub fn energy_at(&self, point: usize) -> Result<Energy> {
         const CONTEXT: &str = "the energies";
         let carried = self.carried_of(point)?.len();
-        let condensed = self.level_at(point);
+        let condensed = self.condensed_at(point);
         let (n, length, omega) = (condensed.ndof(), condensed.length(), self.omega[point]);
         let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, CONTEXT)?;
         let mut recovery = Recovery::at(self, point)?;
         for (i, x) in x.chunks_exact_mut(n).enumerate() {
             recovery.harmonic(i, x)?;
-            // In the solver's units: a scale that is a power of two costs no digit.
+            // In the units of the solver, whose scale is a power of two and costs no digit.
             for z in x {
                 *z /= length;
             }

@@ -1,4 +1,4 @@
-//! What is known of the errors of the points of a branch.
+//! Estimated errors of the points of a branch.
 
 use crate::results::Branch;
 
@@ -7,16 +7,16 @@ impl Branch {
         self.estimates = estimates;
     }
 
-    /// Error estimates that were made to choose the harmonics of all points, those of contacts that stick not counted;
-    /// 0 where no tolerance chose.
+    /// Number of error estimates that chose the harmonics of all points, those with stuck contacts not counted; 0
+    /// if no tolerance chose.
     #[must_use]
     pub fn estimates(&self) -> usize {
         self.estimates
     }
 
-    /// Aliasing check of laws that are sampled, at each point: the relative change of their forces with
-    /// half the samples (twice as many, where half are too few). 0 where all laws are exact,
-    /// NaN where a law did not answer to it. It tells the size of the error by sampling and is no bound of it.
+    /// Aliasing check of laws that are sampled, at each point: the relative change of their forces with half the
+    /// samples (twice as many, if half are too few). 0 where all laws are exact, NaN if a law failed in the check.
+    /// It estimates the size of the error by sampling and is no bound of it.
     #[must_use]
     pub fn sampling_error(&self) -> &[f64] {
         &self.sampling_error[..self.curve]
@@ -24,20 +24,20 @@ impl Branch {
 
     /// Estimated relative error of the response amplitude (in a nonlinear mode: of the frequency) by the harmonics
     /// left out, at each point. NaN where it is unknown, and everywhere unless a tolerance chooses the harmonics or
-    /// [`SolverOptions::estimate_error`](crate::options::SolverOptions::estimate_error) asks for it.
+    /// [`SolverOptions::estimate_error`](crate::options::SolverOptions::estimate_error) requests it.
     #[must_use]
     pub fn error_estimate(&self) -> &[f64] {
         &self.error_estimate[..self.curve]
     }
 
-    /// The same of one stored point, the special ones included; NaN at a fold, at whose frequency no solution is
-    /// isolated.
+    /// The same of one stored point, the special ones included; NaN at a fold, at whose frequency the solution is
+    /// not isolated.
     #[must_use]
     pub fn error_estimate_at(&self, point: usize) -> Option<f64> {
         self.error_estimate.get(point).copied()
     }
 
-    /// Estimated error of a nonlinear mode's damping ratio, in units of it, at each point; see
+    /// Estimated relative error of the damping ratio of a nonlinear mode at each point; see
     /// [`Self::error_estimate`].
     #[must_use]
     pub fn damping_error_estimate(&self) -> &[f64] {

@@ -4,13 +4,14 @@ use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_vec};
 use crate::problem::contact_forces::ContactForces;
-use crate::results::{Branch, Resolution};
+use crate::results::branch::Branch;
+use crate::results::point_resolution::Resolution;
 use num_complex::Complex64;
 
-/// Recovers one point after the other.
+/// Recovers the motion of stored points, one at a time.
 pub(crate) struct Recovery<'a> {
     branch: &'a Branch,
-    level: usize,
+    resolution: usize,
     condensed: &'a Condensed,
     workspace: Workspace,
     point: usize,
@@ -21,17 +22,17 @@ pub(crate) struct Recovery<'a> {
 const CONTEXT: &str = "the harmonics";
 
 impl<'a> Recovery<'a> {
-    /// Memory for the points of a branch, gone to a stored one; see [`Self::go_to`].
+    /// Memory for the points of a branch, with a stored point selected; see [`Self::go_to`].
     ///
     /// # Errors
     /// `Index` for an unknown point, `OutOfMemory`; those of callbacks.
     pub fn at(branch: &'a Branch, point: usize) -> Result<Self> {
         branch.carried_of(point)?;
-        let level = branch.places[point].level;
-        let Resolution { condensed, samples } = &branch.levels[level];
+        let resolution = branch.places[point].resolution;
+        let Resolution { condensed, samples } = &branch.resolutions[resolution];
         let mut recovery = Self {
             branch,
-            level,
+            resolution,
             condensed,
             workspace: Workspace::new(condensed, None)?,
             point,
@@ -46,12 +47,12 @@ impl<'a> Recovery<'a> {
         self.branch.motion_at(self.point).unwrap_or(&[])
     }
 
-    /// Evaluates the contact forces at a stored point.
+    /// Selects a stored point and evaluates its contact forces.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks.
     pub fn go_to(&mut self, point: usize) -> Result<()> {
-        if self.branch.places[point].level != self.level {
+        if self.branch.places[point].resolution != self.resolution {
             *self = Self::at(self.branch, point)?;
             return Ok(());
         }
@@ -69,7 +70,7 @@ impl<'a> Recovery<'a> {
     /// Motion of all degrees of freedom in the i-th carried harmonic, in the caller's unit.
     ///
     /// # Errors
-    /// `Singular` at an undamped resonance that no contact feels.
+    /// `Singular` at an undamped resonance that moves no contact.
     pub fn harmonic(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
         let condensed = self.condensed;
         let set = condensed.set();

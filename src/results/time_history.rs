@@ -1,4 +1,4 @@
-//! Motion against time at a stored point, and what happens inside its contacts.
+//! Motion against time at a stored point, and motion, force and state of its contacts.
 
 use crate::contact::Contact;
 use crate::contact::contact_state::State;
@@ -11,7 +11,7 @@ use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
-/// Most times of a loop or a history.
+/// Largest number of times of a loop or a history.
 pub const MOST_TIMES: usize = 1 << 24;
 
 /// A contact over one period at ωt = 2πj/n, j = 0 .. n, in the caller's units.
@@ -19,17 +19,17 @@ pub const MOST_TIMES: usize = 1 << 24;
 pub struct ContactLoop {
     /// Relative motions d of the contact.
     pub directions: usize,
-    /// Relative motions of the sides, a minus b, n × d, time after time.
+    /// Relative motions, side a minus side b, n × d, time after time.
     pub motion: Vec<f64>,
-    /// Forces f, n × d, which stand in the rows of side a as +f and in those of side b as −f. They are
-    /// the whole forces of the law, not their carried harmonics; along a normal f = −N.
+    /// Forces f, n × d, which act on the rows of side a as +f and on those of side b as −f. They are the whole
+    /// forces of the law, not their carried harmonics; along a normal f = −N.
     pub force: Vec<f64>,
-    /// What the contact does, n. One that is linear at any motion or without force sticks, and so do
-    /// laws without states.
+    /// State of the contact, n. A contact that is linear at any motion or without force is reported as stuck, and
+    /// so are laws without states.
     pub state: Vec<State>,
 }
 
-/// Directions of which a summary tells; laws of more have the others in [`ContactLoop`] alone.
+/// Number of directions in a summary; laws of more directions have the others in [`ContactLoop`] only.
 pub const SUMMARISED: usize = 3;
 
 /// Numbers of one contact over one period, in the caller's units.
@@ -37,12 +37,12 @@ pub const SUMMARISED: usize = 3;
 pub struct ContactSummary {
     /// Relative motions d of the contact.
     pub directions: usize,
-    /// Work per cycle that the contact takes from the motion in all its directions; exactly 0 for friction
-    /// that does not slip and for laws of one motion that feel no velocity.
+    /// Work per cycle that the contact dissipates in all its directions; exactly 0 for friction that does not slip
+    /// and for laws of one motion that do not depend on velocity.
     pub work: f64,
-    /// Share of the period that it slips; not that it is open.
+    /// Share of the period in the slip state; the open state does not count.
     pub slip_share: f64,
-    /// Share of the period that it is open.
+    /// Share of the period in the open state.
     pub open_share: f64,
     /// Half the range of each relative motion, (max − min)/2; 0 beyond d.
     pub half_range: [f64; SUMMARISED],
@@ -50,8 +50,8 @@ pub struct ContactSummary {
     pub motion_min: [f64; SUMMARISED],
     /// Largest relative motions.
     pub motion_max: [f64; SUMMARISED],
-    /// Smallest normal load. Friction under a constant load has the one given; springs that cannot open,
-    /// and laws of the caller, have none: 0.
+    /// Smallest normal load. Friction under a constant load has the given one; springs that cannot open, and laws
+    /// of the caller, have none: 0.
     pub load_min: f64,
     /// Largest normal load.
     pub load_max: f64,
@@ -62,8 +62,8 @@ impl Branch {
     /// caller's unit.
     ///
     /// # Errors
-    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..=
-    /// [`MOST_TIMES`], `OutOfMemory`; `Singular` at an undamped resonance that no contact feels.
+    /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..= [`MOST_TIMES`],
+    /// `OutOfMemory`; `Singular` at an undamped resonance that moves no contact.
     pub fn time_history(&self, point: usize, dof: usize, n: usize) -> Result<Vec<f64>> {
         self.check_point(point)?;
         if dof >= self.ndof() {
@@ -80,16 +80,16 @@ impl Branch {
 
     /// Relative motions, forces and state of a contact at a stored point, at ωt = 2πj/n for j = 0 .. n.
     ///
-    /// The force is that of this contact alone, at the motion found. Friction in one direction and
-    /// unilateral, tabulated and cubic springs are exact, where the branch was computed by samples, too.
-    /// A law of the caller is called with the n times. Friction in a plane is marched over a multiple of
-    /// n samples, at least as many as it takes in the solution. Of a cyclic model it is the contact of
-    /// sector 0. Contacts that are linear at any motion have no coordinate of their own, and the
-    /// whole structure is recovered for them.
+    /// The force is that of this contact alone, at the motion of the point. Friction in one direction and
+    /// unilateral, tabulated and cubic springs are exact, even if the branch was computed by samples. A law of the
+    /// caller is called with the n times. Friction in a plane is evaluated step by step over a multiple of n
+    /// samples, at least as many as in the solution. In a cyclic model the contact is that of sector 0. Contacts
+    /// that are linear at any motion have no coordinate of their own, and the whole structure is recovered for
+    /// them.
     ///
     /// # Errors
-    /// As [`Self::time_history`], with `Index` for an unknown contact; `Callback` for a law of the caller
-    /// that fails, `NoConvergence` where marched friction does not become periodic.
+    /// As [`Self::time_history`], with `Index` for an unknown contact; `Callback` for a law of the caller that
+    /// fails, `NoConvergence` where friction in a plane does not become periodic.
     pub fn contact_loop(&self, point: usize, contact: usize, n: usize) -> Result<ContactLoop> {
         self.check_contact(point, contact)?;
         check_times(n)?;
@@ -109,11 +109,11 @@ impl Branch {
 
     /// Work, shares of the period and ranges of a contact at a stored point; see [`Self::contact_loop`].
     ///
-    /// Ranges are exact for the motion found, and so are work and shares of friction in one direction and
-    /// of springs. Those of friction in a plane, and the work of laws of velocities or of several motions,
-    /// are as good as the samples of the branch, like the branch itself. The work of all contacts makes
-    /// up [`Energy::friction_loss`](crate::results::Energy::friction_loss), up to the error of sampling where laws
-    /// that are exact here were sampled there, or where a law of the caller has a potential.
+    /// Ranges are exact for the motion of the point, and so are work and shares of friction in one direction and of
+    /// springs. Those of friction in a plane, and the work of laws of velocities or of several motions, are as
+    /// accurate as the samples of the branch, like the branch itself. The work of all contacts sums to
+    /// [`Energy::friction_loss`](crate::results::Energy::friction_loss), up to the error of sampling if laws that
+    /// are exact here were sampled there, or if a law of the caller has a potential.
     ///
     /// # Errors
     /// As [`Self::contact_loop`].
@@ -133,7 +133,7 @@ impl Branch {
                 (summary.motion_min[k], summary.motion_max[k]) = (low * length, high * length);
                 summary.half_range[k] = 0.5 * (high - low) * length;
             }
-            // A contact that opens is pressed most where side a is lowest.
+            // The load is largest where the motion of side a against side b is smallest.
             let (low, high) = kept.normal_direction().map_or((0.0, 0.0), |k| ranges[k]);
             summary.load_min = kept.normal_load(high * length);
             summary.load_max = kept.normal_load(low * length);
@@ -141,10 +141,14 @@ impl Branch {
         })
     }
 
-    /// Number of relative motions of a contact, of which [`Self::contact_loop`] tells.
+    /// Number of relative motions of a contact in [`Self::contact_loop`].
     #[must_use]
     pub fn contact_directions(&self, contact: usize) -> Option<usize> {
-        let kept = self.levels[0].condensed.contact_classes().contacts().get(contact)?;
+        let kept = self.resolutions[0]
+            .condensed
+            .contact_classes()
+            .contacts()
+            .get(contact)?;
         Some(kept.directions())
     }
 
@@ -154,20 +158,20 @@ impl Branch {
 
     fn check_contact(&self, point: usize, contact: usize) -> Result<&Contact> {
         self.check_point(point)?;
-        match self.levels[0].condensed.contact_classes().contacts().get(contact) {
+        match self.resolutions[0].condensed.contact_classes().contacts().get(contact) {
             Some(kept) => Ok(kept),
             None => fail!(Index, "contact = {contact}, needs 0 .. {}", self.contacts()),
         }
     }
 
-    /// Lets `use_it` look at a contact over the period, in units of the length that it is given.
+    /// Calls `use_it` with a contact over the period and the unit of its lengths.
     fn with_orbit<T>(
         &self,
         point: usize,
         contact: usize,
         use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
     ) -> Result<T> {
-        let condensed = self.level_at(point);
+        let condensed = self.condensed_at(point);
         let contact_classes = condensed.contact_classes();
         if let Some(at) = contact_classes.linear(contact) {
             let kept = &contact_classes.contacts()[contact];
@@ -192,9 +196,9 @@ impl Branch {
         use_it(&orbit, condensed.length())
     }
 
-    /// Packed harmonics of a number of signals, one after the other; `of` is the k-th of them in the i-th
-    /// carried harmonic of all degrees of freedom, in the caller's unit. Carried harmonics of linear models
-    /// have no common step: the set has all.
+    /// Packed harmonics of `signals` signals, one after the other. `of` computes the k-th signal from the i-th
+    /// carried harmonic of all degrees of freedom, in the caller's unit. The set has all harmonics, because those
+    /// of linear models have no common step.
     fn recover(
         &self,
         point: usize,

@@ -56,8 +56,8 @@ impl Axis {
         })
     }
 
-    /// The place of a value along the axis, 0 and 1 being the ends.
-    pub(super) fn place(&self, value: f64) -> f64 {
+    /// The position of a value along the axis; 0 and 1 are the ends.
+    pub(super) fn position(&self, value: f64) -> f64 {
         let scaled = if self.log { value.log10() } else { value };
         (scaled - self.ends.0) / (self.ends.1 - self.ends.0)
     }
@@ -93,7 +93,7 @@ impl Axis {
         for exponent in first..=last {
             for digit in 1..10 {
                 let value = f64::from(digit) * 10_f64.powi(exponent);
-                if !(-1e-9..1.0 + 1e-9).contains(&self.place(value)) {
+                if !(-1e-9..1.0 + 1e-9).contains(&self.position(value)) {
                     continue;
                 }
                 if exponent.rem_euclid(stride) == 0 && labelled.contains(&digit) {

@@ -4,7 +4,7 @@ use plotters::style::{BLACK, RGBColor};
 
 use super::{Series, Style};
 
-/// Okabe and Ito's colours, without those too pale for a thin line on white.
+/// Colours of Okabe and Ito, without those too pale for a thin line on white.
 const DISTINCT: [RGBColor; 6] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),

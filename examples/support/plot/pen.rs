@@ -13,7 +13,7 @@ type Outcome = Result<(), Box<dyn Error>>;
 /// A point of the figure, in its pixels.
 pub(super) type Point = (f64, f64);
 
-/// Largest departure of a drawn line from its points.
+/// Largest deviation of a drawn line from its points.
 const TOLERANCE: f64 = 0.05;
 
 /// Half the side of a tile.
@@ -49,7 +49,7 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
         if !self.raster || points.len() <= 2 {
             return Ok(self.area.draw(&PathElement::new(points, stroke))?);
         }
-        // The bitmap would get holes where a thick polygon of many corners overlaps itself.
+        // A thick polygon of many corners that overlaps itself would leave holes in the bitmap.
         for side in points.windows(2) {
             self.area.draw(&PathElement::new(side, stroke))?;
             self.area.draw(&Circle::new(side[1], width / 2, color.filled()))?;
@@ -140,7 +140,7 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
         size * (width / self.width(text, size).max(1.0)).min(1.0)
     }
 
-    /// How far a text has to be lowered for its capitals to be centred.
+    /// Distance by which a text is lowered so that its capitals are centred.
     fn drop(&self, size: f64) -> f64 {
         size * if self.raster { 0.2 } else { 0.06 }
     }
@@ -170,8 +170,7 @@ fn visible_runs(points: &[Point], frame: [Point; 2]) -> Vec<Vec<Point>> {
     runs
 }
 
-/// The part of the segment from `a` to `b` inside the frame (after Liang and Barsky), and whether
-/// it reaches `b`.
+/// The part of the segment from `a` to `b` inside the frame (after Liang and Barsky), and `true` if it reaches `b`.
 fn clip(a: Point, b: Point, [low, high]: [Point; 2]) -> Option<(Point, Point, bool)> {
     let (dx, dy) = (b.0 - a.0, b.1 - a.1);
     if !(dx.is_finite() && dy.is_finite()) {
@@ -200,7 +199,7 @@ fn clip(a: Point, b: Point, [low, high]: [Point; 2]) -> Option<(Point, Point, bo
     (start <= end).then(|| (at(start), at(end), end >= 1.0))
 }
 
-/// Leaves out points that lie on the line through their neighbours.
+/// Removes points that lie on the line through their neighbours.
 fn simplify(points: &[Point]) -> Vec<Point> {
     let mut kept = points[..1].to_vec();
     let mut from = 0;

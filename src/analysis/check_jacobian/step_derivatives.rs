@@ -1,14 +1,15 @@
-//! The derivatives of the steps of a law with states. A force at given states is what the change of the
-//! states does not explain of its own.
+//! The derivatives of the steps of a law with states. The tangents of the force at given states account for the
+//! part of its change that does not follow from the change of the states.
 
-use crate::analysis::check_jacobian::{CONTEXT, JacobianGap, Motion, SAMPLES, Tangent, sizes, step_of};
+use crate::analysis::check_jacobian::jacobian_gap::{JacobianGap, Tangent};
+use crate::analysis::check_jacobian::test_motion::{CONTEXT, Motion, SAMPLES, sizes, step_of};
 use crate::contact::law::Hysteretic;
 use crate::contact::laws::user_law::User;
 use crate::contact::march::March;
 use crate::error::{Result, try_vec};
 
-/// One step of a law with states: a period of two samples, of which the first is looked at and the second
-/// lies before it. Its frequency gives the two the distance of the samples of the test motion.
+/// One step of a law with states: a period of two samples, of which the first is compared and the second is the one
+/// before it. Its frequency gives them the distance of the samples of the test motion.
 struct Step {
     omega: f64,
     u: Vec<f64>,
@@ -16,45 +17,45 @@ struct Step {
     z0: Vec<f64>,
 }
 
-/// What is moved in a step.
+/// Perturbed variable of a step.
 #[derive(Clone, Copy)]
-enum Moved {
+enum Perturbed {
     State(usize),
-    /// Whether it is the motion before, and the direction.
+    /// `true` for the motion before, and the direction.
     Motion(bool, usize),
     Velocity(bool, usize),
     Frequency,
 }
 
 impl Step {
-    /// The number that is moved.
-    fn place(&mut self, d: usize, moved: Moved) -> &mut f64 {
+    /// The perturbed number.
+    fn place(&mut self, d: usize, moved: Perturbed) -> &mut f64 {
         let at = |before: bool, k: usize| if before { d + k } else { k };
         match moved {
-            Moved::State(k) => &mut self.z0[k],
-            Moved::Motion(before, k) => &mut self.u[at(before, k)],
-            Moved::Velocity(before, k) => &mut self.v[at(before, k)],
-            Moved::Frequency => &mut self.omega,
+            Perturbed::State(k) => &mut self.z0[k],
+            Perturbed::Motion(before, k) => &mut self.u[at(before, k)],
+            Perturbed::Velocity(before, k) => &mut self.v[at(before, k)],
+            Perturbed::Frequency => &mut self.omega,
         }
     }
 
-    fn ask(&self, law: &User, out: &mut March) -> Result<()> {
+    fn evaluate(&self, law: &User, out: &mut March) -> Result<()> {
         law.march(self.omega, 2, &self.u, &self.v, &self.z0, out)
     }
 }
 
-/// Every step is moved by itself.
+/// Perturbs every step separately.
 pub(super) fn with_states(law: &User, motion: &Motion) -> Result<JacobianGap> {
     let (d, s) = (law.directions, law.states);
     let mut whole = March::new(d, s, SAMPLES)?;
     let mut start = try_vec(s, 0.0, CONTEXT)?;
-    // The second period has states that belong to the motion before.
+    // The states of the second period belong to the motion before them.
     for _ in 0..2 {
         law.march(motion.omega, SAMPLES, &motion.u, &motion.v, &start, &mut whole)?;
         start.copy_from_slice(&whole.z[(SAMPLES - 1) * s..]);
     }
     let (force_sizes, mut state_sizes) = (sizes(&whole.f, d)?, sizes(&whole.z, s)?);
-    // A state that nothing has moved yet may be of any size.
+    // The size of a state that is zero everywhere is unknown; one is assumed.
     state_sizes.iter_mut().filter(|z| **z == 0.0).for_each(|z| *z = 1.0);
     let (mut at, mut up, mut down) = (March::new(d, s, 2)?, March::new(d, s, 2)?, March::new(d, s, 2)?);
     let mut step = Step {
@@ -73,24 +74,24 @@ pub(super) fn with_states(law: &User, motion: &Motion) -> Result<JacobianGap> {
             }
         }
         step.z0.copy_from_slice(&whole.z[before * s..(before + 1) * s]);
-        step.ask(law, &mut at)?;
-        let motions = (0..d).flat_map(|k| [Moved::Motion(true, k), Moved::Motion(false, k)]);
-        let velocities =
-            (0..if law.velocity { d } else { 0 }).flat_map(|k| [Moved::Velocity(true, k), Moved::Velocity(false, k)]);
-        let all = (0..s).map(Moved::State).chain(motions).chain(velocities);
-        for moved in all.chain([Moved::Frequency]) {
+        step.evaluate(law, &mut at)?;
+        let motions = (0..d).flat_map(|k| [Perturbed::Motion(true, k), Perturbed::Motion(false, k)]);
+        let velocities = (0..if law.velocity { d } else { 0 })
+            .flat_map(|k| [Perturbed::Velocity(true, k), Perturbed::Velocity(false, k)]);
+        let all = (0..s).map(Perturbed::State).chain(motions).chain(velocities);
+        for moved in all.chain([Perturbed::Frequency]) {
             let size = match moved {
-                Moved::State(k) => state_sizes[k],
-                Moved::Motion(_, k) => motion.size(k, false),
-                Moved::Velocity(_, k) => motion.size(k, true),
-                Moved::Frequency => step.omega,
+                Perturbed::State(k) => state_sizes[k],
+                Perturbed::Motion(_, k) => motion.size(k, false),
+                Perturbed::Velocity(_, k) => motion.size(k, true),
+                Perturbed::Frequency => step.omega,
             };
             let h = step_of(size);
             let kept = *step.place(d, moved);
             *step.place(d, moved) = kept + h;
-            step.ask(law, &mut up)?;
+            step.evaluate(law, &mut up)?;
             *step.place(d, moved) = kept - h;
-            step.ask(law, &mut down)?;
+            step.evaluate(law, &mut down)?;
             *step.place(d, moved) = kept;
             let compared = Compared {
                 sample: j,
@@ -106,10 +107,10 @@ pub(super) fn with_states(law: &User, motion: &Motion) -> Result<JacobianGap> {
     Ok(worst)
 }
 
-/// A step with what was moved in it, and the steps to both sides.
+/// A step with its perturbed variable, and the steps perturbed to both sides.
 struct Compared<'a, D: Fn(f64, f64) -> f64> {
     sample: usize,
-    moved: Moved,
+    moved: Perturbed,
     size: f64,
     difference: D,
     marches: (&'a March, &'a March, &'a March),
@@ -125,12 +126,12 @@ impl<D: Fn(f64, f64) -> f64> Compared<'_, D> {
         let (d, s) = (at.directions, at.states);
         for (row, size) in sizes.iter().enumerate() {
             let (tangent, column, given) = match self.moved {
-                Moved::State(k) => (Tangent::StateByState, k, at.dz_dz[row * s + k]),
-                Moved::Motion(true, k) => (Tangent::StateByMotionBefore, k, at.dz_du_before[row * d + k]),
-                Moved::Motion(false, k) => (Tangent::StateByMotion, k, at.dz_du[row * d + k]),
-                Moved::Velocity(true, k) => (Tangent::StateByVelocityBefore, k, at.dz_dv_before[row * d + k]),
-                Moved::Velocity(false, k) => (Tangent::StateByVelocity, k, at.dz_dv[row * d + k]),
-                Moved::Frequency => (Tangent::StateByFrequency, 0, at.dz_domega[row]),
+                Perturbed::State(k) => (Tangent::StateByState, k, at.dz_dz[row * s + k]),
+                Perturbed::Motion(true, k) => (Tangent::StateByMotionBefore, k, at.dz_du_before[row * d + k]),
+                Perturbed::Motion(false, k) => (Tangent::StateByMotion, k, at.dz_du[row * d + k]),
+                Perturbed::Velocity(true, k) => (Tangent::StateByVelocityBefore, k, at.dz_dv_before[row * d + k]),
+                Perturbed::Velocity(false, k) => (Tangent::StateByVelocity, k, at.dz_dv[row * d + k]),
+                Perturbed::Frequency => (Tangent::StateByFrequency, 0, at.dz_domega[row]),
             };
             let entry = JacobianGap {
                 gap: 0.0,
@@ -141,11 +142,11 @@ impl<D: Fn(f64, f64) -> f64> Compared<'_, D> {
                 given,
                 difference: self.state_change(row),
             };
-            worst.worse(self.size, *size, entry);
+            worst.keep_worst(self.size, *size, entry);
         }
     }
 
-    /// The change of force that the states explain, and that at given states.
+    /// Compares the change of force that follows from the states, and that at given states.
     fn forces(&self, sizes: &[f64], worst: &mut JacobianGap) {
         let at = self.marches.0;
         let (d, s) = (at.directions, at.states);
@@ -153,10 +154,12 @@ impl<D: Fn(f64, f64) -> f64> Compared<'_, D> {
             let whole = (self.difference)(self.marches.1.f[row], self.marches.2.f[row]);
             let by_states: f64 = (0..s).map(|a| at.df_dz[row * s + a] * self.state_change(a)).sum();
             let (tangent, column, given, difference) = match self.moved {
-                Moved::State(k) => (Tangent::ForceByState, k, by_states, whole),
-                Moved::Motion(false, k) => (Tangent::ForceByMotion, k, at.df_du[row * d + k], whole - by_states),
-                Moved::Velocity(false, k) => (Tangent::ForceByVelocity, k, at.df_dv[row * d + k], whole - by_states),
-                Moved::Motion(true, _) | Moved::Velocity(true, _) | Moved::Frequency => continue,
+                Perturbed::State(k) => (Tangent::ForceByState, k, by_states, whole),
+                Perturbed::Motion(false, k) => (Tangent::ForceByMotion, k, at.df_du[row * d + k], whole - by_states),
+                Perturbed::Velocity(false, k) => {
+                    (Tangent::ForceByVelocity, k, at.df_dv[row * d + k], whole - by_states)
+                }
+                Perturbed::Motion(true, _) | Perturbed::Velocity(true, _) | Perturbed::Frequency => continue,
             };
             let entry = JacobianGap {
                 gap: 0.0,
@@ -167,7 +170,7 @@ impl<D: Fn(f64, f64) -> f64> Compared<'_, D> {
                 given,
                 difference,
             };
-            worst.worse(self.size, *size, entry);
+            worst.keep_worst(self.size, *size, entry);
         }
     }
 }

@@ -1,12 +1,26 @@
 //! The mode at one amplitude as an oscillator under a force.
 
-use crate::analysis::synthesis::SynthesisPoint;
 use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
 use crate::results::mode_branch::ModePoint;
 use num_complex::Complex64;
 
-/// What acts on the mode.
+/// A synthesised response at one frequency.
+#[derive(Clone, Copy, Debug)]
+pub struct SynthesisPoint {
+    /// Angular frequency Ω of the force.
+    pub omega: f64,
+    /// Fundamental of the response degree of freedom of the branch, with its phase relative to the force.
+    pub response: Complex64,
+    /// Modal amplitude.
+    pub modal_amplitude: f64,
+    /// Natural angular frequency ω₀ at this amplitude.
+    pub natural_omega: f64,
+    /// Damping ratio at this amplitude, including the damping that the options add.
+    pub damping_ratio: f64,
+}
+
+/// Force and additional damping that act on the mode.
 pub(super) struct Load {
     pub force: Vec<Complex64>,
     pub damping: Option<Csc>,
@@ -14,7 +28,7 @@ pub(super) struct Load {
     pub response_dof: usize,
 }
 
-/// The mode at one amplitude, as the synthesis sees it.
+/// The mode at one amplitude, reduced to an oscillator.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct State {
     pub omega: f64,
@@ -56,13 +70,13 @@ impl Load {
 }
 
 impl State {
-    /// What damping takes at resonance beyond what the force can give: 2D(1 − D²)^½ω₀²a² − |X₁ᴴF|.
+    /// Damping force at resonance minus excitation force: 2D(1 − D²)^½ω₀²a² − |X₁ᴴF|.
     pub fn excess(&self) -> f64 {
         let d = self.damping;
         2.0 * d * (1.0 - d * d).max(0.0).sqrt() * self.omega * self.omega * self.square - self.work.norm()
     }
 
-    /// Half the distance of the two Ω², where the force can hold the amplitude.
+    /// Half the distance of the two Ω²; `None` if the force cannot maintain the amplitude.
     pub fn spread(&self) -> Option<f64> {
         let (d, w2) = (self.damping, self.omega * self.omega);
         let b = self.work.norm() / self.square;
@@ -77,7 +91,7 @@ impl State {
             return None;
         }
         let omega = square.sqrt();
-        // The oscillator turns X₁ into the phase in which the force does the work that is needed.
+        // The phase of X₁ is the one at which the force does the required work.
         let stiffness = Complex64::new(w2 - square, 2.0 * d * self.omega * omega);
         let phase = self.work / stiffness;
         let turn = if phase.norm() > 0.0 {

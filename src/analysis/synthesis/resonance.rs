@@ -8,8 +8,9 @@ use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
 use crate::linalg::inner;
+use crate::linalg::linear_system::Jacobian;
 use crate::problem::epmc::Epmc;
-use crate::problem::{Linearisation, Problem};
+use crate::problem::{Problem, Residual};
 use crate::results::Branch;
 use crate::results::energy::balance;
 use crate::results::mode_branch::{ModeData, ModePoint};
@@ -20,7 +21,7 @@ const CONTEXT: &str = "the synthesised response";
 /// Relative accuracy of the amplitude of a resonance.
 const WIDTH: f64 = 1e-12;
 
-/// Most evaluations for one resonance.
+/// Largest number of evaluations for one resonance.
 const MAX_EVALUATIONS: usize = 60;
 
 /// Solves the mode between two points of its branch.
@@ -34,16 +35,16 @@ pub(super) struct Refinement<'a> {
 
 /// The mode's equations with the harmonics of one stored point.
 struct Solver<'a> {
-    level: usize,
+    resolution: usize,
     condensed: &'a Condensed,
     problem: Epmc<'a>,
     locator: Locator,
-    at: Linearisation,
+    at: Residual,
 }
 
 impl<'a> Solver<'a> {
     fn new(branch: &'a Branch, data: &'a ModeData, point: usize) -> Result<Self> {
-        let condensed = branch.level_at(point);
+        let condensed = branch.condensed_at(point);
         let problem = Epmc::new(condensed, &data.gauge, &data.linear, branch.samples_at(point))?;
         let n = problem.size();
         let settings = Settings {
@@ -54,9 +55,9 @@ impl<'a> Solver<'a> {
             steps: StepControl::new(0.0, 0.0, 0.0),
         };
         Ok(Self {
-            level: branch.level_number(point),
+            resolution: branch.resolution_index(point),
             condensed,
-            at: Linearisation::new(n)?,
+            at: Residual::new(n)?,
             locator: Locator::new(n, settings)?,
             problem,
         })
@@ -74,12 +75,12 @@ impl<'a> Refinement<'a> {
         })
     }
 
-    /// The state without excess between points k and k + 1, whose excesses are given, by the
-    /// Illinois variant of regula falsi in log₁₀ a.
+    /// The state of zero excess between points k and k + 1, whose excesses are given, by the Illinois variant of
+    /// regula falsi in log₁₀ a.
     pub fn between(&mut self, k: usize, first: f64, last: f64) -> Result<Option<State>> {
-        let carried = |point: usize| self.branch.level_at(point).set().numbers().len();
+        let carried = |point: usize| self.branch.condensed_at(point).set().numbers().len();
         let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
-        if self.branch.level_number(richer) != self.solver.level {
+        if self.branch.resolution_index(richer) != self.solver.resolution {
             self.solver = Solver::new(self.branch, self.data, richer)?;
         }
         let (Some(a), Some(b)) = (self.point(k)?, self.point(k + 1)?) else {
@@ -114,13 +115,13 @@ impl<'a> Refinement<'a> {
         Ok(found)
     }
 
-    /// A point of the curve as the continuation left it, in the harmonics at hand.
+    /// A point of the curve as the continuation stored it, transferred to the current harmonics.
     fn point(&self, k: usize) -> Result<Option<Point>> {
         let Some((v, tangent)) = self.data.state(k) else {
             return Ok(None);
         };
         let to = self.solver.condensed;
-        let from = self.branch.level_at(k);
+        let from = self.branch.condensed_at(k);
         let transfer = |v: &[f64]| carried(from, to, v, v.len() - from.unknowns(), 1.0);
         Ok(Some(Point {
             v: transfer(v)?,

@@ -1,42 +1,27 @@
-//! Solutions with one bordered matrix by the factors of another near it.
+//! Iterative solution with one bordered matrix by the factors of another one near it.
 //!
-//! With K₀ factored, x ← x + K₀⁻¹(b − K x) multiplies the error by E = 1 − K₀⁻¹K. A round costs O(n²) where
-//! factors cost O(n³). Rounds that shrink fast tell besides that E has no eigenvalue near 1 or above in what was
-//! solved for, so that det K = det K₀ · det(1 − E) has the sign of det K₀.
+//! With K₀ factored, x ← x + K₀⁻¹(b − K x) multiplies the error by E = 1 − K₀⁻¹K. A round costs O(n²) where factors
+//! cost O(n³). Fast convergence also shows that E has no eigenvalue near 1 or above among the components of the
+//! solution, so that det K = det K₀ · det(1 − E) has the sign of det K₀.
 
-use crate::linalg::bordered::Bordered;
+use crate::linalg::bordered::{Bordered, Parts, dot};
 use crate::linalg::{add_product, norm};
 
-/// Most that a change may keep of the one before it.
+/// Largest ratio of a change to the one before it.
 const SHRINK: f64 = 0.2;
 
-/// Rounds after which new factors are quicker.
+/// Number of rounds beyond which new factors are quicker.
 const MOST_ROUNDS: usize = 6;
 
-/// Active unknowns m among n from which on m³ costs more than the rounds that take its place, n·m each: m² above
-/// this many times n, as measured.
+/// Smallest m²/n, for m active unknowns among n, at which a factorisation (m³) was measured to cost more than the
+/// rounds that replace it (n·m each).
 const LEAST: usize = 64;
 
-/// The parts of the matrix [J·u, r·p; row].
-#[derive(Clone, Copy)]
-pub struct Parts<'a> {
-    /// J, column-major.
-    pub jacobian: &'a [f64],
-    /// r
-    pub column: &'a [f64],
-    /// Per unknown whether its column of J differs from the identity's.
-    pub active: &'a [bool],
-    /// Scales of the unknowns and of the parameter: u and p.
-    pub scales: (f64, f64),
-    /// The row.
-    pub row: &'a [f64],
-}
-
 impl Bordered {
-    /// Solves in place with the matrix `k` by the factors kept, to a relative error of `tolerance`. `false`, with
-    /// `x` as it was, where new factors are needed, or are quicker.
+    /// Solves in place with the matrix `k` by the stored factors, to a relative error of `tolerance`. Returns
+    /// `false` and leaves `x` unchanged where new factors are necessary or quicker.
     pub fn refine(&mut self, k: &Parts<'_>, tolerance: f64, x: &mut [f64]) -> bool {
-        if !self.suits(k) {
+        if !self.is_reusable(k) {
             return false;
         }
         let mut known = core::mem::take(&mut self.known);
@@ -52,7 +37,7 @@ impl Bordered {
             self.subtract_product(k, x, &known, &mut change);
             self.solve(&mut change);
             let size = norm(&change);
-            // Not so either where one of them is no number.
+            // A comparison with NaN is false, so that this also ends the rounds.
             let shrinks = size <= SHRINK * last;
             if !shrinks {
                 break;
@@ -60,7 +45,7 @@ impl Bordered {
             for (x, c) in x.iter_mut().zip(&change) {
                 *x += c;
             }
-            // What is left is the change once more times the shrinkage.
+            // The remaining error is the change times the shrinkage once more.
             done = size * (size / last) <= tolerance * norm(x);
             last = size;
         }
@@ -72,8 +57,8 @@ impl Bordered {
         done
     }
 
-    /// Whether the factors belong to a matrix with the same unknowns eliminated, and using them is quicker.
-    fn suits(&self, k: &Parts<'_>) -> bool {
+    /// Whether the factors belong to a matrix with the same eliminated unknowns, and their reuse is quicker.
+    fn is_reusable(&self, k: &Parts<'_>) -> bool {
         let (m, n) = (self.active.len(), self.n);
         let count = k.active.iter().filter(|a| **a).count();
         m == count && self.active.iter().all(|&j| k.active[j]) && m * m >= LEAST * n
@@ -90,7 +75,7 @@ impl Bordered {
         for ((out, b), c) in out.iter_mut().zip(b).zip(k.column) {
             *out = b - c * along;
         }
-        out[n] = b[n] - crate::linalg::bordered::dot(k.row, x);
+        out[n] = b[n] - dot(k.row, x);
         let out = &mut out[..n];
         if self.eliminated.is_empty() {
             add_product(-1.0, k.jacobian, &self.scaled, out);
@@ -172,20 +157,20 @@ mod tests {
             let (old, new) = (Case::new(90, inactive, 0.0), Case::new(90, inactive, 1e-4));
             let mut bordered = Bordered::new(90).unwrap();
             new.factor(&mut bordered);
-            let mut wanted = new.b();
-            bordered.solve(&mut wanted);
+            let mut expected = new.b();
+            bordered.solve(&mut expected);
             old.factor(&mut bordered);
             let mut found = new.b();
             assert!(bordered.refine(&new.parts(), 1e-12, &mut found));
-            for (a, b) in found.iter().zip(&wanted) {
-                assert!((a - b).abs() < 1e-10 * norm(&wanted), "{a} {b}");
+            for (a, b) in found.iter().zip(&expected) {
+                assert!((a - b).abs() < 1e-10 * norm(&expected), "{a} {b}");
             }
         }
     }
 
     #[test]
     fn factors_of_a_matrix_that_is_another_are_refused() {
-        // Too far away; of other active unknowns; too few of them for refinement to pay; not finite.
+        // Too far away; other active unknowns; too few of them for refinement to pay; not finite.
         let old = Case::new(90, 0, 0.0);
         let mut broken = Case::new(90, 0, 0.0);
         broken.jacobian[5] = f64::NAN;

@@ -1,0 +1,206 @@
+//! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
+//!
+//! With y = W x and any reference stiffness κ, harmonic h of M ẍ + C ẋ + K x + Wᴴ f = F satisfies
+//!
+//! > y_h − y_lin,h + G_h (f_h − κ y_h) = 0,  G = W Z_κ⁻¹ Wᴴ,  y_lin = W Z_κ⁻¹ F,
+//! > Z_κ = K − h²ω²M + ihωC + Wᴴ κ W,
+//!
+//! exactly. With κ = kt(1 + i)/2 (kt/2 for the mean) no mode that moves the contact has a pole on the real axis, so
+//! that neither the free nor the stuck resonances of an undamped structure are singular. The whole motion follows
+//! as x = Z_κ⁻¹(F − Wᴴ(f − κ y)).
+
+use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
+use crate::condense::contact_classes::ContactClasses;
+use crate::condense::flexibility::Workspace;
+use crate::condense::harmonic_block::{Artificial, harmonic_block};
+use crate::condense::relative_coordinates::{
+    AssembledDirection, assign_coordinates, raise_for_springs, relative_share,
+};
+use crate::contact::Contact;
+use crate::error::{Result, try_push, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::linalg::power_of_two;
+use crate::model::Model;
+use crate::model::spring::along;
+use crate::model::structure::MatrixKind;
+use crate::options::{DampingForm, SolverOptions};
+use num_complex::Complex64;
+
+/// Number of unknowns above which the stuck structure is the quicker reference.
+const STUCK_ABOVE: usize = 64;
+
+impl Condensed {
+    /// Condenses a model under its forces, with the motion scaled for frequency `omega`.
+    ///
+    /// # Errors
+    /// `Argument` for a force beyond the carried harmonics, `Unsupported` or `Argument` for missing
+    /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`.
+    pub fn new(model: &Model, options: &SolverOptions, omega: f64) -> Result<Self> {
+        let mut forced = Vec::new();
+        for force in model
+            .excitation()
+            .forces()
+            .iter()
+            .filter(|f| f.value != Complex64::ZERO)
+        {
+            try_push(&mut forced, force.harmonic, "the forces")?;
+        }
+        forced.sort_unstable();
+        forced.dedup();
+        if forced.is_empty() {
+            // Without forces the solution is zero, and the fundamental carries it.
+            forced.push(usize::from(options.harmonics > 0));
+        }
+        let (mut condensed, assembled) = Self::unscaled(model, options, &forced, omega, None)?;
+        // A power of two near the largest motion of the linear structure, so that nothing over- or
+        // underflows whatever the units.
+        let largest = model
+            .excitation()
+            .forces()
+            .iter()
+            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
+        let unit = power_of_two(largest);
+        for block in &mut condensed.blocks {
+            model.excitation().add_to(block.number, 1.0 / unit, &mut block.force);
+        }
+        let mut workspace = Workspace::new(&condensed, None)?;
+        let mut motion = 0.0_f64;
+        for i in 0..condensed.blocks.len() {
+            workspace.evaluate(&condensed, i, omega, false)?;
+            motion = motion.max(workspace.largest_motion());
+        }
+        let scale = power_of_two(motion);
+        for block in &mut condensed.blocks {
+            for f in &mut block.force {
+                *f /= scale;
+            }
+        }
+        condensed.set_length(model, unit * scale, &assembled)?;
+        Ok(condensed)
+    }
+
+    /// Condenses a model without its forces for a nonlinear mode with artificial damping of the given form,
+    /// starting from a linear mode of the given shape. Also returns the largest relative motion of that shape at an
+    /// active contact, which sets the unit of lengths.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn for_mode(
+        model: &Model,
+        options: &SolverOptions,
+        form: DampingForm,
+        shape: &[Complex64],
+    ) -> Result<(Self, f64)> {
+        // A mode has a linear frequency, so that the stiffness of the structure alone sets the scale.
+        let (mut condensed, assembled) = Self::unscaled(model, options, &[1], 0.0, Some((form, shape)))?;
+        let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
+        let rows = fundamental.map_or(&[][..], |b| &b.rows);
+        let motion = rows.iter().fold(0.0_f64, |m, row| m.max(along(row, shape).norm()));
+        condensed.set_length(model, power_of_two(motion), &assembled)?;
+        Ok((condensed, motion))
+    }
+
+    /// The condensed model without its scale of lengths: no forces and no laws yet; `omega` sets the size of
+    /// inertia. Also returns the coordinates of the active contacts.
+    pub(super) fn unscaled(
+        model: &Model,
+        options: &SolverOptions,
+        forced: &[usize],
+        omega: f64,
+        mode: Option<(DampingForm, &[Complex64])>,
+    ) -> Result<(Self, Vec<AssembledDirection>)> {
+        let contact_classes = ContactClasses::new(model)?;
+        let active = &contact_classes.active;
+        let mut odd = true;
+        for &i in active {
+            odd &= model.contacts()[i].law(1.0)?.is_odd();
+        }
+        let set = HarmonicSet::excited(
+            forced,
+            options.harmonics,
+            !active.is_empty(),
+            odd,
+            options.keep_even_harmonics,
+        )?;
+        let (assembled, representatives) = assign_coordinates(model, active)?;
+        let mut can_stick = try_vec(representatives.len(), true, "the contacts")?;
+        let mut stiffness = try_vec(representatives.len(), 0.0, "the contacts")?;
+        for at in &assembled {
+            let contact = &model.contacts()[at.contact];
+            stiffness[at.coordinate] += contact.stiffness(at.direction);
+            can_stick[at.coordinate] &= contact.may_stick();
+        }
+        raise_for_springs(
+            model,
+            omega,
+            &set,
+            &contact_classes.never_slipping,
+            &assembled,
+            &mut stiffness,
+        )?;
+        let unknowns = representatives.len() * set.packed_len();
+        // A mode is a resonance of the stuck structure while its contacts stick.
+        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
+            Reference::Stuck
+        } else {
+            Reference::Complex
+        };
+        let mut share = try_vec(representatives.len(), 1.0, "the contacts")?;
+        if let Some((_, shape)) = mode {
+            for (share, &contact) in share.iter_mut().zip(&representatives) {
+                *share = relative_share(model, contact, shape);
+            }
+        }
+        let mut blocks = Vec::new();
+        for &number in set.numbers() {
+            let kappa = |c: usize| reference.kappa(stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
+            let mut block = harmonic_block(model, number, &contact_classes, &representatives, kappa)?;
+            block.artificial = match mode {
+                None => Artificial::None,
+                Some((DampingForm::Mass, _)) => Artificial::Mass,
+                Some((DampingForm::Stiffness, _)) => {
+                    let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
+                    Artificial::Stiffness(structure.aligned(&block.reference)?)
+                }
+            };
+            try_push(&mut blocks, block, "the matrices per harmonic")?;
+        }
+        let condensed = Self {
+            set,
+            ndof: model.ndof(),
+            length: 1.0,
+            blocks,
+            laws: Vec::new(),
+            stiffness,
+            can_stick,
+            preloaded: model.contacts().iter().any(Contact::is_preloaded),
+            reference,
+            share,
+            contact_classes,
+            sectors: model.structure().sectors(),
+            in_step: model.structure().in_step(),
+        };
+        Ok((condensed, assembled))
+    }
+
+    /// Sets the unit of lengths, and the laws in this unit.
+    pub(super) fn set_length(&mut self, model: &Model, length: f64, assembled: &[AssembledDirection]) -> Result<()> {
+        const CONTEXT: &str = "the contacts";
+        self.length = length;
+        for one in assembled.chunk_by(|a, b| a.contact == b.contact) {
+            let mut coordinates = Vec::new();
+            for at in one {
+                try_push(&mut coordinates, at.coordinate, CONTEXT)?;
+            }
+            let contact = one[0].contact;
+            let assembled = AssembledLaw {
+                coordinates,
+                contact,
+                normal: model.contacts()[contact].normal_direction(),
+                law: model.contacts()[contact].law(length)?,
+            };
+            try_push(&mut self.laws, assembled, CONTEXT)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,64 @@
+//! The parts of the problem that the condensation removed.
+
+use crate::condense::Condensed;
+use crate::error::Result;
+use crate::model::Model;
+use crate::options::SolverOptions;
+
+/// The parts of the problem that the condensation removed, for the user.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Reduction {
+    /// Number of sectors of the wheel; all but one are removed.
+    pub sectors: usize,
+    /// Degrees of freedom of one sector.
+    pub degrees_of_freedom: usize,
+    /// Relative coordinates that remain.
+    pub coordinates: usize,
+    /// Contacts in the model.
+    pub contacts: usize,
+    /// Contacts that became linear springs (infinite slip limit, no cubic term).
+    pub never_slipping: usize,
+    /// Contacts without force (no stiffness, or no slip limit).
+    pub inert: usize,
+    /// Highest harmonic number of the points: the requested one or, where a tolerance chose, the highest that a
+    /// point carries.
+    pub harmonics_asked: usize,
+    /// Number of carried harmonics, the largest over the points.
+    pub harmonics_carried: usize,
+    /// Whether the mean is carried.
+    pub mean_carried: bool,
+    /// Whether the even harmonics were removed because laws and force are odd.
+    pub even_removed: bool,
+    /// Number of real unknowns of the nonlinear problem, the largest over the points.
+    pub unknowns: usize,
+    /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
+    pub held_by_contacts: usize,
+}
+
+impl Condensed {
+    /// The parts of the problem that were removed.
+    ///
+    /// # Errors
+    /// Those of [`Model::rigid_modes`].
+    pub fn reduction(&self, model: &Model, options: &SolverOptions) -> Result<Reduction> {
+        let held_by_contacts = if self.set.has_mean() && self.coordinates() > 0 {
+            model.rigid_modes(0)?
+        } else {
+            0
+        };
+        Ok(Reduction {
+            sectors: model.structure().sectors(),
+            degrees_of_freedom: self.ndof,
+            coordinates: self.coordinates(),
+            contacts: self.contacts(),
+            never_slipping: self.contact_classes.never_slipping.len(),
+            inert: self.contact_classes.inert(),
+            harmonics_asked: options.harmonics,
+            harmonics_carried: self.set.numbers().len(),
+            mean_carried: self.set.has_mean(),
+            even_removed: self.set.is_odd(),
+            unknowns: self.unknowns(),
+            held_by_contacts,
+        })
+    }
+}

@@ -1,0 +1,362 @@
+//! Turning points of a real Fourier series over one turn: the roots of its derivative.
+
+use crate::error::{Result, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::fourier::series::{jet, safe_newton};
+use num_complex::Complex64;
+use rustfft::{Fft, FftPlanner};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// An extremum of a signal: its time in τ and its value.
+#[derive(Clone, Copy, Debug)]
+pub struct Extremum {
+    /// Time, in [0, 2π).
+    pub tau: f64,
+    /// Value of the signal there.
+    pub x: f64,
+}
+
+/// Grid points per period of the highest harmonic.
+const POINTS_PER_WAVE: usize = 8;
+
+/// Highest reduced harmonic up to which a table of sines is quicker than a transform.
+const TABLE_LIMIT: usize = 40;
+
+/// Finds every turning point of motions with one harmonic set: x′ on a grid, then roots in its cells.
+///
+/// For sets of odd harmonics only [0, π) is scanned: x(τ + π) = −x(τ).
+pub struct TurningPoints {
+    points: usize,
+    spacing: f64,
+    slope: Vec<f64>,
+    kind: Grid,
+}
+
+enum Grid {
+    /// Per harmonic the rows −p sin(pτⱼ) and −p cos(pτⱼ).
+    Table(Vec<f64>),
+    /// Inverse transform of i·p·Xₚ over the whole turn.
+    Transform {
+        plan: Arc<dyn Fft<f64>>,
+        buffer: Vec<Complex64>,
+        scratch: Vec<Complex64>,
+    },
+}
+
+impl TurningPoints {
+    /// Tables and memory for motions of `set`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(set: &HarmonicSet) -> Result<Self> {
+        let highest = set.highest_reduced().max(1);
+        // A multiple of 4, so that half a turn is a whole number of cells.
+        let whole = (POINTS_PER_WAVE * highest).max(16).next_multiple_of(4);
+        let points = if set.is_odd() { whole / 2 } else { whole };
+        let spacing = TAU / whole as f64;
+        let kind = if highest <= TABLE_LIMIT {
+            let mut table = try_vec(2 * set.oscillating() * points, 0.0, "a table of sines")?;
+            for k in 0..set.oscillating() {
+                let p = set.reduced(k);
+                for j in 0..points {
+                    // Reduce the angle exactly: p·j modulo the number of points of a turn.
+                    let angle = ((p * j) % whole) as f64 * spacing;
+                    table[2 * k * points + j] = -(p as f64) * angle.sin();
+                    table[(2 * k + 1) * points + j] = -(p as f64) * angle.cos();
+                }
+            }
+            Grid::Table(table)
+        } else {
+            let whole = whole.next_power_of_two();
+            let plan = FftPlanner::new().plan_fft_inverse(whole);
+            let scratch = try_vec(plan.get_inplace_scratch_len(), Complex64::ZERO, "a transform")?;
+            return Ok(Self {
+                points: if set.is_odd() { whole / 2 } else { whole },
+                spacing: TAU / whole as f64,
+                slope: try_vec(whole + 1, 0.0, "a scan for turning points")?,
+                kind: Grid::Transform {
+                    plan,
+                    buffer: try_vec(whole, Complex64::ZERO, "a transform")?,
+                    scratch,
+                },
+            });
+        };
+        Ok(Self {
+            points,
+            spacing,
+            slope: try_vec(points + 1, 0.0, "a scan for turning points")?,
+            kind,
+        })
+    }
+
+    /// Fills `found` with the extrema of the signal in ascending time: over [0, 2π), or over
+    /// [0, π) for sets of odd harmonics. A constant signal has none.
+    ///
+    /// No turning point is missed, however close to another: a force that lost a pair of them would jump as the
+    /// motion varies. Bounds of x‴ identify the cells with at most one root; the others are halved until x varies
+    /// in them by no more than rounding.
+    pub fn find(&mut self, set: &HarmonicSet, packed: &[f64], found: &mut Vec<Extremum>) {
+        found.clear();
+        let bounds = Bounds::new(set, packed);
+        // This also covers a motion that overflows, for which no bound would end the search.
+        if !(bounds.bend > 0.0 && bounds.bend.is_finite()) {
+            return;
+        }
+        self.scan(set, packed);
+        let n = self.points;
+        let odd = set.is_odd();
+        // One point past the end closes the cycle, with the sign that the mirror image has there.
+        self.slope[n] = if odd { -self.slope[0] } else { self.slope[0] };
+        // The sign at the start is that of the last value before it above rounding.
+        let before = self.slope[..n].iter().rfind(|f| f.abs() > bounds.noise);
+        let first = before.map_or(self.slope[0] > 0.0, |f| (*f > 0.0) != odd);
+        let sign = |value: f64, before: bool| {
+            if value.abs() <= bounds.noise {
+                before
+            } else {
+                value > 0.0
+            }
+        };
+        let mut left = Slope {
+            tau: 0.0,
+            value: self.slope[0],
+            positive: sign(self.slope[0], first),
+        };
+        let start = left.positive;
+        for j in 1..=n {
+            let value = self.slope[j];
+            let right = Slope {
+                tau: j as f64 * self.spacing,
+                value,
+                positive: if j == n {
+                    start != odd
+                } else {
+                    sign(value, left.positive)
+                },
+            };
+            isolate(set, packed, [left, right], &bounds, found);
+            left = right;
+        }
+        // Roots just past the end belong to the start of the turn.
+        let turn = if odd { PI } else { TAU };
+        for e in found.iter_mut() {
+            if e.tau >= turn {
+                e.tau -= turn;
+                e.x = if odd { -e.x } else { e.x };
+            }
+        }
+        found.sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau));
+    }
+
+    /// x′ at the grid points.
+    fn scan(&mut self, set: &HarmonicSet, packed: &[f64]) {
+        let n = self.points;
+        let rest = &packed[usize::from(set.has_mean())..];
+        let slope = &mut self.slope[..n];
+        match &mut self.kind {
+            Grid::Table(table) => {
+                slope.fill(0.0);
+                for (pair, rows) in rest.chunks_exact(2).zip(table.chunks_exact(2 * n)) {
+                    let (sines, cosines) = rows.split_at(n);
+                    for ((s, &a), &b) in slope.iter_mut().zip(sines).zip(cosines) {
+                        *s += pair[0] * a + pair[1] * b;
+                    }
+                }
+            }
+            Grid::Transform { plan, buffer, scratch } => {
+                buffer.fill(Complex64::ZERO);
+                for (k, pair) in rest.chunks_exact(2).enumerate() {
+                    let p = set.reduced(k);
+                    buffer[p] = Complex64::new(-pair[1], pair[0]) * p as f64;
+                }
+                plan.process_with_scratch(buffer, scratch);
+                for (s, z) in slope.iter_mut().zip(buffer.iter()) {
+                    *s = z.re;
+                }
+            }
+        }
+    }
+}
+
+/// Bounds that distinguish one root of x′ in a cell from several.
+struct Bounds {
+    /// Bound of |x‴|.
+    bend: f64,
+    /// Values of x′ up to this are rounding, mostly that of the angles pτ.
+    noise: f64,
+    /// Width of a cell in which x varies by rounding only between roots of x′ that are not separated.
+    finest: f64,
+}
+
+impl Bounds {
+    fn new(set: &HarmonicSet, packed: &[f64]) -> Self {
+        let rest = &packed[usize::from(set.has_mean())..];
+        let (mut size, mut turn, mut bend) = (0.0, 0.0, 0.0);
+        for (k, pair) in rest.chunks_exact(2).enumerate() {
+            let (amplitude, p) = (pair[0].abs() + pair[1].abs(), set.reduced(k) as f64);
+            size += amplitude;
+            turn += amplitude * p * p;
+            bend += amplitude * p.powi(3);
+        }
+        Self {
+            bend,
+            noise: 4.0 * f64::EPSILON * turn,
+            // Motions that are zero or not finite are not searched: halving would not end.
+            finest: if bend > 0.0 && bend.is_finite() {
+                (1e-14 * (size / bend)).cbrt()
+            } else {
+                f64::INFINITY
+            },
+        }
+    }
+}
+
+/// x′ at a time, with its sign; within rounding of zero it has the sign of the time before.
+#[derive(Clone, Copy)]
+struct Slope {
+    tau: f64,
+    value: f64,
+    positive: bool,
+}
+
+/// Stores every root of x′ between two times.
+fn isolate(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], bounds: &Bounds, found: &mut Vec<Extremum>) {
+    let width = b.tau - a.tau;
+    let bend = bounds.bend * width * width;
+    let crosses = a.positive != b.positive;
+    // x′ departs from its chord by at most bend/8, x″ from the slope of the chord by bend/(2·width).
+    let certain = if crosses {
+        (b.value - a.value).abs() > 0.5 * bend
+    } else {
+        a.value.abs().min(b.value.abs()) > 0.125 * bend
+    };
+    if certain || width < bounds.finest {
+        if crosses {
+            push_root(set, packed, a, b, found);
+        }
+        return;
+    }
+    let tau = 0.5 * (a.tau + b.tau);
+    let value = jet(set, packed, tau).dx;
+    let positive = if value.abs() <= bounds.noise {
+        a.positive
+    } else {
+        value > 0.0
+    };
+    let middle = Slope { tau, value, positive };
+    isolate(set, packed, [a, middle], bounds, found);
+    isolate(set, packed, [middle, b], bounds, found);
+}
+
+/// Refines the root of x′ between two times of opposite sign and stores it.
+fn push_root(set: &HarmonicSet, packed: &[f64], a: Slope, b: Slope, found: &mut Vec<Extremum>) {
+    // Values of equal sign mean that one of them is rounding.
+    if a.value * b.value >= 0.0 {
+        let tau = if a.value.abs() < b.value.abs() { a.tau } else { b.tau };
+        let x = jet(set, packed, tau).x;
+        found.push(Extremum { tau, x });
+        return;
+    }
+    let mut x = 0.0;
+    let tau = safe_newton(a.tau, b.tau, a.value, b.value, |tau| {
+        let at = jet(set, packed, tau);
+        x = at.x;
+        (at.dx, at.ddx)
+    });
+    found.push(Extremum { tau, x });
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn extrema(set: &HarmonicSet, packed: &[f64]) -> Vec<Extremum> {
+        let mut found = Vec::new();
+        TurningPoints::new(set).unwrap().find(set, packed, &mut found);
+        found
+    }
+
+    #[test]
+    fn turning_points_alternate_and_are_complete() {
+        // Compared with a dense scan, on motions rich in high harmonics, by table and by transform.
+        for highest in [1, 2, 5, 9, 63] {
+            for odd in [false, true] {
+                let set = HarmonicSet::excited(&[1], highest, true, odd, false).unwrap();
+                let packed: Vec<f64> = (0..set.packed_len())
+                    .map(|i| ((i * 37 + highest) as f64 * 0.7).sin() / (1.0 + 0.3 * i as f64))
+                    .collect();
+                let found = extrema(&set, &packed);
+                let turn = if odd { PI } else { TAU };
+                let n = 40_000;
+                let slope = |j: usize| jet(&set, &packed, (j as f64 + 0.5) * turn / n as f64).dx;
+                let changes = (0..n).filter(|&j| {
+                    let next = if j + 1 == n && odd {
+                        -slope(0)
+                    } else {
+                        slope((j + 1) % n)
+                    };
+                    (slope(j) > 0.0) != (next > 0.0)
+                });
+                assert_eq!(found.len(), changes.count(), "H = {highest}, odd = {odd}");
+                for e in &found {
+                    let at = jet(&set, &packed, e.tau);
+                    assert!(at.dx.abs() < 1e-9 * at.ddx.abs().max(1.0));
+                    assert!((at.x - e.x).abs() < 1e-13);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_hidden_pair_of_turning_points_is_found() {
+        // x' = cos t + 2b cos 2t has two roots around t = pi for b > 1/2; shifted by half a cell,
+        // both lie between the same two grid points.
+        let set = HarmonicSet::excited(&[1], 3, true, false, false).unwrap();
+        let shifted = |b: f64| {
+            let x1 = Complex64::new(0.0, -1.0) * Complex64::cis(0.13);
+            let x2 = Complex64::new(0.0, -b) * Complex64::cis(0.26);
+            [0.0, x1.re, x1.im, x2.re, x2.im, 0.0, 0.0]
+        };
+        assert_eq!(extrema(&set, &shifted(0.5001)).len(), 4);
+        assert_eq!(extrema(&set, &shifted(0.4999)).len(), 2);
+    }
+
+    #[test]
+    fn three_turning_points_within_one_cell_are_found() {
+        // x′ = −sin t + b sin 3t has roots at 0 and ±e, e² = (3b − 1)/(4b), wherever the grid lies.
+        for odd in [false, true] {
+            let set = HarmonicSet::excited(&[1], 3, true, odd, false).unwrap();
+            for (excess, count) in [(1e-2, 3), (1e-4, 3), (1e-6, 3), (1e-8, 3), (-1e-8, 1), (-1e-2, 1)] {
+                for j in 0..100 {
+                    let shift = 0.37 + 0.0077 * f64::from(j);
+                    let b = (1.0 + excess) / 3.0;
+                    let x1 = Complex64::cis(shift);
+                    let x3 = -Complex64::cis(3.0 * shift) * b / 3.0;
+                    let packed = if odd {
+                        vec![x1.re, x1.im, x3.re, x3.im]
+                    } else {
+                        vec![0.0, x1.re, x1.im, 0.0, 0.0, x3.re, x3.im]
+                    };
+                    let found = extrema(&set, &packed);
+                    assert_eq!(found.len(), if odd { count } else { 2 * count }, "{excess:e}, {shift}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_motion_flat_over_much_of_its_period_is_scanned_in_bounded_time() {
+        // x′ is a power of the sine: a root of order 31, which rounding splits arbitrarily.
+        let set = HarmonicSet::excited(&[1], 31, true, true, false).unwrap();
+        let mut binomial = 1.0;
+        let mut packed = vec![0.0; set.packed_len()];
+        for k in 0..16 {
+            let p = 31 - 2 * k;
+            packed[p - 1] = (if k % 2 == 0 { binomial } else { -binomial }) / p as f64;
+            binomial *= (31 - k) as f64 / (k + 1) as f64;
+        }
+        let found = extrema(&set, &packed);
+        assert!(found.len() % 2 == 1 && found.len() < 6, "{} roots", found.len());
+    }
+}

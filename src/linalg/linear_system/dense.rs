@@ -1,0 +1,123 @@
+//! The dense backend: all of J, factored by LU with the columns of the identity eliminated.
+
+use crate::error::{Result, try_vec};
+use crate::linalg::add_product;
+use crate::linalg::bordered::{Bordered, Parts};
+use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
+
+/// A bordered system with a dense matrix.
+pub struct DenseSystem {
+    factors: Bordered,
+    matrix: Vec<f64>,
+    active: Vec<bool>,
+    column: Vec<f64>,
+    scales: (f64, f64),
+    row: Vec<f64>,
+    scaled: Vec<f64>,
+}
+
+impl DenseSystem {
+    /// Memory for `n` unknowns and one parameter.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize) -> Result<Self> {
+        const CONTEXT: &str = "the linear system";
+        Ok(Self {
+            factors: Bordered::new(n)?,
+            matrix: try_vec(n.saturating_mul(n), 0.0, CONTEXT)?,
+            active: try_vec(n, true, CONTEXT)?,
+            column: try_vec(n, 0.0, CONTEXT)?,
+            scales: (1.0, 1.0),
+            row: try_vec(n + 1, 0.0, CONTEXT)?,
+            scaled: try_vec(n, 0.0, CONTEXT)?,
+        })
+    }
+
+    /// Memory of the matrix and of the flags of its columns, for a caller that fills a block of its own.
+    pub(super) fn memory(&mut self) -> (&mut [f64], &mut [bool]) {
+        (&mut self.matrix, &mut self.active)
+    }
+
+    /// Column, units and row of the border, for the same caller.
+    pub(super) fn set_border(
+        &mut self,
+        column: impl Iterator<Item = f64>,
+        scales: (f64, f64),
+        row: impl Iterator<Item = f64>,
+    ) {
+        for (to, from) in self.column.iter_mut().zip(column) {
+            *to = from;
+        }
+        for (to, from) in self.row.iter_mut().zip(row) {
+            *to = from;
+        }
+        self.scales = scales;
+    }
+
+    /// Unit of the unknowns.
+    pub(super) fn unit(&self) -> f64 {
+        self.scales.0
+    }
+
+    /// Factors the matrix in memory.
+    ///
+    /// # Errors
+    /// `Singular`.
+    pub(super) fn factor_memory(&mut self) -> Result<()> {
+        self.factors
+            .factor(&self.matrix, &self.column, &self.active, self.scales, &self.row)
+    }
+
+    /// Solves in place with the factors.
+    pub(super) fn solve_by_factors(&mut self, b: &mut [f64]) {
+        self.factors.solve(b);
+    }
+}
+
+impl LinearSystem for DenseSystem {
+    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>) -> Result<()> {
+        jacobian.fill(&mut self.matrix, &mut self.active);
+        self.column.copy_from_slice(border.column);
+        self.row.copy_from_slice(border.row);
+        self.scales = border.scales;
+        Ok(())
+    }
+
+    fn factor(&mut self) -> Result<()> {
+        self.factor_memory()
+    }
+
+    fn solve(&mut self, _jacobian: &mut dyn Jacobian, b: &mut [f64]) -> Result<bool> {
+        self.factors.solve(b);
+        Ok(true)
+    }
+
+    fn apply(&mut self, _jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()> {
+        let n = self.column.len();
+        for (s, x) in self.scaled.iter_mut().zip(x) {
+            *s = self.scales.0 * x;
+        }
+        for (out, c) in out.iter_mut().zip(&self.column) {
+            *out = c * (self.scales.1 * x[n]);
+        }
+        add_product(1.0, &self.matrix, &self.scaled, &mut out[..n]);
+        out[n] = self.row.iter().zip(x).map(|(t, x)| t * x).sum();
+        Ok(())
+    }
+
+    fn solve_by_earlier_factors(&mut self, tolerance: f64, b: &mut [f64]) -> bool {
+        let matrix = Parts {
+            jacobian: &self.matrix,
+            column: &self.column,
+            active: &self.active,
+            scales: self.scales,
+            row: &self.row,
+        };
+        self.factors.refine(&matrix, tolerance, b)
+    }
+
+    fn is_positive(&self) -> bool {
+        self.factors.is_positive()
+    }
+}

@@ -1,0 +1,293 @@
+//! The model: a structure with its contacts, springs and forces.
+
+use crate::contact::Contact;
+use crate::contact::laws::iwan::Iwan;
+use crate::contact::patch::Patch;
+use crate::contact::relative_motion::Direction;
+use crate::error::{Error, Result, fail, try_copy, try_extend, try_push};
+use crate::linalg::matrix_view::MatrixView;
+use crate::model::excitation::Excitation;
+use crate::model::spring::Spring;
+use crate::model::structure::{MatrixKind, Structure};
+use num_complex::Complex64;
+
+/// Purpose of the memory, named in an error.
+const CONTACTS: &str = "the contacts";
+
+/// A copy, allocated fallibly.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
+    Ok(Contact {
+        kind: contact.kind.clone(),
+        dofs: try_copy(&contact.dofs, CONTACTS)?,
+        ..*contact
+    })
+}
+
+/// A structure with its contacts and forces: M ẍ + C ẋ + K x + f_nl = f_ex.
+///
+/// Cyclic models describe one of N equal sectors; sector s + 1 lags behind sector s by the phase
+/// 2π·EO/N per harmonic, where EO is the engine order of the wave.
+#[derive(Clone, Debug)]
+pub struct Model {
+    structure: Structure,
+    contacts: Vec<Contact>,
+    springs: Vec<Spring>,
+    excitation: Excitation,
+}
+
+impl Model {
+    /// A plain structure of `ndof` degrees of freedom, all matrices zero.
+    ///
+    /// # Errors
+    /// `Dimension` unless 1 ≤ ndof ≤ [`MAX_DOF`](crate::model::structure::MAX_DOF).
+    pub fn new(ndof: usize) -> Result<Self> {
+        Self::cyclic(ndof, 1)
+    }
+
+    /// A sector of `ndof` degrees of freedom, one of `sectors`, under engine order 0.
+    ///
+    /// # Errors
+    /// `Dimension` for `ndof`, `Argument` for `sectors` out of range.
+    pub fn cyclic(ndof: usize, sectors: usize) -> Result<Self> {
+        Ok(Self {
+            structure: Structure::new(ndof, sectors)?,
+            contacts: Vec::new(),
+            springs: Vec::new(),
+            excitation: Excitation::default(),
+        })
+    }
+
+    /// A copy, allocated fallibly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        let mut contacts = Vec::new();
+        for contact in &self.contacts {
+            try_push(&mut contacts, copy(contact)?, CONTACTS)?;
+        }
+        let mut springs = Vec::new();
+        try_extend(&mut springs, &self.springs, "the springs")?;
+        Ok(Self {
+            structure: self.structure.try_clone()?,
+            contacts,
+            springs,
+            excitation: self.excitation.try_clone()?,
+        })
+    }
+
+    /// Sets the mass, damping or stiffness matrix (of the sector itself), ndof × ndof. M must be symmetric or
+    /// Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
+    /// on all harmonics above zero; the mean has the real part.
+    ///
+    /// # Errors
+    /// Those of [`MatrixView::copy_in`]; `NotPositiveDefinite` for a negative diagonal mass.
+    pub fn set_matrix(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_own(which, a)
+    }
+
+    /// Adds α M + β K to the damping.
+    ///
+    /// # Errors
+    /// `NotFinite`.
+    pub fn set_rayleigh(&mut self, alpha_mass: f64, beta_stiffness: f64) -> Result<()> {
+        self.structure.set_rayleigh(alpha_mass, beta_stiffness)
+    }
+
+    /// Sets the coupling of a cyclic model's sector (rows) to the next one (columns). The coupling
+    /// to the previous sector is its transpose unless [`Self::set_coupling_previous`] is called.
+    ///
+    /// # Errors
+    /// As [`Self::set_matrix`]; `Unsupported` for a plain structure.
+    pub fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_coupling(which, to_next)
+    }
+
+    /// Sets the coupling of the sector (rows) to the previous one (columns), for damping and
+    /// stiffness without symmetry.
+    ///
+    /// # Errors
+    /// As [`Self::set_coupling`].
+    pub fn set_coupling_previous(&mut self, which: MatrixKind, to_previous: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_coupling_previous(which, to_previous)
+    }
+
+    /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N, 0 ≤ diameter ≤ N/2.
+    ///
+    /// # Errors
+    /// As [`Self::set_matrix`]; `Argument` for a diameter out of range or a matrix that was given by sector blocks.
+    pub fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
+        self.structure.set_diameter(which, diameter, a)
+    }
+
+    /// Sets the engine order of the wave, of any sign and size.
+    pub fn set_wave(&mut self, engine_order: i64) {
+        self.structure.set_wave(engine_order);
+    }
+
+    /// Adds a contact and returns its number. Equal contacts add up.
+    ///
+    /// # Errors
+    /// `Index` for a degree of freedom out of range, `Argument` for a contact of a degree of
+    /// freedom with itself or one that a list names twice, and those of [`Contact::check_constants`].
+    pub fn add_contact(&mut self, contact: &Contact) -> Result<usize> {
+        self.check_contact(contact)?;
+        try_push(&mut self.contacts, copy(contact)?, CONTACTS)?;
+        Ok(self.contacts.len() - 1)
+    }
+
+    /// Adds many contacts and returns the number of the first; the others follow in order. All of
+    /// them are checked before any is added.
+    ///
+    /// # Errors
+    /// As [`Self::add_contact`], naming the position in the list.
+    pub fn add_contacts(&mut self, contacts: &[Contact]) -> Result<usize> {
+        for (i, contact) in contacts.iter().enumerate() {
+            self.check_contact(contact)
+                .map_err(|e| e.at(format_args!("entry {i}")))?;
+        }
+        let mut copies = Vec::new();
+        for contact in contacts {
+            try_push(&mut copies, copy(contact)?, CONTACTS)?;
+        }
+        self.append(copies)
+    }
+
+    /// Adds the node pairs of a patch as contacts with consecutive numbers, and returns the first. All of them are
+    /// checked before any is added.
+    ///
+    /// # Errors
+    /// Those of [`Patch::contacts`] and [`Self::add_contact`], naming the entry.
+    pub fn add_patch(&mut self, patch: &Patch<'_>) -> Result<usize> {
+        let contacts = patch.contacts()?;
+        for (i, contact) in contacts.iter().enumerate() {
+            self.check_contact(contact)
+                .map_err(|e| e.at(format_args!("patch, entry {i}")))?;
+        }
+        self.append(contacts)
+    }
+
+    /// Adds checked contacts and returns the number of the first.
+    fn append(&mut self, mut contacts: Vec<Contact>) -> Result<usize> {
+        let first = self.contacts.len();
+        self.contacts
+            .try_reserve(contacts.len())
+            .map_err(|_| Error::out_of_memory(CONTACTS))?;
+        self.contacts.append(&mut contacts);
+        Ok(first)
+    }
+
+    /// Adds an Iwan joint between the sides of `between` as `elements` Jenkins contacts with consecutive numbers,
+    /// and returns the first.
+    ///
+    /// # Errors
+    /// Those of [`Iwan::elements`] and [`Self::add_contact`].
+    pub fn add_iwan(&mut self, between: &Contact, joint: &Iwan, elements: usize) -> Result<usize> {
+        let sides = Direction::between(between.dof_a[0], between.dof_b[0]);
+        self.check_sides("Iwan joint", &sides, between.sector_offset)?;
+        self.add_contacts(&joint.elements(between, elements)?)
+    }
+
+    /// Adds a linear spring between two degrees of freedom, or one and the ground.
+    ///
+    /// # Errors
+    /// As [`Self::add_contact`]; `NotFinite` for the stiffness, which may have any sign.
+    pub fn add_spring(&mut self, spring: &Spring) -> Result<()> {
+        self.add_springs(core::slice::from_ref(spring))
+    }
+
+    /// Adds many linear springs; all of them are checked before any is added.
+    ///
+    /// # Errors
+    /// As [`Self::add_spring`], naming the position in the list.
+    pub fn add_springs(&mut self, springs: &[Spring]) -> Result<()> {
+        for (i, spring) in springs.iter().enumerate() {
+            self.check_spring(spring).map_err(|e| e.at(format_args!("entry {i}")))?;
+        }
+        try_extend(&mut self.springs, springs, "the springs")
+    }
+
+    fn check_spring(&self, spring: &Spring) -> Result<()> {
+        if !spring.stiffness.is_finite() {
+            return fail!(
+                NotFinite,
+                "spring: stiffness = {}, needs a finite number",
+                spring.stiffness
+            );
+        }
+        let sides = Direction::between(spring.dof_a, spring.dof_b);
+        self.check_sides("spring", &sides, spring.sector_offset)
+    }
+
+    /// Changes the normal load of a contact.
+    ///
+    /// # Errors
+    /// `Index` for an unknown contact, `Argument` for one without normal load, else as
+    /// [`Contact::check_constants`].
+    pub fn set_preload(&mut self, id: usize, preload: f64) -> Result<()> {
+        let count = self.contacts.len();
+        let Some(contact) = self.contacts.get_mut(id) else {
+            return fail!(Index, "contact id = {id}, but the model has {count} contacts");
+        };
+        if let Some(kind) = contact.without_load() {
+            return fail!(
+                Argument,
+                "preload of contact id = {id}, but that is a {kind}, which has none"
+            );
+        }
+        let changed = Contact {
+            preload,
+            ..contact.clone()
+        };
+        changed.check_constants()?;
+        *contact = changed;
+        Ok(())
+    }
+
+    /// Adds the force Re(value·e^{i·harmonic·ωt}) on a degree of freedom (of sector 1; the others
+    /// lag with the wave). Forces on one degree of freedom and harmonic add up.
+    ///
+    /// # Errors
+    /// `Index`, `Argument` or `NotFinite`, naming the argument.
+    pub fn add_force(&mut self, dof: usize, harmonic: usize, value: Complex64) -> Result<()> {
+        self.excitation.add(self.structure.ndof(), dof, harmonic, value)
+    }
+
+    /// Removes all forces.
+    pub fn clear_forces(&mut self) {
+        self.excitation.clear();
+    }
+
+    /// Degrees of freedom (of one sector).
+    #[must_use]
+    pub fn ndof(&self) -> usize {
+        self.structure.ndof()
+    }
+
+    /// The linear structure.
+    #[must_use]
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// The contacts in the order in which they were added.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        &self.contacts
+    }
+
+    /// The linear springs in the order in which they were added.
+    #[must_use]
+    pub fn springs(&self) -> &[Spring] {
+        &self.springs
+    }
+
+    /// The forces.
+    #[must_use]
+    pub fn excitation(&self) -> &Excitation {
+        &self.excitation
+    }
+}

@@ -1,0 +1,144 @@
+//! Options of the solver, with their defaults and checks.
+
+use crate::error::{Result, fail};
+
+/// Options that every analysis shares.
+#[derive(Clone, Copy, Debug)]
+pub struct SolverOptions {
+    /// Requested relative error, from which the harmonics of each point are chosen. It applies to the complex
+    /// fundamental of the response degree of freedom; in a nonlinear mode to the frequency and to the damping
+    /// ratio, the latter relative to the largest one so far. `0`: exactly [`Self::harmonics`], whatever the error.
+    pub tolerance: f64,
+    /// Highest harmonic number H; the initial H where the tolerance chooses the harmonics.
+    pub harmonics: usize,
+    /// Largest H that the tolerance may choose, at least the highest forced harmonic. Points that would need more
+    /// are kept, and the status of the branch reports them.
+    pub max_harmonics: usize,
+    /// Samples per period of the contact laws. `0`: exact stick-slip events. Otherwise every law is sampled at this
+    /// number of equidistant times, at least 2H + 1; where the tolerance chooses the harmonics, at least 8H. Laws
+    /// without events, and friction in one direction under a varying load, are exact either way.
+    pub samples: usize,
+    /// First arc-length step in scaled unknowns; `0`: automatic.
+    pub step: f64,
+    /// Smallest step, below which the branch ends; `0`: automatic.
+    pub step_min: f64,
+    /// Largest step; `0`: automatic.
+    pub step_max: f64,
+    /// Residual, relative to the contact motion, at which a point counts as converged. A last Newton correction
+    /// follows, so that the error of the solution is far below this value.
+    pub tol_residual: f64,
+    /// Largest number of Newton iterations per point.
+    pub max_newton: usize,
+    /// Largest number of accepted points.
+    pub max_points: usize,
+    /// Degree of freedom whose fundamental defines amplitude and peaks; `None`: the forced one that moves most at
+    /// the lower end of the range with the contacts at their reference stiffness. In a nonlinear mode its
+    /// fundamental is the reported amplitude; `None`: that of the phase reference.
+    pub response_dof: Option<usize>,
+    /// Carry the mean and the even harmonics even where symmetry makes them zero.
+    pub keep_even_harmonics: bool,
+    /// Estimate the error of every stored point, see [`crate::error_estimate`]. Each estimate costs about as much
+    /// time as a solution with more harmonics. Where the tolerance chooses the harmonics, the error is estimated in
+    /// any case.
+    pub estimate_error: bool,
+    /// Threads that may be used; `1` starts none. Results do not depend on it.
+    pub num_threads: usize,
+}
+
+impl Default for SolverOptions {
+    fn default() -> Self {
+        Self {
+            tolerance: 1e-3,
+            harmonics: 9,
+            max_harmonics: 511,
+            samples: 0,
+            step: 0.0,
+            step_min: 0.0,
+            step_max: 0.0,
+            tol_residual: 1e-10,
+            max_newton: 25,
+            max_points: 20_000,
+            response_dof: None,
+            keep_even_harmonics: false,
+            estimate_error: false,
+            num_threads: 1,
+        }
+    }
+}
+
+/// Highest harmonic number that is accepted; beyond it index arithmetic may overflow and run times are excessive.
+pub const MAX_HARMONIC: usize = 100_000;
+
+/// Largest accepted number of samples per period.
+pub const MAX_SAMPLES: usize = 1 << 24;
+
+impl SolverOptions {
+    /// The same options with exactly the given harmonics, whatever the error.
+    #[must_use]
+    pub fn fixed(&self) -> Self {
+        Self {
+            tolerance: 0.0,
+            ..*self
+        }
+    }
+
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// [`Status::Argument`](crate::error::Status::Argument) naming the field, its value and its
+    /// range.
+    pub fn check(&self) -> Result<()> {
+        if !(self.tolerance >= 0.0 && self.tolerance < 1.0) {
+            return fail!(Argument, "tolerance = {}, needs 0 <= tolerance < 1", self.tolerance);
+        }
+        if self.harmonics > MAX_HARMONIC {
+            return fail!(Argument, "harmonics = {}, needs 0 .. {MAX_HARMONIC}", self.harmonics);
+        }
+        if self.max_harmonics > MAX_HARMONIC {
+            return fail!(
+                Argument,
+                "max_harmonics = {}, needs 0 .. {MAX_HARMONIC}",
+                self.max_harmonics
+            );
+        }
+        if self.samples > MAX_SAMPLES || (self.samples > 0 && self.samples < 2 * self.harmonics + 1) {
+            return fail!(
+                Argument,
+                "samples = {}, needs 0 (exact events) or 2*harmonics+1 = {} .. {MAX_SAMPLES}",
+                self.samples,
+                2 * self.harmonics + 1
+            );
+        }
+        for (name, value) in [
+            ("step", self.step),
+            ("step_min", self.step_min),
+            ("step_max", self.step_max),
+        ] {
+            if !(value >= 0.0 && value.is_finite()) {
+                return fail!(Argument, "{name} = {value}, needs a finite number >= 0 (0 = automatic)");
+            }
+        }
+        if self.step_max > 0.0 && self.step_min > self.step_max {
+            return fail!(
+                Argument,
+                "step_min = {} exceeds step_max = {}",
+                self.step_min,
+                self.step_max
+            );
+        }
+        if !(self.tol_residual > 0.0 && self.tol_residual < 1.0) {
+            return fail!(
+                Argument,
+                "tol_residual = {}, needs 0 < tol_residual < 1",
+                self.tol_residual
+            );
+        }
+        if self.max_newton == 0 {
+            return fail!(Argument, "max_newton = 0, needs at least 1");
+        }
+        if self.max_points == 0 {
+            return fail!(Argument, "max_points = 0, needs at least 1");
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,93 @@
+//! Products with Newton's matrix of a forced response, and its block between the first harmonics, for linear solutions
+//! that never have the whole of it.
+
+use crate::error::{Result, try_vec};
+use crate::fourier::HarmonicSet;
+use crate::linalg::linear_system::MatrixFree;
+use crate::problem::harmonic_balance::HarmonicBalance;
+use crate::problem::parametric_problem::put;
+
+const CONTEXT: &str = "the products of the forced response";
+
+impl MatrixFree for HarmonicBalance<'_> {
+    fn group(&self) -> usize {
+        self.condensed.set().packed_len()
+    }
+
+    fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let coordinates = self.condensed.coordinates();
+        let harmonics = (0..set.numbers().len()).filter(|&i| set.offset(i) < part).count();
+        let order = part * coordinates;
+        if self.products.column.is_empty() {
+            self.products.column = try_vec(m * coordinates, 0.0, CONTEXT)?;
+        }
+        let column = &mut self.products.column[..];
+        for (k, to) in matrix.chunks_exact_mut(order.max(1)).enumerate() {
+            let (c, q) = (k / part, k % part);
+            active[k] = self.forces.is_felt(c);
+            to.fill(0.0);
+            to[k] = 1.0;
+            if !active[k] {
+                continue;
+            }
+            column.fill(0.0);
+            let tables = self.tables.current();
+            let flexibility = (|i: usize| &tables[i].value[..], coordinates + 1);
+            self.forces
+                .couple(0..harmonics, (c, q), flexibility, &mut self.sum, column);
+            for (to, from) in to.chunks_exact_mut(part).zip(column.chunks_exact(m)) {
+                for (to, from) in to.iter_mut().zip(from) {
+                    *to += from;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self) -> Result<()> {
+        self.forces.copy_jacobians(&mut self.products.kept)
+    }
+
+    fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()> {
+        let set = self.condensed.set();
+        let m = set.packed_len();
+        let coordinates = self.condensed.coordinates();
+        if self.products.change.is_empty() {
+            self.products.change = try_vec(m * coordinates, 0.0, CONTEXT)?;
+        }
+        // The contact Jacobians are those that were kept, not those of the motion evaluated last.
+        self.forces.swap_jacobians(&mut self.products.kept);
+        let dw = &mut self.products.change[..];
+        out.copy_from_slice(d);
+        for (c, dw) in dw.chunks_exact_mut(m).enumerate() {
+            self.forces.change(d, c, dw);
+        }
+        for (i, table) in self.tables.current().iter().enumerate() {
+            let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
+            for c in 0..coordinates {
+                let z = set.get(&dw[c * m..(c + 1) * m], i);
+                let column = &table.value[c * (coordinates + 1)..];
+                for (row, g) in column.iter().take(coordinates).enumerate() {
+                    put(out, row * m + at, mean, g * z);
+                }
+                if mean {
+                    out[c * m + at] += self.forces.mean_floor(c) * d[c * m + at];
+                }
+            }
+        }
+        self.forces.swap_jacobians(&mut self.products.kept);
+        Ok(())
+    }
+}
+
+/// Length of the packed form of the first carried harmonics.
+#[must_use]
+pub fn packed_up_to(set: &HarmonicSet, harmonics: usize) -> usize {
+    if harmonics < set.numbers().len() {
+        set.offset(harmonics)
+    } else {
+        set.packed_len()
+    }
+}

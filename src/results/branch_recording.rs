@@ -1,0 +1,201 @@
+//! Storing the points of a branch.
+
+use crate::condense::Reduction;
+use crate::error::{Error, Result, Status, try_extend, try_push};
+use crate::results::branch::{Branch, Place, Special};
+use crate::results::mode_branch::ModeData;
+use crate::results::point_resolution::Resolution;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+/// Numbers of one point.
+#[derive(Clone, Copy, Debug)]
+pub struct Record<'a> {
+    /// Resolution with which the point was solved.
+    pub resolution: &'a Resolution,
+    /// Angular frequency.
+    pub omega: f64,
+    /// Packed relative motions, in the solver's units.
+    pub motion: &'a [f64],
+    /// Complex fundamental of the response degree of freedom, in the solver's units.
+    pub amplitude: Complex64,
+    /// Carried harmonics of the response degree of freedom, in the solver's units.
+    pub response: &'a [Complex64],
+    /// Relative residual.
+    pub residual: f64,
+    /// Newton iterations.
+    pub iterations: usize,
+    /// Share of the period that each law slips.
+    pub slip_fractions: &'a [f64],
+    /// Estimated error by sampling, 0 where all laws are exact.
+    pub sampling_error: f64,
+    /// Estimated relative error of the response amplitude, or of the frequency of a mode, and the error of its
+    /// damping ratio; NaN if unknown.
+    pub errors: (f64, f64),
+}
+
+/// List to which a special point belongs.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum SpecialKind {
+    Peak,
+    Fold,
+    At(usize),
+}
+
+impl SpecialKind {
+    pub fn is_fold(self) -> bool {
+        matches!(self, Self::Fold)
+    }
+}
+
+impl Branch {
+    /// An empty branch of a condensed model, whose points have the harmonics up to `harmonics`, or up to the
+    /// highest that one of them carries.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(resolution: &Resolution, reduction: Reduction, harmonics: usize, response_dof: usize) -> Result<Self> {
+        let mut resolutions = Vec::new();
+        try_push(&mut resolutions, resolution.clone(), "the branch")?;
+        Ok(Self {
+            resolutions,
+            places: Vec::new(),
+            reduction,
+            harmonics,
+            estimates: 0,
+            response_dof,
+            status: Status::Ok,
+            reason: None,
+            curve: 0,
+            omega: Vec::new(),
+            amplitude: Vec::new(),
+            residual: Vec::new(),
+            iterations: Vec::new(),
+            harmonics_used: Vec::new(),
+            slip_fraction: Vec::new(),
+            sampling_error: Vec::new(),
+            error_estimate: Vec::new(),
+            damping_error_estimate: Vec::new(),
+            motion: Vec::new(),
+            response: Vec::new(),
+            peaks: Vec::new(),
+            folds: Vec::new(),
+            at: Vec::new(),
+            mode: None,
+        })
+    }
+
+    pub(crate) fn set_mode(&mut self, data: ModeData) {
+        self.mode = Some(data);
+    }
+
+    /// Stores a point and returns its number.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; the branch then ends before this point.
+    pub fn push(&mut self, record: &Record<'_>) -> Result<usize> {
+        const CONTEXT: &str = "the points of the branch";
+        let contacts = self.contacts();
+        let resolution = self.resolution_of(record.resolution)?;
+        let place = Place {
+            resolution,
+            motion: self.motion.len(),
+            response: self.response.len(),
+        };
+        self.places.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.slip_fraction
+            .try_reserve(contacts)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        for v in [
+            &mut self.amplitude,
+            &mut self.residual,
+            &mut self.iterations,
+            &mut self.harmonics_used,
+            &mut self.sampling_error,
+            &mut self.error_estimate,
+            &mut self.damping_error_estimate,
+        ] {
+            v.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+        }
+        self.response
+            .try_reserve(record.response.len())
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        try_extend(&mut self.motion, record.motion, CONTEXT)?;
+        // The frequency is stored last: its length is the number of points.
+        try_push(&mut self.omega, record.omega, CONTEXT)?;
+        self.places.push(place);
+        let condensed = &*record.resolution.condensed;
+        let length = condensed.length();
+        self.amplitude.push(record.amplitude.norm() * length);
+        self.response.extend(record.response.iter().map(|x| x * length));
+        self.residual.push(record.residual);
+        self.sampling_error.push(record.sampling_error);
+        self.error_estimate.push(record.errors.0);
+        self.damping_error_estimate.push(record.errors.1);
+        self.iterations.push(record.iterations as f64);
+        let highest = condensed.set().numbers().last().copied().unwrap_or(0);
+        self.harmonics = self.harmonics.max(highest);
+        self.harmonics_used.push(highest as f64);
+        let at = self.slip_fraction.len();
+        self.slip_fraction.resize(at + contacts, 0.0);
+        for (assembled, &share) in condensed.laws().iter().zip(record.slip_fractions) {
+            self.slip_fraction[at + assembled.contact] = share;
+        }
+        Ok(self.omega.len() - 1)
+    }
+
+    /// Appends a point to the curve, which must be done before any special point is stored.
+    pub(crate) fn push_curve(&mut self, record: &Record<'_>) -> Result<()> {
+        self.push(record)?;
+        self.curve = self.omega.len();
+        Ok(())
+    }
+
+    pub(crate) fn push_special(&mut self, kind: SpecialKind, record: &Record<'_>) -> Result<()> {
+        let point = self.push(record)?;
+        let special = Special {
+            point,
+            omega: record.omega,
+            amplitude: self.amplitude[point],
+        };
+        let list = match kind {
+            SpecialKind::Peak => &mut self.peaks,
+            SpecialKind::Fold => &mut self.folds,
+            SpecialKind::At(i) => {
+                while self.at.len() <= i {
+                    try_push(&mut self.at, Vec::new(), "the requested solutions")?;
+                }
+                &mut self.at[i]
+            }
+        };
+        try_push(list, special, "the special points")
+    }
+
+    pub(crate) fn set_reduction(&mut self, reduction: Reduction) {
+        self.reduction = Reduction {
+            harmonics_asked: self.harmonics,
+            ..reduction
+        };
+    }
+
+    /// Sets the status of the branch. `stalled`: round-off stopped some point above the tolerance of the residual;
+    /// `missed`: the error of some point exceeds the tolerance that chooses the harmonics.
+    pub(crate) fn set_ending(&mut self, status: Status, reason: Option<Error>, (stalled, missed): (bool, bool)) {
+        self.status = match status {
+            Status::Ok if missed => Status::StoppedMaxHarmonics,
+            Status::Ok if stalled => Status::StoppedStalled,
+            status => status,
+        };
+        self.reason = reason;
+    }
+
+    /// Number of a resolution, which is stored if it is new.
+    pub(super) fn resolution_of(&mut self, resolution: &Resolution) -> Result<usize> {
+        let known = |kept: &Resolution| Arc::ptr_eq(&kept.condensed, &resolution.condensed);
+        if let Some(found) = self.resolutions.iter().position(known) {
+            return Ok(found);
+        }
+        try_push(&mut self.resolutions, resolution.clone(), "the branch")?;
+        Ok(self.resolutions.len() - 1)
+    }
+}
