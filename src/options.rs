@@ -46,8 +46,6 @@ pub struct SolverOptions {
     /// Estimate the error of every stored point, see [`crate::error_estimate`]: the time of a solution with
     /// more harmonics at each of them. Where the tolerance decides it is estimated in any case.
     pub estimate_error: bool,
-    /// Threads that may be used; `1` starts none. Results do not depend on it.
-    pub num_threads: usize,
 }
 
 impl Default for SolverOptions {
@@ -66,7 +64,6 @@ impl Default for SolverOptions {
             response_dof: None,
             keep_even_harmonics: false,
             estimate_error: false,
-            num_threads: 1,
         }
     }
 }

@@ -162,7 +162,7 @@ fn hooks_cancel_and_threads_share_a_model() {
 }
 
 #[test]
-fn forces_of_the_host_may_fail_and_call_the_library() {
+fn forces_of_the_caller_may_fail_and_call_the_library() {
     silent("user_force", |_| vec![]);
 }
 
@@ -241,6 +241,69 @@ fn the_header_has_the_version_of_the_crate() {
         let line = format!("#define HBVIB_VERSION_{name} {value}\n");
         assert!(header.contains(&line), "the header lacks {line:?}");
     }
+}
+
+/// The program in the comment at the top of the header.
+fn example(header: &str) -> String {
+    let comment = header.split("*/").next().unwrap();
+    let lines = comment.lines().skip_while(|line| !line.contains("#include"));
+    lines
+        .take_while(|line| *line != " *")
+        .map(|line| line.trim_start_matches(" *").to_owned() + "\n")
+        .collect()
+}
+
+#[test]
+fn the_example_of_the_header_runs() {
+    let header = fs::read_to_string(root().join("include/hbvib.h")).unwrap();
+    let text = example(&header);
+    assert_eq!(text.lines().count(), 15, "{text}");
+    let folder = workshop("header_example");
+    let source = folder.join("header_example.c");
+    fs::write(&source, text).unwrap();
+    let program = compile(source.to_str().unwrap(), &folder, &["-std=c99"]);
+    let output = run(&mut Command::new(program));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let (amplitude, omega) = text.trim().split_once(" at ").unwrap();
+    let [amplitude, omega] = [amplitude, omega].map(|word| word.parse::<f64>().unwrap());
+    // Between the resonance with a contact that slides and that with one that sticks.
+    assert!(omega > 1.0 && omega < 2.0_f64.sqrt() && amplitude > 0.5, "{text}");
+}
+
+#[test]
+fn no_line_of_the_header_is_longer_than_100_columns() {
+    let header = fs::read_to_string(root().join("include/hbvib.h")).unwrap();
+    let long: Vec<_> = header.lines().filter(|line| line.chars().count() > 100).collect();
+    assert!(long.is_empty(), "{}", long.join("\n"));
+}
+
+#[test]
+fn every_struct_of_the_caller_stands_beside_its_init_function() {
+    let header = fs::read_to_string(root().join("include/hbvib.h")).unwrap();
+    let mut structs = 0;
+    for (body, rest) in header
+        .split("typedef struct {\n")
+        .skip(1)
+        .map(|text| text.split_once("\n} ").unwrap())
+    {
+        let name = rest.split(';').next().unwrap();
+        // The library alone fills a struct whose size it states.
+        if body.contains("as the library knows it") {
+            assert!(!header.contains(&format!("{name}_init(")), "{name}");
+            continue;
+        }
+        let next = rest
+            .lines()
+            .skip(1)
+            .find(|line| !line.is_empty() && !line.starts_with("///"));
+        let init = format!("hbvib_status {name}_init({name} *");
+        assert!(
+            next.is_some_and(|line| line.starts_with(&init)),
+            "after {name} stands {next:?}"
+        );
+        structs += 1;
+    }
+    assert!(structs > 15, "only {structs} structs were seen");
 }
 
 /// Names in `text` that begin with hbvib_ and are followed by an opening parenthesis.
