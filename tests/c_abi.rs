@@ -84,7 +84,7 @@ fn bad_options_and_ranges_are_refused() {
 }
 
 #[test]
-fn sizes_are_told_and_indices_may_count_from_one() {
+fn sizes_are_counted_and_indices_may_count_from_one() {
     silent("counting", |_| vec![]);
 }
 

@@ -243,14 +243,13 @@ impl Declarations {
 
 /// First sentence of a description.
 pub fn sentence(doc: &str) -> &str {
-    let end = doc
-        .match_indices(['.', ':'])
-        .find(|(i, end)| {
-            let rest = &doc[i + 1..];
-            rest.is_empty() || (*end == "." && rest.starts_with(' ') && !rest.starts_with(" ."))
-        })
-        .map_or(doc.len(), |(i, _)| i + 1);
-    &doc[..end]
+    let mut points = doc.match_indices('.').map(|(i, _)| i);
+    let end = points.find(|&i| {
+        let rest = &doc[i + 1..];
+        // The points of "0 .. 3" end no sentence.
+        (rest.is_empty() || rest.starts_with(' ')) && !doc[..i].ends_with(['.', ' '])
+    });
+    &doc[..end.map_or(doc.len(), |i| i + 1)]
 }
 
 fn word(text: &str) -> &str {

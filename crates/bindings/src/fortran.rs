@@ -132,7 +132,7 @@ fn default(all: &Declarations, kind: &Type, place: &Place, bytes: &[u8]) -> Resu
 
 /// A real constant, exactly.
 fn real(value: f64) -> String {
-    if value == value.trunc() && value.abs() < 1e6 {
+    if value.fract() == 0.0 && value.abs() < 1e6 {
         return format!("{value}");
     }
     let (plain, exponent) = (format!("{value}"), format!("{value:e}"));
