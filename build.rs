@@ -1,82 +1,49 @@
-//! Writes the C header and names the shared library.
+//! Names the shared library; with the feature `bindings` also writes the C header.
 
 use std::env;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-/// The files with exported items, in the order of the header.
-const SOURCES: &[&str] = &[
-    "types",
-    "boundary",
-    "matrix",
-    "model",
-    "counting",
-    "contact_types",
-    "contact",
-    "tables",
-    "user_force",
-    "jacobian",
-    "elements",
-    "patch",
-    "solve",
-    "mode",
-    "results",
-    "special",
-    "energy",
-    "contact_results",
-    "mode_results",
-    "synthesis",
-    "residual",
-    "time",
-    "verify",
-];
+#[cfg(feature = "bindings")]
+#[path = "crates/bindings/src/header.rs"]
+mod header;
 
 fn main() {
-    for path in ["build.rs", "cbindgen.toml", "Cargo.toml", "src/capi", "include/hbvib.h"] {
-        println!("cargo::rerun-if-changed={path}");
-    }
+    println!("cargo::rerun-if-changed=build.rs");
+    #[cfg(feature = "bindings")]
     write_header();
     name_library();
 }
 
-/// A user's build must not fail because a header cannot be written (the sources may lie in a
-/// read-only place), so every trouble here is a warning.
+/// Writes include/hbvib.h from src/capi, where its text has changed.
+#[cfg(feature = "bindings")]
 fn write_header() {
     let root = PathBuf::from(variable("CARGO_MANIFEST_DIR"));
-    let header = root.join("include/hbvib.h");
-    let text = match header_text(&root) {
-        Ok(text) => text,
-        Err(error) => {
-            println!("cargo::warning=include/hbvib.h was not checked: {error}");
-            return;
-        }
-    };
-    if fs::read(&header).is_ok_and(|old| old == text) {
-        return;
+    for path in [
+        "cbindgen.toml",
+        "src/capi",
+        "include/hbvib.h",
+        "crates/bindings/src/header.rs",
+        "crates/bindings/src/prologue.h",
+    ] {
+        println!("cargo::rerun-if-changed={path}");
     }
-    let written = fs::create_dir_all(root.join("include")).and_then(|()| fs::write(&header, text));
-    if let Err(error) = written {
-        println!("cargo::warning=include/hbvib.h is out of date and cannot be written: {error}");
+    let mut builder =
+        cbindgen::Builder::new().with_config(cbindgen::Config::from_file(root.join("cbindgen.toml")).unwrap());
+    let mut sources = Vec::new();
+    for name in header::files() {
+        let path = root.join(format!("src/capi/{name}.rs"));
+        sources.push(fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display())));
+        builder = builder.with_src(path);
     }
-}
-
-fn header_text(root: &Path) -> Result<Vec<u8>, Box<dyn std::error::Error>> {
-    let mut config = cbindgen::Config::from_file(root.join("cbindgen.toml"))?;
-    config.after_includes = Some(format!(
-        "\n#define HBVIB_VERSION_MAJOR {}\n#define HBVIB_VERSION_MINOR {}\n#define HBVIB_VERSION_PATCH {}\n\n\
-         /// A flag that another thread or a signal handler may set while a call runs.\n\
-         typedef volatile int32_t hbvib_cancel_flag;",
-        variable("CARGO_PKG_VERSION_MAJOR"),
-        variable("CARGO_PKG_VERSION_MINOR"),
-        variable("CARGO_PKG_VERSION_PATCH"),
-    ));
-    let mut builder = cbindgen::Builder::new().with_config(config);
-    for name in SOURCES {
-        builder = builder.with_src(root.join(format!("src/capi/{name}.rs")));
+    let mut items = Vec::new();
+    builder.generate().unwrap().write(&mut items);
+    let version = ["MAJOR", "MINOR", "PATCH"].map(|part| variable(&format!("CARGO_PKG_VERSION_{part}")));
+    let text = header::assemble(&String::from_utf8(items).unwrap(), &sources, &version).unwrap();
+    let path = root.join("include/hbvib.h");
+    if fs::read_to_string(&path).ok().as_ref() != Some(&text) {
+        fs::write(path, text).unwrap();
     }
-    let mut text = Vec::new();
-    builder.generate()?.write(&mut text);
-    Ok(text)
 }
 
 /// Gives an ELF library its SONAME, and the link of that name which the loader looks for when the
@@ -103,7 +70,7 @@ fn name_library() {
         if let (true, Some(profile)) = (out.starts_with(root), out.ancestors().nth(3)) {
             let link = profile.join(&soname);
             if fs::symlink_metadata(&link).is_err() {
-                // A missing link is told by the loader; it is no reason to fail here.
+                // The loader reports a missing link; it is no reason to fail here.
                 let _ = std::os::unix::fs::symlink("libhbvib.so", link);
             }
         }

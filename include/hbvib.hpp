@@ -5,7 +5,7 @@
  * prefix and its arguments in the same order, except that options which may be left out come last.
  *
  * Errors     A negative status is thrown as hbvib::Error. A positive one (stopped early) is none:
- *            Branch::status and Branch::complete tell. Destructors never throw.
+ *            Branch::status and Branch::complete say so. Destructors never throw.
  * Objects    Model and Branch are handles: they move and are not copied (Model::clone copies). One that
  *            was moved from may be assigned to or destroyed; all else gives Error with HBVIB_E_HANDLE.
  *            Its own calls keep an object alive, so a callback may even drop the model being solved.
@@ -16,7 +16,7 @@
  *            call the library, and catch what that throws. Only calls made through this header carry
  *            exceptions (shared objects that hide their symbols have one each): in a plain C call the
  *            force counts as failed, HBVIB_E_CALLBACK.
- * Memory     What a call only reads (In) may be a temporary. What options keep (Span) must live until
+ * Memory     An array that a call only reads (In) may be a temporary. One that options keep (Span) must live until
  *            they were used. A View owns its share of the memory that it shows.
  */
 #ifndef HBVIB_HPP
@@ -187,7 +187,7 @@ class Span {
   constexpr Span(T (&array)[N]) noexcept : Span(array, N) {}
   template <class U, class = std::enable_if_t<std::is_convertible_v<U (*)[], T (*)[]>>>
   constexpr Span(const Span<U>& other) noexcept : Span(other.data(), other.size()) {}
-  /// Lasting containers only: what a temporary holds would be gone.
+  /// No temporaries: their content would be gone.
   template <class C, class = detail::holds<C, T>>
   Span(C& container) : Span(container.data(), static_cast<std::size_t>(container.size())) {
     if (!detail::is_packed(container, 0))
@@ -355,7 +355,7 @@ using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
 struct ForcedOptions : Filled<hbvib_forced_options, hbvib_forced_options_init> {
   ForcedOptions() = default;
   ForcedOptions(double start, double stop) { omega_start = start, omega_stop = stop; }
-  /// Angular frequencies at which every solution is wanted as well.
+  /// Angular frequencies at which every solution is computed exactly.
   ForcedOptions& wanted(Span<const double> omega) { return at = omega.data(), at_len = omega.length(), *this; }
   /// Start values, (H + 1) x ndof.
   ForcedOptions& start_from(Span<const Complex> x) { return guess = detail::flat(x.data()), guess_len = x.length(), *this; }
@@ -365,7 +365,7 @@ struct ForcedOptions : Filled<hbvib_forced_options, hbvib_forced_options_init> {
 struct ModeOptions : Filled<hbvib_mode_options, hbvib_mode_options_init> {
   ModeOptions() = default;
   ModeOptions(double start, double stop) { log10_start = start, log10_stop = stop; }
-  /// log10 of the amplitudes at which every solution is wanted as well.
+  /// log10 of the amplitudes at which every solution is computed exactly.
   ModeOptions& wanted(Span<const double> amplitudes) { return at = amplitudes.data(), at_len = amplitudes.length(), *this; }
   /// The linear mode most alike this one, ndof numbers.
   ModeOptions& alike(Span<const Complex> x) { return shape = detail::flat(x.data()), shape_len = x.length(), *this; }
@@ -482,7 +482,7 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
   std::vector<std::shared_ptr<const std::vector<Index>>> copies_;
 };
 
-/// A callable that may return nothing where R is wanted: then it returns R{}.
+/// A callable that may return nothing where R is required: then it returns R{}.
 template <class R, class Argument>
 class Callback : public std::function<R(Argument)> {
  public:
@@ -505,7 +505,7 @@ class Callback : public std::function<R(Argument)> {
 
 class Branch;
 
-/// What is attached to a solve. An exception of a callback leaves the solve as it was thrown; one of
+/// Callbacks and cancel flag of a solve. An exception of a callback leaves the solve as it was thrown; one of
 /// `log` at the next point found.
 struct Hooks {
   /// Called at each point; returns nothing, or true to stop and keep the points.
@@ -520,7 +520,7 @@ struct Hooks {
   Branch* partial = nullptr;
 };
 
-/// One period that a force is asked about, as views of N samples: f(j, i), df_du(j, i, k). Write f, z and
+/// One period for which a force is computed, as views of N samples: f(j, i), df_du(j, i, k). Write f, z and
 /// the derivatives that are not 0; those that the force has no use for are empty.
 struct ForceCall {
   explicit ForceCall(const hbvib_force_call& c)
@@ -563,7 +563,7 @@ struct Owned {
   Forces forces;
 };
 
-/// What Model and Branch have in common: shared only with calls that run, and with views.
+/// Common part of Model and Branch: shared only with calls that run, and with views.
 template <class Handle, hbvib_status (*release)(Handle*)>
 class Object {
  public:
@@ -602,8 +602,8 @@ struct BoundHooks : Filled<hbvib_hooks, hbvib_hooks_init> {
 
  private:
   static std::int32_t on_progress(void* user, const hbvib_progress* p) noexcept {
-    const auto& wanted = static_cast<const Hooks*>(user)->progress;
-    return Call::guard(1, [&] { return wanted && wanted(*p) ? 1 : 0; });
+    const auto& progress = static_cast<const Hooks*>(user)->progress;
+    return Call::guard(1, [&] { return progress && progress(*p) ? 1 : 0; });
   }
   static void on_log(void* user, std::int32_t level, const char* line) noexcept {
     Call::guard(0, [&] { return static_cast<const Hooks*>(user)->log(static_cast<hbvib_log_level>(level), line), 0; });
@@ -616,12 +616,12 @@ inline std::int32_t on_force(void* user, const hbvib_force_call* period) noexcep
 
 }  // namespace detail
 
-/// A peak, fold or wanted solution; `point` is its number for the results of a branch.
+/// A peak, fold or requested solution; `point` is its number for the results of a branch.
 struct Peak {
   double omega, amplitude;
   Index point;
 };
-/// A solution at a wanted frequency or amplitude.
+/// A solution at a requested frequency or amplitude.
 struct Wanted {
   double amplitude;
   Index point;
@@ -666,13 +666,13 @@ struct Verification {
   Complex response() const { return {info.response[0], info.response[1]}; }
 };
 /// Residual of n complex rows; jacobian is 2 n x 2 n over the pairs (re, im). Both derivatives are empty
-/// unless asked for.
+/// unless requested.
 struct Residual {
   std::vector<Complex> r;
   View<const double> jacobian;
   std::vector<Complex> d_omega;
 };
-/// Force harmonics of a contact law, direction after direction; jacobian is empty unless asked for.
+/// Force harmonics of a contact law, direction after direction; jacobian is empty unless requested.
 struct ContactForce {
   std::vector<Complex> force;
   View<const double> jacobian;
@@ -695,7 +695,7 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   std::string sentence() const { return status(), last_error(); }
   /// Points on the curve.
   Index points() const { return use(hbvib_branch_points); }
-  /// All stored points: the curve, then peaks, folds and the solutions wanted.
+  /// All stored points: the curve, then peaks, folds and requested solutions.
   Index stored() const { return use(hbvib_branch_stored); }
   /// A field of the curve where it lies, without a copy: points, or points x contacts.
   View<const double> field(hbvib_field which) const {
@@ -733,7 +733,7 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   }
   /// Turning points.
   std::vector<Peak> folds() const { return extremes(hbvib_branch_folds); }
-  /// Every solution at entry `wanted` of what the options wanted.
+  /// Every solution at entry `wanted` of the requested frequencies or amplitudes.
   std::vector<Wanted> at(Index wanted) const {
     Index count = 0;
     use(hbvib_branch_at, wanted, 0, nullptr, nullptr, &count);
@@ -923,7 +923,7 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   Branch nonlinear_mode(const SolverOptions& solver, const ModeOptions& range, const Hooks& hooks = {}) const {
     return solve(hbvib_nonlinear_mode, solver, range, hooks);
   }
-  /// Residual of harmonic balance at x, (H + 1) x ndof, with its derivatives if asked for.
+  /// Residual of harmonic balance at x, (H + 1) x ndof, with its derivatives if requested.
   Residual forced_residual(const SolverOptions& solver, double omega, In<Complex> x, bool derivatives = false) const {
     const Index n = x.length(), order = 2 * n;
     Residual out{std::vector<Complex>(detail::room(n)), {}, std::vector<Complex>(derivatives ? detail::room(n) : 0)};

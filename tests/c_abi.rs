@@ -45,7 +45,7 @@ fn compile(source: &str, folder: &Path, options: &[&str]) -> PathBuf {
 }
 
 /// Runs a program of tests/c_abi, which must be silent.
-fn eliminated(name: &str, arguments: impl Fn(&Path) -> Vec<PathBuf>) {
+fn silent(name: &str, arguments: impl Fn(&Path) -> Vec<PathBuf>) {
     let folder = workshop(name);
     let program = compile(
         &format!("tests/c_abi/{name}.c"),
@@ -70,27 +70,27 @@ fn eliminated(name: &str, arguments: impl Fn(&Path) -> Vec<PathBuf>) {
 
 #[test]
 fn bad_pointers_sizes_and_buffers_are_refused() {
-    eliminated("bad_pointers", |_| vec![]);
+    silent("bad_pointers", |_| vec![]);
 }
 
 #[test]
 fn bad_matrices_and_contacts_are_refused() {
-    eliminated("bad_values", |_| vec![]);
+    silent("bad_values", |_| vec![]);
 }
 
 #[test]
 fn bad_options_and_ranges_are_refused() {
-    eliminated("bad_options", |_| vec![]);
+    silent("bad_options", |_| vec![]);
 }
 
 #[test]
-fn sizes_are_told_and_indices_may_count_from_one() {
-    eliminated("counting", |_| vec![]);
+fn sizes_are_counted_and_indices_may_count_from_one() {
+    silent("counting", |_| vec![]);
 }
 
 #[test]
 fn results_are_what_they_say() {
-    eliminated("results", |_| vec![]);
+    silent("results", |_| vec![]);
 }
 
 #[test]
@@ -100,19 +100,19 @@ fn nonlinear_modes_are_those_of_the_reference() {
     let rows = [0, table.len() / 2].map(|i| &table[i]);
     let mut numbers: Vec<&Value> = rows.iter().flat_map(|r| [&r["alpha"], &r["omega"], &r["D"]]).collect();
     numbers.push(&reference["D_max"]["D"]);
-    eliminated("mode", |_| {
+    silent("mode", |_| {
         numbers.iter().map(|v| number(v).to_string().into()).collect()
     });
 }
 
 #[test]
 fn bad_options_and_models_of_a_mode_are_refused() {
-    eliminated("bad_modes", |_| vec![]);
+    silent("bad_modes", |_| vec![]);
 }
 
 #[test]
 fn responses_are_synthesised_from_modes() {
-    eliminated("synthesis", |_| vec![]);
+    silent("synthesis", |_| vec![]);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn responses_in_time_are_the_truth_of_the_reference() {
     let td = &data("point_F5_208p85.json")["td"];
     let tip = &td["X"]["1"][0];
     let numbers = [&td["f_Hz"], &tip[0], &tip[1]];
-    eliminated("time", |_| {
+    silent("time", |_| {
         numbers.iter().map(|v| number(v).to_string().into()).collect()
     });
 }
@@ -131,44 +131,44 @@ fn points_checked_in_time_have_the_errors_of_the_reference() {
     let tip = &point["td"]["X"]["1"][0];
     let error = &point["hbm"]["hbm_exactN"]["9"]["rel_err_b2_vs_td"];
     let numbers = [&point["td"]["f_Hz"], &tip[0], &tip[1], error];
-    eliminated("verify", |_| {
+    silent("verify", |_| {
         numbers.iter().map(|v| number(v).to_string().into()).collect()
     });
 }
 
 #[test]
 fn many_contacts_and_springs_are_added_at_once() {
-    eliminated("tables", |_| vec![]);
+    silent("tables", |_| vec![]);
 }
 
 #[test]
 fn laws_elements_and_patches_are_those_of_closed_forms() {
-    eliminated("laws", |_| vec![]);
+    silent("laws", |_| vec![]);
 }
 
 #[test]
 fn bad_laws_elements_and_patches_are_refused() {
-    eliminated("bad_laws", |_| vec![]);
+    silent("bad_laws", |_| vec![]);
 }
 
 #[test]
 fn handles_cannot_be_mistaken() {
-    eliminated("handles", |_| vec![]);
+    silent("handles", |_| vec![]);
 }
 
 #[test]
 fn hooks_cancel_and_threads_share_a_model() {
-    eliminated("callbacks", |_| vec![]);
+    silent("callbacks", |_| vec![]);
 }
 
 #[test]
-fn forces_of_the_host_may_fail_and_call_the_library() {
-    eliminated("user_force", |_| vec![]);
+fn forces_of_the_caller_may_fail_and_call_the_library() {
+    silent("user_force", |_| vec![]);
 }
 
 #[test]
 fn the_library_is_a_guest_in_its_process() {
-    eliminated("process", |folder| {
+    silent("process", |folder| {
         let copy = folder.join("copy.so");
         fs::copy(library(), &copy).unwrap();
         vec![copy]
@@ -241,6 +241,69 @@ fn the_header_has_the_version_of_the_crate() {
         let line = format!("#define HBVIB_VERSION_{name} {value}\n");
         assert!(header.contains(&line), "the header lacks {line:?}");
     }
+}
+
+/// The program in the comment at the top of the header.
+fn example(header: &str) -> String {
+    let comment = header.split("*/").next().unwrap();
+    let lines = comment.lines().skip_while(|line| !line.contains("#include"));
+    lines
+        .take_while(|line| *line != " *")
+        .map(|line| line.trim_start_matches(" *").to_owned() + "\n")
+        .collect()
+}
+
+#[test]
+fn the_example_of_the_header_runs() {
+    let header = fs::read_to_string(root().join("include/hbvib.h")).unwrap();
+    let text = example(&header);
+    assert_eq!(text.lines().count(), 15, "{text}");
+    let folder = workshop("header_example");
+    let source = folder.join("header_example.c");
+    fs::write(&source, text).unwrap();
+    let program = compile(source.to_str().unwrap(), &folder, &["-std=c99"]);
+    let output = run(&mut Command::new(program));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let (amplitude, omega) = text.trim().split_once(" at ").unwrap();
+    let [amplitude, omega] = [amplitude, omega].map(|word| word.parse::<f64>().unwrap());
+    // Between the resonance with a contact that slides and that with one that sticks.
+    assert!(omega > 1.0 && omega < 2.0_f64.sqrt() && amplitude > 0.5, "{text}");
+}
+
+#[test]
+fn no_line_of_the_header_is_longer_than_100_columns() {
+    let header = fs::read_to_string(root().join("include/hbvib.h")).unwrap();
+    let long: Vec<_> = header.lines().filter(|line| line.chars().count() > 100).collect();
+    assert!(long.is_empty(), "{}", long.join("\n"));
+}
+
+#[test]
+fn every_struct_of_the_caller_stands_beside_its_init_function() {
+    let header = fs::read_to_string(root().join("include/hbvib.h")).unwrap();
+    let mut structs = 0;
+    for (body, rest) in header
+        .split("typedef struct {\n")
+        .skip(1)
+        .map(|text| text.split_once("\n} ").unwrap())
+    {
+        let name = rest.split(';').next().unwrap();
+        // The library alone fills a struct whose size it states.
+        if body.contains("as the library knows it") {
+            assert!(!header.contains(&format!("{name}_init(")), "{name}");
+            continue;
+        }
+        let next = rest
+            .lines()
+            .skip(1)
+            .find(|line| !line.is_empty() && !line.starts_with("///"));
+        let init = format!("hbvib_status {name}_init({name} *");
+        assert!(
+            next.is_some_and(|line| line.starts_with(&init)),
+            "after {name} stands {next:?}"
+        );
+        structs += 1;
+    }
+    assert!(structs > 15, "only {structs} structs were seen");
 }
 
 /// Names in `text` that begin with hbvib_ and are followed by an opening parenthesis.

@@ -1,11 +1,12 @@
-//! Handles: numbers in a pointer's clothes. A handle says in which slot of the one table its object
-//! lies, of which generation and type it is, and it is looked up before anything is read, so that
-//! a freed, foreign or random handle is an error and never an access to memory.
+//! Handles: numbers with the type of a pointer. A handle holds the slot of its object in the one table,
+//! the generation and the type, and it is looked up before anything is read, so that a freed, foreign or
+//! random handle is an error and never an access to memory.
 //!
-//! The table is locked for the look-up alone. While a call works on an object, the slot counts its
-//! readers or notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
+//! The table is locked for the look-up alone. While a call uses an object, the slot counts its readers or
+//! notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
 
-use super::types::{hbvib_branch, hbvib_model};
+use super::model::hbvib_model;
+use super::solve::hbvib_branch;
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
 use crate::results::Branch;
@@ -29,14 +30,14 @@ const WRITER: u32 = u32::MAX;
 /// End of the list of free slots.
 const NONE: u32 = u32::MAX;
 
-/// A branch with what its queries need besides.
+/// A branch, and a number that only its queries need.
 pub(super) struct KeptBranch {
     pub branch: Branch,
-    /// Number of frequencies, or amplitudes of a mode, that were asked for.
-    pub wanted: usize,
+    /// Number of exact frequencies, or amplitudes of a mode, that were requested.
+    pub requested: usize,
 }
 
-/// What a slot holds. The one-element vectors are boxes whose memory can be asked for fallibly.
+/// Content of a slot. The one-element vectors are boxes whose memory can be reserved fallibly.
 pub(super) enum Object {
     Free { next: u32 },
     Model(Vec<Model>),
@@ -59,8 +60,8 @@ static TABLE: Mutex<Table> = Mutex::new(Table {
     free: NONE,
 });
 
-/// Where the generations of a slot begin: another number in each copy of the library that a process
-/// has loaded, so that a handle of one copy is none of the other's.
+/// First generation of a slot: another number in each copy of the library that a process has
+/// loaded, so that a handle of one copy is invalid in another.
 fn first_generation() -> u32 {
     1 + ((&raw const TABLE).addr() >> 12 & 0x3F_FFFF) as u32
 }
@@ -183,8 +184,8 @@ impl Table {
         }
     }
 
-    /// The slot of a handle that was found before and cannot have been freed since.
-    fn again(&mut self, handle: usize) -> Option<&mut Slot> {
+    /// The slot of a handle that is in use, and so cannot have been freed.
+    fn in_use(&mut self, handle: usize) -> Option<&mut Slot> {
         self.slots.get_mut(handle & (MAX_SLOTS - 1))
     }
 }
@@ -234,7 +235,7 @@ impl<T> Deref for Reading<T> {
 
 impl<T> Drop for Reading<T> {
     fn drop(&mut self) {
-        if let Some(slot) = table().again(self.handle) {
+        if let Some(slot) = table().in_use(self.handle) {
             slot.users -= 1;
         }
     }
@@ -280,13 +281,13 @@ impl<T> DerefMut for Writing<T> {
 
 impl<T> Drop for Writing<T> {
     fn drop(&mut self) {
-        if let Some(slot) = table().again(self.handle) {
+        if let Some(slot) = table().in_use(self.handle) {
             slot.users = 0;
         }
     }
 }
 
-/// Frees an object; NULL is nothing to free.
+/// Frees an object; NULL is accepted and does nothing.
 pub(super) fn free<T: Kept>(handle: *mut T::Opaque, argument: i32) -> Result<()> {
     if handle.is_null() {
         return Ok(());

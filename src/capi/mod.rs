@@ -1,39 +1,77 @@
-//! The C interface: `include/hbvib.h` is generated from this module.
+//! The C interface: `include/hbvib.h` is generated from this module, and from the header what the other
+//! languages share with it (`crates/bindings`).
 //!
-//! [`boundary`] keeps panics in and errors out, `handles` turns objects into numbers that cannot
-//! be mistaken, [`types`] holds the constants and structs of the header, `sized` the
-//! rules by which structs cross; the functions themselves
-//! are grouped by object. Nothing is computed here. The comments on exported items are written for
-//! the reader of the header.
+//! Infrastructure: `boundary` turns panics and errors into statuses, `handles` turns objects into numbers
+//! that cannot be mistaken, `versioned_struct` has the rules by which structs cross, `arrays` and
+//! `indices` check the pointers and numbers of the caller, `float_environment` keeps the settings of the
+//! floating-point unit apart. All other files are named after the sections of the header
+//! (`crates/bindings/src/header.rs` has their order), and a file lists its items in the order of the
+//! header. No numerics here.
+//!
+//! The doc comments of exported items are written for the reader of the header, and the generator reads
+//! three words in the description of a pointer: an argument that may be `NULL` says so, an array of
+//! `complex` numbers too, and an `int64_t` array that a function fills receives `numbers`.
 
 #![allow(unsafe_code)]
 // The comments become those of a C header, whose contract ("Conventions") stands at its top.
 #![allow(clippy::missing_safety_doc, clippy::doc_markdown)]
 
-mod arithmetic;
-pub mod boundary;
-pub mod contact;
-pub mod contact_results;
-pub mod contact_types;
-pub mod counting;
-pub mod elements;
-pub mod energy;
+mod arrays;
+mod boundary;
+mod float_environment;
 mod handles;
-pub mod jacobian;
-pub mod matrix;
-pub mod mode;
-pub mod mode_results;
-pub mod model;
-pub mod patch;
-pub mod residual;
-pub mod results;
-mod sized;
-pub mod solve;
-pub mod special;
-pub mod synthesis;
-pub mod tables;
-pub mod time;
-mod told;
-pub mod types;
-pub mod user_force;
-pub mod verify;
+mod indices;
+mod outcome;
+mod versioned_struct;
+
+mod caller_laws;
+mod caller_laws_check;
+mod contacts;
+mod contacts_batch;
+mod contacts_patch;
+mod contacts_springs;
+mod cyclic;
+mod low_level;
+mod matrices;
+mod model;
+mod modes;
+mod modes_linear;
+mod modes_results;
+mod modes_synthesis;
+mod results;
+mod results_contacts;
+mod results_energy;
+mod results_reduction;
+mod results_special_points;
+mod solve;
+mod solve_hooks;
+mod solve_options;
+mod time;
+mod time_verify;
+mod version_and_errors;
+
+pub use caller_laws::*;
+pub use caller_laws_check::*;
+pub use contacts::*;
+pub use contacts_batch::*;
+pub use contacts_patch::*;
+pub use contacts_springs::*;
+pub use cyclic::*;
+pub use low_level::*;
+pub use matrices::*;
+pub use model::*;
+pub use modes::*;
+pub use modes_linear::*;
+pub use modes_results::*;
+pub use modes_synthesis::*;
+pub use results::*;
+pub use results_contacts::*;
+pub use results_energy::*;
+pub use results_reduction::*;
+pub use results_special_points::*;
+pub use solve::*;
+pub use solve_hooks::*;
+pub use solve_options::*;
+pub use time::*;
+pub use time_verify::*;
+pub use version_and_errors::*;

@@ -1,117 +1,22 @@
-//! What a branch tells.
+//! Section "Results" of the header: the curve of a branch, its fields and motions.
 
-use super::boundary::{Blame, call, call_count, check_pointer, index};
-use super::contact::exact_len;
+#![allow(non_camel_case_types)]
+
+use super::arrays::{check_pointer, exact_len};
+use super::boundary::{WithArgument, call, call_count};
 use super::handles::{KeptBranch, free, read};
-use super::sized::{Described, check_out, fill_out, init};
-use super::told::Told;
-use super::types::{hbvib_branch, hbvib_field, hbvib_scalar, hbvib_status, hbvib_view};
+use super::indices::{index, times};
+use super::matrices::hbvib_scalar;
+use super::outcome::Outcome;
+use super::solve::hbvib_branch;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::{Status, fail, try_vec};
 use crate::results::mode_branch::ModeField;
 use core::ptr;
 use num_complex::Complex64;
 
-/// What was removed from the problem before it was solved. Fill it by hbvib_reduction_init.
-#[repr(C)]
-#[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
-pub struct hbvib_reduction {
-    /// Bytes of this struct as the caller knows it.
-    pub struct_size: u32,
-    /// 0.
-    pub reserved: i32,
-    /// Sectors of the wheel; all but one are removed.
-    pub sectors: i64,
-    /// Degrees of freedom of one sector.
-    pub degrees_of_freedom: i64,
-    /// Relative contact coordinates that remain of them.
-    pub coordinates: i64,
-    /// Contacts in the model.
-    pub contacts: i64,
-    /// Contacts that became linear springs (infinite slip limit, no cubic term).
-    pub never_slipping: i64,
-    /// Contacts without force (no stiffness, or no slip limit).
-    pub inert: i64,
-    /// Highest harmonic number H of which the points tell: that asked for or, where the tolerance decided, the
-    /// highest that one of them carries.
-    pub harmonics_asked: i64,
-    /// Number of harmonics carried, where most are.
-    pub harmonics_carried: i64,
-    /// Real unknowns of the nonlinear problem, where there are most.
-    pub unknowns: i64,
-    /// The degree of freedom whose amplitude was followed.
-    pub response_dof: i64,
-    /// 1 if the mean is carried, else 0.
-    pub mean_carried: i32,
-    /// 1 if even harmonics were left out because law and forcing are odd, else 0.
-    pub even_removed: i32,
-    /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
-    pub held_by_contacts: i64,
-}
-
-unsafe impl Described for hbvib_view {
-    const NAME: &'static str = "hbvib_view";
-    const FIRST: usize = 72;
-
-    fn filled() -> Self {
-        Self {
-            struct_size: 0,
-            scalar: hbvib_scalar::HBVIB_REAL as i32,
-            rank: 0,
-            reserved: 0,
-            data: ptr::null(),
-            shape: [1; 3],
-            stride: [1; 3],
-        }
-    }
-}
-
-unsafe impl Described for hbvib_reduction {
-    const NAME: &'static str = "hbvib_reduction";
-    const FIRST: usize = 96;
-
-    fn filled() -> Self {
-        Self {
-            struct_size: 0,
-            reserved: 0,
-            sectors: 0,
-            degrees_of_freedom: 0,
-            coordinates: 0,
-            contacts: 0,
-            never_slipping: 0,
-            inert: 0,
-            harmonics_asked: 0,
-            harmonics_carried: 0,
-            unknowns: 0,
-            response_dof: 0,
-            mean_carried: 0,
-            even_removed: 0,
-            held_by_contacts: 0,
-        }
-    }
-}
-
-/// Fills a view with nothing in it.
-///
-/// v          the struct; untouched on error.
-/// size_of_v  sizeof of it.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_view_init(v: *mut hbvib_view, size_of_v: usize) -> hbvib_status {
-    call(|| unsafe { init(v, size_of_v) })
-}
-
-/// Fills a reduction with zeros.
-///
-/// r          the struct; untouched on error.
-/// size_of_r  sizeof of it.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_reduction_init(r: *mut hbvib_reduction, size_of_r: usize) -> hbvib_status {
-    call(|| unsafe { init(r, size_of_r) })
-}
-
-/// Frees a branch and ends its views. NULL is nothing to free and a success.
+/// Frees a branch; its views become invalid. NULL is accepted and does nothing.
 ///
 /// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_BUSY. Threads: any, once.
 #[unsafe(no_mangle)]
@@ -119,8 +24,9 @@ pub unsafe extern "C" fn hbvib_branch_free(branch: *mut hbvib_branch) -> hbvib_s
     call(|| free::<KeptBranch>(branch, 1).map(|()| Status::Ok))
 }
 
-/// Number of points on the curve, or a negative status. Peaks, folds and the solutions wanted at
-/// given frequencies or amplitudes are stored beside the curve and carry the numbers from there on.
+/// Number of points on the curve, or a negative status. Peaks, folds and the solutions requested at
+/// given frequencies or amplitudes are stored beside the curve; their point numbers follow those of
+/// the curve.
 ///
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
@@ -128,8 +34,8 @@ pub unsafe extern "C" fn hbvib_branch_points(branch: *const hbvib_branch) -> i64
     call_count(|| Ok(read::<KeptBranch>(branch, 1)?.branch.points()))
 }
 
-/// Number of all stored points, those beside the curve included: point numbers are below it. Or a
-/// negative status.
+/// Number of all stored points, those beside the curve included, so that point numbers are below
+/// it; or a negative status.
 ///
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
@@ -143,14 +49,106 @@ pub unsafe extern "C" fn hbvib_branch_stored(branch: *const hbvib_branch) -> i64
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbvib_status {
-    call(|| Ok(Told::from(&read::<KeptBranch>(branch, 1)?.branch)))
+    call(|| Ok(Outcome::from(&read::<KeptBranch>(branch, 1)?.branch)))
+}
+
+/// Results that a branch holds for each point of the curve. Energies are of one sector.
+#[repr(C)]
+pub enum hbvib_field {
+    /// Angular frequency.
+    HBVIB_OMEGA = 0,
+    /// Peak amplitude of the fundamental of the response degree of freedom.
+    HBVIB_AMPLITUDE = 1,
+    /// Nonlinear modes only: damping ratio D.
+    HBVIB_DAMPING_RATIO = 2,
+    /// Nonlinear modes only: T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the
+    /// mean kinetic energy.
+    HBVIB_ENERGY = 3,
+    /// Nonlinear modes only: work of friction per cycle.
+    HBVIB_DISSIPATION = 4,
+    /// Relative residual.
+    HBVIB_RESIDUAL = 5,
+    /// Newton iterations.
+    HBVIB_NEWTON_ITERATIONS = 6,
+    /// Estimated relative error of the complex fundamental of the response degree of freedom (in a
+    /// nonlinear mode: of the frequency) by the harmonics left out. NaN where it is unknown, and
+    /// everywhere without a tolerance and without estimate_error.
+    HBVIB_ERROR_ESTIMATE = 7,
+    /// Highest harmonic number carried.
+    HBVIB_HARMONICS_USED = 8,
+    /// Share of the period that each contact slips: points x contacts. An open contact does not
+    /// slip, so that springs have 0, HBVIB_UNILATERAL too.
+    HBVIB_SLIP_FRACTION = 9,
+    /// Nonlinear modes only: log10 of the amplitude, the parameter.
+    HBVIB_LOG10_AMPLITUDE = 10,
+    /// Nonlinear modes only: modal amplitude sqrt(X_1^H M X_1).
+    HBVIB_MODAL_AMPLITUDE = 11,
+    /// Nonlinear modes only: work of the structure's damping per cycle.
+    HBVIB_STRUCTURAL_LOSS = 12,
+    /// Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1
+    /// of the point before; 1 for the first.
+    HBVIB_MODAL_ASSURANCE = 13,
+    /// Aliasing check of laws that are sampled: relative change of their force harmonics with half
+    /// the samples (twice as many where half are too few). 0 where all laws are exact, NaN where a
+    /// force of the caller failed. It estimates the error by sampling and is no bound of it.
+    HBVIB_SAMPLING_ERROR = 14,
+    /// Nonlinear modes only: estimated absolute error of the damping ratio, as
+    /// HBVIB_ERROR_ESTIMATE.
+    HBVIB_DAMPING_ERROR_ESTIMATE = 15,
+}
+
+/// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_view {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// HBVIB_REAL or HBVIB_COMPLEX.
+    pub scalar: i32,
+    /// Number of dimensions, 1 to 3.
+    pub rank: i32,
+    /// 0.
+    pub reserved: i32,
+    /// First number; NULL where there is none.
+    pub data: *const f64,
+    /// Length of each dimension; 1 beyond the rank.
+    pub shape: [i64; 3],
+    /// Distance of neighbours in each dimension, in numbers of the view's kind.
+    pub stride: [i64; 3],
+}
+
+unsafe impl VersionedStruct for hbvib_view {
+    const NAME: &'static str = "hbvib_view";
+    const FIRST_SIZE: usize = 72;
+
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            scalar: hbvib_scalar::HBVIB_REAL as i32,
+            rank: 0,
+            reserved: 0,
+            data: ptr::null(),
+            shape: [1; 3],
+            stride: [1; 3],
+        }
+    }
+}
+
+/// Fills an empty view.
+///
+/// v          the struct; untouched on error.
+/// size_of_v  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_view_init(v: *mut hbvib_view, size_of_v: usize) -> hbvib_status {
+    call(|| unsafe { init(v, size_of_v) })
 }
 
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
-///        points x contacts, a contact that sticks throughout being 0. A forced response has none of
-///        the fields that belong to nonlinear modes.
+///        points x contacts, 0 for a contact that never slips. A forced response does not have the
+///        fields of nonlinear modes.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -185,19 +183,19 @@ pub unsafe extern "C" fn hbvib_branch_field(
             SAMPLING_ERROR => branch.sampling_error(),
             ERROR_ESTIMATE => branch.error_estimate(),
             DAMPING_ERROR if branch.mode().is_some() => branch.damping_error_estimate(),
-            DAMPING_ERROR => return fail!(Argument, "field = {field}: only a nonlinear mode has it").blame(2),
+            DAMPING_ERROR => return fail!(Argument, "field = {field}: only a nonlinear mode has it").with_argument(2),
             SLIP_FRACTION => branch.slip_fraction(),
             _ => match mode_field(field).map(|f| branch.mode_field(f)) {
                 Some(Some(data)) => data,
-                Some(None) => return fail!(Argument, "field = {field}: only a nonlinear mode has it").blame(2),
-                None => return fail!(Argument, "field = {field}, needs a value of enum hbvib_field").blame(2),
+                Some(None) => return fail!(Argument, "field = {field}: only a nonlinear mode has it").with_argument(2),
+                None => return fail!(Argument, "field = {field}, needs a value of enum hbvib_field").with_argument(2),
             },
         };
         let mut view = hbvib_view {
             rank: 1,
             data: if data.is_empty() { ptr::null() } else { data.as_ptr() },
             shape: [points, 1, 1],
-            ..hbvib_view::filled()
+            ..hbvib_view::defaults()
         };
         if field == SLIP_FRACTION {
             view.rank = 2;
@@ -225,11 +223,12 @@ fn mode_field(field: i32) -> Option<ModeField> {
 }
 
 /// Recovers harmonics 0 .. H of a range of degrees of freedom at a stored point, in the caller's
-/// unit of length. H is harmonics_asked of hbvib_branch_reduction; harmonics that are not carried are zero.
+/// unit of length. H is harmonics_asked of hbvib_branch_reduction; harmonics that are
+/// not carried are zero.
 ///
-/// point      number of a point of the curve, or of a peak, fold or solution wanted.
+/// point      number of a point of the curve, or of a peak, fold or requested solution.
 /// first_dof  first degree of freedom of the range, from 0.
-/// n_dof      number of them, at least 1.
+/// n_dof      number of degrees of freedom, at least 1.
 /// x          receives (H + 1) x n_dof complex numbers, harmonic after harmonic; untouched on
 ///            error.
 /// x_len      complex numbers in it.
@@ -252,7 +251,7 @@ pub unsafe extern "C" fn hbvib_branch_harmonics(
         let first = index(first_dof, n, 3, "first_dof")?;
         let dofs = usize::try_from(n_dof).unwrap_or(0);
         if dofs == 0 || dofs > n - first {
-            return fail!(Dimension, "n_dof = {n_dof}, needs 1 .. {}", n - first).blame(4);
+            return fail!(Dimension, "n_dof = {n_dof}, needs 1 .. {}", n - first).with_argument(4);
         }
         check_pointer(x, 5, "x")?;
         let rows = branch.harmonics() + 1;
@@ -267,11 +266,41 @@ pub unsafe extern "C" fn hbvib_branch_harmonics(
     })
 }
 
+/// Motion of a degree of freedom over one period of the fundamental at a stored point, in the
+/// caller's unit of length: entry j at omega t = 2 pi j / n.
+///
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
+/// dof    degree of freedom, from 0.
+/// n      number of times, 1 .. 2^24.
+/// x      receives n doubles; untouched on error.
+/// Errors: HBVIB_E_INDEX (point, dof), HBVIB_E_DIMENSION (n), HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_time_history(
+    branch: *const hbvib_branch,
+    point: i64,
+    dof: i64,
+    n: i64,
+    x: *mut f64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let branch = &kept.branch;
+        let point = index(point, branch.stored(), 2, "point")?;
+        let dof = index(dof, branch.ndof(), 3, "dof")?;
+        let n = times(n, 4)?;
+        check_pointer(x, 5, "x")?;
+        let found = branch.time_history(point, dof, n)?;
+        unsafe { x.copy_from(found.as_ptr(), found.len()) };
+        Ok(Status::Ok)
+    })
+}
+
 /// Shares of the period that each contact slips at a stored point.
 ///
-/// point       number of a point of the curve, or of a peak, fold or solution wanted.
-/// shares      receives one double per contact of the model, 0 for one that sticks throughout;
-///             NULL is allowed where there is no contact.
+/// point       number of a point of the curve, or of a peak, fold or requested solution.
+/// shares      receives one double per contact of the model, 0 for one that never slips; may be
+///             NULL where there is no contact.
 /// shares_len  doubles in it.
 /// Errors: HBVIB_E_INDEX (point), HBVIB_E_DIMENSION (shares_len), HBVIB_E_NULL, HBVIB_E_HANDLE.
 /// Threads: any number on one branch.
@@ -292,41 +321,6 @@ pub unsafe extern "C" fn hbvib_branch_slip_fraction(
             check_pointer(shares, 3, "shares")?;
             unsafe { shares.copy_from(found.as_ptr(), found.len()) };
         }
-        Ok(Status::Ok)
-    })
-}
-
-/// What was removed from the problem before it was solved, and which degree of freedom was
-/// followed.
-///
-/// out  receives the numbers; fill it by hbvib_reduction_init before; untouched on error.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_branch_reduction(
-    branch: *const hbvib_branch,
-    out: *mut hbvib_reduction,
-) -> hbvib_status {
-    call(|| {
-        let kept = read::<KeptBranch>(branch, 1)?;
-        unsafe { check_out(out, 2) }?;
-        let r = kept.branch.reduction();
-        let value = hbvib_reduction {
-            sectors: r.sectors as i64,
-            degrees_of_freedom: r.degrees_of_freedom as i64,
-            coordinates: r.coordinates as i64,
-            contacts: r.contacts as i64,
-            never_slipping: r.never_slipping as i64,
-            inert: r.inert as i64,
-            harmonics_asked: r.harmonics_asked as i64,
-            harmonics_carried: r.harmonics_carried as i64,
-            unknowns: r.unknowns as i64,
-            response_dof: kept.branch.response_dof() as i64,
-            mean_carried: i32::from(r.mean_carried),
-            even_removed: i32::from(r.even_removed),
-            held_by_contacts: r.held_by_contacts as i64,
-            ..hbvib_reduction::filled()
-        };
-        unsafe { fill_out(out, value) };
         Ok(Status::Ok)
     })
 }

@@ -1,11 +1,15 @@
-//! Periodic responses by integration in time.
+//! Section "Time" of the header: periodic responses by integration in time.
 
-use super::boundary::{Blame, Range, call, check_pointer, disjoint, input, output};
-use super::contact::exact_len;
+#![allow(non_camel_case_types)]
+
+use super::arrays::{Range, disjoint, input, optional_len, output};
+use super::boundary::{WithArgument, call};
 use super::handles::read;
-use super::sized::{Described, check_out, fill_out, init, load};
-use super::solve::{load_hooks, number, with_hooks};
-use super::types::{hbvib_hooks, hbvib_model, hbvib_status};
+use super::indices::number;
+use super::model::hbvib_model;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
 use crate::analysis;
 use crate::error::{Result, fail};
 use crate::model::Model;
@@ -15,19 +19,17 @@ use num_complex::Complex64;
 
 /// Ways of finding a steady state in time.
 #[repr(C)]
-#[allow(non_camel_case_types)]
 pub enum hbvib_steady_method {
-    /// Newton's method on the map over a period, with marching where it fails. Where several solutions
-    /// coexist it may find an unstable one.
+    /// Newton's method on the map over a period, with marching where it fails. Where several
+    /// solutions coexist it may find an unstable one.
     HBVIB_SHOOTING = 0,
-    /// Period after period until nothing changes any more.
+    /// Period after period until the motion repeats.
     HBVIB_MARCHING = 1,
 }
 
 /// Options of hbvib_time_response. Fill it by hbvib_time_options_init, then set omega.
 #[repr(C)]
 #[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
 pub struct hbvib_time_options {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
@@ -35,48 +37,27 @@ pub struct hbvib_time_options {
     pub method: i32,
     /// Angular frequency of harmonic 1, > 0, rad per time unit.
     pub omega: f64,
-    /// Highest harmonic that is given out; it does not touch the accuracy of the others.
+    /// Highest harmonic of the results; it has no effect on the accuracy of the others.
     pub harmonics: i64,
-    /// Equidistant times per period at which the motion is given out; 0: none.
+    /// Equidistant times per period at which the motion is returned; 0: none.
     pub samples: i64,
     /// Largest change over a period, relative to the largest displacement and velocity, of a steady
     /// state; also the local error of a step where a law is smooth (HBVIB_CUBIC).
     pub tolerance: f64,
     /// Cap on the periods that are integrated.
     pub max_periods: i64,
-    /// Motion to start from, complex (H + 1) x ndof of any H, harmonic after harmonic, such as a point
-    /// of a branch; or NULL: rest.
+    /// Motion to start from, complex (H + 1) x ndof of any H, harmonic after harmonic, such as a
+    /// point of a branch; or NULL: rest.
     pub start: *const f64,
     /// Complex numbers in start.
     pub start_len: i64,
 }
 
-/// What is known of a periodic response in time. Fill it by hbvib_time_info_init.
-#[repr(C)]
-#[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
-pub struct hbvib_time_info {
-    /// Bytes of this struct as the caller knows it.
-    pub struct_size: u32,
-    /// 0.
-    pub reserved: i32,
-    /// 2 pi / omega.
-    pub period: f64,
-    /// Largest change over a period, relative to the largest displacement and velocity; infinite where
-    /// the caller stopped before the first was over.
-    pub residual: f64,
-    /// Periods that were integrated.
-    pub periods: i64,
-    /// Changes between stick, slip, open and closed, or between the lines of a table, in one period, all
-    /// contacts of the (sector's) model together.
-    pub events: i64,
-}
-
-unsafe impl Described for hbvib_time_options {
+unsafe impl VersionedStruct for hbvib_time_options {
     const NAME: &'static str = "hbvib_time_options";
-    const FIRST: usize = 64;
+    const FIRST_SIZE: usize = 64;
 
-    fn filled() -> Self {
+    fn defaults() -> Self {
         let defaults = TimeOptions::default();
         Self {
             struct_size: 0,
@@ -92,22 +73,6 @@ unsafe impl Described for hbvib_time_options {
     }
 }
 
-unsafe impl Described for hbvib_time_info {
-    const NAME: &'static str = "hbvib_time_info";
-    const FIRST: usize = 40;
-
-    fn filled() -> Self {
-        Self {
-            struct_size: 0,
-            reserved: 0,
-            period: 0.0,
-            residual: 0.0,
-            periods: 0,
-            events: 0,
-        }
-    }
-}
-
 /// Fills the options of a response in time with their defaults: shooting from rest, harmonics = 9,
 /// tolerance = 1e-11; omega must be set.
 ///
@@ -119,7 +84,43 @@ pub unsafe extern "C" fn hbvib_time_options_init(o: *mut hbvib_time_options, siz
     call(|| unsafe { init(o, size_of_o) })
 }
 
-/// Fills what is known of a response in time with zeros.
+/// Numbers of a periodic response in time. Fill it by hbvib_time_info_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_time_info {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// 0.
+    pub reserved: i32,
+    /// 2 pi / omega.
+    pub period: f64,
+    /// Largest change over a period, relative to the largest displacement and velocity; infinite
+    /// where the caller stopped before the end of the first period.
+    pub residual: f64,
+    /// Number of periods that were integrated.
+    pub periods: i64,
+    /// Number of changes between stick, slip, open and closed, or between the lines of a table, in
+    /// one period, all contacts of the model (of one sector) together.
+    pub events: i64,
+}
+
+unsafe impl VersionedStruct for hbvib_time_info {
+    const NAME: &'static str = "hbvib_time_info";
+    const FIRST_SIZE: usize = 40;
+
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            reserved: 0,
+            period: 0.0,
+            residual: 0.0,
+            periods: 0,
+            events: 0,
+        }
+    }
+}
+
+/// Fills the numbers of a response in time with zeros.
 ///
 /// i          the struct; untouched on error.
 /// size_of_i  sizeof of it.
@@ -129,61 +130,30 @@ pub unsafe extern "C" fn hbvib_time_info_init(i: *mut hbvib_time_info, size_of_i
     call(|| unsafe { init(i, size_of_i) })
 }
 
-/// The method of a number.
-pub(super) fn steady_method(method: i32) -> Result<SteadyMethod> {
-    match method {
-        0 => Ok(SteadyMethod::Shooting),
-        1 => Ok(SteadyMethod::Marching),
-        other => fail!(
-            Argument,
-            "method = {other}, needs HBVIB_SHOOTING = 0 or HBVIB_MARCHING = 1"
-        ),
-    }
-}
-
-unsafe fn time_options<'a>(o: &hbvib_time_options, ndof: usize) -> Result<TimeOptions<'a>> {
-    let start = if o.start.is_null() && o.start_len == 0 {
-        None
-    } else {
-        let len = number(o.start_len, "start_len")?;
-        Some(unsafe { input::<Complex64>(o.start.cast(), len, 2, "start") }?)
-    };
-    let options = TimeOptions {
-        omega: o.omega,
-        method: steady_method(o.method)?,
-        harmonics: number(o.harmonics, "harmonics")?,
-        samples: number(o.samples, "samples")?,
-        tolerance: o.tolerance,
-        max_periods: number(o.max_periods, "max_periods")?,
-        start,
-    };
-    options.check(ndof)?;
-    Ok(options)
-}
-
 /// Finds the periodic response of a model to its forces at one angular frequency by integration in
-/// time from event to event: exact to rounding where contacts are linear between events, by adaptive
-/// implicit steps where a law is smooth. Nothing is truncated, so that this is what harmonic balance
-/// tends to as its harmonics grow: a check of any of its points. A cyclic model moves in the wave of
-/// its engine order. The progress hook is called after each period integrated (in a wave after each
-/// part of it), with the largest displacement as amplitude. A force callback is asked about one time per
-/// call: samples is 1.
+/// time from event to event: exact to rounding where contacts are linear between events, by
+/// adaptive implicit steps where a law is smooth. Nothing is truncated: harmonic balance tends to
+/// this response as the number of its harmonics grows, so that it checks any point of a branch. A
+/// cyclic model moves in the wave of its engine order. The progress hook is called after each
+/// integrated period (in a wave after each part of it), with the largest displacement as amplitude.
+/// A force callback is called for one time at once: samples is 1.
 ///
-/// options        set omega; give a point of a branch as start to check that very solution.
+/// options        set omega; a point of a branch as start checks this solution.
 /// hooks          progress, log and cancellation; NULL: none.
-/// harmonics      receives (harmonics + 1) x ndof complex numbers, harmonic after harmonic; or NULL.
+/// harmonics      receives (harmonics + 1) x ndof complex numbers, harmonic after harmonic; or
+///                NULL.
 /// harmonics_len  complex numbers in it; 0 with NULL.
 /// samples        receives samples x ndof displacements, time after time from t = 0; or NULL.
 /// samples_len    doubles in it; 0 with NULL.
-/// info           receives what is known of the response; fill it by hbvib_time_info_init before; or
+/// info           receives numbers of the response; fill it by hbvib_time_info_init before; or
 ///                NULL.
 /// HBVIB_STOPPED_BY_CALLER: the results are those of the last period, which is not steady.
-/// Errors: HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (options, overlapping arrays), HBVIB_E_DIMENSION (a
-/// length, with the one needed), HBVIB_E_UNSUPPORTED (a degree of freedom without mass, complex
-/// matrices, HBVIB_FRICTION_3D, a force of the caller with states), HBVIB_E_NO_CONVERGENCE (no steady state found),
-/// HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows without end), HBVIB_E_CALLBACK (a force callback
-/// refused), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
-/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+/// Errors: HBVIB_E_ARGUMENT and HBVIB_E_NOT_FINITE (options, overlapping arrays), HBVIB_E_DIMENSION
+/// (a length, with the one needed), HBVIB_E_UNSUPPORTED (a degree of freedom without mass, complex
+/// matrices, HBVIB_FRICTION_3D, a force of the caller with states), HBVIB_E_NO_CONVERGENCE (no
+/// steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows without bound),
+/// HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn hbvib_time_response(
@@ -199,12 +169,12 @@ pub unsafe extern "C" fn hbvib_time_response(
     call(|| {
         let model = read::<Model>(model, 1)?;
         let options = unsafe { load(options, 2) }?;
-        let options = unsafe { time_options(&options, model.ndof()) }.blame(2)?;
+        let options = unsafe { time_options(&options, model.ndof()) }.with_argument(2)?;
         let hooks = unsafe { load_hooks(hooks, 3) }?;
         let coefficients = (options.harmonics + 1).saturating_mul(model.ndof());
-        let harmonics_len = wanted(harmonics, harmonics_len, coefficients, 4, "(harmonics + 1) * ndof")?;
+        let harmonics_len = optional_len(harmonics, harmonics_len, coefficients, 4, "(harmonics + 1) * ndof")?;
         let displacements = options.samples.saturating_mul(model.ndof());
-        let samples_len = wanted(samples, samples_len, displacements, 6, "samples * ndof")?;
+        let samples_len = optional_len(samples, samples_len, displacements, 6, "samples * ndof")?;
         if !info.is_null() {
             unsafe { check_out(info, 8) }?;
         }
@@ -230,7 +200,7 @@ pub unsafe extern "C" fn hbvib_time_response(
                 residual: found.residual,
                 periods: found.periods as i64,
                 events: found.events as i64,
-                ..hbvib_time_info::filled()
+                ..hbvib_time_info::defaults()
             };
             unsafe { fill_out(info, value) };
         }
@@ -238,11 +208,34 @@ pub unsafe extern "C" fn hbvib_time_response(
     })
 }
 
-/// The length of an output array that may be left out, given as the argument after the array's.
-pub(super) fn wanted(p: *mut f64, len: i64, needed: usize, argument: i32, name: &str) -> Result<usize> {
-    if p.is_null() && len == 0 {
-        return Ok(0);
+unsafe fn time_options<'a>(o: &hbvib_time_options, ndof: usize) -> Result<TimeOptions<'a>> {
+    let start = if o.start.is_null() && o.start_len == 0 {
+        None
+    } else {
+        let len = number(o.start_len, "start_len")?;
+        Some(unsafe { input::<Complex64>(o.start.cast(), len, 2, "start") }?)
+    };
+    let options = TimeOptions {
+        omega: o.omega,
+        method: steady_method(o.method)?,
+        harmonics: number(o.harmonics, "harmonics")?,
+        samples: number(o.samples, "samples")?,
+        tolerance: o.tolerance,
+        max_periods: number(o.max_periods, "max_periods")?,
+        start,
+    };
+    options.check(ndof)?;
+    Ok(options)
+}
+
+/// The method of a number.
+pub(super) fn steady_method(method: i32) -> Result<SteadyMethod> {
+    match method {
+        0 => Ok(SteadyMethod::Shooting),
+        1 => Ok(SteadyMethod::Marching),
+        other => fail!(
+            Argument,
+            "method = {other}, needs HBVIB_SHOOTING = 0 or HBVIB_MARCHING = 1"
+        ),
     }
-    check_pointer(p, argument, name)?;
-    exact_len(len, needed, argument + 1, name)
 }

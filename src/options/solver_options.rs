@@ -41,8 +41,6 @@ pub struct SolverOptions {
     /// time as a solution with more harmonics. Where the tolerance chooses the harmonics, the error is estimated in
     /// any case.
     pub estimate_error: bool,
-    /// Threads that may be used; `1` starts none. Results do not depend on it.
-    pub num_threads: usize,
 }
 
 impl Default for SolverOptions {
@@ -61,7 +59,6 @@ impl Default for SolverOptions {
             response_dof: None,
             keep_even_harmonics: false,
             estimate_error: false,
-            num_threads: 1,
         }
     }
 }

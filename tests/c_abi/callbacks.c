@@ -95,11 +95,11 @@ static void hooks(void)
     hbvib_view omega;
     int64_t count = -1;
 
-    /* All points are told, the log too, and nothing changes by it. */
+    /* All points are reported, the log too, and nothing changes by it. */
     h.log = keep_line;
     h.log_level = HBVIB_LOG_DEBUG;
     h.cancel = &flag;
-    options.num_threads = 4;
+    options.num_threads = 1;
     WORKS("83", hbvib_forced_response(the_model, &options, &o, &h, &branch));
     EXPECT("83", s.wrong == 0 && s.lines > 0 && s.calls == the_solution.points && s.last_fraction == 1);
     EXPECT("83", s.last_parameter == the_solution.omega[the_solution.points - 1]);

@@ -2,7 +2,12 @@
 #include "hbvib.h"
 #include "hbvib.h"
 
+#if HBVIB_VERSION_NUMBER != HBVIB_VERSION_MAJOR * 65536 + HBVIB_VERSION_MINOR * 256 + HBVIB_VERSION_PATCH
+#error "the number of the version is that of its parts"
+#endif
+
 int32_t header_check(int32_t status);
+HBVIB_DEPRECATED("of the next version") int32_t header_deprecated(void);
 
 /* Negative constants bind as numbers do. */
 int32_t header_check(int32_t status)

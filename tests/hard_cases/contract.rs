@@ -2,14 +2,11 @@
 
 use super::Case;
 use super::laws::jenkins;
-use hbvib::capi::boundary::{hbvib_last_error, hbvib_status_name};
-use hbvib::capi::contact::{hbvib_contact_evaluate, hbvib_model_add_contact};
-use hbvib::capi::contact_types::hbvib_contact;
-use hbvib::capi::matrix::hbvib_matrix_init;
-use hbvib::capi::model::{hbvib_model_add_force, hbvib_model_free, hbvib_model_new, hbvib_model_set_matrix};
-use hbvib::capi::solve::{hbvib_forced_options_init, hbvib_forced_response, hbvib_solver_options_init};
-use hbvib::capi::types::{
-    hbvib_branch, hbvib_forced_options, hbvib_matrix, hbvib_matrix_kind, hbvib_model, hbvib_solver_options,
+use hbvib::capi::{
+    hbvib_branch, hbvib_contact, hbvib_contact_evaluate, hbvib_forced_options, hbvib_forced_options_init,
+    hbvib_forced_response, hbvib_last_error, hbvib_matrix, hbvib_matrix_init, hbvib_matrix_kind, hbvib_model,
+    hbvib_model_add_contact, hbvib_model_add_force, hbvib_model_free, hbvib_model_new, hbvib_model_set_matrix,
+    hbvib_solver_options, hbvib_solver_options_init, hbvib_status_name,
 };
 use std::ffi::{CStr, c_char};
 use std::mem::MaybeUninit;
@@ -102,7 +99,7 @@ impl Host {
         };
         assert!(status >= 0 || branch == mark);
         if status >= 0 {
-            assert_eq!(unsafe { hbvib::capi::results::hbvib_branch_free(branch) }, 0);
+            assert_eq!(unsafe { hbvib::capi::hbvib_branch_free(branch) }, 0);
         }
         status
     }

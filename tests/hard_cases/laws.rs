@@ -1,8 +1,7 @@
 //! A law on a prescribed motion, through the function of the C interface.
 
 use super::{Case, friction};
-use hbvib::capi::contact::{hbvib_contact_evaluate, hbvib_contact_init};
-use hbvib::capi::contact_types::{hbvib_contact, hbvib_contact_kind};
+use hbvib::capi::{hbvib_contact, hbvib_contact_evaluate, hbvib_contact_init, hbvib_contact_kind};
 use std::mem::MaybeUninit;
 use std::ptr;
 

@@ -1,28 +1,28 @@
-//! The rules by which structs cross the border: they begin with their size, grow at their end only,
-//! and a field that one side does not know is its default there.
+//! The rules by which structs cross the C boundary: they begin with their size, grow at their end only, and
+//! a field that one side does not know has its default there.
 
-use super::boundary::check_pointer;
+use super::arrays::check_pointer;
 use crate::error::{Error, Result, Status};
 
 /// A struct that begins with its size in bytes, so that it can grow at its end.
 ///
 /// # Safety
 /// `repr(C)`, begins with a `u32`, no padding, any bits are a value.
-pub(super) unsafe trait Described: Copy {
+pub(super) unsafe trait VersionedStruct: Copy {
     /// Name in the header.
     const NAME: &'static str;
     /// Size of its first version.
-    const FIRST: usize;
-    /// The struct as `_init` fills it; its size is set by the caller of this.
-    fn filled() -> Self;
+    const FIRST_SIZE: usize;
+    /// The struct as `_init` fills it, but for its size.
+    fn defaults() -> Self;
 }
 
-/// Larger sizes are garbage, not a newer header.
+/// A size above this is taken for an uninitialised field, not for a newer header.
 const LARGEST: usize = 4096;
 
 /// Checks a stated size.
-fn check_size<T: Described>(size: usize, argument: i32) -> Result<()> {
-    if size >= T::FIRST && size <= LARGEST && size.is_multiple_of(8) {
+fn check_size<T: VersionedStruct>(size: usize, argument: i32) -> Result<()> {
+    if size >= T::FIRST_SIZE && size <= LARGEST && size.is_multiple_of(8) {
         return Ok(());
     }
     Err(Error::new(
@@ -37,19 +37,19 @@ fn check_size<T: Described>(size: usize, argument: i32) -> Result<()> {
     .in_argument(argument))
 }
 
-/// Fills a struct of the caller with its defaults; `size` is its size there.
+/// Fills a struct of the caller, of size `size`, with its defaults.
 ///
 /// # Safety
 /// The caller of the C function states that `size` writable bytes lie at `p`.
-pub(super) unsafe fn init<T: Described>(p: *mut T, size: usize) -> Result<Status> {
+pub(super) unsafe fn init<T: VersionedStruct>(p: *mut T, size: usize) -> Result<Status> {
     check_pointer(p, 1, T::NAME)?;
     check_size::<T>(size, 2)?;
-    unsafe { store(p, size, T::filled()) };
+    unsafe { store(p, size, T::defaults()) };
     Ok(Status::Ok)
 }
 
-/// Writes as much of `value` as the caller's struct holds, and zeros beyond what is known here.
-unsafe fn store<T: Described>(p: *mut T, size: usize, value: T) {
+/// Writes as much of `value` as the struct of the caller holds, and zeros into fields unknown here.
+unsafe fn store<T: VersionedStruct>(p: *mut T, size: usize, value: T) {
     unsafe {
         let bytes = p.cast::<u8>();
         bytes.write_bytes(0, size);
@@ -58,12 +58,12 @@ unsafe fn store<T: Described>(p: *mut T, size: usize, value: T) {
     }
 }
 
-/// Reads a struct of the caller. Fields that it does not have take their defaults; fields that
-/// are not known here must be zero.
+/// Reads a struct of the caller. Fields that it does not have take their defaults; fields unknown
+/// here must be zero.
 ///
 /// # Safety
 /// The caller of the C function states that a struct of its stated size lies at `p`.
-pub(super) unsafe fn load<T: Described>(p: *const T, argument: i32) -> Result<T> {
+pub(super) unsafe fn load<T: VersionedStruct>(p: *const T, argument: i32) -> Result<T> {
     check_pointer(p, argument, T::NAME)?;
     let size = unsafe { p.cast::<u32>().read() } as usize;
     check_size::<T>(size, argument)?;
@@ -81,7 +81,7 @@ pub(super) unsafe fn load<T: Described>(p: *const T, argument: i32) -> Result<T>
             .in_argument(argument));
         }
     }
-    let mut value = T::filled();
+    let mut value = T::defaults();
     unsafe {
         (&raw mut value)
             .cast::<u8>()
@@ -94,7 +94,7 @@ pub(super) unsafe fn load<T: Described>(p: *const T, argument: i32) -> Result<T>
 ///
 /// # Safety
 /// As [`load`].
-pub(super) unsafe fn check_out<T: Described>(p: *const T, argument: i32) -> Result<()> {
+pub(super) unsafe fn check_out<T: VersionedStruct>(p: *const T, argument: i32) -> Result<()> {
     check_pointer(p, argument, T::NAME)?;
     check_size::<T>(unsafe { p.cast::<u32>().read() } as usize, argument)
 }
@@ -103,7 +103,7 @@ pub(super) unsafe fn check_out<T: Described>(p: *const T, argument: i32) -> Resu
 ///
 /// # Safety
 /// As [`load`].
-pub(super) unsafe fn fill_out<T: Described>(p: *mut T, value: T) {
+pub(super) unsafe fn fill_out<T: VersionedStruct>(p: *mut T, value: T) {
     unsafe { store(p, p.cast::<u32>().read() as usize, value) };
 }
 

@@ -1,33 +1,21 @@
-//! What only the branch of a nonlinear mode tells.
+//! Section "Modes" of the header: results that only the branch of a nonlinear mode has.
 
-use super::boundary::{Blame, call, index};
+#![allow(non_camel_case_types)]
+
+use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
-use super::sized::{Described, check_out, fill_out, init};
-use super::types::{hbvib_branch, hbvib_status};
+use super::indices::index;
+use super::solve::hbvib_branch;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::{Result, Status, fail};
 use crate::model::repeated_modes::Multiple;
 use crate::options::Amplitude;
 
-/// How the linear mode was chosen among those of one frequency.
-#[repr(C)]
-#[allow(non_camel_case_types)]
-pub enum hbvib_mode_multiple {
-    /// The frequency is simple: there was nothing to choose.
-    HBVIB_MODE_SINGLE = 0,
-    /// Two real modes make a travelling wave (phi_1 + i phi_2) / sqrt(2), or the one that runs
-    /// against it.
-    HBVIB_MODE_TRAVELLING_WAVE = 1,
-    /// The mass-weighted projection of the shape given.
-    HBVIB_MODE_PROJECTED = 2,
-    /// The mode that was found first; another machine may find another one.
-    HBVIB_MODE_FIRST = 3,
-}
-
-/// Numbers of one point of a nonlinear mode, in the caller's units; energies are of one sector. Fill
-/// it by hbvib_mode_point_init.
+/// Numbers of one point of a nonlinear mode, in the units of the caller; energies are of one
+/// sector. Fill it by hbvib_mode_point_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
 pub struct hbvib_mode_point {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
@@ -39,29 +27,29 @@ pub struct hbvib_mode_point {
     pub omega: f64,
     /// Damping ratio D.
     pub damping_ratio: f64,
-    /// Modal amplitude sqrt(X_1^H M X_1), whatever the parameter measures.
+    /// Modal amplitude sqrt(X_1^H M X_1), whichever measure the parameter has.
     pub modal_amplitude: f64,
     /// T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the mean kinetic energy.
     pub energy: f64,
-    /// Share of the fundamental in it, 0 to 1.
+    /// Share of the fundamental in this energy, 0 to 1.
     pub fundamental_share: f64,
     /// Work of friction per cycle.
     pub friction_loss: f64,
     /// Work of the structure's damping per cycle.
     pub structural_loss: f64,
-    /// (friction_loss + structural_loss) / (4 pi energy). With HBVIB_DAMPING_MASS the balance of
-    /// work makes it equal to damping_ratio, which checks both.
+    /// (friction_loss + structural_loss) / (4 pi energy). With HBVIB_DAMPING_MASS it equals
+    /// damping_ratio by the balance of work, which checks both.
     pub energy_damping_ratio: f64,
     /// |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1 of the point before; 1
     /// for the first.
     pub assurance: f64,
 }
 
-unsafe impl Described for hbvib_mode_point {
+unsafe impl VersionedStruct for hbvib_mode_point {
     const NAME: &'static str = "hbvib_mode_point";
-    const FIRST: usize = 88;
+    const FIRST_SIZE: usize = 88;
 
-    fn filled() -> Self {
+    fn defaults() -> Self {
         Self {
             struct_size: 0,
             reserved: 0,
@@ -79,51 +67,6 @@ unsafe impl Described for hbvib_mode_point {
     }
 }
 
-/// Where a nonlinear mode started. Fill it by hbvib_mode_info_init.
-#[repr(C)]
-#[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
-pub struct hbvib_mode_info {
-    /// Bytes of this struct as the caller knows it.
-    pub struct_size: u32,
-    /// How one of several modes of the same frequency was chosen: HBVIB_MODE_SINGLE and so on.
-    pub multiple: i32,
-    /// Number of the linear mode, contacts stuck, from 0 by rising frequency.
-    pub mode_index: i64,
-    /// How many modes share its frequency.
-    pub multiplicity: i64,
-    /// Degree of freedom whose fundamental is real.
-    pub reference_dof: i64,
-    /// Waves per turn of the fundamental, with their sense: the engine order of the wave.
-    pub engine_order: i64,
-    /// -1: the parameter measures the modal amplitude; else this contact's motion.
-    pub amplitude_contact: i64,
-    /// Angular frequency of the linear mode without damping.
-    pub omega: f64,
-    /// log10 of the amplitude up to which all contacts stick; minus infinity where a law is never
-    /// linear.
-    pub linear_up_to: f64,
-}
-
-unsafe impl Described for hbvib_mode_info {
-    const NAME: &'static str = "hbvib_mode_info";
-    const FIRST: usize = 64;
-
-    fn filled() -> Self {
-        Self {
-            struct_size: 0,
-            multiple: hbvib_mode_multiple::HBVIB_MODE_SINGLE as i32,
-            mode_index: 0,
-            multiplicity: 0,
-            reference_dof: 0,
-            engine_order: 0,
-            amplitude_contact: -1,
-            omega: 0.0,
-            linear_up_to: 0.0,
-        }
-    }
-}
-
 /// Fills a point of a mode with zeros.
 ///
 /// p          the struct; untouched on error.
@@ -134,19 +77,9 @@ pub unsafe extern "C" fn hbvib_mode_point_init(p: *mut hbvib_mode_point, size_of
     call(|| unsafe { init(p, size_of_p) })
 }
 
-/// Fills the description of a mode with nothing.
-///
-/// i          the struct; untouched on error.
-/// size_of_i  sizeof of it.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_mode_info_init(i: *mut hbvib_mode_info, size_of_i: usize) -> hbvib_status {
-    call(|| unsafe { init(i, size_of_i) })
-}
-
 /// Numbers of a stored point of a nonlinear mode.
 ///
-/// point  number of a point of the curve, or of a peak, fold or solution wanted.
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
 /// out    receives the numbers; fill it by hbvib_mode_point_init before; untouched on error.
 /// Errors: HBVIB_E_UNSUPPORTED (the branch of a forced response), HBVIB_E_INDEX (point),
 /// HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
@@ -178,14 +111,83 @@ pub unsafe extern "C" fn hbvib_branch_mode_point(
             structural_loss: p.structural_loss,
             energy_damping_ratio: p.energy_damping_ratio(),
             assurance: p.assurance,
-            ..hbvib_mode_point::filled()
+            ..hbvib_mode_point::defaults()
         };
         unsafe { fill_out(out, value) };
         Ok(Status::Ok)
     })
 }
 
-/// Where a nonlinear mode started, and how the linear mode was chosen.
+/// How the linear mode was chosen among those of one frequency.
+#[repr(C)]
+pub enum hbvib_mode_multiple {
+    /// The frequency is simple: there was nothing to choose.
+    HBVIB_MODE_SINGLE = 0,
+    /// Two real modes make a travelling wave (phi_1 + i phi_2) / sqrt(2), or the wave in the
+    /// opposite direction.
+    HBVIB_MODE_TRAVELLING_WAVE = 1,
+    /// The mass-weighted projection of the given shape.
+    HBVIB_MODE_PROJECTED = 2,
+    /// The first mode found; another machine may find another one.
+    HBVIB_MODE_FIRST = 3,
+}
+
+/// Start of a nonlinear mode. Fill it by hbvib_mode_info_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_mode_info {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// How one of several modes of the same frequency was chosen: HBVIB_MODE_SINGLE and so on.
+    pub multiple: i32,
+    /// Number of the linear mode, contacts stuck, from 0 by rising frequency.
+    pub mode_index: i64,
+    /// Number of modes of this frequency.
+    pub multiplicity: i64,
+    /// Degree of freedom whose fundamental is real.
+    pub reference_dof: i64,
+    /// Engine order of the wave: waves of the fundamental per turn, with the sign of their
+    /// direction.
+    pub engine_order: i64,
+    /// -1: the parameter measures the modal amplitude; else the motion of this contact.
+    pub amplitude_contact: i64,
+    /// Angular frequency of the linear mode without damping.
+    pub omega: f64,
+    /// log10 of the largest amplitude at which all contacts stick; minus infinity where a law is
+    /// never linear.
+    pub linear_up_to: f64,
+}
+
+unsafe impl VersionedStruct for hbvib_mode_info {
+    const NAME: &'static str = "hbvib_mode_info";
+    const FIRST_SIZE: usize = 64;
+
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            multiple: hbvib_mode_multiple::HBVIB_MODE_SINGLE as i32,
+            mode_index: 0,
+            multiplicity: 0,
+            reference_dof: 0,
+            engine_order: 0,
+            amplitude_contact: -1,
+            omega: 0.0,
+            linear_up_to: 0.0,
+        }
+    }
+}
+
+/// Fills the description of a mode with zeros, amplitude_contact with -1.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_mode_info_init(i: *mut hbvib_mode_info, size_of_i: usize) -> hbvib_status {
+    call(|| unsafe { init(i, size_of_i) })
+}
+
+/// Start of a nonlinear mode, and how the linear mode was chosen.
 ///
 /// out  receives the description; fill it by hbvib_mode_info_init before; untouched on error.
 /// Errors: HBVIB_E_UNSUPPORTED (the branch of a forced response), HBVIB_E_NULL,
@@ -219,7 +221,7 @@ pub unsafe extern "C" fn hbvib_branch_mode_info(
             },
             omega: info.omega,
             linear_up_to: info.linear_up_to,
-            ..hbvib_mode_info::filled()
+            ..hbvib_mode_info::defaults()
         };
         unsafe { fill_out(out, value) };
         Ok(Status::Ok)
@@ -227,5 +229,5 @@ pub unsafe extern "C" fn hbvib_branch_mode_info(
 }
 
 fn no_mode<T>() -> Result<T> {
-    fail!(Unsupported, "a forced response has no mode; call hbvib_nonlinear_mode").blame(1)
+    fail!(Unsupported, "a forced response has no mode; call hbvib_nonlinear_mode").with_argument(1)
 }

@@ -1,22 +1,21 @@
-//! What a call says when its result was written.
+//! The outcome of a call that has written its result.
 
 use crate::error::{Error, Status};
 use crate::results::Branch;
 
-/// What a call that wrote its result tells: a status, and why the result is a part only, where the
-/// status alone does not say it.
-pub(super) struct Told {
+/// A status, and the reason of a partial result where the status alone does not say it.
+pub(super) struct Outcome {
     pub status: Status,
     pub reason: Option<Error>,
 }
 
-impl From<Status> for Told {
+impl From<Status> for Outcome {
     fn from(status: Status) -> Self {
         Self { status, reason: None }
     }
 }
 
-impl From<&Branch> for Told {
+impl From<&Branch> for Outcome {
     fn from(branch: &Branch) -> Self {
         Self {
             status: branch.status(),

@@ -1,68 +1,39 @@
-//! Contact patches: node pairs of two surfaces from arrays.
+//! Section "Contacts" of the header: contact patches, node pairs of two surfaces.
 
-use super::boundary::{Blame, call, count, input};
-use super::contact::law;
-use super::contact_types::hbvib_contact;
-use super::elements::check_id;
+use super::arrays::input;
+use super::boundary::{WithArgument, call};
+use super::contacts::{self, hbvib_contact};
 use super::handles::write;
-use super::sized::load;
-use super::tables::{blame_constant, side};
-use super::types::{hbvib_model, hbvib_status};
+use super::indices::{check_id, count, side, with_named_argument};
+use super::model::hbvib_model;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::load;
 use crate::contact::patch::Patch;
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 
-/// Triples of the caller, one per pair.
-///
-/// # Safety
-/// As for [`input`].
-unsafe fn triples<'a, T>(p: *const T, n: usize, argument: i32, name: &str) -> Result<&'a [[T; 3]]> {
-    let Some(len) = n.checked_mul(3) else {
-        return fail!(Dimension, "{name}: 3 x {n} entries cannot lie in memory").blame(argument);
-    };
-    Ok(unsafe { input(p, len, argument, name) }?.as_chunks().0)
-}
-
-/// An array that may be NULL.
-fn given<T, A>(p: *const T, read: impl FnOnce(*const T) -> Result<A>) -> Result<Option<A>> {
-    if p.is_null() { Ok(None) } else { read(p).map(Some) }
-}
-
-/// The nodes of one surface.
-fn nodes(dofs: &[[i64; 3]], ndof: usize, argument: i32, name: &str) -> Result<Vec<[Option<usize>; 3]>> {
-    let mut nodes = Vec::new();
-    for (i, dofs) in dofs.iter().enumerate() {
-        let mut node = [None; 3];
-        for (k, (place, &dof)) in node.iter_mut().zip(dofs).enumerate() {
-            *place = side(dof, ndof, argument, format_args!("{name}[{}]", 3 * i + k))?;
-        }
-        try_push(&mut nodes, node, "the nodes of a patch")?;
-    }
-    Ok(nodes)
-}
-
-/// Adds a contact patch: n node pairs of two surfaces, each with the share of area that it stands for,
-/// as n contacts. All of them are checked before any is added.
+/// Adds a contact patch as n contacts: n node pairs of two surfaces, each with its share of the
+/// area. All contacts are checked before one is added.
 ///
 /// law       the law per unit of area: kt and kn are force per length and area, cubic is force per
 ///           length^3 and area, preload is a pressure. Its sector_offset is that of all pairs; its
-///           degrees of freedom, normal and tangent are not looked at. Fill it by hbvib_contact_init.
+///           degrees of freedom, normal and tangent are ignored. Fill it by hbvib_contact_init.
 /// n         number of pairs, >= 0.
-/// dof_a     degrees of freedom of the nodes on side a along three orthogonal axes, 3 n numbers, node
-///           after node; HBVIB_GROUND does not move.
+/// dof_a     degrees of freedom of the nodes on side a along three orthogonal axes, 3 n numbers,
+///           node after node; or HBVIB_GROUND.
 /// dof_b     the same on side b; NULL: the ground.
-/// normal    directions n in these axes, of any length, 3 n numbers. Closing is x_b - x_a along n, so
-///           that n points from side b to side a.
-/// tangent   directions t1, orthogonal to n, of any length, 3 n numbers; NULL: any in the plane, for
-///           HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
+/// normal    directions n in these axes, of any length, 3 n numbers. Closing is x_b - x_a along n:
+///           n points from side b to side a.
+/// tangent   directions t1, orthogonal to n, of any length, 3 n numbers; NULL: any in the plane,
+///           for HBVIB_FRICTION_3D and HBVIB_UNILATERAL alone.
 /// area      >= 0; n numbers.
 /// pressure  pressure at rest, >= 0, n numbers; NULL: preload of the law.
-/// gap       closing at which a pair without pressure begins to press, any sign, n numbers; NULL: gap
-///           of the law.
+/// gap       closing at which a pair without pressure begins to press, any sign, n numbers; NULL:
+///           gap of the law.
 /// first_id  receives the number of the first contact, the others follow; may be NULL; untouched on
 ///           error.
 /// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (law, directions,
-/// area, pressure, both sides the same, a degree of freedom twice on one side), HBVIB_E_NOT_FINITE,
+/// area, pressure, equal sides, a degree of freedom twice on one side), HBVIB_E_NOT_FINITE,
 /// naming the entry; HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
 #[unsafe(no_mangle)]
@@ -82,7 +53,7 @@ pub unsafe extern "C" fn hbvib_model_add_patch(
 ) -> hbvib_status {
     call(|| {
         let mut model = write::<Model>(model, 1)?;
-        let law = self::law(&unsafe { load(law, 2) }?).blame(2)?;
+        let law = contacts::law(&unsafe { load(law, 2) }?).with_argument(2)?;
         let n = count(n, 3, "n")?;
         let dof_a = unsafe { triples(dof_a, n, 4, "dof_a") }?;
         let dof_b = given(dof_b, |p| unsafe { triples(p, n, 5, "dof_b") })?;
@@ -125,11 +96,40 @@ pub unsafe extern "C" fn hbvib_model_add_patch(
                 ("preload", if pressure.is_some() { 9 } else { 2 }),
                 ("", 2),
             ];
-            blame_constant(e, &names)
+            with_named_argument(e, &names)
         })?;
         if !first_id.is_null() {
             unsafe { first_id.write(first as i64) };
         }
         Ok(Status::Ok)
     })
+}
+
+/// Three numbers for each pair.
+///
+/// # Safety
+/// As for [`input`].
+unsafe fn triples<'a, T>(p: *const T, n: usize, argument: i32, name: &str) -> Result<&'a [[T; 3]]> {
+    let Some(len) = n.checked_mul(3) else {
+        return fail!(Dimension, "{name}: 3 x {n} entries cannot lie in memory").with_argument(argument);
+    };
+    Ok(unsafe { input(p, len, argument, name) }?.as_chunks().0)
+}
+
+/// An array that may be NULL.
+fn given<T, A>(p: *const T, read: impl FnOnce(*const T) -> Result<A>) -> Result<Option<A>> {
+    if p.is_null() { Ok(None) } else { read(p).map(Some) }
+}
+
+/// The nodes of one surface.
+fn nodes(dofs: &[[i64; 3]], ndof: usize, argument: i32, name: &str) -> Result<Vec<[Option<usize>; 3]>> {
+    let mut nodes = Vec::new();
+    for (i, dofs) in dofs.iter().enumerate() {
+        let mut node = [None; 3];
+        for (k, (place, &dof)) in node.iter_mut().zip(dofs).enumerate() {
+            *place = side(dof, ndof, argument, format_args!("{name}[{}]", 3 * i + k))?;
+        }
+        try_push(&mut nodes, node, "the nodes of a patch")?;
+    }
+    Ok(nodes)
 }

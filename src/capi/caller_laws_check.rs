@@ -1,11 +1,14 @@
-//! The test of the derivatives that a force of the host writes.
+//! Section "Laws of the caller" of the header: the check of the derivatives that a callback writes.
 
 #![allow(non_camel_case_types)]
 
-use super::boundary::{Blame, call, count, index, input};
+use super::arrays::input;
+use super::boundary::{WithArgument, call};
 use super::handles::read;
-use super::sized::{Described, check_out, fill_out, init};
-use super::types::{hbvib_model, hbvib_status};
+use super::indices::{count, index};
+use super::model::hbvib_model;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::analysis::{self, JacobianGap, Tangent};
 use crate::contact::ContactKind;
 use crate::error::{Error, Status, fail};
@@ -34,7 +37,8 @@ pub enum hbvib_tangent {
     HBVIB_DZ_DOMEGA = 8,
 }
 
-/// The derivative that lies farthest from its difference quotient. Fill it by hbvib_jacobian_gap_init.
+/// The derivative with the largest distance from its difference quotient. Fill it by
+/// hbvib_jacobian_gap_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct hbvib_jacobian_gap {
@@ -42,26 +46,27 @@ pub struct hbvib_jacobian_gap {
     pub struct_size: u32,
     /// HBVIB_DF_DU and so on (enum hbvib_tangent).
     pub tangent: i32,
-    /// |given - difference| times the size of what was moved, relative to the size of what it moves:
-    /// below 1e-6 for right derivatives of a smooth force, 2 for a wrong sign.
+    /// |given - difference| times the size of the argument, relative to the size of the function
+    /// value: below 1e-6 for right derivatives of a smooth force, 2 for a wrong sign.
     pub gap: f64,
     /// Sample of the test motion.
     pub sample: i64,
     /// Row of the entry.
     pub row: i64,
-    /// Its column; for HBVIB_DF_DZ the state that was moved before the step.
+    /// Column of the entry; for HBVIB_DF_DZ the state that was changed before the step.
     pub column: i64,
-    /// What the callback wrote; for HBVIB_DF_DZ the change of force that follows.
+    /// Derivative that the callback wrote; for HBVIB_DF_DZ the change of force that follows from
+    /// it.
     pub given: f64,
-    /// What differences of the callback's own f and z give.
+    /// Difference quotient of the callback's own f and z.
     pub difference: f64,
 }
 
-unsafe impl Described for hbvib_jacobian_gap {
+unsafe impl VersionedStruct for hbvib_jacobian_gap {
     const NAME: &'static str = "hbvib_jacobian_gap";
-    const FIRST: usize = 56;
+    const FIRST_SIZE: usize = 56;
 
-    fn filled() -> Self {
+    fn defaults() -> Self {
         Self {
             struct_size: 0,
             tangent: 0,
@@ -85,16 +90,16 @@ pub unsafe extern "C" fn hbvib_jacobian_gap_init(gap: *mut hbvib_jacobian_gap, s
     call(|| unsafe { init(gap, size_of_gap) })
 }
 
-/// Compares every derivative that a force of the caller writes with central differences of its own f and
-/// z, on a built-in motion with a mean and the harmonics 1 and 3. The status is HBVIB_OK whatever the
-/// gap: look at it. A solve with wrong derivatives ends in HBVIB_E_NO_CONVERGENCE or needs many
-/// iterations.
+/// Compares every derivative that a force of the caller writes with central differences of its own
+/// f and z, on a built-in motion with a mean and the harmonics 1 and 3. The status is HBVIB_OK also
+/// for a large gap: check its value. A solve with wrong derivatives ends in HBVIB_E_NO_CONVERGENCE
+/// or needs many iterations.
 ///
 /// contact        number from hbvib_model_add_user_force.
 /// omega          angular frequency, > 0.
 /// amplitude      about the largest motion of each degree of freedom of the force, > 0: the motion
-///                should reach all that the force can do.
-/// amplitude_len  their number, that of the degrees of freedom.
+///                should reach all regimes of the force.
+/// amplitude_len  number of the amplitudes: one for each degree of freedom of the force.
 /// out            receives the worst entry; untouched on error.
 /// Errors: HBVIB_E_INDEX (contact), HBVIB_E_ARGUMENT (not a force of the caller, omega, amplitude),
 /// HBVIB_E_DIMENSION (amplitude_len), HBVIB_E_CALLBACK, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
@@ -112,20 +117,20 @@ pub unsafe extern "C" fn hbvib_check_jacobian(
         let model = read::<Model>(model, 1)?;
         let contact = index(contact, model.contacts().len(), 2, "contact")?;
         if !matches!(model.contacts()[contact].kind, ContactKind::User(_)) {
-            return fail!(Argument, "contact {contact} is not a force of the caller's").blame(2);
+            return fail!(Argument, "contact {contact} is not a force of the caller's").with_argument(2);
         }
         let len = count(amplitude_len, 5, "amplitude_len")?;
         let amplitudes = unsafe { input(amplitude, len, 4, "amplitude") }?;
         unsafe { check_out(out, 6) }?;
         let found = analysis::check_jacobian(&model, contact, omega, amplitudes);
-        let gap = found.map_err(|e| blamed(e, omega))?;
+        let gap = found.map_err(|e| with_checked_argument(e, omega))?;
         unsafe { fill_out(out, gap.into()) };
         Ok(Status::Ok)
     })
 }
 
-/// The argument to blame for what only the analysis checks.
-fn blamed(e: Error, omega: f64) -> Error {
+/// Attributes an error that only the analysis finds to its argument.
+fn with_checked_argument(e: Error, omega: f64) -> Error {
     match e.status {
         Status::Dimension => e.in_argument(5),
         Status::Argument if !(omega > 0.0 && omega.is_finite()) => e.in_argument(3),

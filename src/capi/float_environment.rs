@@ -1,28 +1,28 @@
-//! The arithmetic that this code is compiled for: rounding to nearest, no traps, small numbers kept. A
-//! host may run with another one: traps on overflow (gfortran -ffpe-trap), small numbers flushed to zero
-//! (-ffast-math), another rounding. At the border its control word (on x86 with the flags in it) is laid aside
-//! and put back, so that no trap fires inside, results do not depend on the host's settings, and the host
-//! finds everything as it was.
+//! The floating-point environment that this code is compiled for: rounding to nearest, no traps,
+//! subnormal numbers kept. A caller may have another one: traps on overflow (gfortran -ffpe-trap),
+//! subnormal numbers flushed to zero (-ffast-math), another rounding. The library runs in the default
+//! environment, so that no trap fires inside and results do not depend on the settings of the caller; the
+//! control word of the caller (on x86 with its flags) is restored for callbacks and on return.
 
 /// Control word of the thread's floating-point unit.
 #[derive(Clone, Copy)]
-pub(super) struct Arithmetic(u64);
+pub(super) struct FloatEnvironment(u64);
 
-impl Arithmetic {
-    /// The library's own.
+impl FloatEnvironment {
+    /// The environment of the library.
     pub(super) const DEFAULT: Self = Self(unit::DEFAULT);
 
-    /// The state that calls find, and their callbacks again.
-    pub(super) fn of_the_host() -> Self {
+    /// The present environment: that of the caller where a call begins or a callback ends.
+    pub(super) fn of_the_caller() -> Self {
         Self(unit::read())
     }
 
-    /// Enters the library's own.
+    /// Sets the environment of the library.
     pub(super) fn enter() {
         Self::DEFAULT.restore();
     }
 
-    /// Puts the state back.
+    /// Sets this environment.
     pub(super) fn restore(self) {
         unit::write(self.0);
     }
@@ -51,7 +51,7 @@ mod unit {
 mod unit {
     use core::arch::asm;
 
-    /// FPCR after a reset; the flags stand in another register, which nothing here traps on.
+    /// FPCR after a reset; the flags stand in another register, which causes no trap here.
     pub const DEFAULT: u64 = 0;
 
     pub fn read() -> u64 {
@@ -67,7 +67,7 @@ mod unit {
 
 #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
 mod unit {
-    /// Not known how to on this machine: the host's state is used as it is.
+    /// This machine is not supported: the environment of the caller is used as it is.
     pub const DEFAULT: u64 = 0;
 
     pub fn read() -> u64 {

@@ -1,18 +1,86 @@
-//! The matrix view of the header, checked and turned into the library's own.
+//! Section "Matrices" of the header: the matrix view of the caller, checked and turned into that of
+//! the library.
 
-use super::boundary::{Blame, call, input};
-use super::sized::{Described, check_reserved, init, load};
-use super::types::{hbvib_matrix, hbvib_matrix_kind, hbvib_part, hbvib_scalar, hbvib_status, hbvib_storage};
+#![allow(non_camel_case_types)]
+
+use super::arrays::input;
+use super::boundary::{WithArgument, call};
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::error::{Result, fail};
 use crate::linalg::matrix_view::{MatrixView, Part, Storage, Values};
 use crate::model::structure::MatrixKind;
 use core::ptr;
 
-unsafe impl Described for hbvib_matrix {
-    const NAME: &'static str = "hbvib_matrix";
-    const FIRST: usize = 72;
+/// Layouts of a matrix view.
+#[repr(C)]
+pub enum hbvib_storage {
+    /// Dense, column after column (Fortran, MATLAB).
+    HBVIB_COL_MAJOR = 0,
+    /// Dense, row after row (C, numpy).
+    HBVIB_ROW_MAJOR = 1,
+    /// Compressed sparse columns; duplicates are summed.
+    HBVIB_CSC = 2,
+}
 
-    fn filled() -> Self {
+/// Kinds of numbers in a view.
+#[repr(C)]
+pub enum hbvib_scalar {
+    /// One double each.
+    HBVIB_REAL = 0,
+    /// Two doubles each, (re, im).
+    HBVIB_COMPLEX = 1,
+}
+
+/// The part of a matrix that is given, and the symmetry that the caller promises.
+#[repr(C)]
+pub enum hbvib_part {
+    /// All of a symmetric or Hermitian matrix; the symmetry is checked.
+    HBVIB_FULL = 0,
+    /// The lower triangle of a symmetric or Hermitian matrix; the upper one is not read.
+    HBVIB_LOWER = 1,
+    /// The upper triangle of a symmetric or Hermitian matrix; the lower one is not read.
+    HBVIB_UPPER = 2,
+    /// All of any matrix.
+    HBVIB_GENERAL = 3,
+}
+
+/// A matrix of the caller, read during the call and never kept. Fill it by hbvib_matrix_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_matrix {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// HBVIB_COL_MAJOR, HBVIB_ROW_MAJOR or HBVIB_CSC.
+    pub storage: i32,
+    /// HBVIB_REAL or HBVIB_COMPLEX.
+    pub scalar: i32,
+    /// HBVIB_FULL, HBVIB_LOWER, HBVIB_UPPER or HBVIB_GENERAL.
+    pub part: i32,
+    /// Number of rows.
+    pub rows: i64,
+    /// Number of columns.
+    pub cols: i64,
+    /// Dense: distance of columns (rows, if row-major) in numbers; 0 = packed.
+    pub ld: i64,
+    /// The numbers: ld * (cols - 1) + rows of them if column-major, the last entry of col_ptr less
+    /// index_base if sparse; each is two doubles if complex.
+    pub values: *const f64,
+    /// Sparse only: cols + 1 offsets, the first equal to index_base.
+    pub col_ptr: *const i64,
+    /// Sparse only: row of each number, counted from index_base.
+    pub row_idx: *const i64,
+    /// 0 or 1: base of the sparse indices, and of the indices in error sentences.
+    pub index_base: i32,
+    /// Must be 0.
+    pub reserved: i32,
+}
+
+unsafe impl VersionedStruct for hbvib_matrix {
+    const NAME: &'static str = "hbvib_matrix";
+    const FIRST_SIZE: usize = 72;
+
+    fn defaults() -> Self {
         Self {
             struct_size: 0,
             storage: hbvib_storage::HBVIB_COL_MAJOR as i32,
@@ -28,6 +96,28 @@ unsafe impl Described for hbvib_matrix {
             reserved: 0,
         }
     }
+}
+
+/// Fills a matrix description: struct_size, dense column-major, real, symmetric in full, the rest
+/// zero. Set rows, cols and values at least.
+///
+/// a          the struct; untouched on error.
+/// size_of_a  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_matrix_init(a: *mut hbvib_matrix, size_of_a: usize) -> hbvib_status {
+    call(|| unsafe { init(a, size_of_a) })
+}
+
+/// The matrices of a structure.
+#[repr(C)]
+pub enum hbvib_matrix_kind {
+    /// M
+    HBVIB_MASS = 0,
+    /// C
+    HBVIB_DAMPING = 1,
+    /// K
+    HBVIB_STIFFNESS = 2,
 }
 
 const COL_MAJOR: i32 = hbvib_storage::HBVIB_COL_MAJOR as i32;
@@ -48,7 +138,7 @@ pub(super) fn matrix_kind(which: i32) -> Result<MatrixKind> {
             "which = {which}, needs HBVIB_MASS = 0, HBVIB_DAMPING = 1 or HBVIB_STIFFNESS = 2"
         ),
     }
-    .blame(2)
+    .with_argument(2)
 }
 
 fn part(value: i32) -> Result<Part> {
@@ -68,7 +158,7 @@ fn part(value: i32) -> Result<Part> {
     }
 }
 
-/// Hands the matrix at `p`, of order `n`, to `then`; errors blame `argument`.
+/// Passes the matrix at `p`, of order `n`, to `then`; errors carry the number `argument`.
 ///
 /// # Safety
 /// The caller of the C function states that the arrays of the view are as long as it says.
@@ -79,8 +169,8 @@ pub(super) unsafe fn with_matrix<T>(
     then: impl FnOnce(&MatrixView<'_>) -> Result<T>,
 ) -> Result<T> {
     let a = unsafe { load(p, argument) }?;
-    let view = unsafe { matrix_view(&a, n, argument) }.blame(argument)?;
-    then(&view).blame(argument)
+    let view = unsafe { matrix_view(&a, n, argument) }.with_argument(argument)?;
+    then(&view).with_argument(argument)
 }
 
 unsafe fn matrix_view(a: &hbvib_matrix, n: usize, argument: i32) -> Result<MatrixView<'_>> {
@@ -120,7 +210,7 @@ unsafe fn matrix_view(a: &hbvib_matrix, n: usize, argument: i32) -> Result<Matri
         }
         CSC => {
             let col_ptr = unsafe { input(a.col_ptr, n + 1, argument, "hbvib_matrix: col_ptr") }?;
-            // Offsets that make no sense are refused, with their place, before an entry is read.
+            // The model refuses inconsistent offsets, with their place, before it reads an entry.
             let stored = col_ptr[n].checked_sub(index_base as i64);
             let stored = stored.and_then(|s| usize::try_from(s).ok()).unwrap_or(0);
             let row_idx = unsafe { input(a.row_idx, stored, argument, "hbvib_matrix: row_idx") }?;
@@ -151,15 +241,4 @@ unsafe fn matrix_view(a: &hbvib_matrix, n: usize, argument: i32) -> Result<Matri
         part: part(a.part)?,
         index_base,
     })
-}
-
-/// Fills a matrix description: struct_size, dense column-major, real, symmetric in full, the rest
-/// zero. Set rows, cols and values at least.
-///
-/// a          the struct; untouched on error.
-/// size_of_a  sizeof of it.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_matrix_init(a: *mut hbvib_matrix, size_of_a: usize) -> hbvib_status {
-    call(|| unsafe { init(a, size_of_a) })
 }

@@ -1,73 +1,25 @@
-//! The points that a branch holds beside its curve: peaks, folds, and those that were asked for.
+//! Section "Results" of the header: peaks, folds and requested solutions, which a branch stores beside
+//! its curve.
 
-use super::boundary::{Blame, call, check_pointer, count, index};
+use super::arrays::{check_pointer, optional};
+use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
-use super::types::{hbvib_branch, hbvib_status};
+use super::indices::{count, index};
+use super::solve::hbvib_branch;
+use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
 use crate::results::Special;
 use core::ptr;
 
-/// Output arrays for special points, each of them optional, with the numbers of their arguments.
-struct Lists {
-    omega: (*mut f64, i32),
-    amplitude: (*mut f64, i32),
-    point: (*mut i64, i32),
-    count: (*mut i64, i32),
-}
-
-impl Lists {
-    /// Writes the special points if `capacity`, the argument of the given number, suffices.
-    ///
-    /// # Safety
-    /// The caller of the C function states that `capacity` values fit into each array.
-    unsafe fn fill(&self, specials: &[Special], capacity: (i64, i32)) -> Result<Status> {
-        let (capacity, argument) = (count(capacity.0, capacity.1, "capacity")?, capacity.1);
-        let omega = optional(self.omega, "omega")?;
-        let amplitude = optional(self.amplitude, "amplitude")?;
-        let point = optional(self.point, "point")?;
-        check_pointer(self.count.0, self.count.1, "count")?;
-        unsafe { self.count.0.write(specials.len() as i64) };
-        if omega.is_none() && amplitude.is_none() && point.is_none() {
-            return Ok(Status::Ok);
-        }
-        if capacity < specials.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", specials.len()).blame(argument);
-        }
-        for (i, special) in specials.iter().enumerate() {
-            unsafe {
-                if let Some(p) = omega {
-                    p.add(i).write(special.omega);
-                }
-                if let Some(p) = amplitude {
-                    p.add(i).write(special.amplitude);
-                }
-                if let Some(p) = point {
-                    p.add(i).write(special.point as i64);
-                }
-            }
-        }
-        Ok(Status::Ok)
-    }
-}
-
-/// A pointer that may be NULL, but not misaligned.
-pub(super) fn optional<T>((p, argument): (*mut T, i32), name: &str) -> Result<Option<*mut T>> {
-    if p.is_null() {
-        return Ok(None);
-    }
-    check_pointer(p, argument, name)?;
-    Ok(Some(p))
-}
-
 /// Maxima of the amplitude of the response degree of freedom within the range; in a nonlinear mode
-/// the points of largest damping ratio. Refined on the solution, in the order in which they were met.
+/// the points of largest damping ratio. Refined on the solution, in the order of the branch.
 ///
 /// capacity   numbers that fit into each array.
 /// omega      receives their angular frequencies, or NULL.
 /// amplitude  receives their amplitudes, or NULL.
 /// point      receives their point numbers for hbvib_branch_harmonics, or NULL.
-/// count      receives how many there are, also when `capacity` is too small. With all arrays NULL
-///            only the count is returned.
+/// count      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
 /// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
 /// HBVIB_E_HANDLE. Threads: any number on one branch.
 #[unsafe(no_mangle)]
@@ -92,7 +44,7 @@ pub unsafe extern "C" fn hbvib_branch_peaks(
 }
 
 /// Turning points in frequency, in a nonlinear mode in amplitude, refined on the solution, in the
-/// order in which they were met.
+/// order of the branch.
 ///
 /// Arguments, errors and threads as for hbvib_branch_peaks.
 #[unsafe(no_mangle)]
@@ -138,7 +90,7 @@ pub unsafe extern "C" fn hbvib_branch_at(
 ) -> hbvib_status {
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
-        let wanted = index(wanted, kept.wanted, 2, "wanted")?;
+        let wanted = index(wanted, kept.requested, 2, "wanted")?;
         let lists = Lists {
             omega: (ptr::null_mut(), 0),
             amplitude: (amplitude, 4),
@@ -147,4 +99,47 @@ pub unsafe extern "C" fn hbvib_branch_at(
         };
         unsafe { lists.fill(kept.branch.at(wanted), (capacity, 3)) }
     })
+}
+
+/// Output arrays for special points, each optional, with the numbers of their arguments.
+struct Lists {
+    omega: (*mut f64, i32),
+    amplitude: (*mut f64, i32),
+    point: (*mut i64, i32),
+    count: (*mut i64, i32),
+}
+
+impl Lists {
+    /// Writes the special points if `capacity`, the argument of the given number, suffices.
+    ///
+    /// # Safety
+    /// The caller of the C function states that `capacity` values fit into each array.
+    unsafe fn fill(&self, specials: &[Special], capacity: (i64, i32)) -> Result<Status> {
+        let (capacity, argument) = (count(capacity.0, capacity.1, "capacity")?, capacity.1);
+        let omega = optional(self.omega, "omega")?;
+        let amplitude = optional(self.amplitude, "amplitude")?;
+        let point = optional(self.point, "point")?;
+        check_pointer(self.count.0, self.count.1, "count")?;
+        unsafe { self.count.0.write(specials.len() as i64) };
+        if omega.is_none() && amplitude.is_none() && point.is_none() {
+            return Ok(Status::Ok);
+        }
+        if capacity < specials.len() {
+            return fail!(Dimension, "capacity = {capacity}, needs {}", specials.len()).with_argument(argument);
+        }
+        for (i, special) in specials.iter().enumerate() {
+            unsafe {
+                if let Some(p) = omega {
+                    p.add(i).write(special.omega);
+                }
+                if let Some(p) = amplitude {
+                    p.add(i).write(special.amplitude);
+                }
+                if let Some(p) = point {
+                    p.add(i).write(special.point as i64);
+                }
+            }
+        }
+        Ok(Status::Ok)
+    }
 }

@@ -1,11 +1,17 @@
-//! Points of forced responses against the motion in time.
+//! Section "Time" of the header: points of forced responses compared with the motion in time.
 
-use super::boundary::{Blame, Range, call, disjoint, index, output};
+#![allow(non_camel_case_types)]
+
+use super::arrays::{Range, disjoint, optional_len, output};
+use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
-use super::sized::{Described, check_out, fill_out, init, load};
-use super::solve::{load_hooks, number, with_hooks};
-use super::time::{hbvib_steady_method, steady_method, wanted};
-use super::types::{hbvib_branch, hbvib_hooks, hbvib_model, hbvib_status};
+use super::indices::{index, number};
+use super::model::hbvib_model;
+use super::solve::hbvib_branch;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
+use super::time::{hbvib_steady_method, steady_method};
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
 use crate::analysis;
 use crate::error::{Result, Status};
 use crate::model::Model;
@@ -15,71 +21,26 @@ use num_complex::Complex64;
 /// Options of hbvib_verify. Fill it by hbvib_verify_options_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
 pub struct hbvib_verify_options {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// HBVIB_SHOOTING, which finds the point's own solution where it is unstable, too, or
+    /// HBVIB_SHOOTING, which finds the solution of the point also where it is unstable, or
     /// HBVIB_MARCHING.
     pub method: i32,
     /// As in hbvib_time_options.
     pub tolerance: f64,
     /// Cap on the periods that are integrated.
     pub max_periods: i64,
-    /// Largest distance from the motion found in time, relative to that motion, at which the point
-    /// counts as the same solution.
+    /// Largest distance from the motion in time, relative to that motion, at which the point counts
+    /// as the same solution.
     pub same_within: f64,
 }
 
-/// How far a point is from the periodic motion that integration in time finds from it. Norms are
-/// root mean squares over the period and all degrees of freedom. Fill it by
-/// hbvib_verification_init.
-#[repr(C)]
-#[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
-pub struct hbvib_verification {
-    /// Bytes of this struct as the caller knows it.
-    pub struct_size: u32,
-    /// 1 if the distance is at most same_within, else 0: the integration went to another solution, or
-    /// the point has too few harmonics. A point with more of them tells which.
-    pub same_solution: i32,
-    /// 1 if Newton's method did not converge from the point and periods were marched, which leaves an
-    /// unstable solution, else 0; always 1 with HBVIB_MARCHING.
-    pub marched: i32,
-    /// 0.
-    pub reserved: i32,
-    /// The harmonic h in which the response is compared: the lowest above the mean in which the point
-    /// moves.
-    pub harmonic: i64,
-    /// X_h of the response degree of freedom in time, (re, im).
-    pub response: [f64; 2],
-    /// |X_h of the point - X_h in time| / |X_h in time|: what HBVIB_ERROR_ESTIMATE estimates.
-    pub response_error: f64,
-    /// Distance of the harmonics 0 .. H of all degrees of freedom over the motion in time.
-    pub motion_error: f64,
-    /// Share of the motion in time above H.
-    pub above: f64,
-    /// Distance of the whole motions over the motion in time; its square is that of motion_error and
-    /// that of above together.
-    pub distance: f64,
-    /// Largest displacement of the response degree of freedom over the period in time.
-    pub peak: f64,
-    /// Difference of the point's largest displacement from it, relative to it.
-    pub peak_error: f64,
-    /// Largest change over a period of the motion in time, relative to its largest displacement and
-    /// velocity: errors of this size are those of the integration.
-    pub residual: f64,
-    /// Periods that were integrated.
-    pub periods: i64,
-    /// Changes of the contacts in one period, as in hbvib_time_info.
-    pub events: i64,
-}
-
-unsafe impl Described for hbvib_verify_options {
+unsafe impl VersionedStruct for hbvib_verify_options {
     const NAME: &'static str = "hbvib_verify_options";
-    const FIRST: usize = 32;
+    const FIRST_SIZE: usize = 32;
 
-    fn filled() -> Self {
+    fn defaults() -> Self {
         let defaults = VerifyOptions::default();
         Self {
             struct_size: 0,
@@ -91,11 +52,66 @@ unsafe impl Described for hbvib_verify_options {
     }
 }
 
-unsafe impl Described for hbvib_verification {
-    const NAME: &'static str = "hbvib_verification";
-    const FIRST: usize = 112;
+/// Fills the options of a check in time with their defaults: shooting, tolerance = 1e-11,
+/// same_within = 0.1.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_verify_options_init(o: *mut hbvib_verify_options, size_of_o: usize) -> hbvib_status {
+    call(|| unsafe { init(o, size_of_o) })
+}
 
-    fn filled() -> Self {
+/// Distance of a point from the periodic motion that integration in time finds from it. Norms are
+/// root mean squares over the period and all degrees of freedom. Fill it by
+/// hbvib_verification_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_verification {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// 1 if the distance is at most same_within, else 0: the integration went to another solution,
+    /// or the point has too few harmonics; a point with more harmonics decides which.
+    pub same_solution: i32,
+    /// 1 if Newton's method did not converge from the point and periods were marched, which departs
+    /// from an unstable solution, else 0; always 1 with HBVIB_MARCHING.
+    pub marched: i32,
+    /// 0.
+    pub reserved: i32,
+    /// The harmonic h in which the response is compared: the lowest above the mean in which the
+    /// point moves.
+    pub harmonic: i64,
+    /// X_h of the response degree of freedom in time, (re, im).
+    pub response: [f64; 2],
+    /// |X_h of the point - X_h in time| / |X_h in time|, the error that HBVIB_ERROR_ESTIMATE
+    /// estimates.
+    pub response_error: f64,
+    /// Distance of the harmonics 0 .. H of all degrees of freedom, relative to the motion in time.
+    pub motion_error: f64,
+    /// Share of the motion in time above H.
+    pub above: f64,
+    /// Distance of the whole motions, relative to the motion in time; its square is the sum of the
+    /// squares of motion_error and above.
+    pub distance: f64,
+    /// Largest displacement of the response degree of freedom over the period in time.
+    pub peak: f64,
+    /// Difference of the largest displacement of the point from it, relative to it.
+    pub peak_error: f64,
+    /// Largest change over a period of the motion in time, relative to its largest displacement and
+    /// velocity: the size of the errors of the integration.
+    pub residual: f64,
+    /// Number of periods that were integrated.
+    pub periods: i64,
+    /// Number of changes of the contacts in one period, as in hbvib_time_info.
+    pub events: i64,
+}
+
+unsafe impl VersionedStruct for hbvib_verification {
+    const NAME: &'static str = "hbvib_verification";
+    const FIRST_SIZE: usize = 112;
+
+    fn defaults() -> Self {
         Self {
             struct_size: 0,
             same_solution: 0,
@@ -116,18 +132,7 @@ unsafe impl Described for hbvib_verification {
     }
 }
 
-/// Fills the options of a check in time with their defaults: shooting, tolerance = 1e-11,
-/// same_within = 0.1.
-///
-/// o          the struct; untouched on error.
-/// size_of_o  sizeof of it.
-/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_verify_options_init(o: *mut hbvib_verify_options, size_of_o: usize) -> hbvib_status {
-    call(|| unsafe { init(o, size_of_o) })
-}
-
-/// Fills what a check in time tells with zeros.
+/// Fills the result of a check in time with zeros.
 ///
 /// v          the struct; untouched on error.
 /// size_of_v  sizeof of it.
@@ -137,47 +142,30 @@ pub unsafe extern "C" fn hbvib_verification_init(v: *mut hbvib_verification, siz
     call(|| unsafe { init(v, size_of_v) })
 }
 
-unsafe fn verify_options(p: *const hbvib_verify_options) -> Result<VerifyOptions> {
-    if p.is_null() {
-        return Ok(VerifyOptions::default());
-    }
-    let o = unsafe { load(p, 4) }?;
-    let chosen = || -> Result<VerifyOptions> {
-        let options = VerifyOptions {
-            method: steady_method(o.method)?,
-            tolerance: o.tolerance,
-            max_periods: number(o.max_periods, "max_periods")?,
-            same_within: o.same_within,
-        };
-        options.check()?;
-        Ok(options)
-    };
-    chosen().blame(4)
-}
-
-/// Checks a stored point of a forced response against the library's own integration in time, which
-/// starts from the motion of the point, looks for its own periodic motion at the point's frequency
-/// (see hbvib_time_response) and so tells what the point leaves out. The branch is not changed.
-/// Where several solutions coexist the integration may end in another one: same_solution, distance
-/// and marched tell.
+/// Checks a stored point of a forced response against integration in time, which starts from the
+/// motion of the point and finds a periodic motion at its frequency (see hbvib_time_response):
+/// their difference is the error of the point. The branch is not changed. Where several solutions
+/// coexist the integration may end in another one: see same_solution, distance and marched.
 ///
-/// model          the model that the branch was computed with.
-/// point          number of a point of the curve, or of a peak, fold or solution wanted.
+/// model          the model of which the branch is a result.
+/// point          number of a point of the curve, or of a peak, fold or requested solution.
 /// options        NULL: the defaults.
 /// hooks          progress, log and cancellation as in hbvib_time_response; NULL: none.
 /// harmonics      receives the harmonics in time, (H + 1) x ndof complex numbers as
 ///                hbvib_branch_harmonics gives those of the point; or NULL.
 /// harmonics_len  complex numbers in it; 0 with NULL.
-/// errors         receives what each harmonic 0 .. H adds to motion_error, by squares; or NULL.
+/// errors         receives the parts of motion_error in each harmonic 0 .. H, whose squares add up;
+///                or NULL.
 /// errors_len     doubles in it; 0 with NULL.
-/// out            receives how far the point is; fill it by hbvib_verification_init before; or NULL.
+/// out            receives the distances; fill it by hbvib_verification_init before; or NULL.
 /// HBVIB_STOPPED_BY_CALLER: the results compare with the last period, which is not steady.
-/// Errors: HBVIB_E_INDEX (point), HBVIB_E_UNSUPPORTED (branch is a nonlinear mode; what
-/// hbvib_time_response does not integrate), HBVIB_E_ARGUMENT (another model, options, overlapping
-/// arrays), HBVIB_E_NOT_FINITE (options), HBVIB_E_DIMENSION (a length, with the one needed),
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_UNSUPPORTED (branch is a nonlinear mode; a model that
+/// hbvib_time_response refuses), HBVIB_E_ARGUMENT (another model, options, overlapping arrays),
+/// HBVIB_E_NOT_FINITE (options), HBVIB_E_DIMENSION (a length, with the one needed),
 /// HBVIB_E_NO_CONVERGENCE (no steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows
-/// without end), HBVIB_E_CALLBACK (a force callback refused), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
-/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+/// without bound), HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and
+/// branch.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn hbvib_verify(
@@ -201,8 +189,8 @@ pub unsafe extern "C" fn hbvib_verify(
         let hooks = unsafe { load_hooks(hooks, 5) }?;
         let rows = branch.harmonics() + 1;
         let coefficients = rows.saturating_mul(branch.ndof());
-        let harmonics_len = wanted(harmonics, harmonics_len, coefficients, 6, "(harmonics + 1) * ndof")?;
-        let errors_len = wanted(errors, errors_len, rows, 8, "harmonics + 1")?;
+        let harmonics_len = optional_len(harmonics, harmonics_len, coefficients, 6, "(harmonics + 1) * ndof")?;
+        let errors_len = optional_len(errors, errors_len, rows, 8, "harmonics + 1")?;
         if !out.is_null() {
             unsafe { check_out(out, 10) }?;
         }
@@ -241,10 +229,28 @@ pub unsafe extern "C" fn hbvib_verify(
                 residual: found.residual,
                 periods: found.periods as i64,
                 events: found.events as i64,
-                ..hbvib_verification::filled()
+                ..hbvib_verification::defaults()
             };
             unsafe { fill_out(out, value) };
         }
         Ok(found.status)
     })
+}
+
+unsafe fn verify_options(p: *const hbvib_verify_options) -> Result<VerifyOptions> {
+    if p.is_null() {
+        return Ok(VerifyOptions::default());
+    }
+    let o = unsafe { load(p, 4) }?;
+    let chosen = || -> Result<VerifyOptions> {
+        let options = VerifyOptions {
+            method: steady_method(o.method)?,
+            tolerance: o.tolerance,
+            max_periods: number(o.max_periods, "max_periods")?,
+            same_within: o.same_within,
+        };
+        options.check()?;
+        Ok(options)
+    };
+    chosen().with_argument(4)
 }

@@ -1,18 +1,22 @@
-//! Energies and losses of a point.
+//! Section "Results" of the header: energies and losses of a point.
 
-use super::boundary::{call, index};
+#![allow(non_camel_case_types)]
+
+use super::boundary::call;
 use super::handles::{KeptBranch, read};
-use super::sized::{Described, check_out, fill_out, init};
-use super::types::{hbvib_branch, hbvib_status};
+use super::indices::index;
+use super::solve::hbvib_branch;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::Status;
 
-/// Energies and losses of one point, in the caller's units. Fill it by hbvib_energy_init. In a
-/// plain model the sector is the whole. Kinetic energy is v'Mv/2. Potential energy is x'Kx/2 of the
-/// linear structure, with springs and contacts that never slip (infinite limit); contacts that may
-/// slip are left out. Sectors share evenly what couples them.
+/// Energies and losses of one point, in the units of the caller. Fill it by hbvib_energy_init. In a
+/// plain model the sector is the whole structure. Kinetic energy is v'Mv/2. Potential energy is
+/// x'Kx/2 of the linear structure, with springs and contacts that never slip (infinite limit);
+/// contacts that may slip are left out. The energy of a coupling is shared evenly by its two
+/// sectors.
 #[repr(C)]
 #[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
 pub struct hbvib_energy {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
@@ -40,15 +44,15 @@ pub struct hbvib_energy {
     /// motion.
     pub structural_loss: f64,
     /// Work per cycle and sector of the contacts that may slip. In a forced response both losses
-    /// make up the work of the forces.
+    /// together are the work of the forces.
     pub friction_loss: f64,
 }
 
-unsafe impl Described for hbvib_energy {
+unsafe impl VersionedStruct for hbvib_energy {
     const NAME: &'static str = "hbvib_energy";
-    const FIRST: usize = 96;
+    const FIRST_SIZE: usize = 96;
 
-    fn filled() -> Self {
+    fn defaults() -> Self {
         Self {
             struct_size: 0,
             reserved: 0,
@@ -79,7 +83,7 @@ pub unsafe extern "C" fn hbvib_energy_init(e: *mut hbvib_energy, size_of_e: usiz
 
 /// Energies and losses of a stored point.
 ///
-/// point  number of a point of the curve, or of a peak, fold or solution wanted.
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
 /// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
@@ -106,7 +110,7 @@ pub unsafe extern "C" fn hbvib_branch_energy(
             wheel_potential_peak: e.wheel_potential_peak,
             structural_loss: e.structural_loss,
             friction_loss: e.friction_loss,
-            ..hbvib_energy::filled()
+            ..hbvib_energy::defaults()
         };
         unsafe { fill_out(out, value) };
         Ok(Status::Ok)

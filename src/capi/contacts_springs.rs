@@ -1,89 +1,31 @@
-//! Springs and dampers with arrays of constants: tables, polynomials, stiffness tensors.
+//! Section "Contacts" of the header: nonlinear springs and dampers, from tables of points,
+//! polynomials and stiffness tensors.
 
-use super::boundary::{Blame, call, check_pointer, count, input};
+use super::arrays::input;
+use super::boundary::{WithArgument, call};
 use super::handles::{Writing, write};
-use super::tables::{blame_constant, side};
-use super::types::{hbvib_model, hbvib_status};
+use super::indices::{at_least_1, check_id, count, list, side, with_named_argument};
+use super::model::hbvib_model;
+use super::version_and_errors::hbvib_status;
 use crate::contact::laws::polynomial::{HIGHEST_EXPONENT, Monomial, Polynomial};
 use crate::contact::laws::table::Table;
 use crate::contact::{Contact, ContactKind};
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::model::Model;
 
-/// Adds an element and tells its number to the caller.
-///
-/// # Safety
-/// `id`, checked before, is NULL or writable.
-unsafe fn add(model: &mut Writing<Model>, contact: &Contact, id: *mut i64) -> Result<Status> {
-    let number = model.add_contact(contact)?;
-    if !id.is_null() {
-        unsafe { id.write(number as i64) };
-    }
-    Ok(Status::Ok)
-}
-
-/// A place for a number, which may be NULL.
-pub(super) fn check_id(id: *mut i64, argument: i32, name: &str) -> Result<()> {
-    if id.is_null() {
-        return Ok(());
-    }
-    check_pointer(id, argument, name)
-}
-
-/// The sides of an element that acts on one relative motion: arguments 2 to 4.
-fn between(dof_a: i64, dof_b: i64, sector_offset: i64, ndof: usize) -> Result<Contact> {
-    Ok(Contact {
-        dof_a: [side(dof_a, ndof, 2, format_args!("dof_a"))?, None, None],
-        dof_b: [side(dof_b, ndof, 3, format_args!("dof_b"))?, None, None],
-        sector_offset,
-        ..Contact::jenkins(0, None, 0.0, 0.0, 0.0)
-    })
-}
-
-/// The degrees of freedom of an element over several motions: argument 2. None of them is the ground.
-///
-/// # Safety
-/// As for [`input`].
-unsafe fn list(dofs: *const i64, n: usize, ndof: usize) -> Result<Vec<usize>> {
-    let mut list = Vec::new();
-    for (i, &dof) in unsafe { input(dofs, n, 2, "dofs") }?.iter().enumerate() {
-        match usize::try_from(dof) {
-            Ok(dof) if dof < ndof => try_push(&mut list, dof, "an element")?,
-            _ => return fail!(Index, "dofs[{i}] = {dof}, needs 0 .. {}", ndof - 1).blame(2),
-        }
-    }
-    Ok(list)
-}
-
-/// n to the power of `rank`, the length of an array.
-fn volume(n: usize, rank: u32, argument: i32, name: &str) -> Result<usize> {
-    let Some(len) = n.checked_pow(rank) else {
-        return fail!(Dimension, "{name}: {n}^{rank} entries cannot lie in memory").blame(argument);
-    };
-    Ok(len)
-}
-
-/// A count of the caller, at least 1.
-fn at_least_1(value: i64, argument: i32, name: &str) -> Result<usize> {
-    match count(value, argument, name)? {
-        0 => fail!(Dimension, "{name} = 0, needs a count >= 1").blame(argument),
-        n => Ok(n),
-    }
-}
-
-/// Adds a spring whose force is given by a table, f = f(y), y = x_a - x_b: straight between the points
-/// and beyond them along the first and the last of these lines. Its Fourier integrals are exact.
+/// Adds a spring whose force is given by a table, f = f(y), y = x_a - x_b: linear between the
+/// points, and beyond them along the first and the last line. Its Fourier integrals are exact.
 ///
 /// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
 /// sector_offset  sector of side b counted from that of side a; 0 in plain models.
 /// n              number of points, >= 2.
-/// displacement   y of the points, ascending, no two of them equal; n numbers.
+/// displacement   y of the points, strictly ascending; n numbers.
 /// force          f of the points; n numbers. A table whose force at y = 0 is not 0 loads the
 ///                structure at rest.
 /// id             receives the number of the contact, from 0; may be NULL; untouched on error.
-/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (points that are not
-/// sorted, both sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE,
-/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (points that are
+/// not sorted, equal sides, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
@@ -102,27 +44,27 @@ pub unsafe extern "C" fn hbvib_model_add_table(
         let between = between(dof_a, dof_b, sector_offset, model.ndof())?;
         let n = count(n, 5, "n")?;
         if n < 2 {
-            return fail!(Dimension, "n = {n}, needs at least 2 points of a table").blame(5);
+            return fail!(Dimension, "n = {n}, needs at least 2 points of a table").with_argument(5);
         }
         let displacement = unsafe { input(displacement, n, 6, "displacement") }?;
         let force = unsafe { input(force, n, 7, "force") }?;
         check_id(id, 8, "id")?;
         let table = Table::new(displacement, force).map_err(|e| match e.status {
             Status::OutOfMemory => e,
-            // A slope is infinite by both; the force is likelier at fault.
-            _ => blame_constant(e, &[("displacement", 6), ("", 7)]),
+            // An infinite slope follows from both arrays; the force is the likelier cause.
+            _ => with_named_argument(e, &[("displacement", 6), ("", 7)]),
         })?;
         let contact = Contact {
             kind: ContactKind::Table(table),
             ..between
         };
-        unsafe { add(&mut model, &contact, id) }.map_err(|e| blame_sides(e, 4))
+        unsafe { add(&mut model, &contact, id) }.map_err(|e| with_side_argument(e, 4))
     })
 }
 
-/// Adds a spring and a damper of polynomial form between two degrees of freedom:
-/// `f = sum spring[k] y^(k+1) + sum damper[k] v^(k+1)`, k = 0, 1, ..., with y = x_a - x_b and v = y'.
-/// Harmonic balance of it is exact.
+/// Adds a spring and a damper of polynomial form between two degrees of freedom: `f = sum spring[k]
+/// y^(k+1) + sum damper[k] v^(k+1)`, k = 0, 1, ..., with y = x_a - x_b and v = y'. Harmonic balance
+/// of it is exact.
 ///
 /// dof_a, dof_b   degrees of freedom of the two sides, from 0, or HBVIB_GROUND.
 /// sector_offset  sector of side b counted from that of side a; 0 in plain models.
@@ -132,7 +74,7 @@ pub unsafe extern "C" fn hbvib_model_add_table(
 /// damper         coefficients of v, v^2, ..., of any sign; NULL if there are none.
 /// id             receives the number of the contact, from 0; may be NULL; untouched on error.
 /// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n_spring, n_damper), HBVIB_E_ARGUMENT
-/// (both sides the same, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_NULL,
+/// (equal sides, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_NULL,
 /// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
@@ -152,31 +94,31 @@ pub unsafe extern "C" fn hbvib_model_add_spring_damper(
         let between = between(dof_a, dof_b, sector_offset, model.ndof())?;
         let number = |value: i64, argument, name: &str| match usize::try_from(value) {
             Ok(n) if n <= HIGHEST_EXPONENT as usize => Ok(n),
-            _ => fail!(Dimension, "{name} = {value}, needs 0 .. {HIGHEST_EXPONENT}").blame(argument),
+            _ => fail!(Dimension, "{name} = {value}, needs 0 .. {HIGHEST_EXPONENT}").with_argument(argument),
         };
         let (n_spring, n_damper) = (number(n_spring, 5, "n_spring")?, number(n_damper, 7, "n_damper")?);
         if n_spring == 0 && n_damper == 0 {
-            return fail!(Dimension, "n_spring and n_damper are 0, needs one coefficient at least").blame(5);
+            return fail!(Dimension, "n_spring and n_damper are 0, needs one coefficient at least").with_argument(5);
         }
         let spring = unsafe { input(spring, n_spring, 6, "spring") }?;
         let damper = unsafe { input(damper, n_damper, 8, "damper") }?;
         check_id(id, 9, "id")?;
         let law = Polynomial::scalar(spring, damper).map_err(|e| match e.status {
             Status::OutOfMemory => e,
-            _ => blame_constant(e, &[("damper", 8), ("", 6)]),
+            _ => with_named_argument(e, &[("damper", 8), ("", 6)]),
         })?;
         let contact = Contact {
             kind: ContactKind::Polynomial(law),
             ..between
         };
-        unsafe { add(&mut model, &contact, id) }.map_err(|e| blame_sides(e, 4))
+        unsafe { add(&mut model, &contact, id) }.map_err(|e| with_side_argument(e, 4))
     })
 }
 
-/// Adds springs and dampers of polynomial form over the motions x_j of several degrees of freedom over
-/// the ground and their velocities v_j: term t adds
-/// `coefficient[t] * product of x_j^x_powers[t][j] * product of v_j^v_powers[t][j]`
-/// to the force on degree of freedom `dofs[direction[t]]`. Harmonic balance of it is exact.
+/// Adds springs and dampers of polynomial form over the motions x_j of several degrees of freedom
+/// over the ground and their velocities v_j: term t adds `coefficient[t] * product of
+/// x_j^x_powers[t][j] * product of v_j^v_powers[t][j]` to the force on degree of freedom
+/// `dofs[direction[t]]`. Harmonic balance of it is exact.
 ///
 /// dofs         degrees of freedom from 0, each once; n_dofs numbers.
 /// n_dofs       their number, >= 1.
@@ -184,7 +126,8 @@ pub unsafe extern "C" fn hbvib_model_add_spring_damper(
 /// direction    place in dofs of the force that a term adds to, from 0; n_terms numbers.
 /// coefficient  of any sign; n_terms numbers.
 /// x_powers     exponents of the motions, 0 .. 15, n_terms x n_dofs, term after term; NULL: all 0.
-/// v_powers     exponents of the velocities, likewise; NULL: all 0. No term may have exponents 0 alone.
+/// v_powers     exponents of the velocities, likewise; NULL: all 0. No term may have exponents 0
+///              alone.
 /// id           receives the number of the contact, from 0; may be NULL; untouched on error.
 /// Errors: HBVIB_E_INDEX (dofs, direction), HBVIB_E_DIMENSION (n_dofs, n_terms), HBVIB_E_ARGUMENT
 /// (exponents, a degree of freedom twice), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE,
@@ -215,10 +158,10 @@ pub unsafe extern "C" fn hbvib_model_add_polynomial(
         let mut monomials = Vec::new();
         for (t, (&i, &coefficient)) in direction.iter().zip(coefficient).enumerate() {
             let Some(direction) = usize::try_from(i).ok().filter(|&i| i < d) else {
-                return fail!(Index, "direction[{t}] = {i}, needs 0 .. {}", d - 1).blame(5);
+                return fail!(Index, "direction[{t}] = {i}, needs 0 .. {}", d - 1).with_argument(5);
             };
             if !coefficient.is_finite() {
-                return fail!(NotFinite, "coefficient[{t}] = {coefficient}, needs a finite number").blame(6);
+                return fail!(NotFinite, "coefficient[{t}] = {coefficient}, needs a finite number").with_argument(6);
             }
             let of_term = |powers: &'_ [u32]| if powers.is_empty() { 0..0 } else { t * d..(t + 1) * d };
             let monomial = Monomial {
@@ -236,52 +179,22 @@ pub unsafe extern "C" fn hbvib_model_add_polynomial(
             _ => e.in_argument(7),
         })?;
         let contact = Contact::over(dofs, ContactKind::Polynomial(law));
-        unsafe { add(&mut model, &contact, id) }.blame(2)
+        unsafe { add(&mut model, &contact, id) }.with_argument(2)
     })
 }
 
-/// Exponents of terms, checked; none for NULL.
-///
-/// # Safety
-/// As for [`input`].
-unsafe fn powers((p, argument): (*const i32, i32), (terms, d): (usize, usize), name: &str) -> Result<Vec<u32>> {
-    let mut powers = Vec::new();
-    if p.is_null() {
-        return Ok(powers);
-    }
-    let Some(len) = terms.checked_mul(d) else {
-        return fail!(Dimension, "{name}: {terms} x {d} entries cannot lie in memory").blame(argument);
-    };
-    for (i, &power) in unsafe { input(p, len, argument, name) }?.iter().enumerate() {
-        match u32::try_from(power) {
-            Ok(power) if power <= HIGHEST_EXPONENT => try_push(&mut powers, power, "a polynomial")?,
-            _ => {
-                return fail!(
-                    Argument,
-                    "{name}[{},{}] = {power}, needs 0 .. {HIGHEST_EXPONENT}",
-                    i / d,
-                    i % d
-                )
-                .blame(argument);
-            }
-        }
-    }
-    Ok(powers)
-}
-
 /// Adds the quadratic and cubic stiffness of a reduced structure, over the motions of degrees of
-/// freedom over the ground:
-/// `f_i = sum quadratic[i][j][k] x_j x_k + sum cubic[i][j][k][l] x_j x_k x_l`
-/// on degree of freedom `dofs[i]`. The linear stiffness is that of the model. Nothing is taken for
-/// symmetric. Harmonic balance of it is exact.
+/// freedom over the ground: `f_i = sum quadratic[i][j][k] x_j x_k + sum cubic[i][j][k][l] x_j x_k
+/// x_l` on degree of freedom `dofs[i]`. The linear stiffness is that of the model. No symmetry of
+/// the tensors is assumed. Harmonic balance of it is exact.
 ///
 /// dofs       degrees of freedom from 0, each once; n numbers.
 /// n          their number, >= 1.
 /// quadratic  n^3 numbers, the last index running fastest, or NULL.
 /// cubic      n^4 numbers, likewise, or NULL. Not both may be NULL.
 /// id         receives the number of the contact, from 0; may be NULL; untouched on error.
-/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (a degree of freedom twice),
-/// HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (a degree of freedom
+/// twice), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_model_add_stiffness_tensors(
@@ -297,7 +210,7 @@ pub unsafe extern "C" fn hbvib_model_add_stiffness_tensors(
         let n = at_least_1(n, 3, "n")?;
         let dofs = unsafe { list(dofs, n, model.ndof()) }?;
         if quadratic.is_null() && cubic.is_null() {
-            return fail!(Null, "quadratic and cubic are NULL, needs one of them").blame(4);
+            return fail!(Null, "quadratic and cubic are NULL, needs one of them").with_argument(4);
         }
         let tensor = |p: *const f64, rank, argument, name: &str| {
             if p.is_null() {
@@ -310,17 +223,76 @@ pub unsafe extern "C" fn hbvib_model_add_stiffness_tensors(
         check_id(id, 6, "id")?;
         let law = Polynomial::tensors(n, &[], quadratic, cubic).map_err(|e| match e.status {
             Status::OutOfMemory => e,
-            _ => blame_constant(e, &[("cubic", 5), ("degree 3", 5), ("", 4)]),
+            _ => with_named_argument(e, &[("cubic", 5), ("degree 3", 5), ("", 4)]),
         })?;
         let contact = Contact::over(dofs, ContactKind::Polynomial(law));
-        unsafe { add(&mut model, &contact, id) }.blame(2)
+        unsafe { add(&mut model, &contact, id) }.with_argument(2)
     })
 }
 
-/// Whether the sector or the sides are at fault.
-fn blame_sides(e: Error, sector_offset: i32) -> Error {
+/// Adds a contact and writes its number for the caller.
+///
+/// # Safety
+/// `id`, checked before, is NULL or writable.
+unsafe fn add(model: &mut Writing<Model>, contact: &Contact, id: *mut i64) -> Result<Status> {
+    let number = model.add_contact(contact)?;
+    if !id.is_null() {
+        unsafe { id.write(number as i64) };
+    }
+    Ok(Status::Ok)
+}
+
+/// The sides of a law that acts on one relative motion: arguments 2 to 4.
+fn between(dof_a: i64, dof_b: i64, sector_offset: i64, ndof: usize) -> Result<Contact> {
+    Ok(Contact {
+        dof_a: [side(dof_a, ndof, 2, format_args!("dof_a"))?, None, None],
+        dof_b: [side(dof_b, ndof, 3, format_args!("dof_b"))?, None, None],
+        sector_offset,
+        ..Contact::jenkins(0, None, 0.0, 0.0, 0.0)
+    })
+}
+
+/// n to the power of `rank`, the length of an array.
+fn volume(n: usize, rank: u32, argument: i32, name: &str) -> Result<usize> {
+    let Some(len) = n.checked_pow(rank) else {
+        return fail!(Dimension, "{name}: {n}^{rank} entries cannot lie in memory").with_argument(argument);
+    };
+    Ok(len)
+}
+
+/// Exponents of terms, checked; none for NULL.
+///
+/// # Safety
+/// As for [`input`].
+unsafe fn powers((p, argument): (*const i32, i32), (terms, d): (usize, usize), name: &str) -> Result<Vec<u32>> {
+    let mut powers = Vec::new();
+    if p.is_null() {
+        return Ok(powers);
+    }
+    let Some(len) = terms.checked_mul(d) else {
+        return fail!(Dimension, "{name}: {terms} x {d} entries cannot lie in memory").with_argument(argument);
+    };
+    for (i, &power) in unsafe { input(p, len, argument, name) }?.iter().enumerate() {
+        match u32::try_from(power) {
+            Ok(power) if power <= HIGHEST_EXPONENT => try_push(&mut powers, power, "a polynomial")?,
+            _ => {
+                return fail!(
+                    Argument,
+                    "{name}[{},{}] = {power}, needs 0 .. {HIGHEST_EXPONENT}",
+                    i / d,
+                    i % d
+                )
+                .with_argument(argument);
+            }
+        }
+    }
+    Ok(powers)
+}
+
+/// Attributes an error of the model to the sector offset or to the sides.
+fn with_side_argument(e: Error, sector_offset: i32) -> Error {
     if e.status == Status::OutOfMemory {
         return e;
     }
-    blame_constant(e, &[("sector_offset", sector_offset), ("", 2)])
+    with_named_argument(e, &[("sector_offset", sector_offset), ("", 2)])
 }

@@ -1,10 +1,15 @@
-//! Forced responses synthesised from a nonlinear mode.
+//! Section "Modes" of the header: forced responses synthesised from a nonlinear mode.
 
-use super::boundary::{self, Blame, Range, call, check_pointer, disjoint};
+#![allow(non_camel_case_types)]
+
+use super::arrays::{Range, check_pointer, disjoint, optional};
+use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
-use super::sized::{Described, init, load};
-use super::special::optional;
-use super::types::{hbvib_branch, hbvib_model, hbvib_status};
+use super::indices;
+use super::model::hbvib_model;
+use super::solve::hbvib_branch;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, init, load};
 use crate::analysis::synthesis::{Synthesis, SynthesisPeak, synthesise};
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
@@ -13,7 +18,6 @@ use crate::options::SynthesisOptions;
 /// Options of a synthesised response. Fill it by hbvib_synthesis_options_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
-#[allow(non_camel_case_types)]
 pub struct hbvib_synthesis_options {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
@@ -25,26 +29,11 @@ pub struct hbvib_synthesis_options {
     pub damping_ratio: f64,
 }
 
-/// Where a synthesised resonance may mislead: bits of a sum.
-#[repr(C)]
-#[allow(non_camel_case_types)]
-pub enum hbvib_synthesis_flag {
-    /// Nothing was found against it.
-    HBVIB_SYNTHESIS_VALID = 0,
-    /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear mode.
-    HBVIB_SYNTHESIS_ANOTHER_MODE = 1,
-    /// Higher harmonics hold more than 1 % of the kinetic energy, or the point lies where the
-    /// amplitude falls along the branch, beyond a fold.
-    HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
-    /// The amplitude falls as the force rises: a detached response begins here.
-    HBVIB_SYNTHESIS_FALLING = 4,
-}
-
-unsafe impl Described for hbvib_synthesis_options {
+unsafe impl VersionedStruct for hbvib_synthesis_options {
     const NAME: &'static str = "hbvib_synthesis_options";
-    const FIRST: usize = 24;
+    const FIRST_SIZE: usize = 24;
 
-    fn filled() -> Self {
+    fn defaults() -> Self {
         let defaults = SynthesisOptions::default();
         Self {
             struct_size: 0,
@@ -68,52 +57,23 @@ pub unsafe extern "C" fn hbvib_synthesis_options_init(
     call(|| unsafe { init(o, size_of_o) })
 }
 
-/// What both functions begin with.
-unsafe fn synthesis(
-    branch: *const hbvib_branch,
-    model: *const hbvib_model,
-    options: *const hbvib_synthesis_options,
-) -> Result<Synthesis> {
-    let kept = read::<KeptBranch>(branch, 1)?;
-    let model = read::<Model>(model, 2)?;
-    let mut chosen = SynthesisOptions::default();
-    if !options.is_null() {
-        let o = unsafe { load(options, 3) }?;
-        chosen = SynthesisOptions {
-            force_factor: o.force_factor,
-            damping_ratio: o.damping_ratio,
-            model_damping: match o.model_damping {
-                0 => false,
-                1 => true,
-                other => return fail!(Argument, "model_damping = {other}, needs 0 or 1").blame(3),
-            },
-        };
-        chosen.check().blame(3)?;
-    }
-    synthesise(&kept.branch, &model, &chosen).map_err(|e| match e.status {
-        Status::Unsupported => e.in_argument(1),
-        Status::Argument | Status::Dimension => e.in_argument(2),
-        _ => e,
-    })
-}
-
-/// The response to the forces of a model in the fundamental, synthesised from a nonlinear mode: the
-/// structure moves near resonance like one oscillator whose frequency and damping follow the
-/// amplitude. Points come by rising amplitude below the resonance, then by falling amplitude above
-/// it, two for each point of the branch whose amplitude the force can hold.
+/// Response to the forces of a model in the fundamental, synthesised from a nonlinear mode: near
+/// resonance the structure moves like one oscillator whose frequency and damping depend on the
+/// amplitude. Points are ordered by rising amplitude below the resonance, then by falling amplitude
+/// above it, two for each point of the branch at whose amplitude the force balances the damping.
 ///
 /// branch           a nonlinear mode.
 /// model            the model of the mode, or one with other forces or damping; forces in other
-///                  harmonics play no part.
+///                  harmonics have no effect.
 /// options          NULL: the defaults.
 /// capacity         numbers that fit into each array; twice the points of the branch suffice.
 /// omega            receives the angular frequencies of the force, or NULL.
-/// response         receives the fundamentals of the branch's response degree of freedom, complex, in
-///                  phase with the force where real; or NULL.
+/// response         receives the fundamentals of the branch's response degree of freedom, complex,
+///                  in phase with the force where real; or NULL.
 /// modal_amplitude  receives the modal amplitudes, or NULL.
 /// count            receives how many points there are, also when `capacity` is too small.
-/// Errors: HBVIB_E_UNSUPPORTED (branch is no mode), HBVIB_E_DIMENSION (capacity too small, a model of
-/// another size), HBVIB_E_ARGUMENT (options, a model whose forces excite another wave or none,
+/// Errors: HBVIB_E_UNSUPPORTED (branch is no mode), HBVIB_E_DIMENSION (capacity too small, a model
+/// of another size), HBVIB_E_ARGUMENT (options, a model whose forces excite another wave or none,
 /// overlapping arrays), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
 #[unsafe(no_mangle)]
@@ -129,7 +89,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis(
     count: *mut i64,
 ) -> hbvib_status {
     call(|| {
-        let capacity = boundary::count(capacity, 4, "capacity")?;
+        let capacity = indices::count(capacity, 4, "capacity")?;
         check_pointer(count, 8, "count")?;
         let omega = optional((omega, 5), "omega")?;
         let response = optional((response, 6), "response")?;
@@ -138,7 +98,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis(
         let none = omega.is_none() && response.is_none() && modal.is_none();
         if !none && capacity < found.len() {
             unsafe { count.write(found.len() as i64) };
-            return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).blame(4);
+            return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(4);
         }
         let range = |p: Option<*mut f64>, len, argument, name| {
             Range::new(p.unwrap_or(core::ptr::null_mut()).cast_const(), len, argument, name)
@@ -170,18 +130,35 @@ pub unsafe extern "C" fn hbvib_branch_synthesis(
     })
 }
 
-/// The resonances of a synthesised response, refined on the mode's equations, in the order of the
+/// Reasons to doubt a synthesised resonance: bits of a sum.
+#[repr(C)]
+pub enum hbvib_synthesis_flag {
+    /// No reason for doubt was found.
+    HBVIB_SYNTHESIS_VALID = 0,
+    /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear
+    /// mode.
+    HBVIB_SYNTHESIS_ANOTHER_MODE = 1,
+    /// Higher harmonics hold more than 1 % of the kinetic energy, or the point lies where the
+    /// amplitude falls along the branch, beyond a fold.
+    HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
+    /// The amplitude falls as the force rises: a detached response begins here.
+    HBVIB_SYNTHESIS_FALLING = 4,
+}
+
+/// Resonances of a synthesised response, refined on the equations of the mode, in the order of the
 /// branch; none where the force is too small or too large for its amplitudes.
 ///
-/// branch, model, options  as for hbvib_branch_synthesis.
+/// branch, model           as for hbvib_branch_synthesis.
+/// options                 NULL: the defaults.
 /// capacity                numbers that fit into each array.
 /// omega                   receives their angular frequencies, or NULL.
-/// amplitude               receives the amplitudes |X_1| of the response degree of freedom, or NULL.
+/// amplitude               receives the amplitudes |X_1| of the response degree of freedom, or
+///                         NULL.
 /// log10_amplitude         receives the amplitudes as the branch measures them, log10, or NULL.
-/// damping_ratio           receives the damping ratios there, all included, or NULL.
+/// damping_ratio           receives the total damping ratios there, or NULL.
 /// other_mode              receives the distance to the nearest other natural frequency of the wave
 ///                         over the half-power bandwidth, infinite where none is known; or NULL.
-/// flags                   receives where they may mislead, sums of hbvib_synthesis_flag; or NULL.
+/// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// Errors and threads: as for hbvib_branch_synthesis.
 #[unsafe(no_mangle)]
@@ -200,7 +177,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
     count: *mut i64,
 ) -> hbvib_status {
     call(|| {
-        let capacity = boundary::count(capacity, 4, "capacity")?;
+        let capacity = indices::count(capacity, 4, "capacity")?;
         check_pointer(count, 11, "count")?;
         let columns: [(*mut f64, i32, &str, Column); 5] = [
             (omega, 5, "omega", |p| p.at.omega),
@@ -218,7 +195,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
         let found = unsafe { synthesis(branch, model, options) }?.peaks;
         unsafe { count.write(found.len() as i64) };
         if wanted && capacity < found.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).blame(4);
+            return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(4);
         }
         for (i, peak) in found.iter().enumerate() {
             for (p, .., value) in &columns {
@@ -231,6 +208,35 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
             }
         }
         Ok(Status::Ok)
+    })
+}
+
+/// The common first part of both functions.
+unsafe fn synthesis(
+    branch: *const hbvib_branch,
+    model: *const hbvib_model,
+    options: *const hbvib_synthesis_options,
+) -> Result<Synthesis> {
+    let kept = read::<KeptBranch>(branch, 1)?;
+    let model = read::<Model>(model, 2)?;
+    let mut chosen = SynthesisOptions::default();
+    if !options.is_null() {
+        let o = unsafe { load(options, 3) }?;
+        chosen = SynthesisOptions {
+            force_factor: o.force_factor,
+            damping_ratio: o.damping_ratio,
+            model_damping: match o.model_damping {
+                0 => false,
+                1 => true,
+                other => return fail!(Argument, "model_damping = {other}, needs 0 or 1").with_argument(3),
+            },
+        };
+        chosen.check().with_argument(3)?;
+    }
+    synthesise(&kept.branch, &model, &chosen).map_err(|e| match e.status {
+        Status::Unsupported => e.in_argument(1),
+        Status::Argument | Status::Dimension => e.in_argument(2),
+        _ => e,
     })
 }
 

@@ -1,0 +1,114 @@
+//! Writes all that follows from the C declarations in src/capi. One command, for developers and for CI:
+//!
+//! ```text
+//! cargo run -p hbvib-bindings
+//! ```
+//!
+//! It first has cargo check the library with its feature `bindings`, whose build script writes
+//! `include/hbvib.h`, and build the library without it, as users do. Then it reads the header, asks the
+//! shared library for the defaults of its structs, and writes the generated parts of the Fortran and
+//! Python modules and of the tests. They stand between the lines `BEGIN GENERATED` and `END GENERATED`;
+//! all else in these files is written by hand.
+
+mod declarations;
+mod fortran;
+// build.rs of the library uses it; here it is tested.
+#[cfg(test)]
+mod header;
+mod layout;
+#[cfg(unix)]
+mod library;
+mod lists;
+mod python;
+mod regions;
+
+use declarations::{Declarations, Result};
+use regions::Regions;
+use std::env;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn main() {
+    if let Err(error) = write() {
+        eprintln!("error: {error}");
+        std::process::exit(1);
+    }
+}
+
+fn write() -> Result<()> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .ancestors()
+        .nth(2)
+        .unwrap_or(Path::new(""));
+    cargo(root, &["check", "--release", "--lib", "--features", "bindings"])?;
+    cargo(root, &["build", "--release", "--lib"])?;
+    let all = Declarations::parse(&read(&root.join("include/hbvib.h"))?)?;
+    let defaults = defaults(&all)?;
+    let (calls, layouts) = fortran::layouts(&all)?;
+    let parts = [
+        ("include/hbvib.f90", vec![fortran::module(&all, &defaults)?]),
+        ("include/hbvib.py", vec![python::module(&all)?]),
+        ("tests/layout.rs", vec![lists::layouts(&all)]),
+        ("tests/languages/fortran/layout.f90", vec![calls, layouts]),
+    ];
+    for (path, texts) in parts {
+        let path = root.join(path);
+        let old = read(&path)?;
+        let new = Regions::of(&old)
+            .and_then(|regions| regions.filled(&texts))
+            .map_err(|error| format!("{}: {error}", path.display()))?;
+        replace(&path, &old, &new)?;
+    }
+    let path = root.join("tests/c_abi/symbols.txt");
+    let old = fs::read_to_string(&path).unwrap_or_default();
+    replace(&path, &old, &lists::symbols(&all))
+}
+
+/// Runs cargo in the checkout.
+fn cargo(root: &Path, arguments: &[&str]) -> Result<()> {
+    let program = env::var_os("CARGO").unwrap_or("cargo".into());
+    let status = Command::new(program).args(arguments).current_dir(root).status();
+    match status {
+        Ok(status) if status.success() => Ok(()),
+        Ok(status) => Err(format!("cargo {} failed, {status}", arguments.join(" "))),
+        Err(error) => Err(format!("cargo: {error}")),
+    }
+}
+
+fn read(path: &Path) -> Result<String> {
+    fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+fn replace(path: &Path, old: &str, new: &str) -> Result<()> {
+    if old == new {
+        return Ok(());
+    }
+    println!("writing {}", path.display());
+    fs::write(path, new).map_err(|error| format!("{}: {error}", path.display()))
+}
+
+#[cfg(unix)]
+fn defaults(all: &Declarations) -> Result<layout::Defaults> {
+    let path = shared_library()?;
+    let library = library::Library::open(&path)?;
+    layout::defaults(all, |name, bytes| library.init(name, bytes))
+}
+
+#[cfg(not(unix))]
+fn defaults(_: &Declarations) -> Result<layout::Defaults> {
+    Err("the library is loaded by dlopen, which this system does not have".into())
+}
+
+/// The shared library in the folder of release builds, beside that of this program.
+#[cfg(unix)]
+fn shared_library() -> Result<PathBuf> {
+    let program = env::current_exe().map_err(|error| error.to_string())?;
+    let target = program.ancestors().nth(2).unwrap_or(Path::new("."));
+    let name = if cfg!(target_os = "macos") {
+        "libhbvib.dylib"
+    } else {
+        "libhbvib.so"
+    };
+    Ok(target.join("release").join(name))
+}

@@ -1,0 +1,128 @@
+//! Pointers and arrays of the caller: checked, and borrowed as slices.
+
+use super::boundary::WithArgument;
+use super::indices::count;
+use crate::error::{Error, Result, Status, fail};
+
+/// Refuses a pointer that is NULL or not aligned for `T`.
+pub(super) fn check_pointer<T>(p: *const T, argument: i32, name: &str) -> Result<()> {
+    if p.is_null() {
+        return Err(Error::new(Status::Null, format_args!("{name} is NULL")).in_argument(argument));
+    }
+    if !p.is_aligned() {
+        return Err(Error::new(
+            Status::Argument,
+            format_args!(
+                "{name} = {p:p} is misaligned, needs a multiple of {} bytes",
+                align_of::<T>()
+            ),
+        )
+        .in_argument(argument));
+    }
+    Ok(())
+}
+
+/// A pointer that may be NULL but not misaligned.
+pub(super) fn optional<T>((p, argument): (*mut T, i32), name: &str) -> Result<Option<*mut T>> {
+    if p.is_null() {
+        return Ok(None);
+    }
+    check_pointer(p, argument, name)?;
+    Ok(Some(p))
+}
+
+/// The number of bytes that `len` values take, refused where no array in memory can be so long.
+fn byte_len<T>(p: *const T, len: usize, argument: i32, name: &str) -> Result<usize> {
+    len.checked_mul(size_of::<T>())
+        .filter(|&bytes| isize::try_from(bytes).is_ok() && p.addr().checked_add(bytes).is_some())
+        .ok_or_else(|| {
+            Error::new(
+                Status::Dimension,
+                format_args!("{name}: {len} entries cannot lie in memory"),
+            )
+            .in_argument(argument)
+        })
+}
+
+/// A borrowed input array; an empty one may be NULL.
+///
+/// # Safety
+/// The caller of the C function states that `len` readable values lie at `p`.
+pub(super) unsafe fn input<'a, T>(p: *const T, len: usize, argument: i32, name: &str) -> Result<&'a [T]> {
+    if len == 0 && p.is_null() {
+        return Ok(&[]);
+    }
+    check_pointer(p, argument, name)?;
+    byte_len(p, len, argument, name)?;
+    Ok(unsafe { core::slice::from_raw_parts(p, len) })
+}
+
+/// A borrowed output array.
+///
+/// # Safety
+/// The caller of the C function states that `len` writable values lie at `p`; it must not overlap
+/// any other array in use (see [`disjoint`]).
+pub(super) unsafe fn output<'a, T>(p: *mut T, len: usize, argument: i32, name: &str) -> Result<&'a mut [T]> {
+    check_pointer(p, argument, name)?;
+    byte_len(p, len, argument, name)?;
+    Ok(unsafe { core::slice::from_raw_parts_mut(p, len) })
+}
+
+/// A length that must be `needed`.
+pub(super) fn exact_len(len: i64, needed: usize, argument: i32, name: &str) -> Result<usize> {
+    match count(len, argument, name) {
+        Ok(len) if len == needed => Ok(len),
+        _ => fail!(Dimension, "length = {len}, needs {name} = {needed}").with_argument(argument),
+    }
+}
+
+/// The length of an output array that may be NULL, stated in the argument after the array.
+pub(super) fn optional_len(p: *mut f64, len: i64, needed: usize, argument: i32, name: &str) -> Result<usize> {
+    if p.is_null() && len == 0 {
+        return Ok(0);
+    }
+    check_pointer(p, argument, name)?;
+    exact_len(len, needed, argument + 1, name)
+}
+
+/// An array for the check of overlaps.
+#[derive(Clone, Copy)]
+pub(super) struct Range {
+    begin: usize,
+    bytes: usize,
+    argument: i32,
+    name: &'static str,
+}
+
+impl Range {
+    /// The range of an array; NULL is the empty one.
+    pub(super) fn new<T>(p: *const T, len: usize, argument: i32, name: &'static str) -> Result<Self> {
+        let bytes = if p.is_null() {
+            0
+        } else {
+            byte_len(p, len, argument, name)?
+        };
+        Ok(Self {
+            begin: p.addr(),
+            bytes,
+            argument,
+            name,
+        })
+    }
+}
+
+/// Refuses arrays that overlap: each of `outputs` must be separate from all other arrays.
+pub(super) fn disjoint(inputs: &[Range], outputs: &[Range]) -> Result<()> {
+    for (i, a) in outputs.iter().enumerate() {
+        for b in inputs.iter().chain(&outputs[..i]) {
+            if a.begin < b.begin + b.bytes && b.begin < a.begin + a.bytes {
+                return Err(Error::new(
+                    Status::Argument,
+                    format_args!("{} and {} overlap; they must be separate arrays", a.name, b.name),
+                )
+                .in_argument(a.argument));
+            }
+        }
+    }
+    Ok(())
+}

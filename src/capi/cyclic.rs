@@ -1,0 +1,136 @@
+//! Section "Cyclic structures" of the header.
+
+use super::arrays::check_pointer;
+use super::boundary::{WithArgument, call};
+use super::handles::{insert, write};
+use super::indices::count;
+use super::matrices::{hbvib_matrix, matrix_kind, with_matrix};
+use super::model::hbvib_model;
+use super::version_and_errors::hbvib_status;
+use crate::error::{Error, Result, Status, fail};
+use crate::model::Model;
+
+/// Creates a cyclic structure, described by one of its sectors, under engine order 0: all matrices
+/// zero, no contact, no force.
+///
+/// ndof_sector  degrees of freedom of the sector, 1 .. 2^31.
+/// sectors      number of equal sectors N, 1 .. 2^20.
+/// out          receives the model; untouched on error. Free it by hbvib_model_free.
+/// Errors: HBVIB_E_DIMENSION (ndof_sector), HBVIB_E_ARGUMENT (sectors), HBVIB_E_NULL,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_cyclic_new(ndof_sector: i64, sectors: i64, out: *mut *mut hbvib_model) -> hbvib_status {
+    call(|| {
+        check_pointer(out, 3, "out")?;
+        let ndof = count(ndof_sector, 1, "ndof_sector")?;
+        let Ok(sectors) = usize::try_from(sectors) else {
+            return fail!(Argument, "sectors = {sectors}, needs at least 1").with_argument(2);
+        };
+        let model = Model::cyclic(ndof, sectors);
+        let model = model.map_err(|e| {
+            let argument = if e.status == Status::Dimension { 1 } else { 2 };
+            e.in_argument(argument)
+        })?;
+        unsafe { out.write(insert(model)?) };
+        Ok(Status::Ok)
+    })
+}
+
+/// Sets the coupling of a sector to the next one: rows of sector s, columns of s + 1. The coupling
+/// to the previous sector is its transpose unless hbvib_cyclic_set_coupling_previous is called.
+///
+/// which    HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// to_next  ndof x ndof, any matrix: `part` is no promise of symmetry here; a triangle is completed
+///          by its mirror image.
+/// Where sector s + 1 lags by phi, harmonic p has the matrix A0 + A1 exp(-i p phi) + A1^T exp(i p
+/// phi).
+/// Errors: as hbvib_model_set_matrix; HBVIB_E_UNSUPPORTED for a plain structure.
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_cyclic_set_coupling(
+    model: *mut hbvib_model,
+    which: i32,
+    to_next: *const hbvib_matrix,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let which = matrix_kind(which)?;
+        unsafe { with_matrix(to_next, 3, model.ndof(), |a| model.set_coupling(which, a)) }?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Sets the coupling of a sector (rows) to the previous one (columns), for damping and stiffness
+/// without symmetry.
+///
+/// which        HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// to_previous  ndof x ndof, any matrix.
+/// Errors: as hbvib_cyclic_set_coupling; HBVIB_E_UNSUPPORTED for the mass.
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_cyclic_set_coupling_previous(
+    model: *mut hbvib_model,
+    which: i32,
+    to_previous: *const hbvib_matrix,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let which = matrix_kind(which)?;
+        unsafe { with_matrix(to_previous, 3, model.ndof(), |a| model.set_coupling_previous(which, a)) }?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Sets the matrix of the wave in which sector s + 1 lags by 2 pi diameter / N, instead of sector
+/// blocks. Waves in the other direction have its conjugate. A solve that needs a harmonic without a
+/// matrix of its nodal diameter is refused.
+///
+/// which     HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// diameter  nodal diameter, 0 .. N/2.
+/// a         ndof x ndof, Hermitian; C and K may be HBVIB_GENERAL.
+/// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter out of range and for
+/// matrices that were given by sector blocks. Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_cyclic_set_diameter(
+    model: *mut hbvib_model,
+    which: i32,
+    diameter: i64,
+    a: *const hbvib_matrix,
+) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let which = matrix_kind(which)?;
+        let diameter = nodal_diameter(&model, diameter, 3)?;
+        unsafe { with_matrix(a, 4, model.ndof(), |a| model.set_diameter(which, diameter, a)) }?;
+        Ok(Status::Ok)
+    })
+}
+
+pub(super) fn nodal_diameter(model: &Model, diameter: i64, argument: i32) -> Result<usize> {
+    let sectors = model.structure().sectors();
+    match usize::try_from(diameter) {
+        Ok(d) if d <= sectors / 2 => Ok(d),
+        _ => Err(Error::new(
+            Status::Argument,
+            format_args!(
+                "diameter = {diameter}, needs 0 .. {} for {sectors} sectors; a wave of {diameter} diameters is that of {}",
+                sectors / 2,
+                model.structure().fold(diameter).0
+            ),
+        )
+        .in_argument(argument)),
+    }
+}
+
+/// Sets the engine order EO of the excitation: sector s + 1 lags behind sector s by 2 pi EO / N per
+/// harmonic, so that harmonic p has the nodal diameter p EO mod N. Any sign and size; without
+/// effect on a plain structure.
+///
+/// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_cyclic_set_wave(model: *mut hbvib_model, engine_order: i64) -> hbvib_status {
+    call(|| {
+        write::<Model>(model, 1)?.set_wave(engine_order);
+        Ok(Status::Ok)
+    })
+}

@@ -1,0 +1,231 @@
+//! Section "Modes" of the header: nonlinear modes.
+
+#![allow(non_camel_case_types)]
+
+use super::arrays::input;
+use super::boundary::{WithArgument, call};
+use super::handles::read;
+use super::indices::count;
+use super::model::hbvib_model;
+use super::solve::{follow, hbvib_branch};
+use super::solve_hooks::hbvib_hooks;
+use super::solve_options::{hbvib_solver_options, solver_options};
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, init, load};
+use crate::analysis;
+use crate::error::{Result, Status, fail};
+use crate::model::Model;
+use crate::options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
+use core::ptr;
+use num_complex::Complex64;
+
+/// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
+#[repr(C)]
+pub enum hbvib_damping_form {
+    /// The term -2 D omega M x'.
+    HBVIB_DAMPING_MASS = 0,
+    /// The term -zeta K x', D = zeta omega / 2, K the structure's own stiffness without springs and
+    /// contacts.
+    HBVIB_DAMPING_STIFFNESS = 1,
+}
+
+/// Options of hbvib_nonlinear_mode. Fill it by hbvib_mode_options_init, then set the range.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_mode_options {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// HBVIB_DAMPING_MASS (default) or HBVIB_DAMPING_STIFFNESS.
+    pub damping_form: i32,
+    /// log10 of the first amplitude.
+    pub log10_start: f64,
+    /// log10 of the last amplitude, above the first.
+    pub log10_stop: f64,
+    /// -1 (default): the wave of the model's engine order. 0 .. sectors / 2: the forward wave of
+    /// this nodal diameter.
+    pub diameter: i64,
+    /// Number of the linear mode, contacts stuck, from 0 (default) by rising frequency.
+    pub mode_index: i64,
+    /// Above 0: the linear mode nearest to this angular frequency; mode_index is then ignored.
+    /// 0: not used.
+    pub near_omega: f64,
+    /// The linear mode most similar to this shape, ndof complex numbers of one sector and of any
+    /// size; mode_index is then ignored. NULL: not used. near_omega must then be 0.
+    pub shape: *const f64,
+    /// Complex numbers in shape.
+    pub shape_len: i64,
+    /// Measure of the amplitude. -1 (default): sqrt(X_1^H M X_1) over one sector, length times
+    /// square root of mass. Else a contact: |Y_1| of its relative motion, a peak length.
+    pub amplitude_contact: i64,
+    /// log10 of amplitudes within the range at which every solution is computed exactly, or NULL.
+    pub at: *const f64,
+    /// Number of these amplitudes.
+    pub at_len: i64,
+    /// Degree of freedom whose fundamental is real; -1 (default): the one that moves most in the
+    /// linear mode.
+    pub reference_dof: i64,
+}
+
+unsafe impl VersionedStruct for hbvib_mode_options {
+    const NAME: &'static str = "hbvib_mode_options";
+    const FIRST_SIZE: usize = 96;
+
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            damping_form: hbvib_damping_form::HBVIB_DAMPING_MASS as i32,
+            log10_start: 0.0,
+            log10_stop: 0.0,
+            diameter: -1,
+            mode_index: 0,
+            near_omega: 0.0,
+            shape: ptr::null(),
+            shape_len: 0,
+            amplitude_contact: -1,
+            at: ptr::null(),
+            at_len: 0,
+            reference_dof: -1,
+        }
+    }
+}
+
+/// Fills the options of a nonlinear mode with their defaults: the lowest mode of the model's wave,
+/// modal amplitude, damping of mass form. The range is empty and must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_mode_options_init(o: *mut hbvib_mode_options, size_of_o: usize) -> hbvib_status {
+    call(|| unsafe { init(o, size_of_o) })
+}
+
+/// Follows a nonlinear mode over a range of amplitude, from contacts that stick to contacts that
+/// slide, by the extended periodic motion concept (EPMC, Krack 2015) and arc-length continuation:
+/// artificial damping balances the loss in friction and structure, and its damping ratio D belongs
+/// to the result. The forces of the model have no effect. Turns in amplitude are passed, largest
+/// damping ratios refined.
+///
+/// solver  options; NULL: the defaults. harmonics must be at least 1.
+/// mode    the linear mode to start from, the measure of the amplitude, its range.
+/// hooks   progress, log and cancellation; NULL: none.
+/// out     receives the branch; untouched on error. Free it by hbvib_branch_free.
+/// A positive status says why the branch ends early; the branch then has all points found, possibly
+/// none.
+/// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
+/// out of range, a mode that moves no contact, a mode of frequency 0, and a reference at a node of
+/// the mode; HBVIB_E_NOT_POSITIVE_DEFINITE and HBVIB_E_NOT_HERMITIAN for matrices, also missing
+/// ones; HBVIB_E_UNSUPPORTED for constant forces; HBVIB_E_NO_CONVERGENCE where no first point was
+/// found; HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number may solve one model at a time, with the same results as one alone; changing
+/// or freeing it meanwhile is HBVIB_E_BUSY.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_nonlinear_mode(
+    model: *const hbvib_model,
+    solver: *const hbvib_solver_options,
+    mode: *const hbvib_mode_options,
+    hooks: *const hbvib_hooks,
+    out: *mut *mut hbvib_branch,
+) -> hbvib_status {
+    call(|| {
+        let model = read::<Model>(model, 1)?;
+        let solver = unsafe { solver_options(solver, model.ndof()) }?;
+        let mode = unsafe { load(mode, 3) }?;
+        let mode = unsafe { mode_options(&mode, &model) }.with_argument(3)?;
+        let found = unsafe {
+            follow(hooks, out, mode.at.len(), |hooks| {
+                analysis::nonlinear_mode(&model, &solver, &mode, hooks)
+            })
+        };
+        match found {
+            // The number of modes is known during the analysis only.
+            Err(e) if e.status == Status::Index => Err(e).with_argument(3),
+            found => found,
+        }
+    })
+}
+
+unsafe fn mode_options<'a>(o: &hbvib_mode_options, model: &Model) -> Result<ModeOptions<'a>> {
+    const MASS: i32 = hbvib_damping_form::HBVIB_DAMPING_MASS as i32;
+    const STIFFNESS: i32 = hbvib_damping_form::HBVIB_DAMPING_STIFFNESS as i32;
+    let damping_form = match o.damping_form {
+        MASS => DampingForm::Mass,
+        STIFFNESS => DampingForm::Stiffness,
+        other => {
+            return fail!(
+                Argument,
+                "damping_form = {other}, needs HBVIB_DAMPING_MASS = 0 or HBVIB_DAMPING_STIFFNESS = 1"
+            );
+        }
+    };
+    let sectors = model.structure().sectors();
+    let diameter = match usize::try_from(o.diameter) {
+        Ok(d) => Some(d),
+        Err(_) if o.diameter == -1 => None,
+        Err(_) => {
+            return fail!(
+                Argument,
+                "diameter = {}, needs 0 .. {} or -1 (the model's wave)",
+                o.diameter,
+                sectors / 2
+            );
+        }
+    };
+    let at_len = count(o.at_len, 3, "at_len")?;
+    let contact = optional(
+        o.amplitude_contact,
+        model.contacts().len(),
+        "amplitude_contact",
+        "modal amplitude",
+    )?;
+    let options = ModeOptions {
+        choice: unsafe { choice(o, model.ndof()) }?,
+        diameter,
+        amplitude: contact.map_or(Amplitude::Modal, Amplitude::Contact),
+        log10_start: o.log10_start,
+        log10_stop: o.log10_stop,
+        at: unsafe { input(o.at, at_len, 3, "at") }?,
+        damping_form,
+        reference_dof: optional(o.reference_dof, model.ndof(), "reference_dof", "automatic")?,
+    };
+    options.check(model.ndof(), model.contacts().len(), sectors)?;
+    Ok(options)
+}
+
+unsafe fn choice<'a>(o: &hbvib_mode_options, ndof: usize) -> Result<ModeChoice<'a>> {
+    let shape_len = count(o.shape_len, 3, "shape_len")?;
+    let Ok(mode_index) = usize::try_from(o.mode_index) else {
+        return fail!(Index, "mode_index = {}, needs a number >= 0", o.mode_index);
+    };
+    let near = o.near_omega != 0.0;
+    if o.shape.is_null() && shape_len == 0 {
+        return Ok(if near {
+            ModeChoice::Near(o.near_omega)
+        } else {
+            ModeChoice::Index(mode_index)
+        });
+    }
+    if near {
+        return fail!(
+            Argument,
+            "near_omega = {} and shape both choose the mode; set near_omega = 0 or shape = NULL",
+            o.near_omega
+        );
+    }
+    if shape_len != ndof {
+        return fail!(Dimension, "shape_len = {shape_len}, needs ndof = {ndof}");
+    }
+    let shape = unsafe { input::<Complex64>(o.shape.cast(), shape_len, 3, "shape") }?;
+    Ok(ModeChoice::Shape(shape))
+}
+
+/// A number of the caller from 0 below `limit`, or -1 for `none`.
+fn optional(value: i64, limit: usize, name: &str, none: &str) -> Result<Option<usize>> {
+    match usize::try_from(value) {
+        Ok(i) if i < limit => Ok(Some(i)),
+        _ if value == -1 => Ok(None),
+        _ if limit == 0 => fail!(Index, "{name} = {value}, needs -1 ({none}): there is no other"),
+        _ => fail!(Index, "{name} = {value}, needs 0 .. {} or -1 ({none})", limit - 1),
+    }
+}

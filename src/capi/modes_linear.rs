@@ -1,0 +1,90 @@
+//! Section "Modes" of the header: natural modes of the linear structure.
+
+#![allow(non_camel_case_types)]
+
+use super::arrays::check_pointer;
+use super::boundary::{WithArgument, call};
+use super::cyclic::nodal_diameter;
+use super::handles::read;
+use super::model::hbvib_model;
+use super::version_and_errors::hbvib_status;
+use crate::error::{Result, Status, fail};
+use crate::model::Model;
+use crate::model::linear_modes::ContactState;
+
+/// State of the contacts in a linear analysis.
+#[repr(C)]
+pub enum hbvib_contact_state {
+    /// Without force.
+    HBVIB_CONTACTS_FREE = 0,
+    /// Linear springs, as at small motion: kt of contacts that stick and kn of contacts that press
+    /// at rest, the slopes of tables and polynomials; HBVIB_REGULARISED has none.
+    HBVIB_CONTACTS_STUCK = 1,
+}
+
+/// Undamped natural modes, in ascending order of frequency. A singular mass matrix has fewer modes
+/// than degrees of freedom.
+///
+/// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
+/// contacts  HBVIB_CONTACTS_FREE, or HBVIB_CONTACTS_STUCK: linear springs kt.
+/// count     number of requested modes, at least 1.
+/// omega     receives `count` natural angular frequencies.
+/// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
+///           phi^H M phi = 1 over one sector; or NULL.
+/// Errors: HBVIB_E_ARGUMENT (diameter, contacts), HBVIB_E_DIMENSION (more modes requested than
+/// exist), HBVIB_E_NOT_HERMITIAN, HBVIB_E_NOT_POSITIVE_DEFINITE, HBVIB_E_SINGULAR,
+/// HBVIB_E_NO_CONVERGENCE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number on one model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_linear_modes(
+    model: *const hbvib_model,
+    diameter: i64,
+    contacts: i32,
+    count: i64,
+    omega: *mut f64,
+    shapes: *mut f64,
+) -> hbvib_status {
+    call(|| {
+        let model = read::<Model>(model, 1)?;
+        let diameter = nodal_diameter(&model, diameter, 2)?;
+        let state = contact_state(contacts)?;
+        let wanted = usize::try_from(count).unwrap_or(0);
+        check_pointer(omega, 5, "omega")?;
+        if !shapes.is_null() {
+            check_pointer(shapes, 6, "shapes")?;
+        }
+        if wanted == 0 || wanted > model.ndof() {
+            return fail!(Dimension, "count = {count}, needs 1 .. ndof = {}", model.ndof()).with_argument(4);
+        }
+        let modes = model.lowest_modes(diameter, state, wanted)?;
+        if wanted > modes.omega.len() {
+            return fail!(
+                Dimension,
+                "count = {count}, but only {} modes have mass",
+                modes.omega.len()
+            )
+            .with_argument(4);
+        }
+        unsafe {
+            omega.copy_from(modes.omega.as_ptr(), wanted);
+            if !shapes.is_null() {
+                shapes.copy_from(modes.shapes.as_ptr().cast(), 2 * wanted * model.ndof());
+            }
+        }
+        Ok(Status::Ok)
+    })
+}
+
+fn contact_state(value: i32) -> Result<ContactState> {
+    const FREE: i32 = hbvib_contact_state::HBVIB_CONTACTS_FREE as i32;
+    const STUCK: i32 = hbvib_contact_state::HBVIB_CONTACTS_STUCK as i32;
+    match value {
+        FREE => Ok(ContactState::Free),
+        STUCK => Ok(ContactState::Stuck),
+        _ => fail!(
+            Argument,
+            "contacts = {value}, needs HBVIB_CONTACTS_FREE = 0 or HBVIB_CONTACTS_STUCK = 1"
+        ),
+    }
+    .with_argument(3)
+}

@@ -1,0 +1,168 @@
+//! Section "Solve" of the header: progress, log and cancellation.
+
+#![allow(non_camel_case_types)]
+
+use super::arrays::check_pointer;
+use super::boundary::{WithArgument, call, outside};
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, init, load};
+use crate::error::{Result, TEXT_CAPACITY, fail};
+use crate::hooks::{Hooks, LogLevel, Progress};
+use core::ffi::{c_char, c_void};
+use core::ptr;
+use core::sync::atomic::{AtomicI32, Ordering};
+
+/// State of a solve, passed to the progress callback.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_progress {
+    /// Bytes of this struct as the library knows it.
+    pub struct_size: u32,
+    /// Newton iterations that the point took.
+    pub newton_iterations: i32,
+    /// Number of points accepted so far, this one included.
+    pub point: i64,
+    /// Angular frequency; in a nonlinear mode log10 of the amplitude.
+    pub parameter: f64,
+    /// Peak amplitude of the fundamental of the response degree of freedom.
+    pub amplitude: f64,
+    /// Relative residual.
+    pub residual: f64,
+    /// Arc length of the step that led here, in scaled unknowns.
+    pub step: f64,
+    /// Part of the range that is done, 0 to 1.
+    pub fraction_done: f64,
+}
+
+/// Levels of log lines.
+#[repr(C)]
+pub enum hbvib_log_level {
+    /// No line at all.
+    HBVIB_LOG_NONE = 0,
+    /// Warnings.
+    HBVIB_LOG_WARN = 1,
+    /// Steps of the method.
+    HBVIB_LOG_INFO = 2,
+    /// Detail for debugging.
+    HBVIB_LOG_DEBUG = 3,
+}
+
+/// Called at each accepted point. A result other than 0 stops the solve and keeps the points.
+pub type hbvib_progress_fn =
+    Option<unsafe extern "C-unwind" fn(user: *mut c_void, progress: *const hbvib_progress) -> i32>;
+
+/// Receives a line of the log, whose text is valid during the call.
+pub type hbvib_log_fn = Option<unsafe extern "C-unwind" fn(user: *mut c_void, level: i32, message: *const c_char)>;
+
+/// A flag that another thread or a signal handler may set while a call runs.
+pub type hbvib_cancel_flag = i32;
+
+/// Callbacks and cancel flag of a solve. Fill it by hbvib_hooks_init. Callbacks run on the calling
+/// thread, one at a time; they may call the library, but not change or free a handle in use.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_hooks {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// HBVIB_LOG_NONE .. HBVIB_LOG_DEBUG: the finest lines that `log` receives.
+    pub log_level: i32,
+    /// Passed to the callbacks.
+    pub user: *mut c_void,
+    /// Called at each accepted point. May be NULL.
+    pub progress: hbvib_progress_fn,
+    /// Called with each line of the log. May be NULL.
+    pub log: hbvib_log_fn,
+    /// Read in each Newton iteration: a number other than 0 stops the solve and keeps the points.
+    /// Another thread or a signal handler may set it; the library never writes it. May be NULL.
+    pub cancel: *const hbvib_cancel_flag,
+}
+
+unsafe impl VersionedStruct for hbvib_hooks {
+    const NAME: &'static str = "hbvib_hooks";
+    const FIRST_SIZE: usize = 40;
+
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            log_level: 0,
+            user: ptr::null_mut(),
+            progress: None,
+            log: None,
+            cancel: ptr::null(),
+        }
+    }
+}
+
+/// Fills hooks with no callback and no flag.
+///
+/// h          the struct; untouched on error.
+/// size_of_h  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_hooks_init(h: *mut hbvib_hooks, size_of_h: usize) -> hbvib_status {
+    call(|| unsafe { init(h, size_of_h) })
+}
+
+/// Passes the hooks of the caller, in the form of the library, to `then`.
+pub(super) unsafe fn with_hooks<T>(h: &hbvib_hooks, then: impl FnOnce(&mut Hooks<'_>) -> T) -> T {
+    let user = h.user;
+    let mut progress = h.progress.map(|f| {
+        move |p: &Progress| {
+            let state = hbvib_progress {
+                struct_size: size_of::<hbvib_progress>() as u32,
+                newton_iterations: i32::try_from(p.newton_iterations).unwrap_or(i32::MAX),
+                point: p.point as i64,
+                parameter: p.parameter,
+                amplitude: p.amplitude,
+                residual: p.residual,
+                step: p.step,
+                fraction_done: p.fraction_done,
+            };
+            outside(|| unsafe { f(user, &raw const state) }) != 0
+        }
+    });
+    let finest = h.log_level;
+    let mut log = h.log.map(|f| {
+        move |level: LogLevel, message: &str| {
+            if level as i32 > finest {
+                return;
+            }
+            let mut text = [0_u8; TEXT_CAPACITY + 1];
+            let mut len = message.len().min(TEXT_CAPACITY);
+            while !message.is_char_boundary(len) {
+                len -= 1;
+            }
+            text[..len].copy_from_slice(&message.as_bytes()[..len]);
+            outside(|| unsafe { f(user, level as i32, text.as_ptr().cast()) });
+        }
+    });
+    let flag = h.cancel;
+    // An aligned load as that of a volatile in C, but defined while another thread writes.
+    let cancelled = || unsafe { AtomicI32::from_ptr(flag.cast_mut()) }.load(Ordering::Relaxed) != 0;
+    let mut hooks = Hooks {
+        progress: progress.as_mut().map(|f| f as &mut dyn FnMut(&Progress) -> bool),
+        cancelled: (!flag.is_null()).then_some(&cancelled as &dyn Fn() -> bool),
+        log: log.as_mut().map(|f| f as &mut dyn FnMut(LogLevel, &str)),
+    };
+    then(&mut hooks)
+}
+
+/// The hooks given as the argument of this number; NULL is none.
+pub(super) unsafe fn load_hooks(p: *const hbvib_hooks, argument: i32) -> Result<hbvib_hooks> {
+    if p.is_null() {
+        return Ok(hbvib_hooks::defaults());
+    }
+    let hooks = unsafe { load(p, argument) }?;
+    if !(0..=3).contains(&hooks.log_level) {
+        return fail!(
+            Argument,
+            "hbvib_hooks: log_level = {}, needs HBVIB_LOG_NONE = 0 .. HBVIB_LOG_DEBUG = 3",
+            hooks.log_level
+        )
+        .with_argument(argument);
+    }
+    if !hooks.cancel.is_null() {
+        check_pointer::<hbvib_cancel_flag>(hooks.cancel, argument, "hbvib_hooks: cancel")?;
+    }
+    Ok(hooks)
+}

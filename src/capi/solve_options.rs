@@ -1,0 +1,156 @@
+//! Section "Solve" of the header: the options that every analysis shares.
+
+#![allow(non_camel_case_types)]
+
+use super::boundary::{WithArgument, call};
+use super::indices::number;
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, init, load};
+use crate::error::{Result, fail};
+use crate::options::SolverOptions;
+
+/// Options that every analysis shares. Fill it by hbvib_solver_options_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_solver_options {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// Reserved: must be 0 or 1. The library starts no thread.
+    pub num_threads: i32,
+    /// Bound of the estimated relative error (default 1e-3), from which the harmonics of each point
+    /// are chosen: error of the complex fundamental of the response degree of freedom; in a
+    /// nonlinear mode of the frequency and of the damping ratio, the latter relative to the largest
+    /// one so far. 0: exactly `harmonics`, whatever the error.
+    pub tolerance: f64,
+    /// Highest harmonic number H; with a tolerance the H of the first point.
+    pub harmonics: i64,
+    /// Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need
+    /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
+    pub max_harmonics: i64,
+    /// 0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a
+    /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact in
+    /// both cases; HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number
+    /// that follows from H.
+    pub samples: i64,
+    /// First arc-length step in scaled unknowns; 0 = automatic.
+    pub step: f64,
+    /// Smallest step; 0 = automatic.
+    pub step_min: f64,
+    /// Largest step; 0 = automatic.
+    pub step_max: f64,
+    /// Relative residual of a converged point.
+    pub tol_residual: f64,
+    /// Cap on Newton iterations per point.
+    pub max_newton: i64,
+    /// Cap on the number of points.
+    pub max_points: i64,
+    /// Degree of freedom whose fundamental defines amplitude and peaks; -1: the forced one that
+    /// moves most at the lower end of the range, contacts at their reference stiffness. In a
+    /// nonlinear mode it defines the reported amplitude alone; -1: the phase reference.
+    pub response_dof: i64,
+    /// 1: carry the mean and the even harmonics also where symmetry makes them zero; 0: do not.
+    pub keep_even_harmonics: i32,
+    /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution
+    /// with more harmonics at each point; 0 (default): do so only with a tolerance.
+    pub estimate_error: i32,
+}
+
+unsafe impl VersionedStruct for hbvib_solver_options {
+    const NAME: &'static str = "hbvib_solver_options";
+    const FIRST_SIZE: usize = 104;
+
+    fn defaults() -> Self {
+        let defaults = SolverOptions::default();
+        Self {
+            struct_size: 0,
+            num_threads: 0,
+            tolerance: defaults.tolerance,
+            harmonics: defaults.harmonics as i64,
+            max_harmonics: defaults.max_harmonics as i64,
+            samples: defaults.samples as i64,
+            step: defaults.step,
+            step_min: defaults.step_min,
+            step_max: defaults.step_max,
+            tol_residual: defaults.tol_residual,
+            max_newton: defaults.max_newton as i64,
+            max_points: defaults.max_points as i64,
+            response_dof: -1,
+            keep_even_harmonics: i32::from(defaults.keep_even_harmonics),
+            estimate_error: i32::from(defaults.estimate_error),
+        }
+    }
+}
+
+/// Fills solver options with their defaults: tolerance = 1e-3, from which the harmonics follow,
+/// exact events, automatic steps. For a fixed number of harmonics set tolerance = 0 and harmonics.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_solver_options_init(o: *mut hbvib_solver_options, size_of_o: usize) -> hbvib_status {
+    call(|| unsafe { init(o, size_of_o) })
+}
+
+/// Checked harmonics and samples, given as the arguments of these numbers.
+pub(super) fn harmonics_and_samples(harmonics: i64, samples: i64, arguments: (i32, i32)) -> Result<(usize, usize)> {
+    let plain = |harmonics, samples| {
+        SolverOptions {
+            harmonics,
+            samples,
+            tolerance: 0.0,
+            ..SolverOptions::default()
+        }
+        .fixed()
+        .check()
+    };
+    let harmonics = number(harmonics, "harmonics").with_argument(arguments.0)?;
+    plain(harmonics, 0).with_argument(arguments.0)?;
+    let samples = number(samples, "samples").with_argument(arguments.1)?;
+    plain(harmonics, samples).with_argument(arguments.1)?;
+    Ok((harmonics, samples))
+}
+
+/// Checked solver options for a model of `ndof` degrees of freedom; NULL is the defaults.
+pub(super) unsafe fn solver_options(p: *const hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
+    if p.is_null() {
+        return Ok(SolverOptions::default());
+    }
+    let o = unsafe { load(p, 2) }?;
+    convert(&o, ndof).with_argument(2)
+}
+
+fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
+    if !matches!(o.num_threads, 0 | 1) {
+        return fail!(Argument, "num_threads = {}, needs 0 or 1 (reserved)", o.num_threads);
+    }
+    let response_dof = match o.response_dof {
+        -1 => None,
+        dof if (0..ndof as i64).contains(&dof) => Some(dof as usize),
+        dof => {
+            return fail!(Index, "response_dof = {dof}, needs 0 .. {} or -1 (automatic)", ndof - 1);
+        }
+    };
+    let flag = |value: i32, name: &str| match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        other => fail!(Argument, "{name} = {other}, needs 0 or 1"),
+    };
+    let options = SolverOptions {
+        tolerance: o.tolerance,
+        harmonics: number(o.harmonics, "harmonics")?,
+        max_harmonics: number(o.max_harmonics, "max_harmonics")?,
+        samples: number(o.samples, "samples")?,
+        step: o.step,
+        step_min: o.step_min,
+        step_max: o.step_max,
+        tol_residual: o.tol_residual,
+        max_newton: number(o.max_newton, "max_newton")?,
+        max_points: number(o.max_points, "max_points")?,
+        response_dof,
+        keep_even_harmonics: flag(o.keep_even_harmonics, "keep_even_harmonics")?,
+        estimate_error: flag(o.estimate_error, "estimate_error")?,
+    };
+    options.check()?;
+    Ok(options)
+}
