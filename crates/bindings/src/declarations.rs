@@ -273,7 +273,7 @@ fn ends(item: &str) -> bool {
     depth == 0 && last == ';'
 }
 
-/// What a body holds, each with its description.
+/// Members of a struct or an enum, each with its description.
 fn members<T>(body: &str, read: impl Fn(&str) -> Result<T>) -> Result<Vec<(T, String)>> {
     let mut found = Vec::new();
     let mut doc: Vec<&str> = Vec::new();

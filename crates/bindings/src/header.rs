@@ -117,7 +117,7 @@ fn prologue(version: &[String; 3]) -> String {
         text = text.replace(place, number);
     }
     let line = |section: &Section| format!(" *   {:<19} {}\n", section.title, section.about);
-    text.replace(" *   @CONTENTS@\n", &SECTIONS.iter().map(line).collect::<String>())
+    text.replace(" *   @CONTENTS@\n", &SECTIONS.iter().map(line).collect::<String>()) + "\n"
 }
 
 fn banner(section: &Section) -> String {

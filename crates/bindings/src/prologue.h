@@ -83,4 +83,3 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
-
