@@ -1,8 +1,14 @@
 //! Pointers and arrays of the caller: checked, and borrowed as slices.
 
 use super::boundary::WithArgument;
-use super::indices::count;
 use crate::error::{Error, Result, Status, fail};
+
+/// A length or count of the caller; negative ones are refused.
+pub(super) fn count(value: i64, argument: i32, name: &str) -> Result<usize> {
+    usize::try_from(value).map_err(|_| {
+        Error::new(Status::Dimension, format_args!("{name} = {value}, needs a count >= 0")).in_argument(argument)
+    })
+}
 
 /// Refuses a pointer that is NULL or not aligned for `T`.
 pub(super) fn check_pointer<T>(p: *const T, argument: i32, name: &str) -> Result<()> {

@@ -1,6 +1,7 @@
 //! The boundary to C: panics become a status, errors the last error of the thread.
 
 use super::float_environment::FloatEnvironment;
+use super::last_error::LAST;
 use super::outcome::Outcome;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Error, Result, Status, TEXT_CAPACITY, Text};
@@ -9,16 +10,7 @@ use core::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
 use std::sync::{Once, OnceLock};
 
-/// The last error of the thread: a fixed buffer without memory or destructor of its own, so that it
-/// can be written when memory is exhausted, and the library can be unloaded.
-pub(super) struct LastError {
-    /// Ends with NUL.
-    pub text: [u8; TEXT_CAPACITY + 1],
-    pub argument: i32,
-}
-
 thread_local! {
-    pub(super) static LAST: RefCell<LastError> = const { RefCell::new(LastError { text: [0; TEXT_CAPACITY + 1], argument: 0 }) };
     /// Message of a panic inside the library.
     static PANIC: RefCell<Text> = const { RefCell::new(Text::EMPTY) };
     /// Whether this thread runs code of the library (and not a callback of the caller).

@@ -2,10 +2,10 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::input;
+use super::arrays::{count, input};
 use super::boundary::{WithArgument, call};
 use super::handles::read;
-use super::indices::{count, index};
+use super::indices::index;
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};

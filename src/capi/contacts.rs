@@ -5,8 +5,8 @@
 use super::arrays::check_pointer;
 use super::boundary::{WithArgument, call};
 use super::handles::write;
-use super::indices::{self, index};
-use super::model::{hbvib_model, hbvib_special_dof};
+use super::indices::{self, GROUND, index};
+use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::contact::relative_motion::Frame;
@@ -181,8 +181,6 @@ pub unsafe extern "C" fn hbvib_model_set_preload(model: *mut hbvib_model, id: i6
         Ok(Status::Ok)
     })
 }
-
-const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
 
 /// The law of a kind of the header.
 fn kind(number: i32) -> Result<ContactKind> {

@@ -1,9 +1,9 @@
 //! Section "Contacts" of the header: many friction contacts in one call.
 
-use super::arrays::{check_pointer, input};
+use super::arrays::{check_pointer, count, input};
 use super::boundary::call;
 use super::handles::write;
-use super::indices::{Sides, count, side, with_named_argument};
+use super::indices::{Sides, side, with_named_argument};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::contact::Contact;

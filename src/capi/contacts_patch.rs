@@ -1,10 +1,10 @@
 //! Section "Contacts" of the header: contact patches, node pairs of two surfaces.
 
-use super::arrays::input;
+use super::arrays::{count, input};
 use super::boundary::{WithArgument, call};
 use super::contacts::{self, hbvib_contact};
 use super::handles::write;
-use super::indices::{check_id, count, side, with_named_argument};
+use super::indices::{check_id, side, with_named_argument};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::load;

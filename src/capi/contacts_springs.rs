@@ -1,10 +1,10 @@
 //! Section "Contacts" of the header: nonlinear springs and dampers, from tables of points,
 //! polynomials and stiffness tensors.
 
-use super::arrays::input;
+use super::arrays::{count, input};
 use super::boundary::{WithArgument, call};
 use super::handles::{Writing, write};
-use super::indices::{at_least_1, check_id, count, list, side, with_named_argument};
+use super::indices::{at_least_1, check_id, list, side, with_named_argument};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::contact::laws::polynomial::{HIGHEST_EXPONENT, Monomial, Polynomial};

@@ -1,9 +1,8 @@
 //! Section "Cyclic structures" of the header.
 
-use super::arrays::check_pointer;
+use super::arrays::{check_pointer, count};
 use super::boundary::{WithArgument, call};
 use super::handles::{insert, write};
-use super::indices::count;
 use super::matrices::{hbvib_matrix, matrix_kind, with_matrix};
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;

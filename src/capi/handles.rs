@@ -5,8 +5,6 @@
 //! The table is locked for the look-up alone. While a call uses an object, the slot counts its readers or
 //! notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
 
-use super::model::hbvib_model;
-use super::solve::hbvib_branch;
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
 use crate::results::Branch;
@@ -84,48 +82,6 @@ pub(super) trait Kept: Sized {
     fn pick(object: &mut Object) -> Option<*mut Self>;
     /// Whether the slot has an object of this type.
     fn holds(object: &Object) -> bool;
-}
-
-impl Kept for Model {
-    type Opaque = hbvib_model;
-    const TAG: u64 = 1;
-    const NAME: &'static str = "model";
-
-    fn wrap(object: Vec<Self>) -> Object {
-        Object::Model(object)
-    }
-
-    fn pick(object: &mut Object) -> Option<*mut Self> {
-        match object {
-            Object::Model(one) => Some(one.as_mut_ptr()),
-            _ => None,
-        }
-    }
-
-    fn holds(object: &Object) -> bool {
-        matches!(object, Object::Model(_))
-    }
-}
-
-impl Kept for KeptBranch {
-    type Opaque = hbvib_branch;
-    const TAG: u64 = 2;
-    const NAME: &'static str = "branch";
-
-    fn wrap(object: Vec<Self>) -> Object {
-        Object::Branch(object)
-    }
-
-    fn pick(object: &mut Object) -> Option<*mut Self> {
-        match object {
-            Object::Branch(one) => Some(one.as_mut_ptr()),
-            _ => None,
-        }
-    }
-
-    fn holds(object: &Object) -> bool {
-        matches!(object, Object::Branch(_))
-    }
 }
 
 /// Puts an object into the table and returns its handle.

@@ -1,20 +1,13 @@
 //! Counts, indices and degrees of freedom of the caller: checked.
 
-use super::arrays::{check_pointer, input};
+use super::arrays::{check_pointer, count, input};
 use super::boundary::WithArgument;
-use super::model::hbvib_special_dof;
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::results::MOST_TIMES;
 use core::fmt;
 
-const GROUND: i64 = hbvib_special_dof::HBVIB_GROUND as i64;
-
-/// A length or count of the caller; negative ones are refused.
-pub(super) fn count(value: i64, argument: i32, name: &str) -> Result<usize> {
-    usize::try_from(value).map_err(|_| {
-        Error::new(Status::Dimension, format_args!("{name} = {value}, needs a count >= 0")).in_argument(argument)
-    })
-}
+/// HBVIB_GROUND, the degree of freedom of the ground.
+pub(super) const GROUND: i64 = -1;
 
 /// A count of the caller, at least 1.
 pub(super) fn at_least_1(value: i64, argument: i32, name: &str) -> Result<usize> {

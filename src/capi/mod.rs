@@ -21,6 +21,7 @@ mod boundary;
 mod float_environment;
 mod handles;
 mod indices;
+mod last_error;
 mod outcome;
 mod versioned_struct;
 

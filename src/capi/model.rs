@@ -2,10 +2,10 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{check_pointer, input};
+use super::arrays::{check_pointer, count, input};
 use super::boundary::{WithArgument, call, call_count};
-use super::handles::{free, insert, read, write};
-use super::indices::{Sides, count, index, with_named_argument};
+use super::handles::{Kept, Object, free, insert, read, write};
+use super::indices::{GROUND, Sides, index, with_named_argument};
 use super::matrices::{hbvib_matrix, matrix_kind, with_matrix};
 use super::version_and_errors::hbvib_status;
 use crate::error::{Status, fail, try_push};
@@ -15,6 +15,29 @@ use num_complex::Complex64;
 
 /// A structure with its contacts and forces, created by hbvib_model_new or hbvib_cyclic_new.
 pub struct hbvib_model(());
+
+impl Kept for Model {
+    type Opaque = hbvib_model;
+    const TAG: u64 = 1;
+    const NAME: &'static str = "model";
+
+    fn wrap(object: Vec<Self>) -> Object {
+        Object::Model(object)
+    }
+
+    fn pick(object: &mut Object) -> Option<*mut Self> {
+        match object {
+            Object::Model(one) => Some(one.as_mut_ptr()),
+            _ => None,
+        }
+    }
+
+    fn holds(object: &Object) -> bool {
+        matches!(object, Object::Model(_))
+    }
+}
+
+const _: () = assert!(hbvib_special_dof::HBVIB_GROUND as i64 == GROUND);
 
 /// Special degrees of freedom.
 #[repr(C)]

@@ -2,10 +2,9 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::input;
+use super::arrays::{count, input};
 use super::boundary::{WithArgument, call};
 use super::handles::read;
-use super::indices::count;
 use super::model::hbvib_model;
 use super::solve::{follow, hbvib_branch};
 use super::solve_hooks::hbvib_hooks;

@@ -1,10 +1,10 @@
 //! Section "Results" of the header: peaks, folds and requested solutions, which a branch stores beside
 //! its curve.
 
-use super::arrays::{check_pointer, optional};
+use super::arrays::{check_pointer, count, optional};
 use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
-use super::indices::{count, index};
+use super::indices::index;
 use super::solve::hbvib_branch;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};

@@ -2,10 +2,9 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{check_pointer, input};
+use super::arrays::{check_pointer, count, input};
 use super::boundary::{WithArgument, call};
-use super::handles::{KeptBranch, insert, read};
-use super::indices::count;
+use super::handles::{Kept, KeptBranch, Object, insert, read};
 use super::model::hbvib_model;
 use super::outcome::Outcome;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
@@ -23,6 +22,27 @@ use num_complex::Complex64;
 
 /// A branch of solutions, created by hbvib_forced_response or hbvib_nonlinear_mode.
 pub struct hbvib_branch(());
+
+impl Kept for KeptBranch {
+    type Opaque = hbvib_branch;
+    const TAG: u64 = 2;
+    const NAME: &'static str = "branch";
+
+    fn wrap(object: Vec<Self>) -> Object {
+        Object::Branch(object)
+    }
+
+    fn pick(object: &mut Object) -> Option<*mut Self> {
+        match object {
+            Object::Branch(one) => Some(one.as_mut_ptr()),
+            _ => None,
+        }
+    }
+
+    fn holds(object: &Object) -> bool {
+        matches!(object, Object::Branch(_))
+    }
+}
 
 /// Options of hbvib_forced_response. Fill it by hbvib_forced_options_init, then set the range.
 #[repr(C)]

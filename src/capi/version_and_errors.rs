@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 
-use super::boundary::LAST;
+use super::last_error::LAST;
 use crate::error::Status;
 use core::ffi::{CStr, c_char};
 
