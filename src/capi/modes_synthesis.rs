@@ -2,7 +2,7 @@
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{Range, check_pointer, count, disjoint, optional};
+use super::arrays::{self, Range, check_pointer, disjoint, optional};
 use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
 use super::model::hbvib_model;
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis(
     count: *mut i64,
 ) -> hbvib_status {
     call(|| {
-        let capacity = count(capacity, 4, "capacity")?;
+        let capacity = arrays::count(capacity, 4, "capacity")?;
         check_pointer(count, 8, "count")?;
         let omega = optional((omega, 5), "omega")?;
         let response = optional((response, 6), "response")?;
@@ -176,7 +176,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
     count: *mut i64,
 ) -> hbvib_status {
     call(|| {
-        let capacity = count(capacity, 4, "capacity")?;
+        let capacity = arrays::count(capacity, 4, "capacity")?;
         check_pointer(count, 11, "count")?;
         let columns: [(*mut f64, i32, &str, Column); 5] = [
             (omega, 5, "omega", |p| p.at.omega),
