@@ -12,7 +12,6 @@ use hbvib::model::spring::Spring;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, SolverOptions, TimeOptions};
 use num_complex::Complex64;
-use std::time::Instant;
 
 /// Estimate and true error of the fundamental of the response at one frequency.
 fn compare(model: &Model, solver: &SolverOptions, truth: &SolverOptions, omega: f64) -> (f64, f64, usize) {
@@ -185,34 +184,6 @@ fn the_estimate_holds_for_many_contacts_and_structures_without_a_known_highest_f
                 );
                 assert!((0.1..=10.0).contains(&ratio));
             }
-        }
-    }
-}
-
-#[test]
-#[ignore = "times are told, not judged"]
-fn what_estimates_cost_with_many_contacts_is_told() {
-    for (masses, contacts) in [(20, 10), (60, 30)] {
-        let lowest = 4.0 * (std::f64::consts::PI / (4 * masses + 2) as f64).sin();
-        let model = chain(masses, contacts, 0.5);
-        for highest in [3, 9, 31] {
-            let [plain, estimated] = [false, true].map(|estimate_error| {
-                let solver = SolverOptions {
-                    estimate_error,
-                    ..harmonics(highest)
-                };
-                let started = Instant::now();
-                let branch = sweep(&model, &solver, 0.95 * lowest, 1.05 * lowest, &[]);
-                (branch, started.elapsed().as_secs_f64())
-            });
-            let points = plain.0.points();
-            let iterations: f64 = plain.0.newton_iterations().iter().sum();
-            let unknown = estimated.0.error_estimate().iter().filter(|x| x.is_nan()).count();
-            println!(
-                "{contacts} contacts, H = {highest}: {points} points, {unknown} unknown, {:.1} ms an iteration, {:.1} ms an estimate",
-                1e3 * plain.1 / iterations,
-                1e3 * (estimated.1 - plain.1) / points as f64
-            );
         }
     }
 }
