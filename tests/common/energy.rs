@@ -1,9 +1,6 @@
 //! What the tests of energies share: comparing, and means and maxima of time signals.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
-use super::common::{all_harmonics, harmonics};
+use crate::common::{all_harmonics, harmonics};
 use hbvib::options::SolverOptions;
 use hbvib::results::{Branch, Energy};
 use num_complex::Complex64;

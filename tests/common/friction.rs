@@ -1,8 +1,6 @@
 //! Motions in two directions under friction with a varying normal load, and the law marched over
 //! samples, for its tests.
 
-#![allow(dead_code)]
-
 use hbvib::aft::Evaluation;
 use hbvib::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use hbvib::contact::Piece;

@@ -1,10 +1,7 @@
 //! A contact of every law in a vibration, for the tests of what happens inside contacts.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
-use super::common::solve_at;
-use super::measures::exactly;
+use crate::common::energy::exactly;
+use crate::common::solve_at;
 use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::laws::table::Table;
 use hbvib::contact::laws::user_law::{Call, User, UserForce};

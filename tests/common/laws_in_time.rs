@@ -1,10 +1,7 @@
 //! What the tests of laws in time share: structures for them, and the way of harmonic balance to the motion in
 //! time.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
-use super::common::{all_harmonics, harmonics, relative_gap, solve_at};
+use crate::common::{all_harmonics, harmonics, relative_gap, solve_at};
 use hbvib::analysis::time_response::{TimeResponse, time_response};
 use hbvib::contact::Contact;
 use hbvib::error::{Error, Status};

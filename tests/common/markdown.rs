@@ -1,6 +1,6 @@
 //! The README and the pages of the book as tests read them: blocks of code, links, headings.
 
-use super::programs::root;
+use crate::common::programs::root;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};

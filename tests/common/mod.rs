@@ -1,8 +1,24 @@
 //! What the integration tests share: the paper's blisk as one sector and as the full wheel,
 //! reference data, and single points of the forced response.
 
-// Each test program uses its own part of this module.
+// Each test crate uses its own part of this module.
 #![allow(dead_code)]
+
+pub mod energy;
+pub mod example;
+pub mod friction;
+pub mod laws;
+pub mod laws_in_time;
+pub mod markdown;
+pub mod mode_cases;
+pub mod modes;
+pub mod peers;
+pub mod plane;
+pub mod pointwise;
+pub mod programs;
+pub mod refusal;
+pub mod rest;
+pub mod stencil;
 
 use hbvib::analysis::forced_response::forced_response;
 use hbvib::contact::Contact;

@@ -1,8 +1,6 @@
 //! What the tests of nonlinear modes share: models without structural damping, sectors without
 //! mirror symmetry, and a solver of its own for the linear problems with two real unknowns.
 
-#![allow(dead_code)]
-
 use crate::common::{Blisk, SECTORS, all_harmonics, phase};
 use hbvib::analysis::nonlinear_mode;
 use hbvib::contact::Contact;

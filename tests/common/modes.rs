@@ -1,8 +1,5 @@
 //! Structures whose linear modes are known, and what is asked of a mode.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
 use crate::common::{B1, B2, BASE, D, NDOF, SECTORS, largest};
 use hbvib::contact::Contact;
 use hbvib::linalg::matrix_view::MatrixView;

@@ -1,8 +1,5 @@
 //! Structures on which other programs for harmonic balance were measured.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
 use hbvib::contact::Contact;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;

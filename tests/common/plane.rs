@@ -1,7 +1,5 @@
 //! Friction in a plane, for its tests: random motions, one law, and what compares numbers.
 
-#![allow(dead_code)]
-
 use hbvib::aft::Evaluation;
 use hbvib::aft::hysteretic::HystereticEvaluator;
 use hbvib::contact::law::Law;

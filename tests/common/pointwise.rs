@@ -1,8 +1,5 @@
 //! What the tests of laws without memory share: motions, laws, one evaluation, dense sampling.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
 use hbvib::aft::Evaluation;
 use hbvib::aft::memoryless::MemorylessEvaluator;
 use hbvib::contact::law::Memoryless;

@@ -1,9 +1,6 @@
 //! What the tests of other languages share: the checkout, the library under test, programs that must
 //! succeed.
 
-// Each test program uses its own part of this module.
-#![allow(dead_code)]
-
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};

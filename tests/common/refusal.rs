@@ -1,7 +1,5 @@
 //! What a refused call must look like.
 
-#![allow(dead_code)]
-
 use crate::common::{BASE, all_harmonics, harmonics, solve_at};
 use hbvib::error::{Result, Status};
 use hbvib::model::Model;

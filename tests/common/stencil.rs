@@ -6,8 +6,6 @@
 //! the whole gap is allowed. Round-off adds about 1e-15/h = 1e-9 of the scale; 1e-7 leaves room
 //! for cancellation in long sums.
 
-#![allow(dead_code)]
-
 use num_complex::Complex64;
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestCaseError};

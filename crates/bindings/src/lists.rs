@@ -10,7 +10,7 @@ pub fn symbols(all: &Declarations) -> String {
     names.join("\n") + "\n"
 }
 
-/// Structs with their fields, for the macro of tests/layout.rs.
+/// Structs with their fields, for the macro of tests/programs/layout.rs.
 pub fn layouts(all: &Declarations) -> String {
     let mut text = String::new();
     for s in &all.structs {

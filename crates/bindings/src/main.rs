@@ -49,7 +49,7 @@ fn write() -> Result<()> {
     let parts = [
         ("include/hbvib.f90", vec![fortran::module(&all, &defaults)?]),
         ("include/hbvib.py", vec![python::module(&all)?]),
-        ("tests/layout.rs", vec![lists::layouts(&all)]),
+        ("tests/programs/layout.rs", vec![lists::layouts(&all)]),
         ("tests/languages/fortran/layout.f90", vec![calls, layouts]),
     ];
     for (path, texts) in parts {

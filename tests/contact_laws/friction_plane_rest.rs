@@ -1,0 +1,173 @@
+//! Friction in a plane that sticks through the period: where its slider rests, found by trying all
+//! candidates; the exact harmonics of its normal force.
+
+use crate::common::plane::{Random, evaluate, gap, largest, law};
+use crate::common::rest::{Disc, nearest, nearest_of_many, outside};
+use hbvib::aft::hysteretic::HystereticEvaluator;
+use hbvib::contact::law::Law;
+use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::fourier::HarmonicSet;
+use std::f64::consts::TAU;
+
+/// The discs in which the slider may rest, at equidistant times.
+fn discs(law: &Friction3d, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Vec<Disc> {
+    let m = set.packed_len();
+    let mut row = vec![0.0; m];
+    let of = |j: usize| {
+        set.basis(TAU * j as f64 / samples as f64, &mut row);
+        let value = |k: usize| row.iter().zip(&motion[k * m..]).map(|(b, x)| b * x).sum::<f64>();
+        let load = if law.has_normal {
+            law.load - law.kn * value(2)
+        } else {
+            law.load
+        };
+        ([value(0), value(1)], law.mu * load / law.kt)
+    };
+    (0..samples).map(of).collect()
+}
+
+/// Where the slider is at a sample, from its force there.
+fn slider(law: &Friction3d, way: &HystereticEvaluator, x: [f64; 2], j: usize) -> [f64; 2] {
+    let z = &way.march().z[2 * j..];
+    [x[0] - z[0] / law.kt, x[1] - z[1] / law.kt]
+}
+
+#[test]
+fn a_slider_that_can_rest_is_at_the_admissible_point_nearest_to_its_virgin_place() {
+    let set = HarmonicSet::all(3).unwrap();
+    let n = 24;
+    let mut random = Random(2);
+    let (mut kinds, mut worst) = ([0; 4], 0.0_f64);
+    for round in 0..2000 {
+        let law = law(1.2 + 0.5 * random.next(), round % 2 == 0);
+        let size = [0.3, 0.8, 2.0][round % 3];
+        let motion = random.motion(&set, law.directions(), size);
+        let discs = discs(&law, &set, n, &motion);
+        if discs.iter().any(|(_, radius)| *radius <= 0.0) {
+            continue;
+        }
+        let (out, way) = evaluate(&law, &set, n, &motion);
+        let Some(exact) = nearest(&discs, 1e-12) else {
+            // No place to rest: it slips.
+            kinds[3] += 1;
+            assert!(out.slip_fraction > 0.0 && !out.stuck);
+            continue;
+        };
+        assert!(nearest_of_many(&discs, 1e-12).is_some());
+        for (j, (x, _)) in discs.iter().enumerate() {
+            worst = worst.max(gap(&slider(&law, &way, *x, j), &exact));
+        }
+        let held = discs.iter().filter(|disc| outside(exact, **disc) > -1e-10).count();
+        let virgin = largest(&exact) == 0.0;
+        kinds[if virgin { 0 } else { held.min(2) }] += 1;
+        assert_eq!(out.stuck, virgin);
+    }
+    println!("virgin, on one circle, in a corner, slipping: {kinds:?}; largest gap {worst:.1e}");
+    assert!(kinds.iter().all(|k| *k > 20) && worst < 1e-10);
+}
+
+#[test]
+fn what_rests_does_not_depend_on_where_the_period_begins() {
+    let set = HarmonicSet::all(3).unwrap();
+    let m = set.packed_len();
+    let n = 64;
+    let mut random = Random(8);
+    let (mut worst, mut dragged) = (0.0_f64, 0);
+    for _ in 0..600 {
+        let law = law(1.0 + 0.3 * random.next(), true);
+        let motion = random.motion(&set, 3, 0.7);
+        let (out, _) = evaluate(&law, &set, n, &motion);
+        // A third of a period later: X_h turns by e^{ihθ}.
+        let mut later = motion.clone();
+        for signal in later.chunks_exact_mut(m) {
+            for (h, pair) in signal[1..].chunks_exact_mut(2).enumerate() {
+                let (sin, cos) = (TAU * (h + 1) as f64 * 21.0 / n as f64).sin_cos();
+                (pair[0], pair[1]) = (cos * pair[0] - sin * pair[1], sin * pair[0] + cos * pair[1]);
+            }
+        }
+        let (other, _) = evaluate(&law, &set, n, &later);
+        if out.open_fraction > 0.0 || out.slip_fraction > 1e-3 {
+            continue;
+        }
+        dragged += usize::from(!out.stuck);
+        for i in [0, m] {
+            worst = worst.max((out.force[i] - other.force[i]).abs());
+        }
+    }
+    println!("{dragged} dragged, largest change of the mean force {worst:.1e}");
+    assert!(dragged > 30 && worst < 1e-9);
+}
+
+#[test]
+fn the_force_is_continuous_where_slip_begins() {
+    // Growing motions from rest to far beyond the onset: the change of the force between neighbours shrinks
+    // with their distance, at least as its square root.
+    let set = HarmonicSet::all(3).unwrap();
+    let mut random = Random(6);
+    let mut crossed = 0;
+    for round in 0..40 {
+        let law = law(1.3, round % 2 == 0);
+        let motion = random.motion(&set, law.directions(), 1.5);
+        let at = |scale: f64| -> (Vec<f64>, bool) {
+            let scaled: Vec<f64> = motion.iter().map(|x| scale * x).collect();
+            let (out, _) = evaluate(&law, &set, 64, &scaled);
+            (
+                out.force,
+                nearest_of_many(&discs(&law, &set, 64, &scaled), 1e-13).is_some(),
+            )
+        };
+        let (mut low, mut high) = (0.0, 2.0);
+        if at(high).1 {
+            continue;
+        }
+        crossed += 1;
+        while high - low > 1e-10 {
+            let middle = 0.5 * (low + high);
+            *(if at(middle).1 { &mut low } else { &mut high }) = middle;
+        }
+        for step in [1e-4, 1e-6, 1e-8] {
+            let jump = gap(&at(low - step).0, &at(high + step).0);
+            assert!(jump < 20.0 * step.sqrt(), "round {round}, {step:.0e}: {jump:.1e}");
+        }
+    }
+    println!("{crossed} onsets");
+    assert!(crossed > 20);
+}
+
+#[test]
+fn the_normal_force_has_exact_harmonics_however_few_the_samples() {
+    // Against those of max(n₀ − kn·y, 0) at very many times.
+    let set = HarmonicSet::all(5).unwrap();
+    let m = set.packed_len();
+    let mut random = Random(4);
+    let (mut opened, mut worst) = (0, 0.0_f64);
+    let many = 1 << 14;
+    let mut row = vec![0.0; m];
+    for _ in 0..20 {
+        let law = law(0.5 + 0.6 * random.next(), true);
+        let motion = random.motion(&set, 3, 4.0);
+        let (out, _) = evaluate(&law, &set, 24, &motion);
+        opened += usize::from(out.open_fraction > 0.0);
+        let (mut force, mut tangent) = (vec![0.0; m], vec![0.0; m * m]);
+        for j in 0..many {
+            set.basis(TAU * f64::from(j) / f64::from(many), &mut row);
+            let y: f64 = row.iter().zip(&motion[2 * m..]).map(|(b, y)| b * y).sum();
+            let load = law.load - law.kn * y;
+            for r in 0..m {
+                let weight = if r == 0 { 1.0 } else { 2.0 } / f64::from(many) * row[r];
+                force[r] -= weight * load.max(0.0);
+                for c in 0..m {
+                    tangent[c * m + r] += if load > 0.0 { weight * law.kn * row[c] } else { 0.0 };
+                }
+            }
+        }
+        worst = worst.max(gap(&out.force[2 * m..], &force));
+        for k in 0..m {
+            let column = |c: usize| &out.jacobian[c * 3 * m..][2 * m..3 * m];
+            assert!(gap(column(2 * m + k), &tangent[k * m..][..m]) < 1e-3);
+            assert!(largest(column(k)) == 0.0 && largest(column(m + k)) == 0.0);
+        }
+    }
+    println!("{opened} with separation, largest gap {worst:.1e}");
+    assert!(opened > 5 && worst < 1e-6);
+}

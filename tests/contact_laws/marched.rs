@@ -1,0 +1,143 @@
+//! Laws marched over samples: the search for periodic states, and a law of rates with its derivative by
+//! the frequency.
+
+use crate::common::plane::{OMEGA, Random, evaluate, gap, largest, law};
+use hbvib::aft::Evaluation;
+use hbvib::aft::hysteretic::HystereticEvaluator;
+use hbvib::contact::law::Hysteretic;
+use hbvib::contact::law::{Form, Law};
+use hbvib::contact::linearisation::Range;
+use hbvib::contact::march::March;
+use hbvib::error::Result;
+use hbvib::fourier::HarmonicSet;
+use num_complex::Complex64;
+use std::f64::consts::PI;
+
+#[test]
+fn the_states_become_periodic_for_every_motion() {
+    let mut random = Random(77);
+    let (mut slipping, mut come_to_rest) = (Vec::new(), Vec::new());
+    for round in 0..3000 {
+        let set = HarmonicSet::all([1, 3, 7][round % 3]).unwrap();
+        let law = law(0.6 + 0.5 * random.next(), round % 2 == 0);
+        let size = 10.0_f64.powf(1.5 * random.next());
+        let motion = random.motion(&set, law.directions(), size);
+        let (out, way) = evaluate(&law, &set, 128, &motion);
+        let counts = if out.slip_fraction > 0.0 {
+            &mut slipping
+        } else {
+            &mut come_to_rest
+        };
+        counts.push(way.marches());
+    }
+    for (name, counts) in [("slip goes on", &mut slipping), ("slip ends", &mut come_to_rest)] {
+        counts.sort_unstable();
+        let n = counts.len();
+        println!(
+            "{name}: {n} motions, marches {} {} {}",
+            counts[n / 2],
+            counts[n * 99 / 100],
+            counts[n - 1]
+        );
+    }
+    // Steady slip is found by Newton's method; slip that dies away is marched to its end, which may take
+    // hundreds of periods.
+    assert!(slipping[slipping.len() * 95 / 100] <= 10 && come_to_rest[come_to_rest.len() * 95 / 100] <= 3);
+}
+
+/// A spring and a dashpot in series beside a dashpot: z' = k v − z/T by the trapezoidal rule, f = z + c v.
+#[derive(Debug)]
+struct Maxwell {
+    k: f64,
+    time: f64,
+    c: f64,
+}
+
+impl Law for Maxwell {
+    fn is_odd(&self) -> bool {
+        true
+    }
+    fn form(&self) -> Form<'_> {
+        Form::Hysteretic(self)
+    }
+    fn linearisation_scale(&self, _: &[Range], _: f64) -> f64 {
+        1.0
+    }
+}
+
+impl Hysteretic for Maxwell {
+    fn samples(&self, _: usize, asked: usize) -> usize {
+        asked
+    }
+    fn states(&self) -> usize {
+        1
+    }
+    fn uses_velocity(&self) -> bool {
+        true
+    }
+    fn march(&self, omega: f64, samples: usize, _u: &[f64], v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {
+        out.clear(samples);
+        let mut z = z0[0];
+        let mut before = v[samples - 1];
+        let half = PI / (omega * samples as f64);
+        let s = half / self.time;
+        for (j, now) in v.iter().enumerate().take(samples) {
+            let pull = self.k * half * (before + now);
+            let next = ((1.0 - s) * z + pull) / (1.0 + s);
+            out.z[j] = next;
+            out.dz_dz[j] = (1.0 - s) / (1.0 + s);
+            out.dz_dv_before[j] = self.k * half / (1.0 + s);
+            out.dz_dv[j] = self.k * half / (1.0 + s);
+            // half and s go with 1/ω.
+            out.dz_domega[j] = -(s * (-z - next) + pull) / (omega * (1.0 + s));
+            out.f[j] = next + self.c * now;
+            out.df_dz[j] = 1.0;
+            out.df_dv[j] = self.c;
+            (z, before) = (next, *now);
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn a_law_of_rates_has_its_complex_stiffness_and_its_derivative_by_frequency() {
+    let law = Maxwell {
+        k: 2.0,
+        time: 4.0,
+        c: 0.3,
+    };
+    // Every third harmonic: the period is a third of that of ω.
+    let set = HarmonicSet::excited(&[3, 6], 6, false, true, false).unwrap();
+    for set in [HarmonicSet::all(3).unwrap(), set] {
+        let motion = Random(9).motion(&set, 1, 1.0);
+        let mut way = HystereticEvaluator::new(&set, &law, 2048).unwrap();
+        let mut out = Evaluation::new(&set, 1).unwrap();
+        let mut force = |omega: f64| {
+            way.evaluate(&law, omega, &motion, &mut out).unwrap();
+            out.clone()
+        };
+        let out = force(OMEGA);
+        if set.base() == 1 {
+            for (i, h) in set.numbers().iter().enumerate() {
+                let rate = Complex64::new(0.0, *h as f64 * OMEGA);
+                let stiffness = law.k * law.time * rate / (1.0 + law.time * rate) + law.c * rate;
+                let error = (set.get(&out.force, i) - stiffness * set.get(&motion, i)).norm();
+                assert!(error < 1e-5, "harmonic {h}: {error:.1e}");
+            }
+        }
+        assert!(largest(&out.offset) < 1e-12 && !out.stuck);
+        let h = 1e-4;
+        let (up, down) = (force(OMEGA + h).force, force(OMEGA - h).force);
+        let by_omega: Vec<f64> = up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * h)).collect();
+        println!("derivative by the frequency {:.1e}", gap(&by_omega, &out.by_omega));
+        assert!(gap(&by_omega, &out.by_omega) < 1e-7);
+    }
+}
+
+#[test]
+fn too_few_samples_are_refused() {
+    let set = HarmonicSet::all(5).unwrap();
+    let error = HystereticEvaluator::new(&set, &law(1.0, true), 10).err().unwrap();
+    assert!(error.message().contains("11"), "{error}");
+    assert!(HystereticEvaluator::new(&set, &law(1.0, true), 11).is_ok());
+}

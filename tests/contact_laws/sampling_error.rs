@@ -1,0 +1,118 @@
+//! The aliasing check of sampled laws: against the true error of their forces, from exact events or
+//! from many more samples.
+
+use crate::common::{all_harmonics, relative_gap, solve_at};
+use hbvib::analysis::contact_evaluate;
+use hbvib::contact::laws::polynomial::Polynomial;
+use hbvib::contact::{Contact, ContactKind};
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::SolverOptions;
+use num_complex::Complex64;
+
+const HARMONICS: usize = 5;
+const OMEGA: f64 = 1.2;
+
+/// Three masses on springs, each of them a direction of the contact, all forced.
+fn model(contact: &Contact) -> Model {
+    let diagonal = |x: [f64; 3]| [x[0], 0.0, 0.0, 0.0, x[1], 0.0, 0.0, 0.0, x[2]];
+    let mut model = Model::new(3).unwrap();
+    for (kind, values) in [
+        (MatrixKind::Mass, [1.0, 1.0, 1.0]),
+        (MatrixKind::Damping, [0.05, 0.05, 0.05]),
+        (MatrixKind::Stiffness, [1.0, 1.3, 0.8]),
+    ] {
+        model
+            .set_matrix(kind, &MatrixView::dense(3, &diagonal(values)))
+            .unwrap();
+    }
+    model.add_contact(contact).unwrap();
+    for (dof, force) in [
+        (0, Complex64::new(0.4, 0.0)),
+        (1, Complex64::new(0.0, 0.3)),
+        (2, Complex64::new(0.2, 0.1)),
+    ] {
+        model.add_force(dof, 1, force).unwrap();
+    }
+    model
+}
+
+/// The check of the first point, and the true error of the contact force at its motion.
+fn check(contact: &Contact, samples: usize, truth: usize) -> (f64, f64) {
+    let model = model(contact);
+    let solver = SolverOptions {
+        harmonics: HARMONICS,
+        samples,
+        keep_even_harmonics: true,
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    };
+    let branch = solve_at(&model, &solver, OMEGA);
+    let x = all_harmonics(&branch, 0);
+    let count = HARMONICS + 1;
+    let places = contact.places();
+    let dof = |k: usize| {
+        if contact.dofs.is_empty() {
+            contact.dof_a[places[k]].unwrap()
+        } else {
+            contact.dofs[k]
+        }
+    };
+    let motion: Vec<Complex64> = (0..contact.directions())
+        .flat_map(|k| (0..count).map(move |h| (k, h)))
+        .map(|(k, h)| x[h * 3 + dof(k)])
+        .collect();
+    let force = |samples: usize| {
+        let mut f = vec![Complex64::ZERO; motion.len()];
+        contact_evaluate(contact, HARMONICS, samples, OMEGA, &motion, &mut f, None).unwrap();
+        f
+    };
+    let error = relative_gap(&force(samples), &force(truth));
+    (branch.sampling_error()[0], error)
+}
+
+#[test]
+fn the_check_tells_the_size_of_the_error_of_sampling_and_falls_with_it() {
+    let plane = [Some(0), Some(1), Some(2)];
+    let stop = [None; 3];
+    for (name, contact, truth) in [
+        ("friction", Contact::jenkins(0, None, 1.0, 0.5, 0.6), 0),
+        (
+            "friction in a plane",
+            Contact::friction_3d(plane, stop, (1.0, 0.9), 0.4, 0.5),
+            1 << 16,
+        ),
+        (
+            "regularised friction",
+            Contact::regularised(0, None, 0.5, 0.6, 0.05),
+            1 << 14,
+        ),
+    ] {
+        let mut checks = Vec::new();
+        for samples in [64, 256, 1024] {
+            let (check, error) = check(&contact, samples, truth);
+            println!("{name}, {samples} samples: check {check:.1e}, error {error:.1e}");
+            assert!(error < 10.0 * check || error < 1e-12, "{name}");
+            checks.push(check);
+        }
+        // Kinks between samples make a single one large or small.
+        assert!(checks[2] < 0.1 * checks[0], "{name}");
+    }
+}
+
+#[test]
+fn laws_that_are_exact_have_nothing_to_check() {
+    let cubic = Polynomial::scalar(&[0.0, 0.0, 0.4], &[0.0, 0.0, 0.1]).unwrap();
+    for (contact, samples) in [
+        (Contact::jenkins(0, None, 1.0, 0.5, 0.6), 0),
+        (Contact::cubic(0, None, 0.5, 0.2), 64),
+        (
+            Contact::friction([Some(0), Some(2)], [None; 2], (1.0, 0.9), 0.4, 0.5),
+            0,
+        ),
+        (Contact::between(0, None, ContactKind::Polynomial(cubic)), 64),
+    ] {
+        assert!(check(&contact, samples, samples).0 == 0.0);
+    }
+}

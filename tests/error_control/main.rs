@@ -1,0 +1,9 @@
+//! Error estimates against true errors, and harmonics chosen from a tolerance.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod error_estimate;
+mod error_estimate_laws;
+mod error_estimate_modes;
+mod tolerance;

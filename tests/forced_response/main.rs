@@ -1,0 +1,20 @@
+//! Forced responses: equations and their derivatives, continuation, reference data, closed forms, full wheels and
+//! forces of the caller.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod capacity;
+mod continuation;
+mod derivatives;
+mod duffing;
+mod duffing_folds;
+mod folds;
+mod full_wheel;
+mod preload;
+mod reference_point;
+mod reference_response;
+mod small_systems;
+mod stuck_and_scaling;
+mod user_failures;
+mod user_in_solver;

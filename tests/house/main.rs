@@ -1,0 +1,4 @@
+//! The sources themselves: what may import what, and the index of the tests.
+
+mod index;
+mod layering;

@@ -1,0 +1,8 @@
+//! Linear modes: natural frequencies, the modes from which nonlinear modes start, and damped structures.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod damped_mode;
+mod natural_frequencies;
+mod start_mode;

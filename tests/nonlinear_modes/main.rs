@@ -1,0 +1,18 @@
+//! Nonlinear modes: equations and their derivatives, reference data, closed forms, ranges and synthesised
+//! responses.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod derivatives_of_modes;
+mod mode_balance;
+mod mode_closed_forms;
+mod mode_conservative;
+mod mode_forced;
+mod mode_linear_range;
+mod mode_range;
+mod mode_reference;
+mod mode_synthesis;
+mod mode_turning;
+mod mode_veering;
+mod mode_wheel;

@@ -1,0 +1,306 @@
+//! The README and the book in docs/: every program in them is compiled and runs, every page is in the table of
+//! contents, every link leads somewhere, every status is explained, every name of the interface exists.
+
+#![cfg(target_os = "linux")]
+
+use crate::common::markdown::{Fence, fences, headings, links, pages, read};
+use crate::common::programs::{library, printed, python, root, run, soname};
+use hbvib::analysis::forced_response;
+use hbvib::contact::Contact;
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{ForcedOptions, SolverOptions};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+/// Languages of which every block is a complete program.
+const PROGRAMS: [&str; 5] = ["c", "cpp", "fortran", "python", "rust"];
+
+/// Languages of blocks that are not run.
+const OTHERS: [&str; 4] = ["text", "sh", "cmake", "toml"];
+
+/// Longest README.
+const README_LINES: usize = 120;
+
+/// An empty folder with the library under the names that linker and loader look for.
+fn workshop(language: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("book").join(language);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    for name in ["libhbvib.so".to_owned(), soname()] {
+        std::os::unix::fs::symlink(library(), folder.join(name)).unwrap();
+    }
+    folder
+}
+
+/// Compiles the source file of a program with warnings as errors.
+fn compiled(compiler: &str, options: &[&str], sources: &[PathBuf], folder: &Path) -> Command {
+    let program = sources.last().unwrap().with_extension("program");
+    run(Command::new(compiler)
+        .args(["-g", "-Wall", "-Wextra", "-pedantic", "-Werror"])
+        .args(options)
+        .args(sources)
+        .arg(format!("-I{}", root().join("include").display()))
+        .arg(format!("-L{}", folder.display()))
+        .arg(format!("-Wl,-rpath,{}", folder.display()))
+        .args(["-lhbvib", "-lm", "-o"])
+        .arg(&program)
+        .current_dir(folder));
+    Command::new(program)
+}
+
+/// Compiles a Rust program against the very library under test, without cargo.
+fn compiled_rust(source: &Path, folder: &Path) -> Command {
+    let own = Path::new(env!("CARGO")).with_file_name("rustc");
+    let program = source.with_extension("program");
+    let rlib = library().with_extension("rlib");
+    let built = rlib.parent().unwrap();
+    let dependencies = if built.ends_with("deps") {
+        built.to_owned()
+    } else {
+        built.join("deps")
+    };
+    run(Command::new(if own.is_file() { own } else { "rustc".into() })
+        .args(["--edition", "2024", "-Dwarnings", "-L"])
+        .arg(format!("dependency={}", dependencies.display()))
+        .arg("--extern")
+        .arg(format!("hbvib={}", rlib.display()))
+        .arg(source)
+        .arg("-o")
+        .arg(&program)
+        .current_dir(folder));
+    Command::new(program)
+}
+
+/// A program ready to run.
+fn prepared(fence: &Fence, number: usize, folder: &Path) -> Command {
+    let extension = match fence.language.as_str() {
+        "fortran" => "f90",
+        "python" => "py",
+        "rust" => "rs",
+        same => same,
+    };
+    let place = folder.join(format!("{number}"));
+    fs::create_dir_all(&place).unwrap();
+    let source = place.join(format!("program.{extension}"));
+    fs::write(&source, &fence.text).unwrap();
+    match fence.language.as_str() {
+        "c" => compiled("cc", &["-std=c99"], &[source], folder),
+        "cpp" => compiled("c++", &["-std=c++17"], &[source], folder),
+        "fortran" => compiled("gfortran", &[], &[root().join("include/hbvib.f90"), source], folder),
+        "rust" => compiled_rust(&source, folder),
+        _ => {
+            let mut command = Command::new(python());
+            command
+                .arg(source)
+                .env("PYTHONPATH", root().join("include"))
+                .env("PYTHONDONTWRITEBYTECODE", "1")
+                .env("HBVIB_LIBRARY", library());
+            command
+        }
+    }
+}
+
+/// Frequencies, amplitudes and resonance of the mass with a friction contact, the first program of every language.
+fn first_response() -> &'static [f64] {
+    static NUMBERS: OnceLock<Vec<f64>> = OnceLock::new();
+    NUMBERS.get_or_init(|| {
+        let mut model = Model::new(1).unwrap();
+        for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
+            model.set_matrix(kind, &MatrixView::dense(1, &[1.0])).unwrap();
+        }
+        model.set_rayleigh(0.0, 0.02).unwrap();
+        model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
+        model.add_force(0, 1, 0.2.into()).unwrap();
+        let range = ForcedOptions {
+            omega_start: 0.8,
+            omega_stop: 1.6,
+            ..ForcedOptions::default()
+        };
+        let branch = forced_response(&model, &SolverOptions::default(), &range, &mut Hooks::default()).unwrap();
+        let rows = branch.omega().iter().zip(branch.amplitude());
+        let mut numbers: Vec<f64> = rows.flat_map(|(&omega, &amplitude)| [omega, amplitude]).collect();
+        numbers.push(branch.peaks()[0].omega);
+        numbers
+    })
+}
+
+/// Runs all programs of a language. Those that print a resonance print the first response.
+fn all_run(language: &str) {
+    let folder = workshop(language);
+    let mut first = BTreeSet::new();
+    for (number, (page, fence)) in programs_of(language).iter().enumerate() {
+        let place = format!("{}:{}", page.display(), fence.line);
+        println!("{place}");
+        let text = printed(prepared(fence, number, &folder).current_dir(&folder));
+        if !text.contains("resonance at") {
+            continue;
+        }
+        first.insert(page.clone());
+        let numbers: Vec<f64> = text.split_whitespace().filter_map(|word| word.parse().ok()).collect();
+        let expected = first_response();
+        assert_eq!(numbers.len(), expected.len(), "{place} printed\n{text}");
+        for (a, b) in numbers.iter().zip(expected) {
+            assert!((a - b).abs() <= 1e-5 * b.abs(), "{place} printed {a}, not {b}");
+        }
+    }
+    let page = PathBuf::from(format!("docs/getting-started/{language}.md"));
+    assert!(first.contains(&page), "{} lacks the first program", page.display());
+}
+
+fn programs_of(language: &str) -> Vec<(PathBuf, Fence)> {
+    let mut found = Vec::new();
+    for page in pages() {
+        for fence in fences(&read(&page)) {
+            if fence.language == language {
+                found.push((page.clone(), fence));
+            }
+        }
+    }
+    found
+}
+
+#[test]
+fn the_c_programs_run() {
+    all_run("c");
+}
+
+#[test]
+fn the_cpp_programs_run() {
+    all_run("cpp");
+}
+
+#[test]
+fn the_fortran_programs_run() {
+    all_run("fortran");
+}
+
+#[test]
+fn the_python_programs_run() {
+    all_run("python");
+}
+
+#[test]
+fn the_rust_programs_run() {
+    all_run("rust");
+}
+
+#[test]
+fn the_readme_has_a_program_and_is_short() {
+    let text = read(Path::new("README.md"));
+    let lines = text.lines().count();
+    assert!(
+        lines <= README_LINES,
+        "README.md has {lines} lines, needs at most {README_LINES}"
+    );
+    assert!(fences(&text).iter().any(|f| PROGRAMS.contains(&f.language.as_str())));
+}
+
+#[test]
+fn every_block_names_its_language() {
+    for page in pages() {
+        for fence in fences(&read(&page)) {
+            let known = PROGRAMS.iter().chain(&OTHERS).any(|name| *name == fence.language);
+            assert!(
+                known,
+                "{}:{}: a block of '{}', needs one of {PROGRAMS:?}, which are run, or {OTHERS:?}",
+                page.display(),
+                fence.line,
+                fence.language
+            );
+        }
+    }
+}
+
+#[test]
+fn the_table_of_contents_lists_every_page_once() {
+    let summary = Path::new("docs/SUMMARY.md");
+    let listed: Vec<PathBuf> = links(&read(summary))
+        .into_iter()
+        .map(|link| Path::new("docs").join(link.target))
+        .collect();
+    let unique: BTreeSet<&PathBuf> = listed.iter().collect();
+    assert_eq!(unique.len(), listed.len(), "docs/SUMMARY.md lists a page twice");
+    let written = pages();
+    let written: BTreeSet<&PathBuf> = written
+        .iter()
+        .filter(|page| page.starts_with("docs") && *page != summary)
+        .collect();
+    assert_eq!(unique, written, "listed in docs/SUMMARY.md (left), in docs (right)");
+}
+
+#[test]
+fn every_link_leads_somewhere() {
+    for page in pages() {
+        for link in links(&read(&page)) {
+            if link.target.contains("://") {
+                continue;
+            }
+            let place = format!("{}:{}: {}", page.display(), link.line, link.target);
+            let (path, anchor) = link.target.split_once('#').unwrap_or((&link.target, ""));
+            let target = if path.is_empty() {
+                page.clone()
+            } else {
+                page.parent().unwrap().join(path)
+            };
+            assert!(root().join(&target).exists(), "{place} does not exist");
+            assert!(
+                anchor.is_empty() || headings(&read(&target)).contains(anchor),
+                "{place}: no such heading"
+            );
+        }
+    }
+}
+
+/// The names in some text that begin as given.
+fn names<'a>(text: &'a str, prefix: &str) -> BTreeSet<&'a str> {
+    text.split(|c: char| !(c.is_ascii_alphanumeric() || c == '_'))
+        .filter(|word| word.starts_with(prefix) && !word.ends_with('_'))
+        .collect()
+}
+
+#[test]
+fn the_page_on_statuses_explains_every_one() {
+    let header = read(Path::new("include/hbvib.h"));
+    let page = read(Path::new("docs/statuses.md"));
+    let mut all: BTreeSet<&str> = names(&header, "HBVIB_E_");
+    all.extend(names(&header, "HBVIB_STOPPED_"));
+    let known: Vec<_> = Status::ALL
+        .iter()
+        .map(|status| status.name().to_str().unwrap())
+        .collect();
+    all.extend(known);
+    assert!(all.len() > 20, "{all:?}");
+    for name in all {
+        assert!(page.contains(&format!("`{name}`")), "docs/statuses.md lacks {name}");
+    }
+}
+
+#[test]
+fn every_name_of_the_interface_exists() {
+    let mut interface = String::new();
+    for path in [
+        "include/hbvib.h",
+        "include/hbvib.hpp",
+        "include/hbvib.f90",
+        "include/hbvib.py",
+        "examples/install/hbvib-config.cmake",
+    ] {
+        interface += &read(Path::new(path));
+    }
+    for page in pages() {
+        let text = read(&page);
+        for prefix in ["hbvib_", "HBVIB_"] {
+            let known = names(&interface, prefix);
+            for name in names(&text, prefix) {
+                assert!(known.contains(name), "{}: {name} is not in include/", page.display());
+            }
+        }
+    }
+}

@@ -1,0 +1,485 @@
+//! What users of C, C++, Fortran and Python do: install, move the prefix, build against it, load it. All
+//! programs are built in folders of their own against a prefix that was moved after its installation,
+//! never against the checkout.
+
+#![cfg(target_os = "linux")]
+
+use crate::common::programs::{printed, python, root, run, soname};
+use crate::common::{self, BASE, Blisk, data, number};
+use hbvib::analysis::forced_response;
+use hbvib::hooks::Hooks;
+use hbvib::options::{ForcedOptions, SolverOptions};
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::sync::OnceLock;
+
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// An empty folder.
+fn workshop(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("languages").join(name);
+    let _ = fs::remove_dir_all(&folder);
+    fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
+/// A folder with a copy of a folder's files.
+fn copied(from: &str, name: &str) -> PathBuf {
+    let folder = workshop(name);
+    for path in files(&root().join(from)) {
+        fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
+    }
+    folder
+}
+
+/// Files of a folder, sorted.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut found: Vec<_> = fs::read_dir(folder)
+        .unwrap_or_else(|error| panic!("{}: {error}", folder.display()))
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_file())
+        .collect();
+    found.sort();
+    found
+}
+
+/// Where install.sh was told to install: nothing is there any more.
+fn first_place() -> PathBuf {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join("languages/first")
+}
+
+/// A command whose cargo is that of the test. It must not reach for the network: all that a build needs is there since
+/// the test itself was built.
+fn without_network(command: &mut Command) -> &mut Command {
+    command.env("CARGO", env!("CARGO")).env("CARGO_NET_OFFLINE", "true")
+}
+
+/// An installation that was moved.
+fn prefix() -> &'static Path {
+    static PREFIX: OnceLock<PathBuf> = OnceLock::new();
+    PREFIX.get_or_init(|| {
+        let folder = workshop("first");
+        run(without_network(&mut Command::new("sh"))
+            .arg("examples/install.sh")
+            .arg(&folder)
+            .current_dir(root()));
+        let moved = workshop("moved").join("prefix");
+        fs::rename(folder, &moved).unwrap();
+        moved
+    })
+}
+
+fn pkg_config(arguments: &[&str]) -> Vec<String> {
+    let text = printed(
+        Command::new("pkg-config")
+            .args(arguments)
+            .arg("hbvib")
+            .env("PKG_CONFIG_PATH", prefix().join("lib/pkgconfig")),
+    );
+    text.split_whitespace().map(str::to_owned).collect()
+}
+
+/// What a program needs besides its own sources to be linked with the shared library.
+fn linked() -> Vec<String> {
+    let mut flags = pkg_config(&["--cflags", "--libs"]);
+    flags.push(format!("-Wl,-rpath,{}", pkg_config(&["--variable=libdir"])[0]));
+    flags.push("-lm".to_owned());
+    flags
+}
+
+/// A program compiled in `folder` from some sources.
+fn compiled(compiler: &str, options: &[&str], sources: &[PathBuf], folder: &Path, name: &str) -> Command {
+    let program = folder.join(name);
+    run(Command::new(compiler)
+        .args(options)
+        .args(sources)
+        .arg("-o")
+        .arg(&program)
+        .args(linked())
+        .current_dir(folder));
+    Command::new(program)
+}
+
+fn fortran_module() -> PathBuf {
+    PathBuf::from(&pkg_config(&["--variable=fortran_module"])[0])
+}
+
+/// Python with the module of the prefix, which must find the library beside it by itself.
+fn script(path: &Path) -> Command {
+    let mut command = Command::new(python());
+    command
+        .arg(path)
+        .env("PYTHONPATH", &pkg_config(&["--variable=python_path"])[0])
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("MPLBACKEND", "Agg")
+        .env_remove("HBVIB_LIBRARY");
+    command
+}
+
+fn make(folder: &Path) {
+    run(Command::new("make")
+        .arg(format!("PKG_CONFIG_PATH={}", prefix().join("lib/pkgconfig").display()))
+        .current_dir(folder));
+}
+
+#[test]
+fn the_installation_is_complete_and_may_be_moved() {
+    let lib = prefix().join("lib");
+    let target = |name: &str| fs::read_link(lib.join(name)).unwrap();
+    assert_eq!(target("libhbvib.so"), Path::new(&soname()));
+    assert_eq!(target(&soname()), PathBuf::from(format!("libhbvib.so.{VERSION}")));
+    for path in [
+        "lib/libhbvib.a",
+        "include/hbvib.h",
+        "include/hbvib.hpp",
+        "include/hbvib.f90",
+        "share/hbvib/hbvib.py",
+    ] {
+        let installed = prefix().join(path);
+        assert!(installed.is_file(), "{path} was not installed");
+        let own = root().join("include").join(installed.file_name().unwrap());
+        assert!(
+            !own.is_file() || fs::read(own).unwrap() == fs::read(&installed).unwrap(),
+            "{path} is not that of the checkout"
+        );
+    }
+
+    assert!(!first_place().exists());
+    for folder in ["lib/pkgconfig", "lib/cmake/hbvib"] {
+        for path in files(&prefix().join(folder)) {
+            let text = fs::read_to_string(&path).unwrap();
+            let place = first_place();
+            assert!(
+                !text.contains(place.to_str().unwrap()),
+                "{} knows where it was installed",
+                path.display()
+            );
+            assert!(!text.contains('@'), "{} is a template still", path.display());
+        }
+    }
+}
+
+/// Runs install.sh in a folder of the test's own; whether it succeeded.
+fn installs(folder: &Path, prefix: &str, destination: Option<&Path>) -> bool {
+    let mut command = Command::new("sh");
+    without_network(&mut command)
+        .arg(root().join("examples/install.sh"))
+        .arg(prefix)
+        .env_remove("DESTDIR")
+        .current_dir(folder);
+    if let Some(destination) = destination {
+        command.env("DESTDIR", destination);
+    }
+    command.output().unwrap().status.success()
+}
+
+#[test]
+fn prefixes_may_be_relative_spaced_staged_and_used_again() {
+    let folder = workshop("prefixes");
+    assert!(installs(&folder, "relative", None) && installs(&folder, "relative", None));
+    assert!(folder.join("relative/lib/libhbvib.so").is_file());
+    assert!(installs(&folder, "with space", None));
+    assert!(folder.join("with space/share/hbvib/hbvib.py").is_file());
+    let stage = folder.join("stage");
+    assert!(installs(&folder, "/opt/hbvib", Some(&stage)));
+    assert!(stage.join("opt/hbvib/include/hbvib.h").is_file() && !Path::new("/opt/hbvib").exists());
+    assert!(!installs(&folder, "relative", Some(&stage)) && !installs(&folder, "", None));
+}
+
+#[test]
+fn the_installed_library_shows_only_its_functions_and_needs_only_libc() {
+    let library = prefix().join("lib/libhbvib.so");
+    let text = printed(Command::new("nm").args(["-D", "--defined-only"]).arg(&library));
+    let exported: BTreeSet<&str> = text.lines().filter_map(|line| line.split_whitespace().last()).collect();
+    let listed = fs::read_to_string(root().join("tests/c_abi/symbols.txt")).unwrap();
+    assert_eq!(exported, listed.lines().collect());
+
+    let text = printed(Command::new("readelf").arg("-d").arg(&library));
+    assert!(
+        text.contains(&format!("SONAME)             Library soname: [{}]", soname())),
+        "{text}"
+    );
+    for line in text.lines().filter(|line| line.contains("(NEEDED)")) {
+        // The loader itself is part of libc; thread-local variables need it.
+        let known = ["[libc.so.6]", "[libm.so.6]", "[libgcc_s.so.1]", "[ld-linux-"];
+        assert!(known.iter().any(|name| line.contains(name)), "{line}");
+    }
+    assert!(!text.contains("RPATH") && !text.contains("RUNPATH"), "{text}");
+}
+
+#[test]
+fn header_library_and_packages_have_the_version_of_the_crate() {
+    assert_eq!(pkg_config(&["--modversion"]), [VERSION]);
+    let folder = workshop("version");
+    let source = folder.join("version.c");
+    fs::write(
+        &source,
+        "#include \"hbvib.h\"\n#include <stdio.h>\nint main(void) {\n\
+         printf(\"%d.%d.%d %s %u\\n\", HBVIB_VERSION_MAJOR, HBVIB_VERSION_MINOR, HBVIB_VERSION_PATCH,\n\
+         hbvib_version_string(), (unsigned)hbvib_version()); return 0; }\n",
+    )
+    .unwrap();
+    let reported = printed(&mut compiled("cc", &[], &[source], &folder, "version"));
+    let number = VERSION
+        .split('.')
+        .fold(0, |n, part| n * 256 + part.parse::<u32>().unwrap());
+    assert_eq!(reported, format!("{VERSION} {VERSION} {number}\n"));
+
+    // The modules say for which library they were written.
+    let parts: Vec<&str> = VERSION.split('.').collect();
+    let module = fs::read_to_string(fortran_module()).unwrap();
+    for (name, part) in ["MAJOR", "MINOR", "PATCH"].iter().zip(&parts) {
+        let constant = format!("HBVIB_VERSION_{name} = {part}");
+        let after = module
+            .split(&constant)
+            .nth(1)
+            .unwrap_or_else(|| panic!("hbvib.f90 lacks {constant}"));
+        assert!(
+            !after.starts_with(|c: char| c.is_ascii_digit()),
+            "hbvib.f90: {constant}"
+        );
+    }
+    let reported = printed(script(Path::new("-c")).arg("import hbvib; print(hbvib.__version__)"));
+    assert_eq!(reported.trim(), VERSION);
+
+    let abi = VERSION.rsplit_once('.').unwrap().0;
+    for (wanted, fits) in [
+        ("", true),
+        (abi, true),
+        (VERSION, true),
+        ("0.0", false),
+        ("99.0", false),
+    ] {
+        let project = format!(
+            "cmake_minimum_required(VERSION 3.16)\nproject(version NONE)\nfind_package(hbvib {wanted} QUIET CONFIG)\n\
+             if(NOT hbvib_FOUND STREQUAL \"{}\")\nmessage(FATAL_ERROR \"found: ${{hbvib_FOUND}}\")\nendif()\n",
+            i32::from(fits)
+        );
+        let folder = workshop("cmake_version");
+        fs::write(folder.join("CMakeLists.txt"), project).unwrap();
+        run(Command::new("cmake")
+            .args(["-S", ".", "-B", "build"])
+            .arg(format!("-DCMAKE_PREFIX_PATH={}", prefix().display()))
+            .current_dir(&folder));
+    }
+}
+
+/// The table that the examples print, from Rust.
+fn table() -> Vec<[f64; 3]> {
+    let solver = SolverOptions {
+        harmonics: 63,
+        response_dof: Some(common::B2),
+        tolerance: 0.0,
+        ..SolverOptions::default()
+    };
+    let range = ForcedOptions {
+        omega_start: TAU * 207.0,
+        omega_stop: TAU * 211.0,
+        ..ForcedOptions::default()
+    };
+    [1.0, 5.0, 20.0]
+        .map(|force| {
+            let model = Blisk { force, ..BASE }.sector();
+            let branch = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap();
+            let peaks = branch.peaks();
+            let peak = peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude)).unwrap();
+            [force, peak.omega / TAU, peak.amplitude]
+        })
+        .to_vec()
+}
+
+/// Checks what a caller printed: the numbers that Rust finds, and the peaks of a time integration by
+/// another program, from which H = 63 differs by 2e-5.
+fn check_table(caller: &str, text: &str) {
+    let rows: Vec<Vec<f64>> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split_whitespace().map(|word| word.parse().unwrap()).collect())
+        .collect();
+    let rust = table();
+    assert_eq!(rows.len(), rust.len(), "{caller} printed\n{text}");
+    let truth = &data("frf_base.json")["peaks"];
+    for (row, own) in rows.iter().zip(&rust) {
+        for (a, b) in row.iter().zip(own) {
+            assert!((a - b).abs() <= 1e-12 * b.abs(), "{caller}: {row:?}, Rust {own:?}");
+        }
+        let peak = &truth[format!("F{}", own[0])]["peak_td"];
+        for (a, b, accuracy) in [
+            (row[1], number(&peak["f_Hz"]), 1e-6),
+            (row[2], number(&peak["amp_b2_fund_m"]), 3e-5),
+        ] {
+            assert!((a / b - 1.0).abs() < accuracy, "{caller}: {a}, in time {b}");
+        }
+    }
+}
+
+#[test]
+fn five_languages_print_one_table() {
+    let folder = copied("examples/c", "c");
+    make(&folder);
+    let c = printed(&mut Command::new(folder.join("ring_damper")));
+    check_table("C", &c);
+
+    let stat = folder.join("static");
+    run(Command::new("cc")
+        .arg("ring_damper.c")
+        .args(pkg_config(&["--cflags"]))
+        .args(pkg_config(&["--variable=static_library"]))
+        .args(["-lgcc_s", "-lutil", "-lrt", "-lpthread", "-lm", "-ldl", "-o"])
+        .arg(&stat)
+        .current_dir(&folder));
+    let needed = printed(Command::new("readelf").arg("-d").arg(&stat));
+    assert!(!needed.contains("libhbvib"), "{needed}");
+    assert_eq!(printed(&mut Command::new(stat)), c, "C with the static library");
+
+    let folder = copied("examples/cpp", "cpp");
+    cmake(&folder);
+    let cpp = printed(&mut Command::new(folder.join("build/ring_damper")));
+    assert_eq!(cpp, c, "C++ and C");
+
+    let folder = copied("examples/fortran", "fortran");
+    make(&folder);
+    let fortran = printed(&mut Command::new(folder.join("ring_damper")));
+    assert_eq!(fortran, c, "Fortran and C");
+
+    let folder = copied("examples/fortran", "fortran_cmake");
+    fs::write(
+        folder.join("CMakeLists.txt"),
+        "cmake_minimum_required(VERSION 3.16)\nproject(one Fortran)\nfind_package(hbvib REQUIRED)\n\
+         add_executable(ring_damper ring_damper.f90 ${hbvib_FORTRAN_MODULE})\n\
+         add_executable(alone ring_damper.f90 ${hbvib_FORTRAN_MODULE})\n\
+         set_target_properties(alone PROPERTIES Fortran_MODULE_DIRECTORY modules_of_alone)\n\
+         target_link_libraries(ring_damper PRIVATE hbvib::hbvib)\n\
+         target_link_libraries(alone PRIVATE hbvib::static)\n",
+    )
+    .unwrap();
+    cmake(&folder);
+    for program in ["ring_damper", "alone"] {
+        let text = printed(&mut Command::new(folder.join("build").join(program)));
+        assert_eq!(text, c, "Fortran by CMake and C");
+    }
+
+    let folder = copied("examples/python", "python");
+    let text = printed(
+        script(&folder.join("ring_damper.py"))
+            .args(["--figures", "figures"])
+            .current_dir(&folder),
+    );
+    assert_eq!(text, c, "Python and C");
+    let figures = files(&folder.join("figures"));
+    assert!(!figures.is_empty());
+    for path in figures {
+        // A figure with curves in it, not an empty frame.
+        assert!(fs::metadata(&path).unwrap().len() > 10_000, "{}", path.display());
+    }
+}
+
+fn cmake(folder: &Path) {
+    run(Command::new("cmake")
+        .args(["-S", ".", "-B", "build", "-DCMAKE_BUILD_TYPE=Release"])
+        .arg(format!("-DCMAKE_PREFIX_PATH={}", prefix().display()))
+        .current_dir(folder));
+    run(Command::new("cmake").args(["--build", "build"]).current_dir(folder));
+}
+
+/// Warnings are errors in everything that is compiled for a test.
+const STRICT: [&str; 5] = ["-g", "-Wall", "-Wextra", "-pedantic", "-Werror"];
+
+/// Sources of tests/languages/NAME with an extension.
+fn tests_in(language: &str, extension: &str) -> Vec<PathBuf> {
+    let mut found = files(&root().join("tests/languages").join(language));
+    found.retain(|path| path.extension().is_some_and(|e| e == extension));
+    assert!(!found.is_empty(), "no test in {language}");
+    found
+}
+
+fn stem(path: &Path) -> &str {
+    path.file_stem().and_then(|stem| stem.to_str()).unwrap()
+}
+
+#[test]
+fn cpp_feels_native() {
+    let folder = workshop("cpp_tests");
+    let eigen = printed(Command::new("pkg-config").args(["--cflags-only-I", "eigen3"]))
+        .trim()
+        .replace("-I", "-isystem");
+    let options = [&STRICT[..], &["-Wshadow", "-Wconversion", "-pthread", &eigen]].concat();
+    for source in tests_in("cpp", "cpp") {
+        let newer = [&options[..], &["-std=c++20", "-fsyntax-only"]].concat();
+        run(Command::new("c++")
+            .args(newer)
+            .arg(&source)
+            .args(pkg_config(&["--cflags"])));
+        let options = [&options[..], &["-std=c++17"]].concat();
+        let name = stem(&source).to_owned();
+        run(&mut compiled("c++", &options, &[source], &folder, &name));
+    }
+}
+
+#[test]
+fn fortran_feels_native() {
+    let common = root().join("tests/languages/fortran/common.f90");
+    let options = [
+        &STRICT[..],
+        &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
+    ]
+    .concat();
+    for name in ["misuse", "physics", "threads"] {
+        let folder = workshop(&format!("fortran_tests/{name}"));
+        let source = root().join(format!("tests/languages/fortran/{name}.f90"));
+        let sources = [fortran_module(), common.clone(), source];
+        run(&mut compiled("gfortran", &options, &sources, &folder, name));
+    }
+    // Numbers in single precision are an error of the compiler's, each of them.
+    let folder = workshop("fortran_tests/wrong_kind");
+    let output = Command::new("gfortran")
+        .args(["-std=f2018", "-fsyntax-only"])
+        .args([fortran_module(), root().join("tests/languages/fortran/wrong_kind.f90")])
+        .current_dir(&folder)
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert_eq!(text.matches("Error:").count(), 4, "{text}");
+}
+
+#[test]
+fn python_feels_native() {
+    let folder = workshop("python_tests");
+    for path in tests_in("python", "py") {
+        if !stem(&path).starts_with("test_") {
+            continue;
+        }
+        run(script(&path).current_dir(&folder));
+    }
+}
+
+#[test]
+fn the_wheel_brings_its_library() {
+    let folder = workshop("wheel");
+    // The build backend is that of the Python of the tests; pip's own folder for it would be filled from the network.
+    run(without_network(&mut Command::new(python()))
+        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
+        .args(["--no-deps", "--no-build-isolation", "--no-index"])
+        .args(["--root-user-action=ignore", "--target", "site"])
+        .arg(root())
+        .current_dir(&folder));
+    let installed = folder.join("site/hbvib");
+    assert!(installed.join("libhbvib.so").is_file());
+    assert!(folder.join(format!("site/hbvib-{VERSION}.dist-info")).is_dir());
+    let text = printed(
+        script(&root().join("examples/python/ring_damper.py"))
+            .env("PYTHONPATH", folder.join("site"))
+            .current_dir(&folder),
+    );
+    check_table("the wheel", &text);
+    let reported = printed(
+        Command::new(python())
+            .args(["-c", "import hbvib; print(hbvib.lib._name)"])
+            .env("PYTHONPATH", folder.join("site"))
+            .env_remove("HBVIB_LIBRARY"),
+    );
+    assert_eq!(Path::new(reported.trim()), installed.join("libhbvib.so"));
+}

@@ -1,0 +1,11 @@
+//! Programs of users: the C interface, five languages, layouts, the README and the book, and the examples.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod book;
+mod c_abi;
+mod languages;
+mod layout;
+mod ring_damper_example;
+mod ring_damper_mode;

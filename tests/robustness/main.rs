@@ -1,0 +1,9 @@
+//! Cases on which programs for harmonic balance fail, and thousands of random ones.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod hard_cases;
+mod hard_modes;
+mod hard_sweeps;
+mod random_problems;
