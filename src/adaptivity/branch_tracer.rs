@@ -3,7 +3,7 @@
 
 use crate::adaptivity::controller::{AdaptivityController, PointAt, Refined};
 use crate::adaptivity::discretised::Traceable;
-use crate::continuation::special_points::{Event, Locator};
+use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status};
 use crate::hooks::{Hooks, LogLevel, Progress};
@@ -281,14 +281,14 @@ impl<'a> BranchTracer<'a> {
         last: bool,
     ) -> Result<()> {
         analysis.select(a.1.max(b.1))?;
-        if Event::Peak.between(a.0, b.0) {
+        if SpecialPoint::Peak.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
-                locator.locate(problem, Event::Peak, a, b)
+                locator.locate(problem, SpecialPoint::Peak, a, b)
             })?;
         }
-        let fold = if Event::Fold.between(a.0, b.0) {
+        let fold = if SpecialPoint::Fold.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Fold, a, b, |locator, problem, a, b| {
-                locator.locate(problem, Event::Fold, a, b)
+                locator.locate(problem, SpecialPoint::Fold, a, b)
             })?
         } else {
             None
