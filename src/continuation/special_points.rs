@@ -18,7 +18,7 @@ pub enum SpecialPoint {
 }
 
 impl SpecialPoint {
-    /// The function whose root is the special_point; tangents must have length 1.
+    /// The function whose root is the special point; tangents must have length 1.
     fn function(self, point: &Point, length: f64) -> f64 {
         match self {
             Self::Fold => point.tangent[point.tangent.len() - 1] / length,
@@ -34,7 +34,7 @@ impl SpecialPoint {
         }
     }
 
-    /// Whether the special_point lies between two neighbouring points.
+    /// Whether the special point lies between two neighbouring points.
     #[must_use]
     pub fn between(self, a: &Point, b: &Point) -> bool {
         let (fa, fb) = (self.function(a, 1.0), self.function(b, 1.0));
@@ -61,7 +61,7 @@ const MAX_EVALUATIONS: usize = 60;
 /// Maximum number of halvings of an arc in search of a parameter.
 const MAX_HALVINGS: usize = 12;
 
-/// Width of the bracket, as a share of the step, at which an special_point counts as found.
+/// Width of the bracket, as a share of the step, at which a special point counts as found.
 const WIDTH: f64 = 1e-11;
 
 impl Locator {
@@ -82,19 +82,19 @@ impl Locator {
         Metric::along(norm(a.unknowns()).max(norm(b.unknowns())), &self.settings)
     }
 
-    /// The special_point between `a` and `b`, by the Illinois variant of regula falsi on the arc.
+    /// The special point between `a` and `b`, by the Illinois variant of regula falsi on the arc.
     ///
     /// # Errors
     /// Those of the problem.
     pub fn locate(
         &mut self,
         problem: &mut dyn Problem,
-        special_point: SpecialPoint,
+        kind: SpecialPoint,
         a: &Point,
         b: &Point,
     ) -> Result<Option<Point>> {
         let metric = self.metric(a, b);
-        let value = |point: &Point| special_point.function(point, metric.norm(&point.tangent));
+        let value = |point: &Point| kind.function(point, metric.norm(&point.tangent));
         let (mut low, mut high) = ((0.0, value(a)), (1.0, value(b)));
         let mut best: Option<Point> = None;
         if high.1 == 0.0 {
