@@ -1,4 +1,4 @@
-//! Structures whose linear modes are known, and what is asked of a mode.
+//! Structures whose linear modes are known, and checks of a mode.
 
 // Each test program uses its own part of this module.
 #![allow(dead_code)]
@@ -19,8 +19,8 @@ pub fn sector(engine_order: i64) -> Model {
     model
 }
 
-/// A sector without mirror symmetry: a second contact reaches into the next sector, so that the
-/// matrices of a wave are complex.
+/// A sector without mirror symmetry: a second contact connects to the next sector, so that the matrices of a wave are
+/// complex.
 pub fn skewed(engine_order: i64) -> Model {
     let mut model = sector(engine_order);
     model
