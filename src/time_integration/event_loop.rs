@@ -65,8 +65,8 @@ impl State {
     }
 }
 
-/// Derivatives of a state by the initial state, column by column: (δx, δv, δe). Within the lapse the sliders' δu =
-/// r·δx − δe replaces δe, because it is constant while they rest.
+/// Derivatives of a state by the initial state, column by column: (δx, δv, δe). Within the lapse the sliders'
+/// δu = r·δx − δe replaces δe, because it is constant while they rest.
 pub(super) struct Sensitivity {
     pub columns: Vec<f64>,
 }
@@ -337,8 +337,8 @@ fn couple_slider(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &Sta
     }
 }
 
-/// Exchanges the sensitivities of the stretches and of the sliders, by the same step in both directions: δu = r·δx −
-/// δe, δe = r·δx − δu.
+/// Exchanges the sensitivities of the stretches and of the sliders, by the same step in both directions:
+/// δu = r·δx − δe, δe = r·δx − δu.
 fn exchange(system: &System, state: &State, s: &mut Sensitivity) {
     let (m, first) = (state.len(), 2 * state.x.len());
     for column in s.columns.chunks_exact_mut(m) {

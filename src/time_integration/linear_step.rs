@@ -1,11 +1,11 @@
 //! Steps of a structure that is linear between events: the Taylor series of the exact propagator.
 //!
 //! Between events z′ = A z + g(t) with constant A and harmonic g, whose solution is a matrix exponential. Its series
-//! is summed in the displacements alone, xₖ being their Taylor coefficients: (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1)
-//! C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative motions y for k > 0. The length h of the step,
-//! |A|h of about 2, keeps the last terms below round-off; a step is then exact, and a polynomial as well (Moler & Van
-//! Loan 2003, doi:10.1137/S00361445024180, method 1 with short steps; Jorba & Zou 2005,
-//! doi:10.1080/10586458.2005.10128904, for the choice of h).
+//! is summed in the displacements alone, xₖ being their Taylor coefficients:
+//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative motions y
+//! for k > 0. The length h of the step, |A|h of about 2, keeps the last terms below round-off; a step is then exact,
+//! and a polynomial as well (Moler & Van Loan 2003, doi:10.1137/S00361445024180, method 1 with short steps; Jorba &
+//! Zou 2005, doi:10.1080/10586458.2005.10128904, for the choice of h).
 
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Result, fail, try_vec};
