@@ -2,8 +2,8 @@
 //! their Jacobian.
 //!
 //! Laws on one relative motion have two evaluations, exact events ([`piecewise_exact`]) and equidistant samples
-//! ([`piecewise_sampled`]), which use the same assembly.
-//! With pieces f = k·(x − x(r)) + o, the stiffness spectrum Sₙ = (1/2π)∫ k e^{−inτ} dτ and the transforms gₕ = (2 − δ₀ₕ)/2π ∫ e^{−ihτ} dτ of each anchored piece,
+//! ([`piecewise_sampled`]), which use the same assembly. With pieces f = k·(x − x(r)) + o, the stiffness spectrum
+//! Sₙ = (1/2π)∫ k e^{−inτ} dτ and the transforms gₕ = (2 − δ₀ₕ)/2π ∫ e^{−ihτ} dτ of each anchored piece,
 //!
 //! > ∂F/∂X = T(S) − Σ k g ⊗ c(r),  F = ∂F/∂X · X + Σ o g,
 //!

@@ -90,7 +90,7 @@ impl Sides<'_> {
 /// The degrees of freedom of a law over several motions: argument 2. The ground is not among them.
 ///
 /// # Safety
-/// As for [`input`].
+/// Those of [`input`].
 pub(super) unsafe fn list(dofs: *const i64, n: usize, ndof: usize) -> Result<Vec<usize>> {
     let mut list = Vec::new();
     for (i, &dof) in unsafe { input(dofs, n, 2, "dofs") }?.iter().enumerate() {
