@@ -1,4 +1,4 @@
-//! Storage of the points of a run: the curve as it is followed, special points until it is complete.
+//! Storage of the points of a run: points of the curve at once, special points when the curve is complete.
 
 use crate::condense::{Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_copy, try_push};
@@ -12,12 +12,12 @@ const CONTEXT: &str = "the special points";
 /// The end of a run.
 pub(crate) struct Ending {
     pub status: Status,
-    /// The failure of a law that ended it.
+    /// The failure of a law that ended the run.
     pub reason: Option<Error>,
 }
 
 impl Ending {
-    /// The end of a run that has recorded `branch` so far: a law that failed ends it and keeps the points.
+    /// The end of a run that has recorded `branch` so far: a failed law ends it and keeps the points.
     pub fn of(outcome: Result<Status>, branch: &Branch) -> Result<Self> {
         match outcome {
             Ok(status) => Ok(Self { status, reason: None }),
@@ -25,7 +25,7 @@ impl Ending {
                 status: Status::StoppedCallback,
                 reason: Some(e),
             }),
-            // A law with states that found none at a point beside the curve.
+            // A law with states failed at a point beside the curve.
             Err(e) if e.recoverable && branch.points() > 0 => Ok(Self {
                 status: Status::StoppedStepTooSmall,
                 reason: Some(e),
@@ -35,7 +35,7 @@ impl Ending {
     }
 }
 
-/// A special point until the curve is complete.
+/// A special point, stored until the curve is complete.
 struct SpecialRecord<'a> {
     kind: SpecialKind,
     resolution: &'a Resolution,
@@ -56,7 +56,8 @@ pub(crate) struct BranchRecorder<'a> {
     branch: Branch,
     specials: Vec<SpecialRecord<'a>>,
     tolerance: f64,
-    /// Whether the error of some point misses the tolerance, and whether round-off stopped some residual above its own.
+    /// Whether the error of some point misses the tolerance, and whether round-off stopped some residual above its
+    /// tolerance.
     missed: bool,
     stalled: bool,
 }
@@ -73,12 +74,12 @@ impl<'a> BranchRecorder<'a> {
         }
     }
 
-    /// The points that were recorded.
+    /// The recorded points.
     pub fn branch(&self) -> &Branch {
         &self.branch
     }
 
-    /// The same, for the data of a mode.
+    /// The same, writable, for the data of a mode.
     pub fn branch_mut(&mut self) -> &mut Branch {
         &mut self.branch
     }
@@ -98,7 +99,7 @@ impl<'a> BranchRecorder<'a> {
         self.branch.push_curve(record)
     }
 
-    /// Keeps a special point.
+    /// Keeps a special point until [`Self::finish`].
     pub fn record_special(
         &mut self,
         kind: SpecialKind,

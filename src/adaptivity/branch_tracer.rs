@@ -1,9 +1,9 @@
-//! Follows a branch from its first point to the end of the range: points, folds, peaks, and solutions at requested
-//! parameter values. The same for every analysis.
+//! Tracing of a branch from its first point to the end of the range: points, folds, peaks, and solutions at requested
+//! parameter values. The tracer is the same for every analysis.
 
 use crate::adaptivity::controller::{AdaptivityController, PointAt, Refined};
 use crate::adaptivity::discretised::Traceable;
-use crate::continuation::special_points::{Event, Locator};
+use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status};
 use crate::hooks::{Hooks, LogLevel, Progress};
@@ -11,29 +11,29 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 use crate::results::SpecialKind;
 
-/// Refinements in a row of the last point, because the next one is not found with the harmonics that it needs.
+/// Largest number of successive refinements of the last point, made if the next one is not found.
 const MOST_BACKTRACKS: usize = 2;
 
 /// The range to follow, and the solutions requested in it.
 pub(crate) struct Course<'a> {
     pub settings: Settings,
-    /// The whole range, of which `settings` may leave out a part that needs no following.
+    /// The whole range, of which `settings` may omit a part that needs no following.
     pub range: (f64, f64),
     /// Parameter values of requested solutions.
     pub at: &'a [f64],
     pub max_points: usize,
-    /// Parameter value before the range up to which a branch is followed that leaves at its start, because it may
-    /// come back; none: not followed.
+    /// Parameter value before the range up to which a branch that leaves at its start is followed, because it may
+    /// come back; `None`: it is not followed.
     pub before: Option<f64>,
 }
 
-/// Follows one branch.
+/// Traces one branch.
 pub(crate) struct BranchTracer<'a> {
     course: Course<'a>,
     controller: AdaptivityController,
 }
 
-/// The way of a branch that left its range at the start.
+/// Outcome for a branch that left its range at the start.
 enum Outside {
     Back(Point),
     Gone,
@@ -41,7 +41,7 @@ enum Outside {
 }
 
 impl<'a> BranchTracer<'a> {
-    /// A tracer that chooses harmonics by a tolerance, where one is given.
+    /// A tracer that selects harmonics by a tolerance, if one is given.
     pub fn new(course: Course<'a>, tolerance: f64) -> Self {
         Self {
             course,
@@ -77,8 +77,8 @@ impl<'a> BranchTracer<'a> {
         }
         let (begin, began) = (first.try_clone()?, analysis.resolution());
         let mut continuation = Continuation::new(settings, first)?;
-        // Where harmonics change the branch goes on from beside the point recorded last: special points are located
-        // between recorded points, so that none is passed over or found twice.
+        // Where harmonics change, the branch continues from beside the point recorded last. Special points are
+        // located between recorded points, so that none is omitted or found twice.
         let mut recorded = (continuation.current().try_clone()?, began);
         let mut backtracks = 0;
         loop {
@@ -125,7 +125,7 @@ impl<'a> BranchTracer<'a> {
                 return Ok(Status::StoppedByCaller);
             }
 
-            // Choose the harmonics of the next step, or end.
+            // Select the harmonics of the next step, or end.
             match end {
                 None => {
                     let current = self.controller.adjust(analysis, point, hooks.cancelled)?;
@@ -162,7 +162,7 @@ impl<'a> BranchTracer<'a> {
         }
     }
 
-    /// Sharpens and records a special point; `false` where it requires more harmonics, which the analysis then has.
+    /// Sharpens and records a special point; `false` if it requires more harmonics, which are then selected.
     pub fn record_special(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<bool> {
         let mut point = point.try_clone()?;
         analysis.sharpen(kind, &mut point)?;
@@ -173,7 +173,7 @@ impl<'a> BranchTracer<'a> {
         Ok(true)
     }
 
-    /// Tells the caller of the point recorded last; `true` if it wants to stop.
+    /// Reports the point recorded last to the caller; `true` if the caller stops the run.
     pub fn report(&self, analysis: &dyn Traceable, hooks: &mut Hooks<'_>, point: &Point) -> bool {
         let (start, end) = self.course.range;
         let range = end - start;
@@ -199,7 +199,7 @@ impl<'a> BranchTracer<'a> {
         Ok(())
     }
 
-    /// Records a special point with the harmonics that it was located with, whatever its error.
+    /// Records a special point with the harmonics with which it was located, whatever its error.
     fn record_special_as_it_is(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -216,14 +216,14 @@ impl<'a> BranchTracer<'a> {
         let end = self.course.settings.end;
         for (i, p) in self.course.at.iter().enumerate() {
             if p.to_bits() == end.to_bits() {
-                // It has the harmonics that it was found to need, or could be found with.
+                // The harmonics are those that it required, or with which it could be found.
                 self.record_special_as_it_is(analysis, SpecialKind::At(i), point)?;
             }
         }
         Ok(Status::Ok)
     }
 
-    /// Whether a point found with other harmonics lies behind the one recorded last, or outside of the range.
+    /// Whether a point found with other harmonics lies behind the one recorded last, or outside the range.
     fn is_reversed_or_outside(
         &self,
         analysis: &dyn Traceable,
@@ -238,8 +238,8 @@ impl<'a> BranchTracer<'a> {
         Ok(!forward || point.parameter() < low || point.parameter() > high)
     }
 
-    /// Follows the branch from where it left at the start of the range to where it comes back, as it does with folds
-    /// on both sides of the start. Nothing outside is recorded.
+    /// Follows the branch from where it left at the start of the range to where it comes back, as with folds on both
+    /// sides of the start. No point outside is recorded.
     fn follow_outside(
         &self,
         analysis: &mut dyn Traceable,
@@ -259,13 +259,13 @@ impl<'a> BranchTracer<'a> {
         for _ in analysis.branch().points()..self.course.max_points {
             match continuation.advance(analysis.problem(), hooks.cancelled) {
                 Ok(Advance::Accepted { last: false, .. }) => {}
-                // A closed curve would be followed for ever.
+                // A closed curve would be followed forever.
                 Ok(Advance::LeftAtStart { point }) if !same(point.unknowns(), begin.unknowns()) => {
                     return Ok(Outside::Back(point));
                 }
                 Ok(Advance::Stopped(Status::StoppedByCaller)) => return Ok(Outside::Cancelled),
                 Err(e) if e.status == Status::Callback => return Err(e),
-                // A failure outside the range costs none of the points within.
+                // A failure outside the range costs no point inside.
                 Ok(_) | Err(_) => break,
             }
         }
@@ -281,14 +281,14 @@ impl<'a> BranchTracer<'a> {
         last: bool,
     ) -> Result<()> {
         analysis.select(a.1.max(b.1))?;
-        if Event::Peak.between(a.0, b.0) {
+        if SpecialPoint::Peak.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
-                locator.locate(problem, Event::Peak, a, b)
+                locator.locate(problem, SpecialPoint::Peak, a, b)
             })?;
         }
-        let fold = if Event::Fold.between(a.0, b.0) {
+        let fold = if SpecialPoint::Fold.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Fold, a, b, |locator, problem, a, b| {
-                locator.locate(problem, Event::Fold, a, b)
+                locator.locate(problem, SpecialPoint::Fold, a, b)
             })?
         } else {
             None
@@ -301,8 +301,8 @@ impl<'a> BranchTracer<'a> {
         }
     }
 
-    /// Solves at the requested parameter values on the arc from `a` (included) to `b` (with the last
-    /// point of the branch included), which has no fold inside.
+    /// Solves at the requested parameter values on the arc from `a` (included) to `b` (included if it is the last
+    /// point of the branch), which has no fold inside.
     fn find_requested(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -354,7 +354,8 @@ impl<'a> BranchTracer<'a> {
     }
 }
 
-/// An outcome, or none where Newton's last correction, which is not evaluated, led to where no solution is.
+/// An outcome; `None` if Newton's last correction, which is not evaluated, led to a motion that a law cannot
+/// evaluate.
 fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
     match outcome {
         Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => Ok(None),

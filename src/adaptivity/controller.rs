@@ -1,12 +1,12 @@
-//! Harmonics from a tolerance: more where the error of a point misses it, fewer where they carry little.
+//! Selection of harmonics by a tolerance: more where the error of a point misses it, fewer where they carry little.
 //!
-//! A solution W whose error η is too large is solved again from its corrected solution Z*, see
-//! [`crate::error_estimate`], with the lowest harmonics H′ beyond which Z* has converged:
+//! A solution W whose error η is too large is resolved from its corrected solution Z*, see [`crate::error_estimate`],
+//! with the lowest harmonics H′ beyond which Z* has converged:
 //!
 //! > 3/2 A t(H′) ≤ ½ tolerance,  t(h) = ‖Z*_{>h}‖/‖Z*‖,  A = η/t(H)
 //!
-//! and the branch goes on with H′. The factor 3/2 allows for the error of the estimate. Harmonics fall only where the
-//! error is far below the tolerance, so that they do not alternate.
+//! and the branch continues with H′. The factor 3/2 allows for the error of the estimate. Harmonics are dropped only
+//! where the error is far below the tolerance, so that they do not alternate.
 
 use crate::adaptivity::discretised::{Assessment, Discretised};
 use crate::continuation::Point;
@@ -15,25 +15,25 @@ use crate::error_estimate::Estimate;
 use crate::linalg::norm;
 use crate::results::SpecialKind;
 
-/// Largest ratio of an error to its estimate that is allowed for.
+/// Largest ratio of an error to its estimate for which the controller allows.
 const MARGIN: f64 = 1.5;
 
-/// Share of the tolerance that is aimed at.
+/// Target of the error as a share of the tolerance.
 const AIM: f64 = 0.5;
 
-/// Share of the tolerance above which the next point gets more harmonics before it misses.
+/// Share of the tolerance above which the next point is refined in advance.
 const RAISE: f64 = 0.7;
 
-/// Share of the tolerance below which the next point gets fewer.
+/// Share of the tolerance below which the next point is coarsened.
 const DROP: f64 = 0.08;
 
-/// Points for which a branch does not fall to a level at which one missed the tolerance.
+/// Number of points for which a branch is not coarsened to a level at which one missed the tolerance.
 const PATIENCE: usize = 10;
 
 /// Relative size of a harmonic that is round-off.
 const ROUND_OFF: f64 = 1e-13;
 
-/// Levels by which a point is refined from which the next one was not found with the harmonics that it needs.
+/// Levels by which a point is refined if the next one was not found from it.
 const BACKTRACK: usize = 3;
 
 /// Most refinements of one point.
@@ -48,24 +48,24 @@ pub(crate) type PointAt<'p> = (&'p Point, usize);
 /// A point with the harmonics that its error requires, at the current resolution.
 pub(crate) struct Refined {
     pub point: Point,
-    /// Whether it misses the tolerance and was not found with more harmonics, though there are some.
+    /// Whether it misses the tolerance and was not found with more harmonics, although more are available.
     pub stuck: bool,
 }
 
-/// Chooses the harmonics of each point of a branch.
+/// Selects the harmonics of each point of a branch.
 pub(crate) struct AdaptivityController {
     tolerance: f64,
-    /// Estimates made that were more than a check of contacts that stick.
+    /// Number of estimates that were more than a check of contacts that stick.
     estimates: usize,
-    /// Error of the last point that met the tolerance, and the harmonics that it should have.
+    /// Error of the last point that met the tolerance, and the harmonics that it requires.
     last: Option<(f64, usize)>,
-    /// Lowest level to which the branch may fall, and for how many points more: one above that where a point missed
-    /// the tolerance.
+    /// Lowest level to which the branch may be coarsened, one above that where a point missed the tolerance, and the
+    /// number of points for which it holds.
     floor: (usize, usize),
-    /// The highest level so far. The branch falls no further than to half its harmonics.
+    /// The highest level so far. The branch is coarsened to half its harmonics at most.
     highest: usize,
-    /// Whether the branch had a fold. Then it does not fall at all where something is nonlinear: with fewer harmonics
-    /// it may fold elsewhere, and turn round.
+    /// Whether the branch had a fold. If so, it is not coarsened at all where something is nonlinear: with fewer
+    /// harmonics it may fold elsewhere and reverse.
     folded: bool,
 }
 
@@ -101,7 +101,7 @@ impl AdaptivityController {
         self.estimates += usize::from(!found.estimate.certified || found.estimate.steps > 0);
     }
 
-    /// The point with the harmonics that its error requires. One that misses the tolerance at the last refinement is
+    /// The point with the harmonics that its error requires. If it misses the tolerance at the last refinement, it is
     /// returned all the same.
     pub fn refine(
         &mut self,
@@ -156,7 +156,7 @@ impl AdaptivityController {
         done(point)
     }
 
-    /// The point from which the next one was stuck, with more harmonics; none where that is not found either.
+    /// The point from which the next one was not found, with more harmonics; `None` if that is not found either.
     pub fn backtrack(
         equations: &mut dyn Discretised,
         (point, level): PointAt<'_>,
@@ -166,8 +166,8 @@ impl AdaptivityController {
         resolve_at(equations, (point, level), to, true, cancelled)
     }
 
-    /// Whether a point beside the curve meets the tolerance; if not, the resolution has been raised, and the point is to
-    /// be located again. A fold always does: at its parameter no solution is isolated, and its error is undefined.
+    /// Whether a point beside the curve meets the tolerance; if not, the resolution has been raised, and the point is
+    /// to be located again. A fold always does: at its parameter no solution is isolated, and its error is undefined.
     pub fn meets_tolerance(
         &mut self,
         equations: &mut dyn Discretised,
@@ -195,7 +195,7 @@ impl AdaptivityController {
         Ok(false)
     }
 
-    /// The point recorded last with the harmonics with which the branch goes on: where they change, solved once more.
+    /// The point recorded last with the harmonics with which the branch continues: resolved if they change.
     pub fn adjust(&mut self, equations: &mut dyn Discretised, point: Point, cancelled: Cancelled<'_>) -> Result<Point> {
         let level = equations.resolution();
         let Some((error, required)) = self.last else {
@@ -210,7 +210,8 @@ impl AdaptivityController {
         if !((share > RAISE && next > level) || (share < DROP && next < level)) {
             return Ok(point);
         }
-        // At its parameter, so that nothing lies between the point recorded and the one that the branch goes on from.
+        // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch
+        // continues.
         let Some(found) = resolve_at(equations, (&point, level), next, true, cancelled)? else {
             return Ok(point);
         };
@@ -223,7 +224,7 @@ impl AdaptivityController {
         Ok(found)
     }
 
-    /// Lowest level to which the branch may fall from a point of this error.
+    /// Lowest level to which the branch may be coarsened from a point of this error.
     fn lowest_level(&self, equations: &dyn Discretised, error: f64, level: usize) -> usize {
         if error == 0.0 {
             return 0;
@@ -235,7 +236,7 @@ impl AdaptivityController {
         if self.floor.1 > 0 { half.max(self.floor.0) } else { half }
     }
 
-    /// Highest harmonic that the solution should have; 0 if the error is unknown.
+    /// Highest harmonic that the solution requires; 0 if the error is unknown.
     fn required_harmonics(&self, found: &Assessment) -> usize {
         if !found.estimate.certified {
             return 0;
@@ -266,7 +267,7 @@ impl AdaptivityController {
     }
 }
 
-/// Solves near a point with the harmonics of another level; the resolution stays as it is if that fails.
+/// Solves near a point with the harmonics of another level; if that fails, the resolution is unchanged.
 fn resolve_at(
     equations: &mut dyn Discretised,
     (point, level): PointAt<'_>,
@@ -284,8 +285,8 @@ fn resolve_at(
     Ok(found)
 }
 
-/// Solves with the harmonics of a higher level, from the corrected solution or level by level; the resolution stays as
-/// it is if both fail.
+/// Solves with the harmonics of a higher level, from the corrected solution or level by level; if both fail, the
+/// resolution is unchanged.
 fn refine_to(
     equations: &mut dyn Discretised,
     point: &Point,

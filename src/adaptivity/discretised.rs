@@ -1,4 +1,4 @@
-//! The two traits through which an analysis takes part in following a branch.
+//! The two traits by which the tracer follows the branch of an analysis.
 
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::continuation::Point;
@@ -27,7 +27,7 @@ pub(crate) trait Discretised {
     /// Makes a resolution the current one.
     fn select(&mut self, resolution: usize) -> Result<()>;
 
-    /// A point of another resolution in the current harmonics, of which it need not be a solution.
+    /// A point of another resolution in the current harmonics; it need not be a solution there.
     fn transfer(&self, point: &Point, from: usize) -> Result<Point>;
 
     /// The same with the motions of the corrected solution of its error estimate.
@@ -41,7 +41,7 @@ pub(crate) trait Discretised {
         cancelled: Option<&dyn Fn() -> bool>,
     ) -> Result<Option<Point>>;
 
-    /// Estimates the error of a solved point of the current resolution; none unless requested.
+    /// Estimates the error of a solved point of the current resolution; `None` unless requested.
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>>;
 }
 
@@ -50,7 +50,7 @@ pub(crate) trait Recorder {
     /// Records a solved point of the current resolution as the next one of the curve.
     fn record(&mut self, point: &Point) -> Result<()>;
 
-    /// Solves a point beside the curve as accurately as can be, and leaves the problem evaluated there.
+    /// Solves a point beside the curve as accurately as possible, and leaves the problem evaluated there.
     fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()>;
 
     /// Records a sharpened point beside the curve.

@@ -1,4 +1,4 @@
-//! The numbers of harmonics that a run may solve with: one, or a rising list from which a tolerance chooses.
+//! The numbers of harmonics available to a run: one, or a rising list from which a tolerance selects.
 
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, fail, try_push};
@@ -13,7 +13,7 @@ const CONTEXT: &str = "the harmonics";
 /// Ratio of neighbouring levels.
 const RATIO: f64 = 1.25;
 
-/// The same for structures so large that each level costs many factorisations.
+/// The same ratio for structures so large that each level costs many factorisations.
 const RATIO_LARGE: f64 = 2.0;
 
 /// Degrees of freedom above which a structure is large.
@@ -28,7 +28,7 @@ const SAMPLES_PER_HARMONIC: usize = 8;
 /// Condenses the model to harmonics up to the one given.
 type Condense<'m> = dyn Fn(usize) -> Result<Condensed> + 'm;
 
-/// The levels, at each of which the model is condensed when it is first asked for.
+/// The levels; the model is condensed at each of them when it is first requested.
 pub(crate) struct HarmonicLevels<'m> {
     models: ModelCache,
     samples: usize,
@@ -63,7 +63,7 @@ impl<'m> HarmonicLevels<'m> {
         })
     }
 
-    /// Whether a tolerance chooses the level.
+    /// Whether a tolerance selects the level.
     pub fn is_automatic(&self) -> bool {
         self.automatic
     }
@@ -73,12 +73,12 @@ impl<'m> HarmonicLevels<'m> {
         self.models.slots()
     }
 
-    /// The level to begin with: as many harmonics as `harmonics` says, fewer where the levels end before.
+    /// The initial level: as many harmonics as `harmonics` states, fewer if the levels end before.
     pub fn first(&self, harmonics: usize) -> usize {
         self.models.numbers().rposition(|h| h <= harmonics).unwrap_or(0)
     }
 
-    /// The lowest level with all harmonics up to h, the last that is affordable where there is none.
+    /// The lowest level with all harmonics up to h; if there is none, the last affordable one.
     pub fn level_with(&self, h: usize) -> usize {
         self.models.slot_with(h).min(self.last())
     }
@@ -88,7 +88,7 @@ impl<'m> HarmonicLevels<'m> {
         self.models.slot_with(self.models.highest(level).div_ceil(2))
     }
 
-    /// The highest level that is affordable.
+    /// The highest affordable level.
     pub fn last(&self) -> usize {
         let most = self
             .models
@@ -116,7 +116,7 @@ impl<'m> HarmonicLevels<'m> {
     }
 }
 
-/// Rising numbers of harmonics from the highest that is forced to `max_harmonics`.
+/// Rising numbers of harmonics from the highest forced one to `max_harmonics`.
 fn automatic_numbers(model: &Model, options: &SolverOptions, forced: &[usize]) -> Result<Vec<usize>> {
     let most = options.max_harmonics;
     if let Some(h) = forced.iter().find(|&&h| h > most) {
@@ -133,7 +133,7 @@ fn automatic_numbers(model: &Model, options: &SolverOptions, forced: &[usize]) -
     };
     let least = forced.iter().copied().max().unwrap_or(0).max(1);
     let mut numbers = Vec::new();
-    // Reduced numbers are odd, so that each level has more than the one below where even ones are left out.
+    // Reduced numbers are odd, so that each level has more than the one below where even harmonics are omitted.
     let mut reduced = least.div_ceil(base);
     try_push(&mut numbers, least, CONTEXT)?;
     loop {

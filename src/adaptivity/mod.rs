@@ -1,10 +1,10 @@
-//! The number of harmonics along a branch, and the way of a point from its prediction to its storage.
+//! The number of harmonics along a branch, and the steps of a point from its prediction to its storage.
 //!
 //! [`branch_tracer`] follows the branch: the continuation predicts and corrects a point; [`controller`] estimates its
-//! error and refines it until it meets the tolerance, by the harmonics of [`harmonic_levels`]; the analysis records it;
-//! peaks, folds and requested solutions between it and the point before are located; the controller chooses the
-//! harmonics of the next step. An analysis enters through the two traits of [`discretised`]. [`resolutions`] keeps the
-//! equations at the resolutions of a run, [`transfer`] takes points from one resolution to another, and
+//! error and refines it until it meets the tolerance, by the harmonics of [`harmonic_levels`]; the analysis records
+//! it; peaks, folds and requested solutions between it and the point before are located; the controller selects the
+//! harmonics of the next step. An analysis implements the two traits of [`discretised`]. [`resolutions`] stores the
+//! equations at the resolutions of a run, [`transfer`] converts points from one resolution to another, and
 //! [`branch_recorder`] stores points.
 
 pub(crate) mod branch_recorder;

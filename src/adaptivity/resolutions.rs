@@ -1,4 +1,4 @@
-//! The equations of a run at the resolutions that it has used, of which one is the current one.
+//! The equations of a run at the resolutions that it has used; one resolution is the current one.
 
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::transfer::transferred_point;
@@ -46,8 +46,7 @@ impl<'a, E> Resolutions<'a, E> {
         self.index
     }
 
-    /// Makes another resolution the current one. `make` is asked for its equations unless they are kept from before:
-    /// small ones are.
+    /// Makes another resolution the current one. `make` creates its equations unless they are stored: small ones are.
     ///
     /// # Errors
     /// Those of condensing the model and of `make`.
@@ -71,7 +70,7 @@ impl<'a, E> Resolutions<'a, E> {
         self.highest = self.highest.max(self.index);
     }
 
-    /// The removed parts of the problem that has the most harmonics.
+    /// The parts that were removed from the problem with the most harmonics.
     ///
     /// # Errors
     /// Those of [`crate::condense::Condensed::reduction`].

@@ -1,11 +1,11 @@
-//! Points and motions taken from one resolution to another: harmonics that both carry are kept, others are zero.
+//! Transfer of points and motions between resolutions: harmonics that both carry are kept, others are zero.
 
 use crate::condense::Condensed;
 use crate::continuation::Point;
 use crate::error::{Result, try_vec};
 use num_complex::Complex64;
 
-/// Unknowns, and the `others` numbers after the motions, in other harmonics; motions times a factor.
+/// Unknowns in other harmonics, with the `others` numbers after the motions; motions are multiplied by a factor.
 ///
 /// # Errors
 /// `OutOfMemory`.
@@ -18,7 +18,7 @@ pub(crate) fn transferred(from: &Condensed, to: &Condensed, v: &[f64], others: u
     Ok(found)
 }
 
-/// A point in other harmonics, of which it need not be a solution. `others` of its unknowns are no motions; the
+/// A point in other harmonics; it need not be a solution there. `others` of its unknowns are no motions; the
 /// parameter counts among them. `is_length`: the observed amplitude is a length.
 ///
 /// # Errors

@@ -4,8 +4,7 @@ use crate::contact::contact_state::State;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 
-/// Harmonics of a contact force and their derivatives, all in packed form, one direction of the law
-/// after the other.
+/// Harmonics of a contact force and their derivatives, all in packed form, one direction of the law after the other.
 #[derive(Clone, Debug)]
 pub struct Evaluation {
     /// Directions d of the relative motion; m is the packed length of one signal.
@@ -22,8 +21,8 @@ pub struct Evaluation {
     pub slip_fraction: f64,
     /// Share of the period in which the contact is open.
     pub open_fraction: f64,
-    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed
-    /// throughout, where the normal load varies). Never so for a smooth law.
+    /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed throughout,
+    /// where the normal load varies). Always `false` for a smooth law.
     pub stuck: bool,
 }
 
@@ -46,7 +45,7 @@ impl Evaluation {
         })
     }
 
-    /// Adds a share of the period in a state.
+    /// Adds the share of the period that a state takes.
     pub(super) fn count(&mut self, state: State, share: f64) {
         match state {
             State::Stick => {}
@@ -61,7 +60,7 @@ impl Evaluation {
         self.clear_forces();
     }
 
-    /// The same, but for the Jacobian.
+    /// Clears all results but the Jacobian.
     pub(super) fn clear_forces(&mut self) {
         self.offset.fill(0.0);
         self.by_omega.fill(0.0);
@@ -71,7 +70,7 @@ impl Evaluation {
     }
 }
 
-/// Whether a share of the period is the whole period, but for rounding.
+/// Whether a share of the period is the whole period, up to round-off.
 pub(super) fn is_whole(share: f64) -> bool {
     share > 1.0 - 1e-12
 }

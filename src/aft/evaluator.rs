@@ -1,4 +1,4 @@
-//! The evaluator of laws: selects the way of evaluation by the form of the law.
+//! The evaluator of laws: selects the evaluation by the form of the law.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::hysteretic::HystereticEvaluator;
@@ -11,7 +11,7 @@ use crate::contact::law::{Form, Law};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
 
-/// Ways of evaluating laws, with their tables.
+/// Evaluators of laws, with their tables.
 pub struct Evaluator {
     /// Laws on one relative motion.
     scalar: Scalar,
@@ -28,9 +28,9 @@ pub struct Evaluator {
 /// Numbers of samples for laws without exact events.
 #[derive(Clone, Copy)]
 struct Sampling {
-    /// Samples requested; 0 for the number that suits the law.
+    /// Samples requested; 0 selects the number of the law.
     requested: usize,
-    /// Whether half of them are taken, or twice as many where half are too few.
+    /// Whether half of them are used, or twice as many where half are too few.
     other: bool,
 }
 
@@ -44,17 +44,16 @@ impl Sampling {
     }
 }
 
-/// Way of evaluating laws on one relative motion.
+/// Evaluation of laws on one relative motion.
 enum Scalar {
-    /// Events located, integrals in closed form.
+    /// The events are located, the integrals are in closed form.
     Exact(Box<Exact>),
-    /// Equidistant samples.
+    /// The law is evaluated at equidistant samples.
     Sampled(Box<Sampled>),
 }
 
 impl Evaluator {
-    /// Tables for motions of `set` under `laws`; `samples` = 0 locates events exactly where the law has
-    /// them.
+    /// Tables for motions of `set` under `laws`; `samples` = 0 locates events exactly where the law has them.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -69,8 +68,8 @@ impl Evaluator {
         )
     }
 
-    /// The same with half as many samples, or twice as many where half are too few: the reference for the
-    /// sampling error of [`Self::new`].
+    /// The same with half as many samples, or twice as many where half are too few: the reference for the sampling
+    /// error of [`Self::new`].
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -100,16 +99,16 @@ impl Evaluator {
                 Form::VaryingNormalLoad(_) | Form::Spectral(_) => {}
                 Form::Hysteretic(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
-                    if !hysteretic.iter().any(|way| way.suits(law, requested)) {
-                        let way = HystereticEvaluator::new(set, law, requested)?;
-                        try_push(&mut hysteretic, way, "the contact laws")?;
+                    if !hysteretic.iter().any(|e| e.suits(law, requested)) {
+                        let evaluator = HystereticEvaluator::new(set, law, requested)?;
+                        try_push(&mut hysteretic, evaluator, "the contact laws")?;
                     }
                 }
                 Form::Memoryless(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
-                    if !memoryless.iter().any(|way| way.suits(law, requested)) {
-                        let way = MemorylessEvaluator::new(set, law, requested)?;
-                        try_push(&mut memoryless, way, "the contact laws")?;
+                    if !memoryless.iter().any(|e| e.suits(law, requested)) {
+                        let evaluator = MemorylessEvaluator::new(set, law, requested)?;
+                        try_push(&mut memoryless, evaluator, "the contact laws")?;
                     }
                 }
             }
@@ -129,17 +128,17 @@ impl Evaluator {
         })
     }
 
-    /// Finds the turning points, or samples, of the packed motion of one relative coordinate, which serve every
-    /// law on this coordinate alone.
+    /// Finds the turning points, or samples, of the packed motion of one relative coordinate, for every law on this
+    /// coordinate alone.
     pub fn prepare(&mut self, set: &HarmonicSet, motion: &[f64]) {
         match &mut self.scalar {
-            Scalar::Exact(way) => way.prepare(set, motion),
-            Scalar::Sampled(way) => way.prepare(set, motion),
+            Scalar::Exact(evaluator) => evaluator.prepare(set, motion),
+            Scalar::Sampled(evaluator) => evaluator.prepare(set, motion),
         }
     }
 
-    /// Force and Jacobian of `law` at packed motions, one direction after the other, and an angular
-    /// frequency. A law of one direction needs its motion prepared.
+    /// Force and Jacobian of `law` at packed motions, one direction after the other, and an angular frequency. A law
+    /// of one direction needs its motion prepared.
     ///
     /// # Errors
     /// Those of callbacks.
@@ -153,29 +152,29 @@ impl Evaluator {
     ) -> Result<()> {
         match (law.form(), &mut self.scalar) {
             (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
-            (Form::PiecewiseLinear(law), Scalar::Exact(way)) => way.evaluate(law, set, motion, out),
-            (Form::PiecewiseLinear(law), Scalar::Sampled(way)) => way.evaluate(law, set, motion, out),
+            (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => evaluator.evaluate(law, set, motion, out),
+            (Form::PiecewiseLinear(law), Scalar::Sampled(evaluator)) => evaluator.evaluate(law, set, motion, out),
             (Form::VaryingNormalLoad(law), _) => {
-                let Some(way) = &mut self.varying_load else {
+                let Some(evaluator) = &mut self.varying_load else {
                     return fail!(Internal, "no memory for the pieces of a contact law");
                 };
-                way.evaluate(law, set, motion, out);
+                evaluator.evaluate(law, set, motion, out);
             }
             (Form::Hysteretic(law), _) => {
                 let highest = set.highest_reduced();
                 let requested = self.sampling.of(law.samples(highest, self.sampling.requested), highest);
-                let Some(way) = self.hysteretic.iter_mut().find(|way| way.suits(law, requested)) else {
+                let Some(evaluator) = self.hysteretic.iter_mut().find(|e| e.suits(law, requested)) else {
                     return fail!(Internal, "no memory for the march of a contact law");
                 };
-                return way.evaluate(law, omega, motion, out);
+                return evaluator.evaluate(law, omega, motion, out);
             }
             (Form::Memoryless(law), _) => {
                 let highest = set.highest_reduced();
                 let requested = self.sampling.of(law.samples(highest, self.sampling.requested), highest);
-                let Some(way) = self.memoryless.iter_mut().find(|way| way.suits(law, requested)) else {
+                let Some(evaluator) = self.memoryless.iter_mut().find(|e| e.suits(law, requested)) else {
                     return fail!(Internal, "no memory for the samples of a contact law");
                 };
-                return way.evaluate(law, set, omega, motion, out);
+                return evaluator.evaluate(law, set, omega, motion, out);
             }
         }
         Ok(())
@@ -192,12 +191,12 @@ impl Evaluator {
         }
     }
 
-    /// Half the range (max − min)/2 of the motion that was prepared.
+    /// Half the range (max − min)/2 of the prepared motion.
     #[must_use]
     pub fn half_range(&self, set: &HarmonicSet) -> f64 {
         match &self.scalar {
-            Scalar::Exact(way) => way.half_range(set),
-            Scalar::Sampled(way) => way.half_range(),
+            Scalar::Exact(evaluator) => evaluator.half_range(set),
+            Scalar::Sampled(evaluator) => evaluator.half_range(),
         }
     }
 }

@@ -1,16 +1,15 @@
-//! Harmonics of a law with states, marched over samples: periodic states, force, and the exact
-//! derivative of the discrete force.
+//! Harmonics of a law with states, marched over samples: periodic states, force, and the exact derivative of the
+//! discrete force.
 //!
-//! The states at the start of the period are those that return after it. A law that can stick through the
-//! period selects one of many. Other states follow by Newton's method, from a near state that the law provides
-//! or from the virgin one, loaded from rest straight to the motion of the last sample, so that the
-//! result depends on the motion alone; where the slip of a law without such knowledge ends the marched
-//! state is kept. With the basis bⱼ at sample j the derivatives of the states follow from those of the steps,
-//!
+//! The states at the start of the period are those that return after it. A law that can stick through the period
+//! selects one of many. Other states follow by Newton's method, from a near state that the law provides or from the
+//! virgin one, loaded from rest straight to the motion of the last sample, so that the result depends on the motion
+//! alone. If a law does not provide such a state, and its slip ends, the marched state is kept. With the basis bⱼ at
+//! sample j the derivatives of the states follow from those of the steps,
 //! > Sⱼ = Aⱼ Sⱼ₋₁ + Bⱼ⁻ bⱼ₋₁ + Bⱼ bⱼ,  ∂F/∂X = Σ w ⊗ bⱼ ⊗ (∂f/∂z Sⱼ + ∂f/∂u bⱼ)
 //!
-//! (velocities alike), begun with the derivative of the periodic start; see periodic_state.rs. Force
-//! and derivative are those of the sampled law: as good as the samples, but exact as a pair.
+//! (velocities alike), starting with the derivative of the periodic start; see periodic_state.rs. Force and
+//! derivative are those of the sampled law: as accurate as the samples, but exact as a pair.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::hysteretic_derivatives::{Sensitivity, Signals};
@@ -24,10 +23,10 @@ use crate::fourier::HarmonicSet;
 /// Largest number of marches that may end in a step of Newton's method.
 const NEWTON_MARCHES: usize = 100;
 
-/// Largest number of marches; those beyond [`NEWTON_MARCHES`] begin where the march before ended.
+/// Largest number of marches; those beyond [`NEWTON_MARCHES`] start where the previous march ended.
 const MARCHES: usize = 300;
 
-/// Marches from a stuck state, which returns but for rounding.
+/// Marches from a stuck state, which returns up to round-off.
 const STUCK_MARCHES: usize = 4;
 
 /// Tables and memory for marching one law over motions of one harmonic set.
@@ -48,9 +47,9 @@ pub struct HystereticEvaluator {
     map: ReturnMap,
     sensitivity: Sensitivity,
     normal: Option<Normal>,
-    /// States that each march began with.
+    /// Initial states of each march.
     starts: Vec<f64>,
-    /// Whether the start after each march came from Newton's method.
+    /// Whether the start after each march is from Newton's method.
     by_newton: Vec<bool>,
     step: Vec<f64>,
     marches: usize,
@@ -110,19 +109,18 @@ impl HystereticEvaluator {
         &self.march
     }
 
-    /// Marches that the last evaluation took to find its periodic states.
+    /// Number of marches with which the last evaluation found its periodic states.
     #[must_use]
     pub fn marches(&self) -> usize {
         self.marches
     }
 
-    /// Force, Jacobian and derivative by ω of `law` at the circular frequency `omega` > 0 for a packed
-    /// motion, one direction after the other. `law` has the directions and states of the one that
-    /// memory was made for.
+    /// Force, Jacobian and derivative by ω of `law` at the circular frequency `omega` > 0 for a packed motion, one
+    /// direction after the other. `law` has the directions and states of the one for which memory was allocated.
     ///
     /// # Errors
-    /// Those of the law; `NoConvergence` when its states do not become periodic, `NotFinite` when they
-    /// do not stay finite.
+    /// Those of the law; `NoConvergence` if its states do not become periodic, `NotFinite` if they do not stay
+    /// finite.
     pub fn evaluate(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64], out: &mut Evaluation) -> Result<()> {
         let virgin = self.find_periodic_states(law, omega, motion)?;
         let omega = self.base * omega;
@@ -143,11 +141,11 @@ impl HystereticEvaluator {
         Ok(())
     }
 
-    /// Finds the periodic states alone, the first step of [`Self::evaluate`]; [`Self::march`] then has the forces
-    /// and states. Returns `true` if the law is as it was loaded from rest.
+    /// Finds the periodic states alone, the first step of [`Self::evaluate`]; [`Self::march`] then has the forces and
+    /// states. Returns `true` if the law is in its state after the load from rest.
     ///
     /// # Errors
-    /// As [`Self::evaluate`].
+    /// Those of [`Self::evaluate`].
     pub fn find_periodic_states(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64]) -> Result<bool> {
         // The period of the law is 2π/(gω), that of the set.
         let omega = self.base * omega;
@@ -155,7 +153,7 @@ impl HystereticEvaluator {
         self.find_period(law, omega)
     }
 
-    /// Weights the Fourier sums and forms the offset.
+    /// Applies the weights to the Fourier sums and forms the offset.
     fn finish(&self, motion: &[f64], out: &mut Evaluation) {
         let weigh = |sums: &mut [f64]| {
             for signal in sums.chunks_exact_mut(self.weights.len().max(1)) {
@@ -183,8 +181,8 @@ impl HystereticEvaluator {
         law.march(omega, *samples, u, v, z0, &mut self.march)
     }
 
-    /// The virgin law, loaded from rest straight to the motion of the last sample: the first start and
-    /// its derivative. Returns `true` if it neither slipped nor was open on the way.
+    /// Loads the virgin law from rest straight to the motion of the last sample: the first start and its derivative.
+    /// Returns `true` if the law neither slipped nor was open during the load.
     fn load(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
         let Signals {
             samples,
@@ -205,12 +203,12 @@ impl HystereticEvaluator {
         Ok(self.march.slip[0] == 0.0 && self.march.open[0] == 0.0)
     }
 
-    /// Finds states that return. Returns `true` if the law is as it was loaded.
+    /// Finds states that return. Returns `true` if the law is in its state after the load.
     ///
-    /// Some laws cannot decide whether they can stick ([`Sticking::Unknown`]). A state that is kept although slip
-    /// led to it then lies on the border of those that need no slip; its place there depends on the slip of the
-    /// marches before, which a step of Newton's method does not follow. The law is then marched from the load on,
-    /// if that takes no more than [`MARCHES`].
+    /// Some laws cannot decide whether they can stick ([`Sticking::Unknown`]). If such a law keeps a state to which
+    /// slip led, this state lies on the border of those without slip; its place there depends on the slip of the
+    /// earlier marches, which a step of Newton's method does not follow. The law is then marched from the load on, if
+    /// that takes no more than [`MARCHES`].
     fn find_period(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
         let Signals { samples, u, .. } = &self.signals;
         let sticking = law.stuck_state(*samples, u, &mut self.stuck);
@@ -230,7 +228,7 @@ impl HystereticEvaluator {
         }
         let virgin = self.load(law, omega)?;
         let mut defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
-        // A law that cannot stick slips, and has one periodic state, however it is found.
+        // A law that cannot stick slips, and has one periodic state, for every method.
         let guessed = sticking == Sticking::Unknown && self.by_newton[..self.marches - 1].contains(&true);
         if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0, MARCHES)? > 0.0 {
             defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
@@ -247,8 +245,8 @@ impl HystereticEvaluator {
         Ok(virgin && self.marches == 1)
     }
 
-    /// Marches from the first start until the states return to within rounding, with Newton's method
-    /// up to the march `newton_until`. Returns their difference at the last march, 0 if they return.
+    /// Marches from the first start until the states return up to round-off, with Newton's method up to the march
+    /// `newton_until`. Returns their difference at the last march, 0 if they return.
     fn search(&mut self, law: &dyn Hysteretic, omega: f64, newton_until: usize, most: usize) -> Result<f64> {
         let (s, n) = (self.states, self.signals.samples);
         let tolerance = f64::EPSILON * (64.0 + 4.0 * (n as f64).sqrt());
@@ -272,7 +270,8 @@ impl HystereticEvaluator {
             if k + 1 == most {
                 return Ok(defect);
             }
-            // Newton's method begins after two marches, in which slip may end; a defect that grew needs a plain march.
+            // Newton's method starts after two marches, in which slip may end; a defect that grew needs a plain
+            // march.
             let mut by_newton = k > 0 && k < newton_until && defect < before;
             before = defect;
             if by_newton {
@@ -296,8 +295,8 @@ impl HystereticEvaluator {
         Ok(0.0)
     }
 
-    /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part
-    /// depends on the marches that led to it; their derivatives are then followed from the load on.
+    /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part depends on the earlier
+    /// marches; their derivatives are then followed from the load on.
     fn differentiate_start(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<()> {
         if self.starts_stuck {
             return Ok(());

@@ -1,5 +1,5 @@
-//! Derivatives of marched states and of the Fourier sums of their force by the harmonics of the motion
-//! and by the circular frequency ω of the period; see [`crate::aft::hysteretic`].
+//! Derivatives of marched states and of the Fourier sums of their force by the harmonics of the motion and by the
+//! circular frequency ω of the period; see [`crate::aft::hysteretic`].
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::periodic_state::ReturnMap;
@@ -8,10 +8,10 @@ use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use std::f64::consts::TAU;
 
-/// Samples whose outer products are added at a time.
+/// Number of samples whose outer products are added at a time.
 const BATCH: usize = 4;
 
-/// The motion at the samples, with the tables that give it.
+/// The motion at the samples, with the tables from which it follows.
 pub(super) struct Signals {
     pub samples: usize,
     pub directions: usize,
@@ -23,7 +23,7 @@ pub(super) struct Signals {
     rate: Vec<f64>,
     /// Motion, samples × d.
     pub u: Vec<f64>,
-    /// Velocity, samples × d; empty where it is not used.
+    /// Velocity, samples × d; empty if it is not used.
     pub v: Vec<f64>,
 }
 
@@ -86,8 +86,8 @@ impl Signals {
         &self.rate[j * self.length..(j + 1) * self.length]
     }
 
-    /// Adds the derivatives of by_u·u + by_v·v at sample j, for rows of derivatives by the d motions, to
-    /// those of one value by (X, ω).
+    /// Adds the derivatives of by_u·u + by_v·v at sample j, for rows of derivatives by the d motions, to those of one
+    /// value by (X, ω).
     fn add(&self, j: usize, omega: f64, by_u: &[f64], by_v: &[f64], row: &mut [f64]) {
         let m = self.length;
         for (k, factor) in by_u.iter().enumerate() {
@@ -120,7 +120,7 @@ pub(super) struct Sensitivity {
     width: usize,
     /// Derivatives of the states at the start of the period.
     start: Vec<f64>,
-    /// Derivatives of the start of the march before.
+    /// Derivatives of the start of the previous march.
     before: Vec<f64>,
     /// Derivatives of the states at the current sample, and at the next.
     now: Vec<f64>,
@@ -147,7 +147,7 @@ impl Sensitivity {
         })
     }
 
-    /// The start after a load from rest to the last sample, whose step is the first of `march`.
+    /// Sets the start after a load from rest to the last sample, whose step is the first of `march`.
     pub fn load(&mut self, march: &March, signals: &Signals, omega: f64) {
         self.start.fill(0.0);
         let (d, last) = (signals.directions, signals.samples - 1);
@@ -158,7 +158,7 @@ impl Sensitivity {
         }
     }
 
-    /// The start of a law that sticks.
+    /// Sets the start of a law that sticks.
     pub fn stuck(&mut self, stuck: &StuckState, signals: &Signals, omega: f64) {
         self.start.fill(0.0);
         let d = signals.directions;
@@ -170,7 +170,7 @@ impl Sensitivity {
         }
     }
 
-    /// The start that returns, from the one marched from; see [`crate::aft::periodic_state`].
+    /// Sets the start that returns, from that of the march; see [`crate::aft::periodic_state`].
     pub fn periodic(&mut self, map: &ReturnMap, march: &March, signals: &Signals, omega: f64) {
         std::mem::swap(&mut self.start, &mut self.before);
         self.start.fill(0.0);
@@ -183,14 +183,14 @@ impl Sensitivity {
         }
     }
 
-    /// The end of the march as the next start.
+    /// Sets the end of the march as the next start.
     pub fn onward(&mut self, march: &March, signals: &Signals, omega: f64) {
         self.pass(march, signals, omega, None);
         self.start.copy_from_slice(&self.now);
     }
 
-    /// Follows the states through the period from `start` to `now`, and adds the Fourier sums of the
-    /// force and its derivatives, without their weights, to `out`.
+    /// Follows the states through the period from `start` to `now`, and adds the Fourier sums of the force and its
+    /// derivatives, without their weights, to `out`.
     pub fn pass(&mut self, march: &March, signals: &Signals, omega: f64, mut out: Option<&mut Evaluation>) {
         let (d, s, n) = (signals.directions, self.states, signals.samples);
         self.now.copy_from_slice(&self.start);
@@ -219,7 +219,7 @@ impl Sensitivity {
         }
     }
 
-    /// Derivatives of the force at sample j.
+    /// Evaluates the derivatives of the force at sample j.
     fn force_at(&mut self, march: &March, signals: &Signals, omega: f64, j: usize) {
         let (d, s) = (signals.directions, self.states);
         let slot = j % BATCH;

@@ -9,50 +9,50 @@ use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 
-/// Products g ⊗ c that wait for one pass over the Jacobian, which at many harmonics exceeds the caches.
-const WAITING: usize = 4;
+/// Number of products g ⊗ c per pass over the Jacobian, which at many harmonics exceeds the caches.
+const MOST_PENDING: usize = 4;
 
 /// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
 pub(super) struct Assembly {
     /// Sₙ for n = 0 ..= 2·(highest reduced harmonic).
     pub(super) spectrum: Vec<Complex64>,
     toeplitz: Toeplitz,
-    /// Packed g of the pieces whose products wait, and of the current piece.
+    /// Packed g of the pending pieces, and of the current piece.
     g: Vec<f64>,
     /// Packed bases c(r) at their anchors times −k.
     anchors: Vec<f64>,
-    waiting: usize,
-    /// Stand-in for a product where none waits.
+    pending: usize,
+    /// Zeros in place of a product if none is pending.
     zeros: Vec<f64>,
-    /// Whether the Jacobian holds products already.
+    /// Whether the Jacobian already holds products.
     begun: bool,
 }
 
 impl Assembly {
     pub(super) fn new(set: &HarmonicSet) -> Result<Self> {
         let m = set.packed_len();
-        let products = || try_vec(WAITING.saturating_mul(m), 0.0, "a contact force");
+        let products = || try_vec(MOST_PENDING.saturating_mul(m), 0.0, "a contact force");
         Ok(Self {
             spectrum: try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, "a stiffness spectrum")?,
             toeplitz: Toeplitz::new(set)?,
             g: products()?,
             anchors: products()?,
-            waiting: 0,
+            pending: 0,
             zeros: try_vec(m, 0.0, "a contact force")?,
             begun: false,
         })
     }
 
-    /// Clears the results of the last evaluation, but for the Jacobian, which [`Self::finish`] writes.
+    /// Clears the results of the last evaluation except the Jacobian, which [`Self::finish`] writes.
     pub(super) fn start(&mut self, out: &mut Evaluation) {
         self.spectrum.fill(Complex64::ZERO);
-        self.waiting = 0;
+        self.pending = 0;
         self.begun = false;
         out.clear_forces();
     }
 
-    /// Adds a piece whose transforms tₙ = (1/2π)∫ e^{−inτ} dτ are given for the n of the
-    /// spectrum, and whose anchor lies at the time `anchor`.
+    /// Adds a piece with its transforms tₙ = (1/2π)∫ e^{−inτ} dτ for the n of the spectrum, and with its anchor at
+    /// the time `anchor`.
     pub(super) fn add(
         &mut self,
         set: &HarmonicSet,
@@ -67,11 +67,11 @@ impl Assembly {
             out.stuck = is_whole(transform[0].re);
             return;
         }
-        if self.waiting == WAITING {
+        if self.pending == MOST_PENDING {
             self.flush(out);
         }
         let m = set.packed_len();
-        let own = self.waiting * m..(self.waiting + 1) * m;
+        let own = self.pending * m..(self.pending + 1) * m;
         let g = &mut self.g[own.clone()];
         pack(set, transform, g);
         for (o, g) in out.offset.iter_mut().zip(&*g) {
@@ -83,11 +83,11 @@ impl Assembly {
             for c in anchor {
                 *c *= -piece.slope;
             }
-            self.waiting += 1;
+            self.pending += 1;
         }
     }
 
-    /// Adds the products that wait to the Jacobian.
+    /// Adds the pending products to the Jacobian.
     fn flush(&mut self, out: &mut Evaluation) {
         if !self.begun {
             out.jacobian.fill(0.0);
@@ -97,13 +97,13 @@ impl Assembly {
             add_products(column, self.products(m, j));
         }
         self.begun = true;
-        self.waiting = 0;
+        self.pending = 0;
     }
 
-    /// The waiting products of column `j`, as (cⱼ, g).
+    /// The pending products of column `j`, as (cⱼ, g).
     fn products(&self, m: usize, j: usize) -> impl Iterator<Item = (f64, &[f64])> {
         let pairs = self.anchors.chunks_exact(m).zip(self.g.chunks_exact(m));
-        pairs.take(self.waiting).map(move |(c, g)| (c[j], g))
+        pairs.take(self.pending).map(move |(c, g)| (c[j], g))
     }
 
     /// Writes the Jacobian, T(S) and the products, and the force.
@@ -123,7 +123,7 @@ impl Assembly {
                     *entry += a + b;
                 }
             } else {
-                // Most motions stick from one turning point on per half of the turn.
+                // Most motions stick from one turning point on in each half of the period.
                 let (c, g) = products.next().unwrap_or((0.0, &self.zeros));
                 if mean == 1 {
                     column[0] = of_stiffness.mean + c * g[0];

@@ -11,7 +11,7 @@ pub(super) struct Block<'a> {
     matrix: &'a mut [f64],
     /// Rows of the matrix.
     rows: usize,
-    /// Place of the block's first entry.
+    /// Index of the block's first entry.
     first: usize,
     /// Rows of the block.
     size: usize,

@@ -1,13 +1,13 @@
-//! Evaluation of laws without memory: samples of motion and velocity in, harmonics of the force and
-//! their derivatives out.
+//! Evaluation of laws without memory: from samples of motion and velocity to harmonics of the force and their
+//! derivatives.
 //!
-//! With the spectra Sᵘ and Sᵛ of the tangents ∂f/∂u and ∂f/∂v, and D the derivative by time, which
-//! multiplies Xₕ by iωh,
+//! With the spectra Sᵘ and Sᵛ of the tangents ∂f/∂u and ∂f/∂v, and D the derivative by time, which multiplies Xₕ by
+//! iωh,
 //!
 //! > ∂F/∂X = T(Sᵘ) + T(Sᵛ)·D,  ∂F/∂ω = T(Sᵛ)·(ihX),  offset = F − ∂F/∂X · X.
 //!
-//! Both are the exact derivatives of the sampled F, however few the samples, because the samples of
-//! a motion are linear in its harmonics.
+//! Both are the exact derivatives of the sampled F, however few the samples, because the samples of a motion are
+//! linear in its harmonics.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::toeplitz::Toeplitz;
@@ -18,13 +18,12 @@ use crate::fourier::HarmonicSet;
 use crate::fourier::transform::{Half, Lane, Transform};
 use num_complex::Complex64;
 
-/// Tables and memory for one law, or for several of equal directions and samples, on the motions of
-/// one harmonic set.
+/// Tables and memory for one law, or for several of equal directions and samples, on the motions of one harmonic set.
 pub struct MemorylessEvaluator {
     directions: usize,
     velocity: bool,
     half_suffices: bool,
-    /// Samples per period requested.
+    /// Requested samples per period.
     requested: usize,
     transform: Transform,
     /// Motions and velocities, samples × d.
@@ -50,8 +49,7 @@ impl MemorylessEvaluator {
     /// Memory for `law` on motions of `set` at `requested` samples per period or a few more.
     ///
     /// # Errors
-    /// `Argument` for a law without directions, and for fewer samples than distinguish the
-    /// harmonics; `OutOfMemory`.
+    /// `Argument` for a law without directions, and for fewer samples than distinguish the harmonics; `OutOfMemory`.
     pub fn new(set: &HarmonicSet, law: &dyn Memoryless, requested: usize) -> Result<Self> {
         let (d, m) = (law.directions(), set.packed_len());
         let highest = set.highest_reduced();
@@ -69,7 +67,7 @@ impl MemorylessEvaluator {
         let transform = Transform::new(set, requested, half)?;
         let n = transform.held();
         let velocity = law.uses_velocity();
-        let feels = usize::from(velocity);
+        let with_velocity = usize::from(velocity);
         let signals = n.saturating_mul(d);
         let tangents = signals.saturating_mul(d);
         let samples = |len: usize| try_vec(len, 0.0, "samples");
@@ -80,16 +78,16 @@ impl MemorylessEvaluator {
             requested,
             transform,
             u: samples(signals)?,
-            v: samples(feels * signals)?,
+            v: samples(with_velocity * signals)?,
             f: samples(signals)?,
             df_du: samples(tangents)?,
-            df_dv: samples(feels * tangents)?,
+            df_dv: samples(with_velocity * tangents)?,
             scratch: samples(signals.saturating_mul(2))?,
             spectrum: try_vec(2 * highest + 1, Complex64::ZERO, "a stiffness spectrum")?,
             toeplitz: Toeplitz::new(set)?,
-            quadrature: samples(feels * d * m)?,
-            packed: samples(feels * m)?,
-            block: try_vec(feels * m.saturating_mul(m), 0.0, "a contact Jacobian")?,
+            quadrature: samples(with_velocity * d * m)?,
+            packed: samples(with_velocity * m)?,
+            block: try_vec(with_velocity * m.saturating_mul(m), 0.0, "a contact Jacobian")?,
         })
     }
 
@@ -102,11 +100,11 @@ impl MemorylessEvaluator {
             && self.requested == requested
     }
 
-    /// Force and derivatives of `law` at a motion, d·m numbers, direction after direction. `law` is
-    /// the one that the memory was made for, or the same in other units.
+    /// Force and derivatives of `law` at a motion, d·m numbers, direction after direction. `law` is the one for which
+    /// memory was allocated, or the same in other units.
     ///
     /// # Errors
-    /// Those of the law; then `out` is of no use.
+    /// Those of the law; `out` is then invalid.
     pub fn evaluate(
         &mut self,
         law: &dyn Memoryless,
@@ -116,7 +114,7 @@ impl MemorylessEvaluator {
         out: &mut Evaluation,
     ) -> Result<()> {
         if motion.is_empty() {
-            // A set without harmonics.
+            // The set has no harmonics.
             return Ok(());
         }
         self.sample(set, omega, motion);

@@ -1,9 +1,9 @@
 //! Exact harmonics of the normal force of a law with states.
 //!
-//! Such a force has no memory: N = max(n₀ − kn·y, 0) has closings and openings that are located and
-//! integrals in closed form, as under friction in one direction. Its harmonics are then a smooth function
-//! of the motion. Sampled harmonics have a corner wherever a closing passes a sample, and a stiff contact makes
-//! so many of them that Newton's method does not converge.
+//! Such a force has no memory: N = max(n₀ − kn·y, 0) has closings and openings that are located and integrals in
+//! closed form, as under friction in one direction. Its harmonics are then a smooth function of the motion. Sampled
+//! harmonics have a corner wherever a closing passes a sample, and a stiff contact causes so many of them that
+//! Newton's method does not converge.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
@@ -14,7 +14,7 @@ use crate::fourier::HarmonicSet;
 /// Tables and memory for normal forces.
 pub(super) struct Normal {
     set: HarmonicSet,
-    way: VaryingNormalLoadEvaluator,
+    evaluator: VaryingNormalLoadEvaluator,
     /// Result in a tangential direction without force, and in the normal one.
     found: Evaluation,
 }
@@ -23,7 +23,7 @@ impl Normal {
     pub fn new(set: &HarmonicSet) -> Result<Self> {
         Ok(Self {
             set: set.try_clone()?,
-            way: VaryingNormalLoadEvaluator::new(set)?,
+            evaluator: VaryingNormalLoadEvaluator::new(set)?,
             found: Evaluation::new(set, 2)?,
         })
     }
@@ -31,7 +31,8 @@ impl Normal {
     /// Writes force, Jacobian and offset of the last of several motions.
     pub fn evaluate(&mut self, law: &dyn VaryingNormalLoad, motion: &[f64], out: &mut Evaluation) {
         let (n, m) = (motion.len(), self.set.packed_len());
-        self.way.evaluate(law, &self.set, &motion[n - 2 * m..], &mut self.found);
+        self.evaluator
+            .evaluate(law, &self.set, &motion[n - 2 * m..], &mut self.found);
         out.force[n - m..].copy_from_slice(&self.found.force[m..]);
         out.offset[n - m..].copy_from_slice(&self.found.offset[m..]);
         for k in 0..m {

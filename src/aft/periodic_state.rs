@@ -1,15 +1,15 @@
-//! The start of a marched period that returns to itself.
+//! The initial states of a marched period that return after it.
 //!
-//! One march maps the states z at the start to those at the end, with the derivative P, the product of
-//! the derivatives of the steps. Where a load erases memory, P shrinks, and Newton's step solves
-//! (I − P) δ = z_end − z. Where nothing slips P = I: any state returns, and the marched one is kept.
-//! Between them lies the projector Π onto the part that P does not change, P Π = Π P = Π; then
+//! One march maps the states z at the start to those at the end, with the derivative P, the product of the
+//! derivatives of the steps. Where a load erases memory, P shrinks, and Newton's step solves (I − P) δ = z_end − z.
+//! Where nothing slips P = I: any state returns, and the marched one is kept. The general case has the projector Π
+//! onto the part that P does not change, P Π = Π P = Π; then
 //!
 //! > (I − P + Π) δ = z_end − z
 //!
-//! is Newton's step outside it and one more march within it. The same matrix gives the derivative of
-//! the periodic start: (I − P + Π) S = q + Π S_before with q the derivative of the march at a fixed start
-//! and S_before that of the start marched from.
+//! is Newton's step outside it and one more march within it. The same matrix determines the derivative of the
+//! periodic start: (I − P + Π) S = q + Π S_before with q the derivative of the march at a fixed start and S_before
+//! that of the start marched from.
 
 use crate::contact::march::March;
 use crate::error::Result;
@@ -19,7 +19,7 @@ use crate::linalg::lu::Lu;
 /// Squarings in the search for Π; a part that decays by less than 1e-10 per period counts as kept.
 const SQUARINGS: usize = 40;
 
-/// Entries of Π below this are no projection.
+/// Largest size of Π that is no projection.
 const NOTHING: f64 = 1e-9;
 
 /// The linearised map over one period.
@@ -71,8 +71,8 @@ impl ReturnMap {
         self.is_regular = self.factors.factor().is_ok();
     }
 
-    /// Π = lim ((I + P)/2)^(2ⁿ): the mean with I leaves an eigenvalue of 1 alone and damps all others on
-    /// the unit circle, −1 among them.
+    /// Π = lim ((I + P)/2)^(2ⁿ): the mean with I keeps an eigenvalue of 1 and damps all others on the unit circle, −1
+    /// among them.
     fn project(&mut self) {
         let s = self.states;
         unit(s, &mut self.kept);
@@ -88,7 +88,7 @@ impl ReturnMap {
                 .iter()
                 .zip(&self.scratch)
                 .fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
-            // Further squaring of a projector would only let rounding grow.
+            // Further squaring of a projector would only amplify round-off.
             if size < NOTHING || size.is_nan() || size > NOTHING.recip() || change < 1e-13 * size {
                 break;
             }
@@ -105,8 +105,8 @@ impl ReturnMap {
         self.factors.solve(b);
     }
 
-    /// Column `column` of S = (I − P + Π)⁻¹ (q + Π S_before), into `solved`; S_before and q are row-major
-    /// with rows of `width`.
+    /// Column `column` of S = (I − P + Π)⁻¹ (q + Π S_before), into `solved`; S_before and q are row-major with rows
+    /// of `width`.
     pub fn start_column(&self, q: &[f64], before: &[f64], width: usize, column: usize, solved: &mut [f64]) {
         for (row, value) in solved.iter_mut().enumerate() {
             *value = q[row * width + column];
@@ -118,7 +118,7 @@ impl ReturnMap {
     }
 }
 
-/// Largest magnitude; NaN if one is.
+/// Largest magnitude; NaN if any value is NaN.
 pub(super) fn largest(values: &[f64]) -> f64 {
     values
         .iter()

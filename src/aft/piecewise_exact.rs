@@ -1,8 +1,8 @@
 //! Exact evaluation: turning points and slip times located, Fourier integrals in closed form.
 //!
 //! No law is named here: [`PiecewiseLinear::pieces`] returns intervals, and each contributes
-//! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices;
-//! the other half repeats it with opposite sign and doubles every integral that is used.
+//! ∫ₐᵇ e^{−inτ} dτ = (e^{−ina} − e^{−inb})/(in). For sets of odd harmonics half a turn suffices; the other half
+//! repeats it with opposite sign and doubles every integral that is used.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
@@ -90,13 +90,13 @@ impl Exact {
     }
 }
 
-/// scale·∫ₐᵇ e^{−inτ} dτ for all n. With odd harmonics and `turn` = π the piece stands for its mirror
-/// image too; then even n belong to the stiffness spectrum and odd n to g, and both double.
+/// scale·∫ₐᵇ e^{−inτ} dτ for all n. With odd harmonics and `turn` = π the piece represents its mirror image too; then
+/// even n belong to the stiffness spectrum and odd n to g, and both double.
 pub(super) fn transform([a, b]: [f64; 2], scale: f64, turn: f64, out: &mut [Complex64]) {
     out.fill(Complex64::ZERO);
     out[0] = (scale * (b - a)).into();
-    // A whole turn has no harmonics but the mean. Odd n over half a turn: only offsets of a clamped
-    // slider would use them, and an odd motion never clamps.
+    // A whole turn has no harmonics but the mean. Odd n over half a turn would be used only by offsets of a clamped
+    // slider, and an odd motion never clamps.
     if a == 0.0 && b >= turn {
         return;
     }

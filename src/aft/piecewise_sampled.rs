@@ -1,6 +1,6 @@
-//! Sampled evaluation: the law at N equidistant times per period, Fourier sums instead of
-//! integrals. The force is O(N⁻²) accurate, the Jacobian O(N⁻¹); it serves for cross-checks and
-//! for laws without exact events. Smooth laws are not sampled: their harmonics are exact.
+//! Sampled evaluation: the law at N equidistant times per period, with Fourier sums instead of integrals. The force
+//! is O(N⁻²) accurate, the Jacobian O(N⁻¹); it is used for cross-checks and for laws without exact events. Smooth
+//! laws are not sampled: their harmonics are exact.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;

@@ -1,12 +1,11 @@
-//! Laws without events: a force k·x + g(x) with g homogeneous of degree d, whose tangent has a
-//! known Fourier spectrum S. Then
+//! Laws without events: a force k·x + g(x) with g homogeneous of degree d, whose tangent has a known Fourier spectrum
+//! S. Then
 //!
 //! > ∂F/∂X = k + T(S),  F = k X + T(S)·X/d,  F − ∂F/∂X · X = (1 − d)/d · T(S)·X
 //!
-//! by Euler's theorem on homogeneous functions, exactly for the carried harmonics: T(S) needs S up
-//! to twice the highest of them. Nothing is sampled, also where samples are requested. See
-//! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
-//! doi:10.1007/978-3-030-14023-6, on polynomial forces.
+//! by Euler's theorem on homogeneous functions, exactly for the carried harmonics: T(S) needs S up to twice the
+//! highest of them. Nothing is sampled, even where samples are requested. See Krack & Gross, Harmonic Balance for
+//! Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::jacobian_assembly::Assembly;
@@ -16,11 +15,11 @@ use crate::fourier::HarmonicSet;
 impl Assembly {
     /// Evaluates a law without events.
     pub(super) fn spectral(&mut self, law: &dyn Spectral, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
-        // Never stuck, even at rest: its stiffness need not be the reference's.
+        // The contact is never stuck, even at rest: its stiffness need not be that of the reference.
         self.start(out);
         law.spectrum(set, motion, &mut self.spectrum);
         self.finish(set, motion, out);
-        // The force now holds T(S)·X.
+        // The force holds T(S)·X at this point.
         let (linear, degree) = (law.linear(), law.degree());
         let m = motion.len();
         for (i, x) in motion.iter().enumerate() {

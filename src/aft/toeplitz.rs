@@ -1,9 +1,9 @@
 //! The operator T(S) of a stiffness spectrum: product of a periodic stiffness s(τ) with a motion.
 //!
-//! With s = Σ Sₙ e^{inτ} the harmonics of s·x are Fₕ = Σₘ Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ), Toeplitz plus
-//! Hankel, and for the mean F₀ = S₀ X₀ + Re Σₘ conj(Sₘ) Xₘ. In packed form T is a real matrix. Along a
-//! column h runs while m stays, so that every column is the sum of two stretches of four lists of
-//! O(H) numbers: (Sₖ) and (i Sₖ) for the differences, (Sₖ) and (−i Sₖ) for the sums of harmonics.
+//! With s = Σ Sₙ e^{inτ} the harmonics of s·x are Fₕ = Σₘ Sₕ₋ₘ Xₘ + Sₕ₊ₘ conj(Xₘ), Toeplitz plus Hankel, and for the
+//! mean F₀ = S₀ X₀ + Re Σₘ conj(Sₘ) Xₘ. In packed form T is a real matrix. Along a column h varies while m is fixed,
+//! so that every column is the sum of two sections of four lists of O(H) numbers: (Sₖ) and (i Sₖ) for the
+//! differences, (Sₖ) and (−i Sₖ) for the sums of harmonics.
 
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
@@ -24,7 +24,7 @@ pub(super) struct Toeplitz {
     column: [Vec<f64>; 2],
 }
 
-/// A column of T(S): the entry in the row of the mean, and two stretches whose sum the others are.
+/// A column of T(S): the entry in the row of the mean, and two sections whose sum the others are.
 #[derive(Clone, Copy)]
 pub(super) struct Column<'a> {
     pub(super) mean: f64,
@@ -93,8 +93,8 @@ impl Toeplitz {
         }
     }
 
-    /// Adds T(S) to a column-major block, whose columns begin `leading` numbers apart. `block` begins
-    /// with the first entry of the block and may be part of a larger matrix.
+    /// Adds T(S) to a column-major block, whose columns begin `leading` numbers apart. `block` begins with the first
+    /// entry of the block and may be part of a larger matrix.
     pub(super) fn add(&self, block: &mut [f64], leading: usize) {
         let m = self.row.len();
         for (j, to) in block.chunks_mut(leading.max(1)).take(m).enumerate() {

@@ -1,8 +1,8 @@
-//! Exact evaluation of friction under a varying normal load: two directions, x along the surface
-//! and y along its normal.
+//! Exact evaluation of friction under a varying normal load: two directions, x along the surface and y along its
+//! normal.
 //!
-//! The tangential force is made of pieces f = a·x + b·y + a_r·x(r) + b_r·y(r) + o, see
-//! [`CoupledPiece`], so that with the spectra S of a and b
+//! The tangential force consists of pieces f = a·x + b·y + a_r·x(r) + b_r·y(r) + o, see [`CoupledPiece`], so that
+//! with the spectra S of a and b
 //!
 //! > ∂Fₜ/∂X = T(Sᵃ) + Σ a_r g ⊗ c(r),  ∂Fₜ/∂Y = T(Sᵇ) + Σ (b_r + m) g ⊗ c(r),
 //!
@@ -36,7 +36,7 @@ pub struct VaryingNormalLoadEvaluator {
     anchor: Vec<f64>,
 }
 
-/// Force's and motion's direction of each spectrum.
+/// Directions of force and motion of each spectrum.
 const BLOCKS: [[usize; 2]; 3] = [[0, 0], [0, 1], [1, 1]];
 
 impl VaryingNormalLoadEvaluator {

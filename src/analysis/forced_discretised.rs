@@ -1,4 +1,4 @@
-//! A forced response as its branch is followed: the equations at each resolution, and the records of its points.
+//! A forced response as the tracer uses it: the equations at each resolution, and the records of its points.
 
 use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
@@ -41,7 +41,7 @@ impl<'a> Equations<'a> {
         })
     }
 
-    /// The record of the point that the problem was evaluated at last.
+    /// The record of the point at which the problem was evaluated last.
     fn record<'b>(&'b mut self, point: &'b Point, error: f64) -> Result<Record<'b>> {
         let (u, omega) = (point.unknowns(), point.parameter());
         self.problem.response(u, &mut self.response);
@@ -61,13 +61,13 @@ impl<'a> Equations<'a> {
     }
 }
 
-/// A forced response that can be followed along its branch.
+/// A forced response in the form that the tracer follows.
 pub(super) struct ForcedDiscretised<'a> {
     settings: Settings,
     resolutions: Resolutions<'a, Equations<'a>>,
     recorder: BranchRecorder<'a>,
     estimator: Option<ForcedEstimator<'a>>,
-    /// Whether the current problem may have been evaluated elsewhere than at the current point.
+    /// Whether the current problem may have been evaluated at another point than the current one.
     stale: bool,
     /// Error of the point estimated last, until it is recorded.
     estimated: Option<f64>,
@@ -115,7 +115,7 @@ impl<'a> ForcedDiscretised<'a> {
         Ok(())
     }
 
-    /// Estimate of a point that was evaluated last.
+    /// Estimate of the point evaluated last.
     fn estimate_error(&mut self, point: &Point) -> Result<Option<Estimate>> {
         let Some(estimator) = &mut self.estimator else {
             return Ok(None);

@@ -18,16 +18,15 @@ use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
 
-/// Follows the periodic response of `model` to its forces from `range.omega_start` to
-/// `range.omega_stop` by harmonic balance and arc-length continuation.
+/// Follows the periodic response of `model` to its forces from `range.omega_start` to `range.omega_stop` by harmonic
+/// balance and arc-length continuation.
 ///
 /// A branch that ends early is returned with a positive [`Branch::status`] and every point found.
 ///
 /// # Errors
-/// Bad options and models (see [`SolverOptions::check`], [`ForcedOptions::check`],
-/// [`Condensed::new`]), `NoConvergence` when no first point was found, `NoBoundedSolution` when it is known that there is none
-/// (see [`Model::overload`]), `Callback` when that is a callback's
-/// doing.
+/// Bad options and models (see [`SolverOptions::check`], [`ForcedOptions::check`], [`Condensed::new`]),
+/// `NoConvergence` if no first point was found, `NoBoundedSolution` if none is known to exist (see
+/// [`Model::overload`]), `Callback` if a callback caused that.
 pub fn forced_response(
     model: &Model,
     solver: &SolverOptions,
@@ -47,8 +46,8 @@ pub fn forced_response(
     let resolution = levels.at(level)?;
     let response_dof = match solver.response_dof {
         Some(dof) => dof,
-        // At the lower end, so that both directions follow the same one.
-        None => forced_dof_that_moves_most(model, &resolution.condensed, range.omega_start.min(range.omega_stop))?,
+        // The lower end is used, so that both directions follow the same degree of freedom.
+        None => forced_dof_with_largest_motion(model, &resolution.condensed, range.omega_start.min(range.omega_stop))?,
     };
     let given = match range.guess {
         Some(guess) => Some(relative_motion(resolution, model.ndof(), guess)?),
@@ -75,7 +74,7 @@ pub fn forced_response(
         range: (range.omega_start, range.omega_stop),
         at: range.at,
         max_points: solver.max_points,
-        // As far again as the range is long, but never near zero frequency.
+        // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
     let mut tracer = BranchTracer::new(course, solver.tolerance);
@@ -94,7 +93,7 @@ pub fn forced_response(
     response.finish(model, solver, &ending, tracer.estimates())
 }
 
-/// The first point, with the current harmonics or, where that fails and a tolerance chooses them, with the fewest.
+/// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest.
 fn first_point(response: &mut ForcedDiscretised<'_>, settings: &Settings, hooks: &Hooks<'_>) -> Result<First> {
     let found = initial_point::solve(response.problem(), settings, hooks.cancelled);
     match found {
@@ -116,8 +115,8 @@ fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
     Ok(forced)
 }
 
-/// Why no first point was found, as far as it is known: there is none, or, where contacts press at rest, it comes
-/// from the static solution.
+/// The error with its reason, as far as it is known: no bounded solution exists, or, with preloaded contacts, the
+/// static solution or the load path from it was not found.
 fn with_reason(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: usize) -> Error {
     if e.status != Status::NoConvergence {
         return e;
@@ -137,9 +136,9 @@ fn with_reason(e: Error, model: &Model, omega: f64, condensed: &Condensed, held:
     )
 }
 
-/// The forced degree of freedom with the largest fundamental at `omega`, with every contact at its
-/// reference stiffness.
-fn forced_dof_that_moves_most(model: &Model, condensed: &Condensed, omega: f64) -> Result<usize> {
+/// The forced degree of freedom with the largest fundamental at `omega`, with every contact at its reference
+/// stiffness.
+fn forced_dof_with_largest_motion(model: &Model, condensed: &Condensed, omega: f64) -> Result<usize> {
     let set = condensed.set();
     let observed = set.numbers().iter().position(|&h| h > 0).unwrap_or(0);
     let n = model.ndof();

@@ -1,4 +1,4 @@
-//! A nonlinear mode as its branch is followed: the equations at each resolution, and the records of its points.
+//! A nonlinear mode as the tracer uses it: the equations at each resolution, and the records of its points.
 
 use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
@@ -18,7 +18,7 @@ use crate::results::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Record, SpecialKind};
 use num_complex::Complex64;
 
-/// A nonlinear mode that can be followed along its branch.
+/// A nonlinear mode in the form that the tracer follows.
 pub(super) struct ModeDiscretised<'a> {
     start: LinearStart<'a>,
     settings: Settings,
@@ -33,7 +33,7 @@ pub(super) struct ModeDiscretised<'a> {
     before: Vec<Complex64>,
 }
 
-/// Numbers of a point beside its motion.
+/// Quantities of a point besides its motion.
 struct Numbers {
     mode: ModePoint,
     omega: f64,
@@ -65,7 +65,7 @@ impl<'a> ModeDiscretised<'a> {
         })
     }
 
-    /// Gives the branch the data of its mode.
+    /// Stores the data of the mode in its branch.
     pub fn set_mode(&mut self, data: ModeData) {
         self.recorder.branch_mut().set_mode(data);
     }
@@ -110,7 +110,7 @@ impl<'a> ModeDiscretised<'a> {
         estimator.at(&solved, point.parameter(), damping).map(Some)
     }
 
-    /// Numbers of the point evaluated last. Its errors are unknown at a fold, where no solution is isolated.
+    /// Quantities of the point evaluated last. Its errors are unknown at a fold, where no solution is isolated.
     fn measure(&mut self, point: &Point, is_fold: bool) -> Result<Numbers> {
         let mode = self.resolutions.current.measure(point, self.start.linear, &self.before);
         let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).0;
@@ -137,8 +137,8 @@ impl<'a> ModeDiscretised<'a> {
         })
     }
 
-    /// The error that the tolerance bounds: that of the frequency, relative, or of the damping ratio, over the largest
-    /// one so far. NaN if either is unknown.
+    /// The error that the tolerance bounds: that of the frequency, relative, or of the damping ratio, over the
+    /// largest one so far. NaN if either is unknown.
     fn bounded_error(&self, (of_frequency, of_damping): (f64, f64), damping: f64) -> f64 {
         let of_damping = if of_damping == 0.0 {
             0.0
@@ -217,7 +217,7 @@ impl Discretised for ModeDiscretised<'_> {
 impl Recorder for ModeDiscretised<'_> {
     fn record(&mut self, point: &Point) -> Result<()> {
         self.evaluate(point)?;
-        // All that may fail comes before anything is stored.
+        // Every step that may fail comes before the storage.
         let numbers = self.measure(point, false)?;
         self.damping = self.damping.max(numbers.mode.damping_ratio.abs());
         if let Some(data) = self.recorder.branch_mut().mode_data_mut() {
@@ -232,7 +232,7 @@ impl Recorder for ModeDiscretised<'_> {
         Ok(())
     }
 
-    /// Modes are factorised at each point of the curve: there is nothing more accurate.
+    /// Modes are factorised at each point of the curve: no evaluation is more accurate.
     fn sharpen(&mut self, _kind: SpecialKind, point: &mut Point) -> Result<()> {
         self.evaluate(point)
     }

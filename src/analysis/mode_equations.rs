@@ -99,8 +99,8 @@ impl<'a> Equations<'a> {
         &self.problem.shape()[i * dofs..(i + 1) * dofs]
     }
 
-    /// Numbers of the mode at the point evaluated last; `before` is the fundamental of the point before, empty if there
-    /// is none.
+    /// Quantities of the mode at the point evaluated last; `before` is the fundamental of the previous point, empty
+    /// if there is none.
     pub fn measure(&mut self, point: &Point, linear: &LinearMode, before: &[Complex64]) -> ModePoint {
         let condensed = &*self.resolution.condensed;
         let n = point.unknowns().len();

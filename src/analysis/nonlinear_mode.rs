@@ -1,5 +1,5 @@
-//! A nonlinear mode over a range of amplitude: its frequency and damping from contacts that stick to
-//! contacts that slide.
+//! A nonlinear mode over a range of amplitude: its frequency and damping from contacts that stick to contacts that
+//! slide.
 
 use crate::adaptivity::branch_recorder::Ending;
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
@@ -25,28 +25,27 @@ use crate::results::mode_branch::{ModeData, ModeInfo};
 use crate::results::{Branch, SpecialKind};
 use num_complex::Complex64;
 
-/// Motion that counts as none, relative to the largest of the mode.
+/// Motion that counts as zero, relative to the largest of the mode.
 const NODE: f64 = 1e-9;
 
-/// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset
-/// itself the branch has a corner, and where modes share a frequency no solution is isolated.
+/// First amplitude beyond the onset of slip that is solved for, relative to the onset. At the onset itself the branch
+/// has a corner, and where modes share a frequency no solution is isolated.
 const BEYOND_ONSET: f64 = 1.02;
 
-/// How far a branch that began to slip may come back below the onset, in log₁₀, on its way to an
-/// amplitude above it.
+/// Distance below the onset, in log₁₀, to which a branch that began to slip may come back before it reaches an
+/// amplitude above the onset.
 const BELOW_ONSET: f64 = 3.0;
 
 /// Follows a nonlinear mode of `model` from `range.log10_start` to `range.log10_stop`.
 ///
-/// The forces of the model play no part. A branch that ends early is returned with a positive
-/// [`Branch::status`] and every point found. Its peaks are the points of largest damping ratio, its
-/// folds those where the amplitude turns.
+/// The forces of the model have no effect. A branch that ends early is returned with a positive [`Branch::status`]
+/// and every point found. Its peaks are the points of largest damping ratio, its folds those where the amplitude
+/// turns.
 ///
 /// # Errors
-/// Bad options and models ([`SolverOptions::check`], [`ModeOptions::check`],
-/// [`Model::select_mode`]), `Argument` for a mode that moves no contact and for a reference degree of
-/// freedom at a node of the mode, `Unsupported` for constant forces, `NoConvergence` when no first
-/// point was found.
+/// Bad options and models ([`SolverOptions::check`], [`ModeOptions::check`], [`Model::select_mode`]), `Argument` for
+/// a mode that moves no contact and for a reference degree of freedom at a node of the mode, `Unsupported` for
+/// constant forces, `NoConvergence` if no first point was found.
 pub fn nonlinear_mode(
     model: &Model,
     solver: &SolverOptions,
@@ -169,12 +168,12 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     mode.finish(model, solver, &ending, tracer.estimates())
 }
 
-/// Chooses the phase's degree of freedom and gives the linear mode amplitude 1.
+/// Selects the degree of freedom of the phase and scales the linear mode to amplitude 1.
 fn gauge(model: &Model, range: &ModeOptions<'_>, linear: &mut LinearMode) -> Result<Gauge> {
     let shape = &mut linear.shape;
     let mut most = 0;
     for (dof, z) in shape.iter().enumerate() {
-        // The first of those that move alike, rounding or not.
+        // Among degrees of freedom that move alike, up to round-off, the first is selected.
         if z.norm() > (1.0 + 1e-9) * shape[most].norm() {
             most = dof;
         }
@@ -243,7 +242,7 @@ fn course<'a>(
     };
     let course = Course {
         settings: Settings {
-            // The branch may come back to amplitudes below the onset, slipping.
+            // The branch may come back to amplitudes below the onset, with slip.
             start: if from < end { start } else { from },
             ..settings
         },
@@ -267,7 +266,7 @@ fn trace(
     let linear_up_to = onset.linear_up_to;
     let level = mode.resolution();
     if start <= linear_up_to {
-        // Nothing moves there but the fundamental.
+        // Nothing but the fundamental vibrates there.
         if mode.levels().is_automatic() {
             mode.select(0)?;
         }
@@ -298,7 +297,7 @@ fn trace(
         }
         Ok(First::Cancelled) => Ok(Status::StoppedByCaller),
         Err(e) => match corner {
-            // The amplitude turns as soon as contacts slip: the way leads round the corner.
+            // The amplitude turns as soon as contacts slip: the path leads around the corner.
             Some(corner) if e.status == Status::NoConvergence && start <= linear_up_to => {
                 hooks.log(LogLevel::Info, "the amplitude turns at the onset of slip");
                 tracer.trace_from(mode, corner, hooks)
@@ -326,7 +325,7 @@ fn requested_below(
             let at_it = Settings { start: p, ..settings };
             loop {
                 match initial_point::solve(mode.problem(), &at_it, hooks.cancelled)? {
-                    // Until the point requires no more harmonics.
+                    // The loop ends when the point requires no more harmonics.
                     First::Found(point, _) => {
                         if tracer.record_special(mode, SpecialKind::At(i), &point)? {
                             break;
@@ -340,9 +339,9 @@ fn requested_below(
     Ok(None)
 }
 
-/// The point at `settings.start`, beyond the linear range. Newton's method from a linear mode far
-/// below may find another mode, so the branch is followed from `near`, where the linear mode is a
-/// sure start: just beyond the onset of slip, or where smooth laws are nearly linear.
+/// The point at `settings.start`, beyond the linear range. Newton's method from a linear mode far below may find
+/// another mode, so the branch is followed from `near`, where the linear mode is a reliable initial guess: just
+/// beyond the onset of slip, or where smooth laws are nearly linear.
 fn first_nonlinear(
     problem: &mut dyn Problem,
     settings: &Settings,
@@ -362,18 +361,18 @@ fn first_nonlinear(
     let first = match initial_point::solve(problem, &at_near, hooks.cancelled) {
         Ok(First::Found(point, _)) => point,
         Ok(First::Cancelled) => return Ok(First::Cancelled),
-        // The amplitude turns as soon as contacts slip: the way leads round the corner.
+        // The amplitude turns as soon as contacts slip: the path leads around the corner.
         Err(e) => match onset {
             Some(onset) if e.status == Status::NoConvergence => onset.try_clone()?,
             _ => return Err(e),
         },
     };
-    // It may come back to amplitudes below the onset.
-    let way = Settings {
+    // The branch may come back to amplitudes below the onset.
+    let path = Settings {
         start: near - BELOW_ONSET,
         ..at_near
     };
-    let mut continuation = Continuation::new(way, first)?;
+    let mut continuation = Continuation::new(path, first)?;
     for _ in 0..max_points {
         match continuation.advance(problem, hooks.cancelled)? {
             Advance::Accepted { point, last: true } => return Ok(First::Found(point, Way::Branch)),
@@ -389,8 +388,8 @@ fn first_nonlinear(
     )
 }
 
-/// Points from the start of the range to `end`, below which all contacts stick: nothing has to
-/// be solved there. They are as dense as the largest steps of the continuation.
+/// Records points from the start of the range to `end`, below which all contacts stick: no equation need be solved
+/// there. They are as dense as the largest steps of the continuation.
 fn linear_range(
     mode: &mut ModeDiscretised<'_>,
     tracer: &BranchTracer<'_>,

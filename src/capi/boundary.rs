@@ -126,7 +126,7 @@ pub(super) fn remember(sentence: &str, argument: i32) {
 
 /// Attributes an error to an argument of the C function.
 pub(super) trait WithArgument<T> {
-    /// The same error with the number of the argument, counted from 1, unless it has one already.
+    /// The same error with the number of the argument, counted from 1, unless it already has one.
     fn with_argument(self, argument: i32) -> Result<T>;
 }
 
@@ -143,7 +143,7 @@ mod tests {
     use core::ffi::CStr;
     use std::sync::atomic::{AtomicUsize, Ordering};
 
-    /// Panics of this test that the caller's own hook has seen.
+    /// Panics of this test that reached the caller's own hook.
     static SEEN: AtomicUsize = AtomicUsize::new(0);
 
     #[test]

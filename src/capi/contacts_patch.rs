@@ -108,7 +108,7 @@ pub unsafe extern "C" fn hbvib_model_add_patch(
 /// Three numbers for each pair.
 ///
 /// # Safety
-/// As for [`input`].
+/// Those of [`input`].
 unsafe fn triples<'a, T>(p: *const T, n: usize, argument: i32, name: &str) -> Result<&'a [[T; 3]]> {
     let Some(len) = n.checked_mul(3) else {
         return fail!(Dimension, "{name}: 3 x {n} entries cannot lie in memory").with_argument(argument);

@@ -263,7 +263,7 @@ fn volume(n: usize, rank: u32, argument: i32, name: &str) -> Result<usize> {
 /// Exponents of terms, checked; none for NULL.
 ///
 /// # Safety
-/// As for [`input`].
+/// Those of [`input`].
 unsafe fn powers((p, argument): (*const i32, i32), (terms, d): (usize, usize), name: &str) -> Result<Vec<u32>> {
     let mut powers = Vec::new();
     if p.is_null() {

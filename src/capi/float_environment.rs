@@ -12,7 +12,7 @@ impl FloatEnvironment {
     /// The environment of the library.
     pub(super) const DEFAULT: Self = Self(unit::DEFAULT);
 
-    /// The present environment: that of the caller where a call begins or a callback ends.
+    /// The present environment: that of the caller at the start of a call or the end of a callback.
     pub(super) fn of_the_caller() -> Self {
         Self(unit::read())
     }
@@ -51,7 +51,7 @@ mod unit {
 mod unit {
     use core::arch::asm;
 
-    /// FPCR after a reset; the flags stand in another register, which causes no trap here.
+    /// FPCR after a reset; the flags are in another register, which causes no trap here.
     pub const DEFAULT: u64 = 0;
 
     pub fn read() -> u64 {

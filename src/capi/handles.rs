@@ -22,7 +22,7 @@ const GENERATION_BITS: u32 = 24;
 const MAX_SLOTS: usize = 1 << SLOT_BITS;
 const MAX_GENERATION: u32 = (1 << GENERATION_BITS) - 1;
 
-/// Number of readers that stands for one writer.
+/// Number of readers that represents one writer.
 const WRITER: u32 = u32::MAX;
 
 /// End of the list of free slots.
@@ -68,7 +68,7 @@ fn table() -> MutexGuard<'static, Table> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A type that handles can stand for.
+/// A type of object to which handles refer.
 pub(super) trait Kept: Sized {
     /// The opaque type of the header.
     type Opaque;
@@ -78,7 +78,7 @@ pub(super) trait Kept: Sized {
     const NAME: &'static str;
     /// Puts the object into a slot.
     fn wrap(object: Vec<Self>) -> Object;
-    /// The object of a slot, where it is of this type.
+    /// The object of a slot, if it is of this type.
     fn pick(object: &mut Object) -> Option<*mut Self>;
     /// Whether the slot has an object of this type.
     fn holds(object: &Object) -> bool;

@@ -90,7 +90,7 @@ impl Sides<'_> {
 /// The degrees of freedom of a law over several motions: argument 2. The ground is not among them.
 ///
 /// # Safety
-/// As for [`input`].
+/// Those of [`input`].
 pub(super) unsafe fn list(dofs: *const i64, n: usize, ndof: usize) -> Result<Vec<usize>> {
     let mut list = Vec::new();
     for (i, &dof) in unsafe { input(dofs, n, 2, "dofs") }?.iter().enumerate() {
@@ -110,7 +110,7 @@ pub(super) fn check_id(id: *mut i64, argument: i32, name: &str) -> Result<()> {
     check_pointer(id, argument, name)
 }
 
-/// Attributes an error in a constant to the array whose name stands in its sentence.
+/// Attributes an error in a constant to the array that its sentence names.
 pub(super) fn with_named_argument(e: Error, arrays: &[(&str, i32)]) -> Error {
     let found = arrays.iter().find(|(name, _)| e.message().contains(name));
     e.in_argument(found.map_or(0, |&(_, argument)| argument))

@@ -57,7 +57,7 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
     call(|| {
         let mut contact = law(&unsafe { load(c, 1) }?).with_argument(1)?;
         if matches!(contact.kind, ContactKind::Friction3d) && contact.kn != 0.0 {
-            // A place along n says that the load varies.
+            // A degree of freedom along n declares that the load varies.
             contact.dof_a[2] = Some(0);
         }
         contact.check_constants().with_argument(1)?;
@@ -166,7 +166,7 @@ pub unsafe extern "C" fn hbvib_forced_residual(
             check_pointer(d_omega, 10, "d_omega")?;
             exact_len(d_omega_len, needed, 11, COMPLEX)?
         };
-        // Complex numbers are counted, doubles lie in memory.
+        // Arguments count complex numbers, memory holds doubles.
         disjoint(
             &[Range::new::<Complex64>(x.cast(), x_len, 4, "x")?],
             &[

@@ -161,7 +161,7 @@ fn part(value: i32) -> Result<Part> {
 /// Passes the matrix at `p`, of order `n`, to `then`; errors carry the number `argument`.
 ///
 /// # Safety
-/// The caller of the C function states that the arrays of the view are as long as it says.
+/// The caller of the C function states that the arrays of the view have the lengths that it contains.
 pub(super) unsafe fn with_matrix<T>(
     p: *const hbvib_matrix,
     argument: i32,

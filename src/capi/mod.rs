@@ -1,19 +1,18 @@
-//! The C interface: `include/hbvib.h` is generated from this module, and from the header what the other
-//! languages share with it (`crates/bindings`).
+//! The C interface: `include/hbvib.h` is generated from this module, and the declarations of the other languages from
+//! the header (`crates/bindings`).
 //!
-//! Infrastructure: `boundary` turns panics and errors into statuses, `handles` turns objects into numbers
-//! that cannot be mistaken, `versioned_struct` has the rules by which structs cross, `arrays` and
-//! `indices` check the pointers and numbers of the caller, `float_environment` keeps the settings of the
-//! floating-point unit apart. All other files are named after the sections of the header
-//! (`crates/bindings/src/header.rs` has their order), and a file lists its items in the order of the
-//! header. No numerics here.
+//! Infrastructure: `boundary` turns panics and errors into statuses, `handles` turns objects into numbers that cannot
+//! be confused, `versioned_struct` has the rules by which structs cross the boundary, `arrays` and `indices` check
+//! the pointers and numbers of the caller, `float_environment` separates the settings of the floating-point unit. All
+//! other files are named after the sections of the header (`crates/bindings/src/header.rs` has their order), and a
+//! file lists its items in the order of the header. No file here contains numerics.
 //!
-//! The doc comments of exported items are written for the reader of the header, and the generator reads
-//! three words in the description of a pointer: an argument that may be `NULL` says so, an array of
-//! `complex` numbers too, and an `int64_t` array that a function fills receives `numbers`.
+//! The doc comments of exported items are written for the reader of the header, and the generator reads three words
+//! in the description of a pointer: an argument that may be `NULL` states that, an array of `complex` numbers too,
+//! and an `int64_t` array that a function fills receives `numbers`.
 
 #![allow(unsafe_code)]
-// The comments become those of a C header, whose contract ("Conventions") stands at its top.
+// The comments become those of a C header, whose contract ("Conventions") is at its top.
 #![allow(clippy::missing_safety_doc, clippy::doc_markdown)]
 
 mod arrays;

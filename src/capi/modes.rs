@@ -138,7 +138,7 @@ pub unsafe extern "C" fn hbvib_nonlinear_mode(
             })
         };
         match found {
-            // The number of modes is known during the analysis only.
+            // The number of modes is known only during the analysis.
             Err(e) if e.status == Status::Index => Err(e).with_argument(3),
             found => found,
         }

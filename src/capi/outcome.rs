@@ -3,7 +3,7 @@
 use crate::error::{Error, Status};
 use crate::results::Branch;
 
-/// A status, and the reason of a partial result where the status alone does not say it.
+/// A status, and the reason of a partial result if the status alone does not state it.
 pub(super) struct Outcome {
     pub status: Status,
     pub reason: Option<Error>,

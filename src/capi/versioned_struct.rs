@@ -93,7 +93,7 @@ pub(super) unsafe fn load<T: VersionedStruct>(p: *const T, argument: i32) -> Res
 /// Checks a struct for results, whose size the caller has stated.
 ///
 /// # Safety
-/// As [`load`].
+/// Those of [`load`].
 pub(super) unsafe fn check_out<T: VersionedStruct>(p: *const T, argument: i32) -> Result<()> {
     check_pointer(p, argument, T::NAME)?;
     check_size::<T>(unsafe { p.cast::<u32>().read() } as usize, argument)
@@ -102,7 +102,7 @@ pub(super) unsafe fn check_out<T: VersionedStruct>(p: *const T, argument: i32) -
 /// Writes a struct of results that [`check_out`] has checked.
 ///
 /// # Safety
-/// As [`load`].
+/// Those of [`load`].
 pub(super) unsafe fn fill_out<T: VersionedStruct>(p: *mut T, value: T) {
     unsafe { store(p, p.cast::<u32>().read() as usize, value) };
 }

@@ -1,10 +1,9 @@
 //! Arc-length continuation of R(u, p) = 0, one accepted point after the other.
 //!
-//! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times
-//! its present size, p in units of the range. A step predicts by the cubic through the last two
-//! points and tangents, corrects in the plane orthogonal to the tangent (Allgower & Georg,
-//! Introduction to Numerical Continuation Methods, 2003, doi:10.1137/1.9780898719154), and is
-//! accepted when the prediction was close and the direction kept.
+//! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times its present size,
+//! p in units of the range. A step predicts by the cubic through the last two points and tangents, corrects in the
+//! plane orthogonal to the tangent (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
+//! doi:10.1137/1.9780898719154), and is accepted if the prediction was close and the direction kept.
 
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::metric::Metric;
@@ -17,33 +16,33 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 use num_complex::Complex64;
 
-/// How an attempt to advance ended.
+/// Outcome of an attempt to advance.
 #[derive(Debug)]
 pub enum Advance {
-    /// With the next point; `last` when it is the end of the range.
+    /// The next point; `last` if it is the end of the range.
     Accepted {
         /// The point.
         point: Point,
         /// Whether the end of the range was reached.
         last: bool,
     },
-    /// The branch turned back and left the range where it began; the point lies there.
+    /// The branch turned back and left the range at its start; the point lies outside.
     LeftAtStart {
         /// The point.
         point: Point,
     },
-    /// No further point could be found.
+    /// No further point was found.
     Stopped(Status),
 }
 
-/// A branch being followed.
+/// A branch that is followed.
 pub struct Continuation {
     settings: Settings,
     steps: StepControl,
     corrector: Corrector,
     previous: Option<Point>,
     current: Point,
-    /// Largest motion and amplitude met so far.
+    /// Largest motion and amplitude so far.
     largest: (f64, f64),
     row: Vec<f64>,
     scratch: Vec<f64>,
@@ -51,7 +50,7 @@ pub struct Continuation {
 
 const CONTEXT: &str = "the continuation";
 
-/// Cosine of the largest turn of the branch within one step.
+/// Least cosine between the directions of the branch at the two ends of one step.
 const STRAIGHT: f64 = 0.5;
 
 /// Step below which a failure counts as a corner of the branch.
@@ -60,10 +59,10 @@ const CORNER_STEP: f64 = 1e-6;
 /// Least cosine between the branch beyond a corner and its direction as predicted there.
 const ALONG: f64 = 0.9;
 
-/// Motions below this share of the largest met so far no longer refine the metric.
+/// Motions below this share of the largest so far no longer refine the metric.
 const FLOOR: f64 = 1e-2;
 
-/// What the corrected prediction of one step came to.
+/// Outcome of the corrected prediction of one step.
 enum Attempt {
     Good { point: Point, error: f64 },
     Poor { error: f64 },
@@ -72,7 +71,7 @@ enum Attempt {
 }
 
 impl Continuation {
-    /// Follows the branch from a solved point at the begin of the range.
+    /// Follows the branch from a solved point at the start of the range.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -93,8 +92,8 @@ impl Continuation {
         })
     }
 
-    /// Goes on from a point in place of the one accepted last, and from `previous` in place of that before, both in
-    /// the unknowns of a problem that may have more or fewer of them.
+    /// Continues from a point in place of the one accepted last, and from `previous` in place of the one before, both
+    /// in the unknowns of a problem that may have more or fewer of them.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -124,10 +123,10 @@ impl Continuation {
         self.previous.as_ref()
     }
 
-    /// Finds the next point. After the end of the range was reported it must not be called again.
+    /// Finds the next point. It must not be called again once the end of the range was reported.
     ///
     /// # Errors
-    /// What the problem reports; `Callback` where a callback of the caller kept failing at the smallest step.
+    /// Those of the problem; `Callback` if a callback of the caller failed down to the smallest step.
     pub fn advance(&mut self, problem: &mut dyn Problem, cancelled: Option<&dyn Fn() -> bool>) -> Result<Advance> {
         let metric = self.metric();
         let n = self.row.len() - 1;
@@ -140,7 +139,7 @@ impl Continuation {
                 Some((bound, share)) => (Some(bound), share * step),
             };
             let attempt = if let Some(bound) = fixed {
-                // The range ends here: predict just so far, and solve at the end exactly.
+                // The range ends here: predict exactly to its end, and solve there at the fixed parameter.
                 let (mut v, amplitude) = self.predict(metric, length)?;
                 v[n] = bound;
                 self.try_point(problem, metric, v, amplitude, length, true, cancelled)?
@@ -151,7 +150,7 @@ impl Continuation {
                 Attempt::Cancelled => return Ok(Advance::Stopped(Status::StoppedByCaller)),
                 Attempt::Good { point, error } => {
                     if fixed.is_none() && self.overshoot(point.parameter()).is_some() {
-                        // The correction ran past the end: come back with a shorter step.
+                        // The correction ran past the end: repeat with a shorter step.
                         if !self.steps.failed() {
                             return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
                         }
@@ -166,7 +165,7 @@ impl Continuation {
                     }
                 }
                 Attempt::Failed => {
-                    // What follows asks the corrector again.
+                    // The code below uses the corrector again.
                     let failure = self.corrector.failure();
                     if length <= CORNER_STEP
                         && let Some(point) = self.turn_corner(problem, metric, length, cancelled)?
@@ -183,10 +182,10 @@ impl Continuation {
 
     /// The next point beyond a corner of the branch that lies within `step`.
     ///
-    /// Where a contact begins to slip the residual has a kink, and the branch may turn there by any
-    /// angle, back in the parameter too. The Jacobian just beyond gives the new direction, and the
-    /// sign of the bordered determinant, which a path through a piecewise smooth map keeps, its
-    /// sense (Allgower & Georg, ch. 15).
+    /// Where a contact begins to slip the residual has a kink, and the branch may turn there by any angle, back in
+    /// the parameter too. The Jacobian just beyond determines the new direction. The sign of the bordered
+    /// determinant, which a path through a piecewise smooth map keeps, determines its sense (Allgower & Georg, ch.
+    /// 15).
     fn turn_corner(
         &mut self,
         problem: &mut dyn Problem,
@@ -251,7 +250,7 @@ impl Continuation {
         )
     }
 
-    /// Predicted point and amplitude a step ahead; leaves the tangent as the row of the plane.
+    /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
     fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
         let here = &self.current;
         metric.unit(&here.tangent, &mut self.row);
@@ -277,7 +276,7 @@ impl Continuation {
         Ok((v, cubic.amplitude(s)))
     }
 
-    /// The bound of the range that a parameter value lies beyond, and the share of the way to it.
+    /// The bound of the range that a parameter value lies beyond, and the share of the distance to it.
     fn overshoot(&self, p: f64) -> Option<(f64, f64)> {
         let here = self.current.parameter();
         let (start, end) = (self.settings.start, self.settings.end);
@@ -325,8 +324,7 @@ impl Continuation {
         if metric.dot(&point.tangent, &here.tangent) < 0.0 {
             point.reverse();
         }
-        // The direction must be kept by the tangent and by the chord: a branch never turns round
-        // within a step, and never walks back to where it came from.
+        // The tangent and the chord must keep the direction: a branch never reverses within a step.
         let chord = metric.distance(&point.v, &here.v);
         let along = metric.dot(&point.v, &here.tangent) - metric.dot(&here.v, &here.tangent);
         let cosine = |dot: f64, a: f64, b: f64| if a * b > 0.0 { dot / (a * b) } else { 1.0 };
@@ -336,8 +334,8 @@ impl Continuation {
             metric.norm(&here.tangent),
         );
         let turned = kept < STRAIGHT;
-        // A change of sense is a jump over corners. Only where other branches cross this one does
-        // it belong to the way straight on, however short the step.
+        // A change of sense is a jump over corners. Only where other branches cross this one does it belong to the
+        // straight continuation, however short the step.
         let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < ALONG);
         let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
         let far = chord > 3.0 * step;
@@ -368,7 +366,7 @@ impl Continuation {
     }
 }
 
-/// No step is small enough: a callback is to blame, or nobody knows.
+/// No step is small enough: returns the failure of a callback, or stops without a known cause.
 fn too_small(failure: Option<Error>) -> Result<Advance> {
     match failure {
         Some(e) if e.status == Status::Callback => Err(e),

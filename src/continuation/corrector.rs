@@ -1,5 +1,5 @@
-//! Newton's method on R(u, p) = 0 with one linear condition on (u, p): the corrector of the
-//! continuation, and with damping the solver of the first point.
+//! Newton's method on R(u, p) = 0 with one linear condition on (u, p): the corrector of the continuation, and with
+//! damping the solver of the first point.
 
 use crate::continuation::Metric;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
@@ -9,44 +9,44 @@ use crate::linalg::norm;
 use crate::problem::{Problem, Residual};
 use num_complex::Complex64;
 
-/// A solution that was found.
+/// Data of a converged correction.
 #[derive(Clone, Debug)]
 pub struct Corrected {
     /// Newton iterations taken.
     pub iterations: usize,
     /// Residual relative to the problem's scale, before the last correction.
     pub residual: f64,
-    /// Round-off stopped the residual above the wanted tolerance.
+    /// Whether round-off stopped the residual above the requested tolerance.
     pub stalled: bool,
     /// Observed amplitude.
     pub amplitude: Complex64,
     /// Derivative of the amplitude along the tangent.
     pub slope: Complex64,
-    /// Unit tangent in the metric used, given in unscaled numbers, pointing along the row.
+    /// Unit tangent in the metric used, in unscaled numbers, pointing along the row.
     pub tangent: Vec<f64>,
     /// Whether det [J r; tangentᵀ] is positive.
     pub positive: bool,
 }
 
-/// How a correction ended.
+/// Outcome of a correction.
 #[derive(Debug)]
 pub enum Outcome {
-    /// With a solution.
+    /// It converged to a solution.
     Converged(Corrected),
-    /// Without one.
+    /// It found no solution.
     Failed,
-    /// On the caller's wish.
+    /// The caller cancelled it.
     Cancelled,
 }
 
-/// Whose factors are kept.
+/// Origin of the stored factors.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Factors {
-    /// None that are of use.
+    /// No usable factors are stored.
     None,
-    /// Those of the matrix of an earlier iteration.
+    /// The factors of the matrix of an earlier iteration.
     Earlier,
-    /// Those of the current matrix.
+    /// The factors of the current matrix.
     Own,
 }
 
@@ -63,15 +63,16 @@ pub struct Corrector {
     failure: Option<Error>,
 }
 
-/// Relative size of a Newton step that is round-off: no further progress can be had.
+/// Relative size of a Newton step that is round-off: no further progress is possible.
 const ROUND_OFF: f64 = 1e-13;
 
 /// Largest relative Newton step from a solution. Where the equations are nearly singular, as at a resonance without
-/// damping, a residual within the tolerance may be far from any: the last step tells.
+/// damping, a point with a residual within the tolerance may be far from any solution: the last step shows that.
 const NEAR: f64 = 1e-3;
 
-/// Relative errors of a Newton step and of a tangent that are found with the factors of an earlier iteration. That of
-/// a step is far below what the next iteration corrects, that of a tangent is as good as rounding.
+/// Relative errors of a Newton step and of a tangent that are found with the factors of an earlier iteration. The
+/// error of a step is far below the correction of the next iteration; the error of a tangent is as small as
+/// round-off.
 const STEP_ERROR: f64 = 1e-4;
 const TANGENT_ERROR: f64 = 1e-12;
 
@@ -97,22 +98,21 @@ impl Corrector {
         })
     }
 
-    /// Why the last correction failed, where a law could not tell its force at some motion.
+    /// The failure of the last correction, if a law could not evaluate its force at some motion.
     #[must_use]
     pub fn failure(&self) -> Option<Error> {
         self.failure
     }
 
-    /// Corrects `v` = (u, p) within the plane through it whose normal is `row` (in scaled
-    /// unknowns); a row (0, …, 0, 1) keeps p.
+    /// Corrects `v` = (u, p) within the plane through it whose normal is `row` (in scaled unknowns); a row (0, …, 0,
+    /// 1) keeps p.
     ///
-    /// `damped` applies the natural monotonicity test (Deuflhard, Newton Methods for Nonlinear
-    /// Problems, 2004, §3.3): a step of length λ is taken when the simplified Newton step there
-    /// has shrunk by 1 − λ/4.
+    /// `damped` applies the natural monotonicity test (Deuflhard, Newton Methods for Nonlinear Problems, 2004, §3.3):
+    /// a step of length λ is taken when the simplified Newton step there has shrunk by 1 − λ/4.
     ///
     /// # Errors
-    /// What the problem reports, but for singular matrices and what another motion may not meet: those
-    /// end as [`Outcome::Failed`].
+    /// Those of the problem, except for singular matrices and laws that another motion may not fail: those end as
+    /// [`Outcome::Failed`].
     pub fn correct(
         &mut self,
         problem: &mut dyn Problem,
@@ -165,10 +165,10 @@ impl Corrector {
         Ok(Outcome::Failed)
     }
 
-    /// Evaluates the problem at `v`, so that what it tells of itself holds there.
+    /// Evaluates the problem at `v`, so that its queries refer to that point.
     ///
     /// # Errors
-    /// What the problem reports.
+    /// Those of the problem.
     pub fn evaluate(&mut self, problem: &mut dyn Problem, v: &[f64]) -> Result<()> {
         let n = v.len() - 1;
         problem.evaluate(&v[..n], v[n], &mut self.at)
@@ -188,15 +188,15 @@ impl Corrector {
         if r == 0.0 { 0.0 } else { r / self.at.scale }
     }
 
-    /// Whether the Newton step at hand is round-off of `v`. The metric does not measure that: its
-    /// unit may be far above unknowns that were large elsewhere on the branch.
+    /// Whether the current Newton step is round-off of `v`. The metric does not measure that: its unit may be far
+    /// above unknowns that were large elsewhere on the branch.
     fn is_round_off(&self, v: &[f64], metric: Metric) -> bool {
         let n = v.len() - 1;
         norm(&self.step[..n]) * metric.u <= ROUND_OFF * norm(&v[..n])
             && self.step[n].abs() * metric.p <= ROUND_OFF * (v[n].abs() + metric.p)
     }
 
-    /// Takes over Newton's matrix at the point evaluated last.
+    /// Updates the linear system with Newton's matrix at the point evaluated last.
     fn update(&mut self, problem: &mut dyn Problem, metric: Metric, row: &[f64]) -> Result<()> {
         let border = Border {
             column: &self.at.d_parameter,
@@ -238,7 +238,7 @@ impl Corrector {
         self.system.solve(problem, &mut self.step)
     }
 
-    /// Tries λ = min(1, 4·last), halving; returns the λ that was taken.
+    /// Tries λ = min(1, 4·last), halving; returns the accepted λ.
     fn damped_step(
         &mut self,
         problem: &mut dyn Problem,
@@ -271,9 +271,8 @@ impl Corrector {
         Ok(None)
     }
 
-    /// The last Newton step is applied without another evaluation (its error is the square of a
-    /// residual already below the tolerance); tangent and amplitude come from the same matrix, which `None` tells
-    /// to be singular.
+    /// Applies the last Newton step without another evaluation (its error is the square of a residual already below
+    /// the tolerance); tangent and amplitude come from the same matrix. `None`: the matrix is singular.
     fn finish(
         &mut self,
         problem: &mut dyn Problem,
@@ -318,12 +317,11 @@ impl Corrector {
         Ok(true)
     }
 
-    /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled
-    /// into `tangent`, pointing along the row. Returns whether det [J r; tangentᵀ] is positive;
-    /// `None` where the matrix is singular.
+    /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled into `tangent`,
+    /// pointing along the row. Returns whether det [J r; tangentᵀ] is positive; `None` where the matrix is singular.
     ///
     /// # Errors
-    /// What the problem reports.
+    /// Those of the problem.
     pub fn direction_at(
         &mut self,
         problem: &mut dyn Problem,
@@ -343,8 +341,8 @@ impl Corrector {
     }
 }
 
-/// A singular matrix, and what another motion may not meet, are a failed attempt; anything else is an
-/// error.
+/// Turns a singular matrix, and a law that another motion may not fail, into a failed attempt; other errors are
+/// returned.
 fn tolerate(result: Result<()>) -> Result<bool> {
     result.map(|()| true).or_else(|e| {
         if e.status == Status::Singular || e.recoverable {

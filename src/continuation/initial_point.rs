@@ -1,9 +1,9 @@
-//! The first point of a branch: damped Newton from the problem's own starts, then homotopies.
+//! The first point of a branch: damped Newton from the problem's initial guesses, then homotopies.
 //!
-//! The first homotopy follows the solution from small motion, where contacts stick, to the given problem, or
-//! from rest under constant loads as the vibrating forces grow, by the same arc-length continuation
-//! that follows the branch afterwards. What it misses is tied to an anchor and let loose, see
-//! [`crate::continuation::newton_homotopy`]: slower, and sure where solutions are bounded.
+//! The first homotopy follows the solution from small motion, where contacts stick, to the given problem, or from
+//! rest under constant loads as the vibrating forces grow, by the same arc-length continuation that follows the
+//! branch afterwards. If it fails, homotopies from an anchor follow, see [`crate::continuation::newton_homotopy`]:
+//! they are slower, and reliable where solutions are bounded.
 
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::newton_homotopy::NewtonHomotopy;
@@ -13,19 +13,19 @@ use crate::error::{Error, Result, fail, try_copy, try_push, try_vec};
 use crate::linalg::norm;
 use crate::problem::{InitialGuess, Problem};
 
-/// How the search for the first point ended.
+/// Outcome of the search for the first point.
 #[derive(Debug)]
 pub enum First {
-    /// With a point, and the way that led to it.
+    /// A point, and the method that found it.
     Found(Point, Way),
-    /// On the caller's wish.
+    /// The caller cancelled the search.
     Cancelled,
 }
 
-/// What led to a first point.
+/// Method that found a first point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// Newton's method from a start of the problem's own.
+    /// Newton's method from an initial guess of the problem.
     Newton(InitialGuess),
     /// The problem's homotopy.
     Homotopy,
@@ -36,7 +36,7 @@ pub enum Way {
 }
 
 impl Way {
-    /// What a log says of it.
+    /// Its sentence in a log.
     #[must_use]
     pub const fn sentence(self) -> &'static str {
         match self {
@@ -52,26 +52,25 @@ impl Way {
 
 const CONTEXT: &str = "the start";
 
-/// Most points that a homotopy may take; one that needs more has lost its way among corners.
+/// Most points of a homotopy; one that needs more circulates among corners.
 const MAX_HOMOTOPY_POINTS: usize = 1_000;
 
-/// Longest step of a homotopy, whose way matters only for its end.
+/// Longest step of a homotopy, of which only the end matters.
 const LONG_STEP: f64 = 0.1;
 
-/// Motions so many times those under linear contacts leave of the forces, in double precision, less
-/// than four digits.
+/// Size of a motion, relative to that under linear contacts, beyond which the forces keep less than four digits in
+/// double precision.
 const FAR: f64 = 1e12;
 
-/// Residual, in units of the motion under linear contacts, that leaves the forces unbalanced however small
-/// it is against a large motion.
+/// Residual, in units of the motion under linear contacts, above which the forces are unbalanced, even if it is small
+/// against a large motion.
 const UNBALANCED: f64 = 1e-2;
 
 /// Solves for the first point at `settings.start`.
 ///
 /// # Errors
-/// `NoConvergence` when every way failed, or what kept a law from telling its force where that was the
-/// cause; `Singular` when the linear structure has no solution,
-/// and what the problem reports.
+/// `NoConvergence` if every method failed, or the failure of a law if that was the cause; `Singular` if the linear
+/// structure has no solution; those of the problem.
 pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&dyn Fn() -> bool>) -> Result<First> {
     let n = problem.size();
     let p = settings.start;
@@ -80,12 +79,12 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
     let mut failure = None;
     for kind in [InitialGuess::Given, InitialGuess::Stuck, InitialGuess::Reference] {
         let exists = attempt(problem.initial_guess(kind, p, &mut v[..n]), false, &mut failure)?;
-        let mut easy = None;
+        let mut homotopy_guess = None;
         if kind == InitialGuess::Stuck {
             if !exists {
                 v[..n].fill(0.0);
             }
-            easy = Some(try_copy(&v[..n], CONTEXT)?);
+            homotopy_guess = Some(try_copy(&v[..n], CONTEXT)?);
         }
         if exists {
             v[n] = p;
@@ -98,8 +97,8 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
                 Outcome::Converged(_) | Outcome::Failed => failure = corrector.failure().or(failure),
             }
         }
-        // The homotopy is surer than a poorer start.
-        if let Some(u) = &easy {
+        // The homotopy is more reliable than a poorer initial guess.
+        if let Some(u) = &homotopy_guess {
             let reached = homotopy(problem, settings, u, &mut corrector, cancelled);
             if let Some(first) = attempt(reached, None, &mut failure)? {
                 return Ok(first);
@@ -108,7 +107,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
         }
     }
     if problem.is_bounded() {
-        let reached = from_anchors(problem, settings, &mut corrector, cancelled);
+        let reached = try_anchors(problem, settings, &mut corrector, cancelled);
         if let Some(first) = attempt(reached, None, &mut failure)? {
             return Ok(first);
         }
@@ -122,7 +121,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
     )
 }
 
-/// The outcome of an attempt; `failed` where another motion may not meet its error, which is kept.
+/// The outcome of an attempt; `failed` if another motion may avoid its error, which is stored.
 fn attempt<T>(outcome: Result<T>, failed: T, failure: &mut Option<Error>) -> Result<T> {
     match outcome {
         Err(e) if e.recoverable => {
@@ -148,7 +147,7 @@ fn at_fixed(
     corrector.correct(problem, v, &row, metric, true, cancelled)
 }
 
-/// From the easy problem, near `u`, to the given one.
+/// Follows the problem's homotopy, from near `u` to the given problem.
 fn homotopy(
     problem: &mut dyn Problem,
     settings: &Settings,
@@ -159,20 +158,20 @@ fn homotopy(
     let Some(mut homotopy) = problem.homotopy(settings.start, u)? else {
         return Ok(None);
     };
-    let way = Settings {
+    let path = Settings {
         start: homotopy.start,
         end: homotopy.end,
         steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
-    let reached = follow(&mut *homotopy.problem, &way, u, corrector, cancelled);
+    let reached = follow(&mut *homotopy.problem, &path, u, corrector, cancelled);
     drop(homotopy);
     let Reached::End(v) = reached? else { return Ok(None) };
-    at_last(problem, settings, v, Way::Homotopy, corrector, cancelled)
+    finish(problem, settings, v, Way::Homotopy, corrector, cancelled)
 }
 
 /// Newton's method on the problem itself from the end of a homotopy.
-fn at_last(
+fn finish(
     problem: &mut dyn Problem,
     settings: &Settings,
     mut v: Vec<f64>,
@@ -192,15 +191,15 @@ fn at_last(
     })
 }
 
-/// Anchors, each a start times a factor.
+/// Anchors: initial guesses, each with a factor.
 const ANCHORS: [(InitialGuess, f64); 3] = [
     (InitialGuess::Reference, 1.0),
     (InitialGuess::Stuck, 1.0),
     (InitialGuess::Reference, 0.0),
 ];
 
-/// By homotopies from one anchor after the other.
-fn from_anchors(
+/// Tries homotopies from one anchor after the other.
+fn try_anchors(
     problem: &mut dyn Problem,
     settings: &Settings,
     corrector: &mut Corrector,
@@ -208,7 +207,7 @@ fn from_anchors(
 ) -> Result<Option<First>> {
     let p = settings.start;
     let mut anchor = try_vec(problem.size(), 0.0, CONTEXT)?;
-    let loosened = Settings {
+    let path = Settings {
         start: 0.0,
         end: 1.0,
         steps: StepControl::new(0.0, 0.0, LONG_STEP),
@@ -221,14 +220,14 @@ fn from_anchors(
         for a in &mut anchor {
             *a *= factor;
         }
-        let mut tied = NewtonHomotopy::new(problem, p, &anchor)?;
-        let reached = match follow(&mut tied, &loosened, &anchor, corrector, cancelled) {
+        let mut homotopy = NewtonHomotopy::new(problem, p, &anchor)?;
+        let reached = match follow(&mut homotopy, &path, &anchor, corrector, cancelled) {
             Err(e) if e.recoverable => Reached::Nothing,
             reached => reached?,
         };
-        // From where a way ended early Newton's method may still arrive.
+        // Newton's method may converge even from where a path ended early.
         if let Reached::End(v) | Reached::Part(v) = reached
-            && let Some(first) = at_last(problem, settings, v, Way::Anchor, corrector, cancelled)?
+            && let Some(first) = finish(problem, settings, v, Way::Anchor, corrector, cancelled)?
         {
             return Ok(Some(first));
         }
@@ -236,9 +235,8 @@ fn from_anchors(
     Ok(None)
 }
 
-/// Whether a solution lies so far out that the forces are lost in the rounding of what the motion
-/// asks for: nothing is known then of their balance. An undamped structure at its resonance comes here
-/// when friction does not hold it.
+/// Whether a solution is so large that its forces are lost in the round-off of the residual: nothing is then known of
+/// their balance. An undamped structure at its resonance ends here if friction does not limit its motion.
 fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64, residual: f64) -> Result<bool> {
     if !problem.is_bounded() {
         return Ok(false);
@@ -249,11 +247,11 @@ fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64, residual: f64) -> Result
     Ok(known && scale > 0.0 && (far > FAR * scale || residual * far > UNBALANCED * scale))
 }
 
-/// How far a homotopy led.
+/// End of a homotopy path.
 enum Reached {
-    /// To its end.
+    /// The end of the homotopy.
     End(Vec<f64>),
-    /// Not so far; the point nearest to the end.
+    /// A part of it; the point nearest to the end.
     Part(Vec<f64>),
     Nothing,
 }

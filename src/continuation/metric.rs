@@ -1,5 +1,4 @@
-//! How a branch is measured: the unknowns in units that follow the branch, the parameter in units
-//! of the range.
+//! The metric of a branch: the unknowns in units that follow the branch, the parameter in units of the range.
 
 use crate::continuation::Settings;
 use crate::linalg::norm;

@@ -1,4 +1,4 @@
-//! Arc-length continuation of R(u, p) = 0: predict, correct, accept. It knows problems and algebra, and no mechanics.
+//! Arc-length continuation of R(u, p) = 0: predict, correct, accept. It uses problems and algebra, and no mechanics.
 
 pub mod arc_length;
 pub mod corrector;

@@ -1,5 +1,5 @@
-//! Newton homotopy, on which the search for a first point falls back: λ R(u) + (1 − λ)(u − a) = 0 at a fixed parameter of R, from
-//! u = a at λ = 0 to R(u) = 0 at λ = 1.
+//! Newton homotopy, the last method for a first point: λ R(u) + (1 − λ)(u − a) = 0 at a fixed parameter of R, from u
+//! = a at λ = 0 to R(u) = 0 at λ = 1.
 //!
 //! At λ = 0 there is one solution, and it is regular; for almost every anchor a the path from it ends at
 //! λ = 1 unless it runs to infinity (Chow, Mallet-Paret & Yorke, Math. Comput. 32 (1978) 887–899,
@@ -8,16 +8,16 @@
 //!
 //! > (1 + μ) Z y − κ y + f(y) = Z(y_lin + μ a),
 //!
-//! where damping is that of the structure, (1 + μ) Im(Z − κ) + μ Im κ ≥ Im(Z − κ), and contacts do no work on
-//! the motion over a period; so that the power of the right side bounds the motion. Turns of the path are met by
-//! arc-length continuation like those of any branch.
+//! where damping is that of the structure, (1 + μ) Im(Z − κ) + μ Im κ ≥ Im(Z − κ), and contacts do no work on the
+//! motion over a period; so that the power of the right side bounds the motion. Arc-length continuation follows the
+//! turning points of the path like those of any branch.
 
 use crate::error::{Result, try_copy};
 use crate::linalg::linear_system::Jacobian;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 
-/// A problem at a fixed parameter, tied to an anchor; its parameter is λ.
+/// A problem at a fixed parameter in a homotopy from an anchor; its parameter is λ.
 pub struct NewtonHomotopy<'a> {
     problem: &'a mut dyn Problem,
     parameter: f64,
@@ -49,7 +49,7 @@ impl Jacobian for NewtonHomotopy<'_> {
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
         self.problem.fill(matrix, active);
         let n = active.len();
-        // A column of the identity stays one.
+        // A column of the identity remains one.
         for (i, column) in matrix.chunks_exact_mut(n.max(1)).enumerate() {
             if active[i] {
                 for j in &mut *column {
@@ -74,7 +74,7 @@ impl Problem for NewtonHomotopy<'_> {
         Ok(())
     }
 
-    /// Zero: the way matters only for its end.
+    /// Zero: only the end of the path matters.
     fn observe(&self, _u: &[f64], _direction: &[f64]) -> (Complex64, Complex64) {
         (Complex64::ZERO, Complex64::ZERO)
     }

@@ -21,7 +21,7 @@ pub struct Point {
     pub iterations: usize,
     /// Arc length of the step.
     pub step: f64,
-    /// Round-off stopped the residual above the tolerance.
+    /// Whether round-off stopped the residual above the tolerance.
     pub stalled: bool,
     /// Whether det [J r; tangentᵀ] is positive: the sense of a branch, which corners keep.
     pub positive: bool,
@@ -44,7 +44,7 @@ impl Point {
         }
     }
 
-    /// A copy whose memory is asked for fallibly.
+    /// A copy that returns an error if memory is short.
     ///
     /// # Errors
     /// `OutOfMemory`.

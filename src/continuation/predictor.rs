@@ -1,5 +1,4 @@
-//! Cubic Hermite interpolation and extrapolation of a branch through two points and their
-//! tangents.
+//! Cubic Hermite interpolation and extrapolation of a branch through two points and their tangents.
 
 use crate::continuation::{Metric, Point};
 use num_complex::Complex64;
@@ -10,8 +9,8 @@ pub struct Cubic<'p> {
     b: &'p Point,
     /// Length of the chord in the metric.
     pub chord: f64,
-    /// Factors that give the stored tangents the length of the chord.
-    cutoff: (f64, f64),
+    /// Factors that scale the stored tangents to the length of the chord.
+    tangent_scales: (f64, f64),
 }
 
 impl<'p> Cubic<'p> {
@@ -23,13 +22,13 @@ impl<'p> Cubic<'p> {
             a,
             b,
             chord,
-            cutoff: (chord / metric.norm(&a.tangent), chord / metric.norm(&b.tangent)),
+            tangent_scales: (chord / metric.norm(&a.tangent), chord / metric.norm(&b.tangent)),
         }
     }
 
     /// Weights of a, b and of their tangents at s, and of their derivatives.
     fn weights(&self, s: f64) -> ([f64; 4], [f64; 4]) {
-        let (ra, rb) = self.cutoff;
+        let (ra, rb) = self.tangent_scales;
         let (s2, s3) = (s * s, s * s * s);
         (
             [
@@ -53,7 +52,7 @@ impl<'p> Cubic<'p> {
         for i in 0..v.len() {
             let (a, b) = (self.a.v[i], self.b.v[i]);
             let (ta, tb) = (self.a.tangent[i], self.b.tangent[i]);
-            // Written around b, so that rounding stays relative to the distance.
+            // The sum is centred on b, so that round-off stays relative to the distance.
             v[i] = b + w[0] * (a - b) + w[2] * ta + w[3] * tb;
             derivative[i] = d[0] * (a - b) + d[2] * ta + d[3] * tb;
         }

@@ -1,4 +1,4 @@
-//! A point solved once more near one that is known: with other harmonics, or by a more accurate evaluation.
+//! Solution of a point once more near a known one: with other harmonics, or by a more accurate evaluation.
 
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::{Metric, Point, Settings};
@@ -6,14 +6,14 @@ use crate::error::{Result, try_copy, try_vec};
 use crate::linalg::norm;
 use crate::problem::Problem;
 
-/// Distance, relative to the unknowns, beyond which a solution is not the one that was looked for.
+/// Distance, relative to the unknowns, beyond which a solution is another one than requested.
 const NEAR: f64 = 0.3;
 
-/// Solves from `near`, at its parameter or in the plane across its tangent, along which the found point's own
-/// points. `None` where Newton's method fails, leads elsewhere or is cancelled.
+/// Solves from `near`, at its parameter or in the plane across its tangent, along which the found point's own tangent
+/// points. `None` where Newton's method fails, converges to another solution or is cancelled.
 ///
 /// # Errors
-/// What the problem reports.
+/// Those of the problem.
 pub fn resolve(
     problem: &mut dyn Problem,
     corrector: &mut Corrector,

@@ -1,5 +1,5 @@
-//! What lies between two accepted points: folds, peaks of the observed amplitude, and solutions at
-//! given parameter values, each solved for and not interpolated.
+//! Special points between two accepted points: folds, peaks of the observed amplitude, and solutions at given
+//! parameter values, each solved for and not interpolated.
 
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::predictor::Cubic;
@@ -8,17 +8,17 @@ use crate::error::{Result, try_copy, try_vec};
 use crate::linalg::norm;
 use crate::problem::Problem;
 
-/// What is looked for between two points.
+/// Special points that are searched for between two points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Event {
+pub enum SpecialPoint {
     /// The parameter turns: the tangent has no component along it.
     Fold,
     /// The observed amplitude is largest: d|z|/ds = 0, falling after.
     Peak,
 }
 
-impl Event {
-    /// The function whose root is the event; tangents must have length 1.
+impl SpecialPoint {
+    /// The function whose root is the special point; tangents must have length 1.
     fn function(self, point: &Point, length: f64) -> f64 {
         match self {
             Self::Fold => point.tangent[point.tangent.len() - 1] / length,
@@ -34,7 +34,7 @@ impl Event {
         }
     }
 
-    /// Whether the event lies between two neighbouring points.
+    /// Whether the special point lies between two neighbouring points.
     #[must_use]
     pub fn between(self, a: &Point, b: &Point) -> bool {
         let (fa, fb) = (self.function(a, 1.0), self.function(b, 1.0));
@@ -53,15 +53,15 @@ pub struct Locator {
     derivative: Vec<f64>,
 }
 
-const CONTEXT: &str = "the search for events";
+const CONTEXT: &str = "the search for special points";
 
-/// Cap on the evaluations of one search.
+/// Maximum number of evaluations of one search.
 const MAX_EVALUATIONS: usize = 60;
 
-/// Cap on the halvings of an arc in search of a parameter.
+/// Maximum number of halvings of an arc in search of a parameter.
 const MAX_HALVINGS: usize = 12;
 
-/// Width of the bracket, as a share of the step, at which an event counts as found.
+/// Width of the bracket, as a share of the step, at which a special point counts as found.
 const WIDTH: f64 = 1e-11;
 
 impl Locator {
@@ -82,13 +82,19 @@ impl Locator {
         Metric::along(norm(a.unknowns()).max(norm(b.unknowns())), &self.settings)
     }
 
-    /// The event between `a` and `b`, by the Illinois variant of regula falsi on the arc.
+    /// The special point between `a` and `b`, by the Illinois variant of regula falsi on the arc.
     ///
     /// # Errors
-    /// What the problem reports.
-    pub fn locate(&mut self, problem: &mut dyn Problem, event: Event, a: &Point, b: &Point) -> Result<Option<Point>> {
+    /// Those of the problem.
+    pub fn locate(
+        &mut self,
+        problem: &mut dyn Problem,
+        kind: SpecialPoint,
+        a: &Point,
+        b: &Point,
+    ) -> Result<Option<Point>> {
         let metric = self.metric(a, b);
-        let value = |point: &Point| event.function(point, metric.norm(&point.tangent));
+        let value = |point: &Point| kind.function(point, metric.norm(&point.tangent));
         let (mut low, mut high) = ((0.0, value(a)), (1.0, value(b)));
         let mut best: Option<Point> = None;
         if high.1 == 0.0 {
@@ -133,11 +139,10 @@ impl Locator {
         Ok(best)
     }
 
-    /// The solution at parameter `p` between `a` and `b`, whose parameters enclose it without a
-    /// fold in between.
+    /// The solution at parameter `p` between `a` and `b`, whose parameters enclose it without a fold in between.
     ///
     /// # Errors
-    /// What the problem reports.
+    /// Those of the problem.
     pub fn at_parameter(&mut self, problem: &mut dyn Problem, a: &Point, b: &Point, p: f64) -> Result<Option<Point>> {
         for end in [a, b] {
             if end.parameter().to_bits() == p.to_bits() {
@@ -162,7 +167,7 @@ impl Locator {
         Ok(None)
     }
 
-    /// Where on the arc from `a` to `b` the cubic has parameter `p`.
+    /// Position on the arc from `a` to `b` at which the cubic has parameter `p`.
     fn where_at(&mut self, a: &Point, b: &Point, metric: Metric, p: f64) -> Result<f64> {
         let n = a.v.len() - 1;
         let cubic = Cubic::new(a, b, metric);

@@ -8,18 +8,18 @@ pub struct StepControl {
     max: f64,
 }
 
-/// Relative error of the prediction that is aimed at: small enough for two to three Newton
-/// iterations and for a curve that draws smoothly.
+/// Target of the relative prediction error: small enough for two to three Newton iterations and for a smooth curve in
+/// a plot.
 pub const TARGET: f64 = 0.02;
 
-/// A prediction worse than this many targets is not accepted.
+/// Ratio of the prediction error to its target above which a prediction is rejected.
 const REJECT: f64 = 8.0;
 
-/// Iterations above which the step shrinks whatever the error.
+/// Iterations above which the step is reduced at any error.
 const MANY_ITERATIONS: usize = 6;
 
 impl StepControl {
-    /// Steps from `first` within `min` and `max`; zeros choose.
+    /// Steps from `first` within `min` and `max`; zeros select defaults.
     #[must_use]
     pub fn new(first: f64, min: f64, max: f64) -> Self {
         let max = if max > 0.0 { max } else { 0.04 };
@@ -50,8 +50,8 @@ impl StepControl {
         error <= REJECT * TARGET || self.step <= 2.0 * self.min
     }
 
-    /// Chooses the next step after a point was accepted; the error of the predictor grows with the
-    /// step to the power `order`.
+    /// Chooses the next step after a point was accepted; the error of the predictor grows with the step to the power
+    /// `order`.
     pub fn accepted(&mut self, used: f64, error: f64, order: f64, iterations: usize) {
         let mut factor = (0.8 * (TARGET / error.max(1e-12)).powf(1.0 / order)).clamp(0.3, 2.5);
         if iterations > MANY_ITERATIONS {

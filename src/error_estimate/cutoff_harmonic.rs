@@ -1,10 +1,10 @@
-//! Up to which harmonic the contacts feel the structure as something that gives: the last h with
-//! ‖kt½ G_h kt½‖ ≥ 1/2, G_h the flexibility of the structure without its contacts.
+//! Cut-off harmonic: largest h with ‖kt^½ G_h kt^½‖ ≥ ½, where the structure is compliant against the contact
+//! stiffness; G_h is the flexibility of the structure without its contacts.
 //!
-//! From there on inertia holds both sides of a contact, and a extended harmonic hardly acts back on itself or on others.
-//! Above the highest natural frequency G falls with frequency, so that the last h can be bracketed; below, the
-//! harmonics are looked at one by one from above. On large structures, whose highest natural frequency is a matter of
-//! the mesh, they are looked at in geometric steps.
+//! Beyond it inertia keeps both sides of a contact at rest, and an extended harmonic hardly acts back on itself or on
+//! others. Above the highest natural frequency G falls with frequency, so that bisection brackets the cut-off; below,
+//! the harmonics are checked one by one from above. On large structures, whose highest natural frequency depends on
+//! the mesh, they are checked in geometric steps.
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
@@ -17,25 +17,25 @@ use crate::linalg::lu::Lu;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
-/// kt|G| from which on a harmonic counts.
+/// Norm of kt^½ G kt^½ from which on the structure is compliant in a harmonic.
 const COMPLIANT: f64 = 0.5;
 
-/// Degrees of freedom up to which every harmonic may be looked at.
+/// Degrees of freedom up to which every harmonic may be checked.
 const SMALL_UP_TO: usize = 32;
 
-/// Ratio of neighbouring harmonics that are looked at in a large structure.
+/// Ratio of neighbouring harmonics that are checked in a large structure.
 const RATIO: f64 = 1.25;
 
-/// Relative distance within which the last of them is found.
+/// Relative distance within which the cut-off harmonic of a large structure is found.
 const FINE: f64 = 0.03;
 
-/// Relative change of frequency up to which a reach, as a frequency, is taken over.
+/// Relative change of frequency up to which a cut-off, as a frequency, is reused.
 const NEAR: f64 = 0.01;
 
 /// Iterations for the norm of a matrix.
 const NORM_ITERATIONS: usize = 8;
 
-/// Highest harmonic up to which a model has no more than so many unknowns.
+/// Highest harmonic up to which a model has at most this many unknowns.
 pub(crate) fn affordable(condensed: &Condensed, unknowns: usize) -> usize {
     let set = condensed.set();
     let each = unknowns / condensed.coordinates().max(1);
@@ -52,13 +52,14 @@ pub(super) fn all_waves(condensed: &Condensed) -> usize {
     2 * condensed.in_step() * set.base()
 }
 
-/// Finds the reach of a model at one frequency after the other.
+/// Finds the cut-off harmonic of a model at one frequency after the other.
 pub(super) struct CutoffHarmonic {
     condensed: Condensed,
     workspace: Workspace,
     /// Highest natural frequency of the structure without its contacts, where it is known.
     highest: Option<f64>,
-    /// Frequency of the last reach, the angular frequency that it was found at, and from which harmonic on.
+    /// Frequency of the last cut-off, the angular frequency at which it was found, and the harmonic the search began
+    /// from.
     found: Option<(f64, f64, usize)>,
     matrix: Vec<Complex64>,
     vectors: [Vec<Complex64>; 2],
@@ -83,18 +84,18 @@ impl CutoffHarmonic {
         })
     }
 
-    /// The last harmonic above `from` and up to `most` that gives, at the angular frequency ω; `from` where none
-    /// does.
+    /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
+    /// ω; `from` where it is compliant in none.
     pub fn at(&mut self, omega: f64, from: usize, most: usize) -> Result<usize> {
-        if let Some((frequency, near, looked_from)) = self.found
+        if let Some((frequency, near, searched_from)) = self.found
             && (omega / near - 1.0).abs() <= NEAR
-            && from >= looked_from
+            && from >= searched_from
         {
             return Ok(((frequency / omega).round() as usize).clamp(from, most.max(from)));
         }
         let last = match self.highest {
-            Some(highest) => self.look_at_each(omega, highest, from, most)?,
-            None => self.look_at_some(omega, from, most)?,
+            Some(highest) => self.check_each(omega, highest, from, most)?,
+            None => self.check_some(omega, from, most)?,
         };
         if last < most {
             self.found = Some((last as f64 * omega, omega, from));
@@ -102,7 +103,7 @@ impl CutoffHarmonic {
         Ok(last)
     }
 
-    fn look_at_each(&mut self, omega: f64, highest: f64, from: usize, most: usize) -> Result<usize> {
+    fn check_each(&mut self, omega: f64, highest: f64, from: usize, most: usize) -> Result<usize> {
         let set = self.condensed.set();
         let step = set.base() * set.stride();
         let most = carried_to(set, most);
@@ -113,7 +114,7 @@ impl CutoffHarmonic {
         }
         above = above.min(most);
         if below > from {
-            // The flexibility falls: the last harmonic that gives lies between.
+            // The flexibility falls: the last compliant harmonic lies between.
             while above > below + step {
                 let middle = carried_from(self.condensed.set(), below.midpoint(above));
                 let middle = middle.min(above - step);
@@ -138,7 +139,7 @@ impl CutoffHarmonic {
         Ok(from)
     }
 
-    fn look_at_some(&mut self, omega: f64, from: usize, most: usize) -> Result<usize> {
+    fn check_some(&mut self, omega: f64, from: usize, most: usize) -> Result<usize> {
         let mut h = most;
         let mut above = most;
         while h > from {
@@ -160,17 +161,17 @@ impl CutoffHarmonic {
         Ok(from)
     }
 
-    /// Whether ‖kt½ G kt½‖ ≥ 1/2 in harmonic h.
+    /// Whether ‖kt^½ G kt^½‖ ≥ ½ in harmonic h.
     fn compliant(&mut self, omega: f64, h: usize) -> Result<bool> {
         let condensed = &self.condensed;
         let Some(i) = block_of(condensed, h) else {
             return Ok(false);
         };
         // The matrices of a wave are the same for all its harmonics.
-        let seen = omega * h as f64 / condensed.set().numbers()[i] as f64;
+        let effective = omega * h as f64 / condensed.set().numbers()[i] as f64;
         let n = condensed.coordinates();
-        let table = &self.workspace.evaluate(condensed, i, seen, false)?.value;
-        // G = (1 − G_κ κ)⁻¹ G_κ, both sides times kt½.
+        let table = &self.workspace.evaluate(condensed, i, effective, false)?.value;
+        // G = (1 − G_κ κ)⁻¹ G_κ, both sides times kt^½.
         let a = self.lu.matrix();
         for c in 0..n {
             let root = condensed.stiffness(c).sqrt();
@@ -181,7 +182,7 @@ impl CutoffHarmonic {
                 a[c * n + r] = Complex64::from(f64::from(u8::from(c == r))) - g * share;
             }
         }
-        // Singular is the resonance of the free structure itself.
+        // The matrix is singular at a resonance of the structure without contacts.
         if self.lu.factor().is_err() {
             return Ok(true);
         }
@@ -198,8 +199,8 @@ fn block_of(condensed: &Condensed, h: usize) -> Option<usize> {
     same.or_else(|| numbers.iter().rposition(|&k| k > 0))
 }
 
-/// Largest singular value of a column-major matrix, from below and nearly always to some per cent: the power
-/// method on AᴴA.
+/// Largest singular value of a column-major matrix by the power method on AᴴA: a lower bound, nearly always exact to
+/// a few per cent.
 fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
     let size = |v: &[Complex64]| v.iter().fold(0.0, |s, z| f64::hypot(s, z.norm()));
     let frobenius = size(a);
@@ -227,7 +228,7 @@ fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
     largest
 }
 
-/// Highest natural frequency over the waves of a small structure without its contacts; none where it is not known.
+/// Highest natural frequency over the waves of a small structure without its contacts; `None` if it is not known.
 fn highest_frequency(condensed: &Condensed) -> Option<f64> {
     let n = condensed.ndof();
     if n > SMALL_UP_TO {
@@ -253,13 +254,13 @@ fn highest_frequency(condensed: &Condensed) -> Option<f64> {
     Some(highest)
 }
 
-/// The lowest harmonic number that is carried in sets like `set` and not below h.
+/// The lowest harmonic number not below h that sets like `set` carry.
 pub(super) fn carried_from(set: &HarmonicSet, h: usize) -> usize {
     let (base, step) = (set.base(), set.base() * set.stride());
     base + h.saturating_sub(base).div_ceil(step) * step
 }
 
-/// The highest such number that is not above h, the base at least.
+/// The highest such number not above h, at least the base.
 fn carried_to(set: &HarmonicSet, h: usize) -> usize {
     let (base, step) = (set.base(), set.base() * set.stride());
     base + h.saturating_sub(base) / step * step
@@ -305,7 +306,7 @@ mod tests {
 
     /// |kt G| = kt/(m Ω² − k) = 1/2 beyond the resonance.
     #[test]
-    fn a_mass_gives_up_to_the_frequency_that_its_inertia_says() {
+    fn a_mass_is_compliant_up_to_the_frequency_of_its_inertia() {
         for (mass, omega) in [(1.0, 0.5), (0.01, 0.7), (1e-4, 0.7)] {
             let (k, kt) = (1.0, 3.0);
             let mut model = Model::new(1).unwrap();

@@ -1,19 +1,19 @@
-//! How far a solved point is from the periodic motion that harmonic balance tends to: an estimate of the
-//! error that the harmonics left out make, found with the equations of more harmonics.
+//! Estimate of the distance between a solved point and the periodic motion to which harmonic balance converges: the
+//! error that the omitted harmonics cause, found with the equations of more harmonics.
 //!
-//! A solution W with harmonics up to H is extended to the reach H₂ of the structure, 2H + 1 at least: Z = (W, 0) is the
-//! start of a damped Newton method on the problem with harmonics up to H₂, which is stopped as soon as
-//! its own next step is small against the way that it went. With the last iterate Z, the simplified
-//! Newton step δ after it and Z* = Z + δ
+//! A solution W with harmonics up to H is extended to the cut-off harmonic H₂ of the structure, at least to 2H + 1.
+//! From Z = (W, 0) a damped Newton method solves the problem with harmonics up to H₂, and stops as soon as its next
+//! step is small against the total change. With the last iterate Z, the simplified Newton step δ after it and Z* = Z
+//! + δ
 //!
 //! > η_W = (‖Z* − W‖ + ‖δ‖)/‖Z*‖,  η_X = (|X(Z*) − X(W)| + |∂X/∂Z δ|)/|X(Z*)|
 //!
-//! with X the response observed. One step would do where the extended harmonics hardly act on each other, kt|G_h| < 1/2
-//! for h > H. Where the structure resonates high among the harmonics, they do, through the stick phases of the
-//! contact, and neighbouring H agree with each other while all of them are wrong.
+//! with X the response observed. One step would do where the extended harmonics hardly act on each other, kt|G_h| < ½
+//! for h > H. Where the structure resonates in high harmonics, they act on each other through the stick phases of the
+//! contact: results for neighbouring H then agree with each other while all of them are wrong.
 //!
-//! The step is that of Deuflhard's natural monotonicity test (Newton Methods for Nonlinear Problems,
-//! 2004, §3.3), which neither the scaling of the equations nor the reference stiffness changes.
+//! The step is that of Deuflhard's natural monotonicity test (Newton Methods for Nonlinear Problems, 2004, §3.3),
+//! which neither the scaling of the equations nor the reference stiffness changes.
 
 use crate::condense::Condensed;
 use crate::error::{Result, Status, try_push, try_vec};
@@ -25,29 +25,29 @@ use num_complex::Complex64;
 
 pub(super) const CONTEXT: &str = "the error estimate";
 
-/// Share s of the change that the next step may have: 0.1 costs about one step more than 0.3.
+/// Largest size of the next step relative to the change: 0.1 costs about one step more than 0.3.
 pub(super) const SHARE: f64 = 0.1;
 
-/// Unknowns above which no dense matrix is made.
+/// Unknowns above which no dense matrix is formed.
 pub(super) const MOST_UNKNOWNS: usize = 3000;
 
-/// Unknowns of a extended problem above which no estimate is made.
+/// Unknowns of an extended problem above which no estimate is made.
 pub(super) const MOST_EXTENDED: usize = 30_000;
 
-/// Share of the squared norm beyond the middle of the extended harmonics up to which harmonics beyond a reach that
-/// could not be afforded may be left out.
+/// Share of the change up to which the tail, beyond the middle of the extended harmonics, counts as converged; then
+/// harmonics above a limit that lies below the cut-off may be omitted.
 pub(super) const CONVERGED_TAIL: f64 = 0.1;
 
-/// Relative size of what the laws bring forth in the extended harmonics that is rounding.
+/// Relative size of the forces in the extended harmonics below which they are round-off.
 pub(super) const ROUNDING: f64 = 1e-12;
 
-/// How wrong a solved point is by the harmonics that it leaves out, and in sampled laws by their samples.
+/// Errors of a solved point that its omitted harmonics cause, and in sampled laws its samples.
 #[derive(Clone, Debug)]
 pub struct Estimate {
-    /// Whether the estimate may be relied on. Where it is not certified, all errors are NaN: unknown.
+    /// Whether the estimate is reliable. If it is not certified, all errors are NaN: unknown.
     pub certified: bool,
-    /// Whether it is not because the extended problem would be larger than can be afforded, so that more harmonics
-    /// would not help.
+    /// Whether it is uncertified because the extended problem would be too large, so that more harmonics would not
+    /// help.
     pub too_large: bool,
     /// Relative error of the relative motions at the contacts, in norm.
     pub motion: f64,
@@ -55,7 +55,7 @@ pub struct Estimate {
     pub response: f64,
     /// Relative error of the frequency of a nonlinear mode; 0 for a forced response.
     pub frequency: f64,
-    /// Error of the damping ratio of a nonlinear mode, in units of it; 0 for a forced response.
+    /// Absolute error of the damping ratio of a nonlinear mode; 0 for a forced response.
     pub damping: f64,
     /// Highest harmonic number of the extended problem.
     pub harmonics: usize,
@@ -69,7 +69,7 @@ pub struct Estimate {
     pub corrected: Corrected,
 }
 
-/// A solution with the extended harmonics, one or two Newton steps nearer to the truth.
+/// A solution with the extended harmonics, one or two Newton steps closer to the exact one.
 #[derive(Clone, Debug)]
 pub struct Corrected {
     /// The carried harmonics.
@@ -95,7 +95,7 @@ pub struct Solved<'a> {
     pub omega: f64,
     /// Fundamental of the response degree of freedom, in the caller's unit of length.
     pub response: Complex64,
-    /// Whether all contacts stick, where that is known.
+    /// Whether all contacts stick, if that is known.
     pub sticks: Option<bool>,
 }
 
@@ -108,7 +108,7 @@ impl Solved<'_> {
         if let Some(sticks) = self.sticks {
             return Ok(sticks);
         }
-        // The samples do not matter to a contact that sticks.
+        // The result for a contact that sticks does not depend on the samples.
         let mut forces = ContactForces::unchecked(self.condensed, 0)?;
         match forces.evaluate(self.motion, self.omega) {
             Err(e) if e.recoverable => Ok(false),
@@ -117,7 +117,7 @@ impl Solved<'_> {
         }
     }
 
-    /// The estimate of a solution that misses nothing.
+    /// The estimate of a solution that omits no harmonic.
     pub(super) fn exact(&self, damping: f64) -> Result<Estimate> {
         let length = self.condensed.length();
         let mut motion = try_vec(self.motion.len(), 0.0, CONTEXT)?;
@@ -145,7 +145,7 @@ impl Solved<'_> {
         })
     }
 
-    /// The estimate of a point of which nothing is known.
+    /// The estimate of a point whose error is unknown.
     pub(super) fn unknown(&self, damping: f64, too_large: bool) -> Result<Estimate> {
         Ok(Estimate {
             certified: false,
@@ -159,7 +159,7 @@ impl Solved<'_> {
         })
     }
 
-    /// The packed motions in the harmonics of a extended model, zero above those of the point.
+    /// The packed motions in the harmonics of an extended model, zero above those of the point.
     pub(super) fn extended(&self, to: &Condensed, unknowns: usize, factor: f64) -> Result<Vec<f64>> {
         let factor = factor * self.condensed.length() / to.length();
         let mut extended = try_vec(unknowns, 0.0, CONTEXT)?;
@@ -183,15 +183,14 @@ pub(super) fn tail(set: &HarmonicSet, below: &HarmonicSet, motion: &[f64]) -> Re
     Ok(found)
 }
 
-/// Whether a solution has faded out at the end of its harmonics: what is beyond the middle of the tail is
-/// little against the change.
+/// Whether a solution has a converged tail: the part beyond the middle of the tail is small against the change.
 pub(super) fn has_converged_tail(tail: &[(usize, f64)], change: f64) -> bool {
     let beyond = tail[tail.len() / 2..].iter().fold(0.0, |s, &(_, x)| f64::hypot(s, x));
     beyond <= CONVERGED_TAIL * change
 }
 
-/// Options of the extended problem. Samples grow with the harmonics and beyond, so that the estimate sees what
-/// the samples of the point miss.
+/// Options of the extended problem. Samples grow faster than the harmonics, so that the estimate includes the
+/// sampling error of the point.
 pub(super) fn extended_options(options: &SolverOptions, highest: usize) -> SolverOptions {
     let samples = match options.samples {
         0 => 0,
@@ -204,7 +203,7 @@ pub(super) fn extended_options(options: &SolverOptions, highest: usize) -> Solve
     }
 }
 
-/// An estimate that could not be made is unknown, unless a callback gives up.
+/// An estimate that could not be made becomes unknown; the error of a callback that gives up is returned.
 pub(super) fn or_unknown(found: Result<Option<Estimate>>, solved: &Solved<'_>, damping: f64) -> Result<Estimate> {
     match found {
         Ok(Some(estimate)) => Ok(estimate),

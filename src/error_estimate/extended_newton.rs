@@ -1,4 +1,4 @@
-//! The damped Newton method on the extended problem, stopped by its own next step.
+//! The damped Newton method on the extended problem; the size of its next step stops it.
 
 use crate::error::{Result, try_copy, try_vec};
 use crate::error_estimate::estimate::{CONTEXT, SHARE};
@@ -9,13 +9,13 @@ use crate::problem::Problem;
 /// Most Newton steps.
 const MOST_STEPS: usize = 24;
 
-/// Relative size of a first step that is as good as the last one where the extended harmonics are weak.
+/// Relative size of a first step that suffices where the extended harmonics are weak.
 const SHORT: f64 = 0.1;
 
-/// Damping factor below which a step is taken as it is.
+/// Damping factor below which a step is accepted without the monotonicity test.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
-/// The end of the damped Newton method.
+/// The result of the damped Newton method.
 pub(super) struct ExtendedSolution {
     /// Z, at which the problem was evaluated last.
     pub at: Vec<f64>,
@@ -44,14 +44,14 @@ fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
     Ok(sum)
 }
 
-/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough` says that δ, given after the
-/// change Z + δ − start, is small. `None` where some evaluation or matrix fails.
+/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough(change, δ)` accepts δ as small
+/// against the change Z + δ − start. `None` where some evaluation or matrix fails.
 ///
-/// Where the extended harmonics are known to be `weak`, kt|G_h| < 1/2, and the first step is short, it is taken for δ: the
-/// next one would be shorter by far.
+/// Where the extended harmonics are known to be `weak`, kt|G_h| < ½, and the first step is short, that step is
+/// returned as δ: the next one would be far shorter.
 ///
 /// # Errors
-/// What the system reports, but for singular matrices and what another motion may not meet.
+/// Those of the system, except for singular matrices and laws that another motion may not fail.
 pub(super) fn extend<P: Problem>(
     system: &mut ExtendedSystem<P>,
     start: &[f64],

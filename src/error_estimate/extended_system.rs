@@ -12,7 +12,7 @@ use crate::problem::{Problem, Residual};
 /// Relative residual of a step that is found by iteration: a hundredth of the share that decides.
 const TOLERANCE: f64 = 1e-3;
 
-/// Unknowns up to which a factorisation of all of them is quicker.
+/// Unknowns up to which factoring the whole matrix is faster.
 const DENSE_UP_TO: usize = 100;
 
 /// Most products of an iteration.
@@ -24,7 +24,7 @@ pub(super) struct ExtendedSystem<P> {
     parameter: f64,
     pub at: Residual,
     system: Box<dyn LinearSystem>,
-    /// Carried harmonics in the block that is factored; 0 where all of the matrix is.
+    /// Carried harmonics in the block that is factored; 0 if the whole matrix is.
     harmonics: usize,
     /// Border of a fixed parameter: no column, and the row (0, …, 0, 1).
     column: Vec<f64>,
@@ -91,8 +91,8 @@ impl<P: Problem> ExtendedSystem<P> {
 }
 
 impl<'a> ExtendedSystem<HarmonicBalance<'a>> {
-    /// A forced response at an angular frequency. The harmonics in which the structure is compliant, the first
-    /// `harmonics` carried ones, make the block that is factored; the others are found by iteration.
+    /// A forced response at an angular frequency. The first `harmonics` carried ones, in which the structure is
+    /// compliant, form the block that is factored; the others are found by iteration.
     pub fn iterative(problem: HarmonicBalance<'a>, omega: f64, harmonics: usize) -> Result<Self> {
         let harmonics = block_of(&problem, harmonics);
         let system = krylov(&problem, harmonics)?;
@@ -101,8 +101,8 @@ impl<'a> ExtendedSystem<HarmonicBalance<'a>> {
         Ok(extended)
     }
 
-    /// Goes to another frequency, and to a number of carried harmonics in the block.
-    pub fn go_to(&mut self, omega: f64, harmonics: usize) -> Result<()> {
+    /// Selects another frequency, and the number of carried harmonics in the block.
+    pub fn set_point(&mut self, omega: f64, harmonics: usize) -> Result<()> {
         self.parameter = omega;
         let harmonics = block_of(&self.problem, harmonics);
         if harmonics != self.harmonics {
@@ -113,7 +113,7 @@ impl<'a> ExtendedSystem<HarmonicBalance<'a>> {
     }
 }
 
-/// Carried harmonics in the block: all of a small problem.
+/// Carried harmonics in the block; all of them for a small problem.
 fn block_of(problem: &HarmonicBalance<'_>, harmonics: usize) -> usize {
     let whole = problem.set().numbers().len();
     if problem.unknowns() <= DENSE_UP_TO {

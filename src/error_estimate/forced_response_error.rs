@@ -43,7 +43,7 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// The estimate at a solved point; not certified where it could not be made.
+    /// The estimate at a solved point; not certified if it could not be made.
     ///
     /// # Errors
     /// Those of callbacks that give up.
@@ -55,7 +55,7 @@ impl<'a> ForcedEstimator<'a> {
         or_unknown(found, solved, 0.0)
     }
 
-    /// How far to lift; none where the problem would be too large.
+    /// The harmonics to which a point is extended; `None` where the problem would be too large.
     fn extent(&mut self, solved: &Solved<'_>) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
@@ -105,7 +105,7 @@ impl<'a> ForcedEstimator<'a> {
         let core = set.numbers().partition_point(|&h| h <= extent.core);
         let mut system = match self.extended.take() {
             Some((kept, mut system)) if kept == slot => {
-                system.go_to(omega, core)?;
+                system.set_point(omega, core)?;
                 system
             }
             _ => {
@@ -129,7 +129,7 @@ fn on(
 ) -> Result<Option<Estimate>> {
     let (omega, set) = (solved.omega, condensed.set());
     if set.numbers().len() == solved.condensed.set().numbers().len() {
-        // Constant forces alone: nothing vibrates.
+        // Constant forces act alone: nothing vibrates.
         return solved.exact(0.0).map(Some);
     }
     let n = system.problem.unknowns();
@@ -138,7 +138,7 @@ fn on(
         return Ok(None);
     }
     let residual = (&system.at.values[..], system.at.scale);
-    if misses_nothing(residual, set, solved.condensed.set(), tolerance) {
+    if omits_nothing(residual, set, solved.condensed.set(), tolerance) {
         return solved.exact(0.0).map(Some);
     }
     let enough = |change: &[f64], next: &[f64]| {
@@ -187,20 +187,20 @@ fn on(
     }))
 }
 
-/// How far a point is extended.
+/// The harmonics to which a point is extended.
 #[derive(Clone, Copy)]
 struct Extent {
-    /// Highest harmonic of the core, in which the structure gives.
+    /// Highest harmonic of the core, in which the structure is compliant.
     core: usize,
     /// Highest harmonic of all.
     highest: usize,
-    /// Whether the structure gives in none of the harmonics that the point leaves out.
+    /// Whether the structure is compliant in none of the harmonics that the point omits.
     weak: bool,
-    /// Whether the structure may give beyond the core, which would be too large.
+    /// Whether the structure may be compliant beyond the core, where the problem would be too large.
     short: bool,
 }
 
-/// A difference relative to a number; 0 where there is none.
+/// A difference relative to a number; 0 if the difference is 0.
 pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
     if difference == 0.0 {
         0.0
@@ -209,9 +209,9 @@ pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
     }
 }
 
-/// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem as well:
-/// nothing acts above them, and below them more samples change nothing.
-pub(super) fn misses_nothing(
+/// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem
+/// as well: no force acts above them, and below them more samples change nothing.
+pub(super) fn omits_nothing(
     (residual, scale): (&[f64], f64),
     set: &HarmonicSet,
     below: &HarmonicSet,
@@ -220,7 +220,7 @@ pub(super) fn misses_nothing(
     above(set, below, residual) <= ROUNDING * scale && norm(residual) <= 10.0 * tolerance * scale
 }
 
-/// Norm of what packed signals of `set` hold above the harmonics of `below`.
+/// Norm of the part of packed signals of `set` above the harmonics of `below`.
 pub(super) fn above(set: &HarmonicSet, below: &HarmonicSet, packed: &[f64]) -> f64 {
     let highest = below.numbers().last().copied().unwrap_or(0);
     let first = set.numbers().partition_point(|&h| h <= highest);

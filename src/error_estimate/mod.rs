@@ -1,4 +1,4 @@
-//! The error that the harmonics left out make at a solved point.
+//! The error that the omitted harmonics cause at a solved point.
 
 pub mod cutoff_harmonic;
 mod estimate;

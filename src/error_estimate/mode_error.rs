@@ -1,4 +1,4 @@
-//! The error of a point of a nonlinear mode: of its frequency and damping ratio as well.
+//! The error of a point of a nonlinear mode, including those of its frequency and damping ratio.
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
@@ -8,7 +8,7 @@ use crate::error_estimate::estimate::{
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::ExtendedSystem;
-use crate::error_estimate::forced_response_error::{misses_nothing, relative};
+use crate::error_estimate::forced_response_error::{omits_nothing, relative};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::norm;
@@ -16,11 +16,11 @@ use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 
-/// How many more harmonics than needed a extended model may have to be used again.
+/// Ratio of the harmonics of an extended model to those needed up to which the model is used again.
 const SPARE: f64 = 1.25;
 
-/// Error of the damping ratio, over that ratio, below which its last change need not be small against all of
-/// its change: along a backbone the latter passes through zero.
+/// Relative error of the damping ratio below which its last change need not be small against its whole change: along
+/// a backbone the latter passes through zero.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// Estimates the errors of points of one nonlinear mode, one after the other.
@@ -32,7 +32,7 @@ pub struct ModeEstimator<'a> {
     gauge: &'a Gauge,
     response: usize,
     cutoff: Option<CutoffHarmonic>,
-    /// The model extended last.
+    /// The extended model used last.
     extended: Option<Condensed>,
 }
 
@@ -59,8 +59,8 @@ impl<'a> ModeEstimator<'a> {
         }
     }
 
-    /// The estimate at a solved point of this log₁₀ amplitude and damping ratio; not certified where it could
-    /// not be made.
+    /// The estimate at a solved point of this log₁₀ amplitude and damping ratio; not certified if it could not be
+    /// made.
     ///
     /// # Errors
     /// Those of callbacks that give up.
@@ -127,7 +127,7 @@ impl<'a> ModeEstimator<'a> {
             return Ok(None);
         }
         let residual = (&system.at.values[..n - 2], system.at.scale);
-        if misses_nothing(residual, set, solved.condensed.set(), self.options.tol_residual) {
+        if omits_nothing(residual, set, solved.condensed.set(), self.options.tol_residual) {
             return solved.exact(damping).map(Some);
         }
         let of_damping = |u: &[f64]| Epmc::damping_of_change(u).abs();

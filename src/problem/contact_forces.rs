@@ -1,5 +1,5 @@
-//! The contact forces of all relative coordinates at one packed motion, with their Jacobians: what
-//! every problem with contacts needs of the laws.
+//! The contact forces of all relative coordinates at one packed motion, with their Jacobians, for every problem with
+//! contacts.
 
 mod coupling;
 mod ranges;
@@ -15,16 +15,16 @@ use num_complex::Complex64;
 pub struct ContactForces<'a> {
     condensed: &'a Condensed,
     evaluator: Evaluator,
-    /// The same with other samples, where some law is sampled.
+    /// The same with other samples, if some law is sampled.
     other: Option<Evaluator>,
-    /// s, where every law is seen as s·f(y/s).
+    /// s, where every law is scaled to s·f(y/s).
     factor: f64,
     /// y/s of all coordinates, and of those of one law.
     scaled: Vec<f64>,
     gathered: Vec<f64>,
     /// Force of one law.
     checked: Vec<f64>,
-    /// Memory for laws of 1, 2, … directions, where there are such.
+    /// Memory for laws of 1, 2, … directions, where such laws exist.
     found: Vec<Option<Evaluation>>,
     /// Packed sums per coordinate.
     force: Vec<f64>,
@@ -33,9 +33,9 @@ pub struct ContactForces<'a> {
     jacobians: Blocks,
     /// Whether all laws stick.
     all_stuck: bool,
-    /// Per coordinate whether ∂f/∂y is that of laws which all stick, or along their normal are closed.
+    /// Per coordinate, whether all its laws stick, or along their normal are closed, so that ∂f/∂y is theirs.
     linear: Vec<bool>,
-    /// Per coordinate whether all its laws stick and none acts along its normal, where a load rests.
+    /// Per coordinate, whether all its laws stick and none acts along its normal, where a load acts at rest.
     inactive: Vec<bool>,
     slip_fractions: Vec<f64>,
 }
@@ -60,7 +60,7 @@ impl<'a> ContactForces<'a> {
     /// `OutOfMemory`.
     pub fn unchecked(condensed: &'a Condensed, samples: usize) -> Result<Self> {
         const CONTEXT: &str = "the contact forces";
-        // A linear problem has no contact to evaluate, and its harmonics need not be a comb.
+        // A linear problem has no contact to evaluate, and its harmonics need not be equidistant.
         let linear = condensed.coordinates() == 0;
         let set = if linear { &HarmonicSet::all(0)? } else { condensed.set() };
         let m = set.packed_len();
@@ -95,9 +95,9 @@ impl<'a> ContactForces<'a> {
         })
     }
 
-    /// Sees every law f at a motion `factor` times smaller, as s·f(y/s). A large factor gives the laws
-    /// at rest, linear springs (infinite: exactly those); 1 gives the laws themselves; between them
-    /// runs the homotopy that finds a first point.
+    /// Scales every law f to s·f(y/s), its forces at a motion `factor` = s times smaller. A large factor selects the
+    /// laws near rest, linear springs (infinite: exactly those); 1 selects the laws themselves; between them runs the
+    /// homotopy that finds a first point.
     pub fn set_scale(&mut self, factor: f64) {
         self.factor = factor;
     }
@@ -117,7 +117,7 @@ impl<'a> ContactForces<'a> {
         self.linear.fill(true);
         self.inactive.fill(true);
         let s = self.factor;
-        // What scales with the motion; at rest it follows from the Jacobians.
+        // Forces that scale with the motion; at rest they follow from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
         for (scaled, y) in self.scaled.iter_mut().zip(motion) {
             *scaled = y / s;
@@ -221,7 +221,7 @@ impl<'a> ContactForces<'a> {
         set.get(&packed[coordinate * m..(coordinate + 1) * m], i)
     }
 
-    /// Whether all laws know from which motion on they are (nearly) linear.
+    /// Whether all laws state the motion below which they are (nearly) linear.
     #[must_use]
     pub fn have_known_linear_range(&self) -> bool {
         let mut laws = self.condensed.laws().iter();

@@ -1,5 +1,5 @@
-//! The Jacobians ∂f/∂y of the contact forces as blocks between relative coordinates: one for each
-//! coordinate by itself, and one for each pair that some law couples.
+//! The Jacobians ∂f/∂y of the contact forces as blocks between relative coordinates: one for each coordinate by
+//! itself, and one for each pair that some law couples.
 
 use crate::condense::Condensed;
 use crate::error::{Result, try_copy, try_extend, try_push, try_vec};
@@ -11,8 +11,8 @@ pub struct Blocks {
     first: Vec<usize>,
     /// Motion coordinate of each block.
     motion: Vec<usize>,
-    /// Force coordinate and number of the blocks, by the coordinate of the motion. The pattern is
-    /// symmetric, so that they begin where `first` says.
+    /// Force coordinate and number of the blocks, by the coordinate of the motion. The pattern is symmetric, so that
+    /// they begin where `first` states.
     of_motions: Vec<(usize, usize)>,
     values: Vec<f64>,
     /// Per block whether a law has been added since the last [`Self::clear`].
@@ -82,17 +82,17 @@ impl Blocks {
         })
     }
 
-    /// Begins anew: the first law of a block replaces what is there. Every block has laws.
+    /// Starts a new sum: the first law of a block replaces the old values. Every block has laws.
     pub fn clear(&mut self) {
         self.filled.fill(false);
     }
 
-    /// Adds the Jacobian of a law of `d` directions whose blocks begin at `from` in the list of all
-    /// laws' blocks; returns where those of the next law begin. What `jacobian` holds afterwards is not told.
+    /// Adds the Jacobian of a law of `d` directions whose blocks begin at `from` in the list of all laws' blocks;
+    /// returns where those of the next law begin. The contents of `jacobian` afterwards are unspecified.
     pub fn add(&mut self, from: usize, d: usize, jacobian: &mut Vec<f64>) -> usize {
         let m = self.order;
         if self.filled == [false] && self.values.len() == jacobian.len() {
-            // One law alone: nothing need be copied.
+            // One law alone fills all blocks: no copy is needed.
             core::mem::swap(&mut self.values, jacobian);
             self.filled.fill(true);
             return from + d * d;
@@ -118,7 +118,7 @@ impl Blocks {
         from + d * d
     }
 
-    /// Exchanges all blocks for those kept elsewhere.
+    /// Exchanges all blocks for stored ones.
     pub fn swap(&mut self, values: &mut Vec<f64>) {
         core::mem::swap(&mut self.values, values);
     }

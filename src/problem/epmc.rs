@@ -2,10 +2,9 @@
 //! damping balances the losses of the structure and its contacts (Krack 2015,
 //! doi:10.1016/j.compstruc.2015.03.008).
 //!
-//! M ẍ + (C − 2DωM) ẋ + K x + f(x) = 0, or −ζK ẋ with D = ζω/2. With x = a·x̂ the unknowns are the
-//! packed relative motions ŷ, the frequency ω and the damping ratio D; the parameter is log₁₀ a.
-//! The amplitude enters a law by scaling alone, f̂(ŷ) = f(a ŷ)/a, the law scaled by s = 1/a;
-//! hence ∂f̂/∂log₁₀a = −ln 10·∂f̂/∂ln s.
+//! M ẍ + (C − 2DωM) ẋ + K x + f(x) = 0, or −ζK ẋ with D = ζω/2. With x = a·x̂ the unknowns are the packed relative
+//! motions ŷ, the frequency ω and the damping ratio D; the parameter is log₁₀ a. The amplitude enters a law by
+//! scaling alone, f̂(ŷ) = f(a ŷ)/a, the law scaled by s = 1/a; hence ∂f̂/∂log₁₀a = −ln 10·∂f̂/∂ln s.
 //!
 //! > R = ŷ_h − W x̂_h,  x̂_h = −Z_h(ω, D)⁻¹ Wᴴ (f̂_h − κ ŷ_h),
 //! > L²·x̂₁ᴴ B x̂₁ − 1,  Im x̂₁[reference]/scale
@@ -24,30 +23,29 @@ use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residu
 use num_complex::Complex64;
 use std::f64::consts::LN_10;
 
-/// Change of ln ω that weighs as much as a change of the motions by their size.
+/// Change of ln ω that has the same weight as a change of the motions by their size.
 const OMEGA_UNIT: f64 = 0.05;
 
-/// Change of D that weighs as much.
+/// Change of D that has the same weight.
 const DAMPING_UNIT: f64 = 2e-3;
 
-/// Distance below the onset of slip, in log₁₀, at which contacts surely stick whatever the rounding.
+/// Distance below the onset of slip, in log₁₀, at which contacts stick despite round-off.
 const ONSET_ROUNDING: f64 = 1e-9;
 
-/// Share of the structure's largest motion that counts as size of the residual. A relative motion is
-/// known to the rounding of the motions that are solved for, which may be thousands of times larger:
-/// a tolerance of 1e-10 then asks for no more than 1e-12 of them.
+/// Share of the structure's largest motion that counts as size of the residual. A relative motion is known only to
+/// the round-off of the motions from which it is computed, which may be thousands of times larger: a tolerance of
+/// 1e-10 then requires no more than 1e-12 of them.
 const OF_MOTION: f64 = 1e-2;
 
-/// Frequency relative to the linear mode's below which a motion is no vibration. Where a structure
-/// softens until its stiffness is gone, the frequency falls towards zero at an amplitude that stays;
-/// inertia is then lost in the rounding of the stiffness, and D with it.
+/// Frequency relative to the linear mode's below which a motion is no vibration. Where a structure softens until its
+/// stiffness vanishes, the frequency falls towards zero at a constant amplitude; inertia, and with it D, is then lost
+/// in the round-off of the stiffness.
 const VANISHED: f64 = 1e-5;
 
-/// What fixes amplitude and phase of a mode.
+/// Normalisation of a mode: its amplitude and phase.
 #[derive(Clone, Debug)]
 pub struct Gauge {
-    /// The relative motion whose fundamental is the amplitude; `None`: the modal amplitude
-    /// (x₁ᴴ M x₁)^½.
+    /// The relative motion whose fundamental is the amplitude; `None`: the modal amplitude (x₁ᴴ M x₁)^½.
     pub contact: Option<Row>,
     /// Degree of freedom whose fundamental is real.
     pub reference_dof: usize,
@@ -71,7 +69,7 @@ pub struct Epmc<'a> {
     modal: Modal,
     gauge: &'a Gauge,
     linear: &'a LinearMode,
-    /// x̂ of all carried harmonics, as last evaluated.
+    /// x̂ of all carried harmonics at the point last evaluated.
     x: Vec<Complex64>,
     weighted: Vec<Complex64>,
     w: Vec<Complex64>,
@@ -129,7 +127,7 @@ impl<'a> Epmc<'a> {
         )
     }
 
-    /// Sets the unknowns that stand for frequency and damping ratio.
+    /// Sets the unknowns that represent frequency and damping ratio.
     pub fn set_frequency_and_damping(linear: &LinearMode, (omega, damping): (f64, f64), u: &mut [f64]) {
         let n = u.len();
         u[n - 2] = (omega / linear.omega).ln() / OMEGA_UNIT;
@@ -142,14 +140,14 @@ impl<'a> Epmc<'a> {
         DAMPING_UNIT * change.last().copied().unwrap_or(0.0)
     }
 
-    /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic,
-    /// at the point last evaluated, in the solver's units.
+    /// Carried harmonics of all degrees of freedom per unit of amplitude, harmonic after harmonic, at the point last
+    /// evaluated, in the solver's units.
     #[must_use]
     pub fn shape(&self) -> &[Complex64] {
         &self.x
     }
 
-    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    /// Relative change of the forces with the number of samples; see [`ContactForces::sampling_error`].
     ///
     /// # Errors
     /// Those of callbacks that give up.
@@ -178,9 +176,9 @@ impl<'a> Epmc<'a> {
         }
     }
 
-    /// log₁₀ of the amplitudes up to which all laws are linear, −∞ where one of them never is, and up
-    /// to which they nearly are, so that the linear mode is a sure start. Where a law does not know, that
-    /// is judged from `first`, the log₁₀ of the first amplitude wanted.
+    /// log₁₀ of the amplitudes up to which all laws are linear, −∞ if one of them never is, and up to which they
+    /// nearly are, so that the linear mode is a reliable initial guess. If a law does not state its linear range, the
+    /// second follows from `first`, the log₁₀ of the first requested amplitude.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -221,7 +219,8 @@ impl<'a> Epmc<'a> {
         }
     }
 
-    /// Amplitude and phase in the last two rows of the system, with their derivatives by all but the motions.
+    /// Evaluates amplitude and phase in the last two rows of the system, with their derivatives by all but the
+    /// motions.
     fn fix_gauge(&mut self, rates: (f64, f64), by_parameter: f64, out: &mut Residual) {
         self.weigh();
         let n = out.values.len();
@@ -308,7 +307,7 @@ impl<'a> Epmc<'a> {
                 self.fix_gauge(rates, by_parameter, out);
             }
         }
-        // Each coordinate adds its rounding.
+        // Each coordinate adds its round-off.
         out.scale = 1.0 + norm(motion) + OF_MOTION * largest * (coordinates as f64).sqrt();
         Ok(())
     }
@@ -365,7 +364,7 @@ impl Problem for Epmc<'_> {
         self.evaluate_scaled(u, 10f64.powf(-p), -LN_10, out)
     }
 
-    /// 1 plus the damping ratio above that of the linear mode, in units that count.
+    /// 1 plus the damping ratio above that of the linear mode, in units of `DAMPING_UNIT`.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
         let n = u.len();
         ((1.0 + u[n - 1]).into(), direction[n - 1].into())

@@ -1,5 +1,5 @@
-//! The forced response as a [`Problem`]: the unknowns are the packed relative motions of the contacts,
-//! the parameter is the angular frequency ω, or in a homotopy that of its [`Path`].
+//! The forced response as a [`Problem`]: the unknowns are the packed relative motions of the contacts, the parameter
+//! is the angular frequency ω, or in a homotopy that of its [`Path`].
 //!
 //! R = y − y_lin + G(f(y) − κ y), ∂R/∂y = I + G(J − κ), ∂R/∂ω = −∂y_lin + ∂G (f − κ y) + G ∂f/∂ω.
 
@@ -24,33 +24,32 @@ pub struct HarmonicBalance<'a> {
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
-    /// Whether the static solution is not zero, because a contact presses or a law pushes at rest.
+    /// Whether the static solution is not zero, because a contact is preloaded or a law has a force at rest.
     loaded_at_rest: bool,
     /// One number per coordinate, for a column of the Jacobian.
     pub(super) sum: Vec<Complex64>,
-    /// G as [`ContactForces::couple_all`] wants it.
+    /// G in the layout of [`ContactForces::couple_all`].
     flexibility: Vec<Complex64>,
     /// One packed signal.
     change: Vec<f64>,
     pub(super) products: ProductMemory,
 }
 
-/// Memory of products with the Jacobian, made when they are first asked for.
+/// Memory of products with the Jacobian, allocated by the first of them.
 #[derive(Default)]
 pub(super) struct ProductMemory {
     pub column: Vec<f64>,
     pub change: Vec<f64>,
-    /// Contact Jacobians that were kept.
+    /// Stored contact Jacobians.
     pub kept: Vec<f64>,
 }
 
 impl<'a> HarmonicBalance<'a> {
-    /// A problem on `condensed` for frequencies in `range`, observing degree of freedom `response`
-    /// in its lowest carried harmonic above zero. `samples` = 0 locates events exactly; `given` is
-    /// a packed start.
+    /// A problem on `condensed` for frequencies in `range`, observing degree of freedom `response` in its lowest
+    /// carried harmonic above zero. `samples` = 0 locates events exactly; `given` is a packed initial guess.
     ///
     /// # Errors
-    /// `OutOfMemory`; those of callbacks, which are asked for their force at rest.
+    /// `OutOfMemory`; those of callbacks, whose force at rest is evaluated.
     pub fn new(
         condensed: &'a Condensed,
         response: usize,
@@ -85,7 +84,7 @@ impl<'a> HarmonicBalance<'a> {
         self.forces.slip_fractions()
     }
 
-    /// How much sampling matters at a point; see [`ContactForces::sampling_error`].
+    /// Relative change of the forces with the number of samples; see [`ContactForces::sampling_error`].
     ///
     /// # Errors
     /// Those of callbacks that give up.
@@ -153,7 +152,7 @@ impl<'a> HarmonicBalance<'a> {
         Ok(())
     }
 
-    /// The observed amplitude and its derivative along a direction, the last number of which belongs to ω or to a path.
+    /// The observed amplitude and its derivative along a direction, whose last number belongs to ω or to a path.
     fn observe_at(&self, u: &[f64], direction: &[f64], path: Option<Path>) -> (Complex64, Complex64) {
         let coordinates = self.condensed.coordinates();
         let outputs = coordinates + 1;
@@ -182,8 +181,7 @@ impl<'a> HarmonicBalance<'a> {
         (z, dz)
     }
 
-    /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last
-    /// evaluated.
+    /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last evaluated.
     pub fn contact_force(&self, u: &[f64], i: usize, w: &mut [Complex64]) {
         for (c, w) in w.iter_mut().enumerate() {
             *w = self.forces.minus_reference(u, c, i);
@@ -208,8 +206,8 @@ impl<'a> HarmonicBalance<'a> {
         &self.forces
     }
 
-    /// Harmonics of the response degree of freedom at the point last evaluated, in the order in
-    /// which they are carried.
+    /// Harmonics of the response degree of freedom at the point last evaluated, in the order in which they are
+    /// carried.
     pub fn response(&self, u: &[f64], x: &mut [Complex64]) {
         for (i, (x, table)) in x.iter_mut().zip(self.tables.current()).enumerate() {
             let coordinates = self.condensed.coordinates();
@@ -287,10 +285,10 @@ impl Problem for HarmonicBalance<'_> {
                 u.copy_from_slice(given);
                 Ok(true)
             }
-            // A contact that presses at rest has no solution of the form that scales: the load must grow.
+            // With a preloaded contact the scaled laws have no solution at small motion: the load must grow.
             InitialGuess::Stuck if self.loaded_at_rest => Ok(false),
             InitialGuess::Stuck => {
-                // At motions far smaller every law is linear: one Newton step from rest.
+                // At far smaller motions every law is linear: one Newton step from rest.
                 u.fill(0.0);
                 let mut at = Residual::new(u.len())?;
                 self.evaluate_at(u, p, Some((Path::ScaledLaws, f64::INFINITY)), &mut at)?;
@@ -333,7 +331,7 @@ impl Problem for HarmonicBalance<'_> {
         Ok(Some(PathHomotopy::between((start, 0.0), self, Path::ScaledLaws, p)))
     }
 
-    /// Damping takes the power of the forces; without it resonances are the exception.
+    /// Damping absorbs the power of the forces; without damping, resonances are the exception.
     fn is_bounded(&self) -> bool {
         true
     }

@@ -1,8 +1,8 @@
 //! Homotopies that wrap a mechanical problem at a fixed parameter, and are problems themselves.
 //!
-//! Scaled laws: every law is seen as s·f(y/s), with ln s as the parameter. A large s gives the laws at small motion,
-//! where contacts stick; s = 1 gives the laws themselves. Growing load: a factor on the forces that vibrate, from the
-//! static solution under constant loads, for contacts that press at rest.
+//! Scaled laws: every law is replaced by s·f(y/s), with ln s as the parameter. A large s selects the laws at small
+//! motion, where contacts stick; s = 1 selects the laws themselves. Growing load: a factor on the forces that
+//! vibrate, from the static solution under constant loads, for preloaded contacts.
 
 use crate::error::Result;
 use crate::linalg::linear_system::{Jacobian, MatrixFree};
@@ -12,7 +12,7 @@ use num_complex::Complex64;
 /// The meaning of the parameter of a homotopy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
-    /// ln s of the factor by which the laws see a smaller motion.
+    /// ln s of the factor by which the motion in the laws is reduced.
     ScaledLaws,
     /// Factor on the forces that vibrate; constant ones act in full.
     GrowingLoad,
@@ -30,7 +30,7 @@ pub trait AlongPath: Jacobian {
     fn observe_along(&self, path: Path, u: &[f64], direction: &[f64]) -> (Complex64, Complex64);
 }
 
-/// A problem at a fixed parameter on the way from an easier one.
+/// A problem at a fixed parameter as the end of a path from an easier one.
 pub struct PathHomotopy<'p> {
     problem: &'p mut (dyn AlongPath + 'p),
     path: Path,

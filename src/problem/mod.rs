@@ -1,8 +1,8 @@
 //! Mechanical problems R(u, p) = 0 with one parameter p.
 //!
 //! [`harmonic_balance`] is the forced response over frequency, [`epmc`] the nonlinear mode (extended periodic motion
-//! concept) over amplitude, and [`homotopy`] wraps either where a first point has to be approached from afar. The
-//! continuation knows the trait [`Problem`] and nothing else of mechanics.
+//! concept) over amplitude, and [`homotopy`] wraps either where Newton's method does not find a first point. The
+//! continuation uses the trait [`Problem`] and nothing else of mechanics.
 
 pub mod contact_forces;
 mod contact_jacobian;

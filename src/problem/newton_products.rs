@@ -1,5 +1,5 @@
-//! Products with Newton's matrix of a forced response, and its block between the first harmonics, for linear solutions
-//! that never have the whole of it.
+//! Products with Newton's matrix of a forced response, and its block between the first harmonics, for linear
+//! solutions that never form the whole matrix.
 
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
@@ -26,7 +26,7 @@ impl MatrixFree for HarmonicBalance<'_> {
         let column = &mut self.products.column[..];
         for (k, to) in matrix.chunks_exact_mut(order.max(1)).enumerate() {
             let (c, q) = (k / part, k % part);
-            active[k] = self.forces.is_felt(c);
+            active[k] = self.forces.is_coupled(c);
             to.fill(0.0);
             to[k] = 1.0;
             if !active[k] {
@@ -57,7 +57,7 @@ impl MatrixFree for HarmonicBalance<'_> {
         if self.products.change.is_empty() {
             self.products.change = try_vec(m * coordinates, 0.0, CONTEXT)?;
         }
-        // The contact Jacobians are those that were kept, not those of the motion evaluated last.
+        // The contact Jacobians are the stored ones, not those of the motion evaluated last.
         self.forces.swap_jacobians(&mut self.products.kept);
         let dw = &mut self.products.change[..];
         out.copy_from_slice(d);

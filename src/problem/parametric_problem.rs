@@ -1,18 +1,18 @@
-//! The vocabulary between a mechanical problem and the continuation: R(u, p) = 0 with one parameter p.
+//! The interface between a mechanical problem and the continuation: R(u, p) = 0 with one parameter p.
 
 use crate::error::{Result, try_vec};
 use crate::linalg::linear_system::Jacobian;
 use num_complex::Complex64;
 
 /// Residual at one point and its derivative by the parameter. The derivative by the unknowns is the problem's
-/// [`Jacobian`], which a linear system asks for.
+/// [`Jacobian`], which a linear system requests.
 #[derive(Clone, Debug)]
 pub struct Residual {
     /// R
     pub values: Vec<f64>,
     /// ∂R/∂p
     pub d_parameter: Vec<f64>,
-    /// Size against which the residual is measured.
+    /// Size to which the residual is relative.
     pub scale: f64,
 }
 
@@ -33,12 +33,12 @@ impl Residual {
 /// Initial guesses of the first point, in the order in which they are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum InitialGuess {
-    /// The caller's guess, where there is one.
+    /// The caller's guess, if there is one.
     Given,
-    /// All contacts as at small motion: stuck, or open.
+    /// All contacts in their state at small motion: stuck, or open.
     Stuck,
-    /// All contacts replaced by their reference stiffness: bounded also where the stuck
-    /// structure resonates without damping.
+    /// All contacts replaced by their reference stiffness: bounded also where the stuck structure resonates without
+    /// damping.
     Reference,
 }
 
@@ -60,8 +60,8 @@ pub trait Problem: Jacobian {
     /// Those of the linear algebra and of callbacks.
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()>;
 
-    /// The observed complex amplitude at the point last evaluated, and its derivative along
-    /// `direction` (n + 1 numbers, the parameter last).
+    /// The observed complex amplitude at the point last evaluated, and its derivative along `direction` (n + 1
+    /// numbers, the parameter last).
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64);
 
     /// Fills an initial guess; `false` where the problem has none of this kind.
@@ -70,21 +70,21 @@ pub trait Problem: Jacobian {
     /// Those of [`Self::evaluate`].
     fn initial_guess(&mut self, kind: InitialGuess, p: f64, u: &mut [f64]) -> Result<bool>;
 
-    /// A homotopy that ends at this problem at fixed `p`, easy to solve at its start from `u`, the stuck guess or rest
-    /// where there is none. `None`: the problem has none.
+    /// A homotopy that ends at this problem at fixed `p`, and is easy to solve at its start from `u`: the stuck
+    /// guess, or rest if there is none. `None`: the problem has no homotopy.
     ///
     /// # Errors
     /// `OutOfMemory`.
     fn homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<Homotopy<'_>>>;
 
-    /// Whether λ R(u) + (1 − λ)(u − a) = 0 has bounded solutions for any a, so that a homotopy can lead from
-    /// u = a to a solution.
+    /// Whether λ R(u) + (1 − λ)(u − a) = 0 has bounded solutions for any a, so that a homotopy can lead from u = a to
+    /// a solution.
     fn is_bounded(&self) -> bool {
         false
     }
 
-    /// Asks for the most accurate evaluation there is, at the parameter values that follow, rather
-    /// than the one that is quick along a branch. Derivatives by the parameter may then be zero.
+    /// Selects the most accurate evaluation at the following parameter values, instead of the fast one along a
+    /// branch. Derivatives by the parameter may then be zero.
     fn set_pointwise(&mut self, _pointwise: bool) {}
 }
 

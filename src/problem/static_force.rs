@@ -6,13 +6,13 @@ use crate::contact::{Form, Law};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 
-/// The first contact with a force at rest, at the angular frequency `omega`. A law that cannot be
-/// evaluated at rest is skipped.
+/// The first contact with a force at rest, at the angular frequency `omega`. A law that cannot be evaluated at rest
+/// is skipped.
 ///
 /// # Errors
-/// `Argument` for a law that is said to be odd and has a force at rest; those of callbacks.
+/// `Argument` for a law that is declared odd and has a force at rest; those of callbacks.
 pub fn static_force(condensed: &Condensed, omega: f64, samples: usize) -> Result<Option<usize>> {
-    // `Contact::is_preloaded` answers for the others.
+    // `Contact::is_preloaded` decides for the other laws.
     let needs_evaluation = |law: &dyn Law| matches!(law.form(), Form::Memoryless(_) | Form::Hysteretic(_));
     let set = HarmonicSet::all(0)?;
     let laws = || {

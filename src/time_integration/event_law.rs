@@ -1,14 +1,14 @@
-//! Elements in time: the contacts of a structure, sorted into linear springs and elements, the laws of which
-//! are linear between events or smooth.
+//! Elements in time: the contacts of a structure, sorted into linear springs and elements whose laws are linear
+//! between events or smooth.
 //!
-//! Within a piece the forces of an [`EventLaw`] are linear in the relative motions, x and for friction under a
-//! load that varies also y, side a minus side b of each. Friction remembers the stretch e = x − w of its
-//! spring from the slider at w: in x and w themselves a stiff spring would show the rounding.
+//! Within a piece the forces of an [`EventLaw`] are linear in the relative motions, side a minus side b of each: x,
+//! and for friction under a varying normal load also y. The state of friction is the stretch e = x − w of its spring
+//! from the slider at w: with x and w as the state, a stiff spring would amplify round-off.
 //!
-//! A piece ends where one of its *margins*, polynomials in time like the motion, falls through zero. The
-//! force is continuous there, and so is the whole right-hand side: sensitivities of displacements and
-//! velocities pass events unchanged (the saltation matrix is the identity; see Leine & Nijmeijer,
-//! Dynamics and Bifurcations of Non-Smooth Mechanical Systems, 2004).
+//! A piece ends where one of its *margins*, polynomials in time like the motion, falls through zero. The force is
+//! continuous there, and so is the whole right-hand side: sensitivities of displacements and velocities pass events
+//! unchanged (the saltation matrix is the identity; see Leine & Nijmeijer, Dynamics and Bifurcations of Non-Smooth
+//! Mechanical Systems, 2004).
 //!
 //! Smooth laws have one piece without end and are evaluated at times; see `smooth_laws`.
 
@@ -27,12 +27,12 @@ pub(super) struct Element {
     pub rows: Vec<Row>,
     /// The law, its constants in the caller's units.
     law: TimePart,
-    /// Contacts of equal family are one contact in all sectors.
+    /// Number of the contact, equal for its copies in all sectors.
     pub family: usize,
 }
 
 /// A linear spring between two degrees of freedom.
-pub(super) struct Tie {
+pub(super) struct Spring {
     pub row: Row,
     pub stiffness: f64,
 }
@@ -40,8 +40,8 @@ pub(super) struct Tie {
 /// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
 pub(super) type Row = [Option<(usize, f64)>; 6];
 
-/// Row of a direction whose sides lie in two sectors, side a minus side b; `place` is the number of a
-/// degree of freedom in a sector.
+/// Row of a direction whose sides lie in two sectors, side a minus side b; `place` returns the number of a degree of
+/// freedom of a sector in the unrolled structure.
 pub(super) fn row(direction: &Direction, sectors: (usize, usize), place: impl Fn(usize, usize) -> usize) -> Row {
     let mut row = [None; 6];
     let (a, b) = row.split_at_mut(3);
@@ -61,12 +61,12 @@ pub(super) fn along(row: &Row, x: &[f64]) -> f64 {
 
 /// Sorts the contacts of all sectors into springs and elements.
 ///
-/// `place` is the number of a degree of freedom in a sector (of any number) of the ring.
+/// `place` returns the number of a degree of freedom of a sector (of any number) of the ring.
 pub(super) fn unroll(
     contacts: &[Contact],
     sectors: usize,
     place: impl Fn(usize, usize) -> usize,
-    ties: &mut Vec<Tie>,
+    springs: &mut Vec<Spring>,
     elements: &mut Vec<Element>,
 ) -> Result<()> {
     for (family, c) in contacts.iter().enumerate() {
@@ -83,7 +83,7 @@ pub(super) fn unroll(
             let other = (s as i64 + c.sector_offset).rem_euclid(sectors as i64) as usize;
             if stiffness != 0.0 {
                 let row = row(&c.direction(0), (s, other), &place);
-                try_push(ties, Tie { row, stiffness }, CONTEXT)?;
+                try_push(springs, Spring { row, stiffness }, CONTEXT)?;
             }
             if let Some((first, part)) = &law {
                 let mut rows = Vec::new();

@@ -1,5 +1,5 @@
-//! The integration from event to event through one lapse, the part of the period after which the wave has moved
-//! on by some sectors.
+//! Integration from event to event through one lapse: the part of the period after which the wave has moved on by
+//! some sectors.
 
 use crate::contact::time_piece::{Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
@@ -12,18 +12,18 @@ use crate::time_integration::unrolled_structure::System;
 
 const CONTEXT: &str = "the motion in time";
 
-/// Steps of one lapse before the integration stops with an error: the structure is then too stiff against its
-/// period for integration in time.
+/// Steps of one lapse before the integration stops with an error: for integration in time the structure is then too
+/// stiff against its period.
 const MOST_STEPS: usize = 20_000_000;
 
 /// Events without progress in time, per contact, before the integration stops with an error.
 const MOST_AT_ONCE: usize = 50;
 
-/// Parts of a step within which events count as simultaneous.
+/// Share of a step within which events count as simultaneous.
 const SIMULTANEOUS: f64 = 1e-13;
 
 /// Steps between two checks of the cancel flag.
-const BETWEEN_LOOKS: usize = 256;
+const STEPS_BETWEEN_CHECKS: usize = 256;
 
 /// Displacements, velocities and the stretches of the sliders' springs.
 #[derive(Clone, Debug)]
@@ -34,7 +34,7 @@ pub(super) struct State {
 }
 
 impl State {
-    /// Rest.
+    /// The state at rest.
     pub fn rest(system: &System) -> Result<Self> {
         Ok(Self {
             x: try_vec(system.order(), 0.0, CONTEXT)?,
@@ -43,7 +43,7 @@ impl State {
         })
     }
 
-    /// A copy whose memory is reserved fallibly.
+    /// A copy that returns an error if memory is short.
     pub fn try_clone(&self) -> Result<Self> {
         Ok(Self {
             x: try_copy(&self.x, CONTEXT)?,
@@ -65,8 +65,8 @@ impl State {
     }
 }
 
-/// Derivatives of a state by the state that it began with, column by column: (δx, δv, δe), on the way with
-/// the sliders' δu = r·δx − δe in place of δe, which do not change while they rest.
+/// Derivatives of a state by the initial state, column by column: (δx, δv, δe). Within the lapse the sliders'
+/// δu = r·δx − δe replaces δe, because it is constant while they rest.
 pub(super) struct Sensitivity {
     pub columns: Vec<f64>,
 }
@@ -88,12 +88,12 @@ pub(super) struct LapseSummary {
     pub events: usize,
     /// Largest displacement and velocity at the ends of the steps.
     pub largest: (f64, f64),
-    /// Whether the caller asked to stop before the end.
+    /// Whether the caller stopped the integration before the end.
     pub cancelled: bool,
 }
 
 impl LapseSummary {
-    fn see(&mut self, state: &State) {
+    fn update(&mut self, state: &State) {
         for (largest, values) in [(&mut self.largest.0, &state.x), (&mut self.largest.1, &state.v)] {
             *largest = values.iter().fold(*largest, |m, x| m.max(x.abs()));
         }
@@ -115,8 +115,8 @@ pub(super) struct EventLoop {
     zeros: Vec<Zeros>,
     /// Next event of each contact within the step: (θ, margin).
     falls: Vec<Option<(f64, usize)>>,
-    /// Modes of the sliders whose place at the begin follows from the motion.
-    slaved: Vec<Option<Mode>>,
+    /// Modes of the sliders whose initial place follows from the motion.
+    dependent: Vec<Option<Mode>>,
     /// Sliders that have moved in some lapse since [`Self::clear_moved`].
     pub moved: Vec<bool>,
 }
@@ -137,7 +137,7 @@ impl EventLoop {
             pieces: try_vec(count, TimePiece::default(), CONTEXT)?,
             zeros: try_vec(count, Zeros::default(), CONTEXT)?,
             falls: try_vec(count, None, CONTEXT)?,
-            slaved: try_vec(count, None, CONTEXT)?,
+            dependent: try_vec(count, None, CONTEXT)?,
             moved: try_vec(count, false, CONTEXT)?,
         })
     }
@@ -147,7 +147,7 @@ impl EventLoop {
         self.moved.fill(false);
     }
 
-    /// Integrates a state from time 0 over one lapse, and with it the sensitivity and the analysis requested.
+    /// Integrates a state from time 0 over one lapse, and with it the requested sensitivity and harmonic analysis.
     pub fn run(
         &mut self,
         system: &mut System,
@@ -158,8 +158,8 @@ impl EventLoop {
     ) -> Result<LapseSummary> {
         let end = system.lapse();
         let mut summary = LapseSummary::default();
-        summary.see(state);
-        system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.slaved);
+        summary.update(state);
+        system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.dependent);
         self.zeros.fill(Zeros::default());
         if let Some(s) = sensitivity.as_deref_mut() {
             self.identity(system, state, s);
@@ -170,7 +170,7 @@ impl EventLoop {
         let mut t = 0.0;
         let (mut steps, mut at_once) = (0, 0);
         while t < end {
-            if steps % BETWEEN_LOOKS == 0 && cancelled.is_some_and(|f| f()) {
+            if steps % STEPS_BETWEEN_CHECKS == 0 && cancelled.is_some_and(|f| f()) {
                 summary.cancelled = true;
                 return Ok(summary);
             }
@@ -205,7 +205,7 @@ impl EventLoop {
                         slider.stretch(self.modes[i], growth, y, &mut state.e[i]);
                     }
                 }
-                summary.see(state);
+                summary.update(state);
                 self.zeros.fill(Zeros::default());
             }
             let happened = self.switch(system, state, sensitivity.as_deref_mut());
@@ -223,7 +223,7 @@ impl EventLoop {
         if let Some(s) = sensitivity {
             // The place of a slider that still moves follows from the motion.
             for (i, e) in system.elements.iter().enumerate() {
-                enslave(e, i, (self.modes[i], self.modes[i]), state, s);
+                couple_slider(e, i, (self.modes[i], self.modes[i]), state, s);
             }
             exchange(system, state, s);
         }
@@ -238,7 +238,7 @@ impl EventLoop {
         }
     }
 
-    /// The first θ at which a contact leaves its piece, 1 where none does; `falls` receives those that leave
+    /// The first θ at which a contact leaves its piece, 1 if none does; `falls` receives the contacts that leave
     /// theirs by then.
     fn next_event(&mut self, system: &System, state: &State) -> f64 {
         let mut first = f64::INFINITY;
@@ -284,7 +284,7 @@ impl EventLoop {
             (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
             self.moved[i] |= self.modes[i].moves_slider();
             if let Some(s) = sensitivity.as_deref_mut() {
-                enslave(e, i, (before, self.modes[i]), state, s);
+                couple_slider(e, i, (before, self.modes[i]), state, s);
             }
             happened += 1;
         }
@@ -299,8 +299,8 @@ impl EventLoop {
         }
         exchange(system, state, s);
         for (i, e) in system.elements.iter().enumerate() {
-            if let Some(mode) = self.slaved[i] {
-                enslave(e, i, (mode, mode), state, s);
+            if let Some(mode) = self.dependent[i] {
+                couple_slider(e, i, (mode, mode), state, s);
             }
         }
     }
@@ -324,8 +324,8 @@ impl EventLoop {
     }
 }
 
-/// At the end of a mode, before the next one, a slider that has moved has the sensitivity of the motion.
-fn enslave(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s: &mut Sensitivity) {
+/// Sets, at the end of a mode, the sensitivity of a slider that has moved to that of the motion.
+fn couple_slider(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s: &mut Sensitivity) {
     let Some(slider) = e.slider().filter(|_| mode.moves_slider()) else {
         return;
     };
@@ -337,7 +337,7 @@ fn enslave(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s:
     }
 }
 
-/// Between the stretches' sensitivities and the sliders', which is the same step both ways:
+/// Exchanges the sensitivities of the stretches and of the sliders, by the same step in both directions:
 /// δu = r·δx − δe, δe = r·δx − δu.
 fn exchange(system: &System, state: &State, s: &mut Sensitivity) {
     let (m, first) = (state.len(), 2 * state.x.len());

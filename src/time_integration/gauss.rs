@@ -39,7 +39,7 @@ pub(super) struct GaussTables {
     pub once: [[f64; STAGES]; STAGES],
     /// Σₖ aᵢₖ aₖⱼ
     pub twice: [[f64; STAGES]; STAGES],
-    /// Values at the nodes to the coefficients of the shifted Legendre polynomials.
+    /// Matrix from values at the nodes to the coefficients of the shifted Legendre polynomials.
     pub legendre: [[f64; STAGES]; STAGES],
     /// The coefficients of θᵐ in the j-th of them: (−1)^{j+m} C(j,m) C(j+m,m).
     pub powers: [[f64; STAGES]; STAGES],
@@ -56,7 +56,7 @@ impl GaussTables {
                 value *= -((j - m) as f64) * (j + m + 1) as f64 / ((m + 1) * (m + 1)) as f64;
             }
         }
-        // By recurrence, not by powers, which would cancel.
+        // The recurrence avoids the cancellation of powers.
         let values = |theta: f64| {
             let x = 2.0 * theta - 1.0;
             let mut p = [1.0; STAGES + 1];

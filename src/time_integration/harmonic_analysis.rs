@@ -1,8 +1,8 @@
 //! Harmonics and samples of a motion given in polynomial steps.
 //!
-//! X_h = (2 − δ₀ₕ)/T ∫ x e^{−ihωt} dt over the period, step by step with the moments
-//! ∫ θᵏ e^{−iαθ} dθ, which Gauss's quadrature computes to rounding on parts of at most four radians. A lapse
-//! of all sectors is the whole period of one: x₀(t + kT/n) is the motion at t of the sector k·j before.
+//! X_h = (2 − δ₀ₕ)/T ∫ x e^{−ihωt} dt over the period, step by step with the moments ∫ θᵏ e^{−iαθ} dθ, which Gauss's
+//! quadrature computes to round-off on parts of at most four radians. A lapse of all sectors is the whole period of
+//! one: x₀(t + kT/n) is the motion at t of the sector k·j before.
 
 use crate::error::{Result, try_push, try_vec};
 use crate::time_integration::gauss::nodes;
@@ -19,7 +19,7 @@ const POINTS: usize = 20;
 /// Largest angle of a part.
 const WIDEST: f64 = 4.0;
 
-/// A requested time: within the lapse, of a sector, for a sample.
+/// A requested time within the lapse, with its sector and its sample.
 struct RequestedTime {
     time: f64,
     sector: usize,
@@ -34,7 +34,7 @@ pub(super) struct HarmonicAnalysis {
     /// ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
     integrals: Vec<Complex64>,
     nodes: ([f64; POINTS], [f64; POINTS]),
-    /// By time.
+    /// Requested times in ascending order.
     requested: Vec<RequestedTime>,
     next: usize,
     /// Motion of sector 0 at each sample.
@@ -97,7 +97,7 @@ impl HarmonicAnalysis {
         }
         let end = step.begin + length;
         while let Some(requested) = self.requested.get(self.next) {
-            // Rounding may leave the last times of a lapse just beyond its last step.
+            // Round-off may leave the last times of a lapse just beyond its last step.
             if requested.time > end && end < self.lapse * (1.0 - 1e-12) {
                 break;
             }
@@ -140,7 +140,7 @@ impl HarmonicAnalysis {
     }
 }
 
-/// The sector that moves now as sector 0 does `parts` lapses later.
+/// The sector whose present motion sector 0 repeats `parts` lapses later.
 fn before(system: &System, parts: usize) -> usize {
     let back = parts * system.follower % system.sectors;
     (system.sectors - back) % system.sectors

@@ -1,5 +1,5 @@
-//! Adaptive implicit steps for smooth laws, which have no matrix exponential: collocation at
-//! eight Gauss nodes, of order 16, A-stable, without damping of its own.
+//! Adaptive implicit steps for smooth laws, which have no matrix exponential: collocation at eight Gauss nodes, of
+//! order 16, A-stable, without numerical damping.
 //!
 //! The unknowns are the accelerations at the nodes: M aᵢ + C vᵢ + K xᵢ + f(xᵢ) = F(tᵢ) with
 //! v = v₀ + hA a and x = x₀ + hc v₀ + h²A² a. The polynomial through them is the motion within the step, so
@@ -98,7 +98,7 @@ impl Implicit {
             }
             let error = self.interpolate(x, v, h, step);
             step.begin = t;
-            // The error goes with h to the power of the last coefficient's number plus 2.
+            // The error grows with h to the power of the last coefficient's number plus 2.
             let factor = 0.9 * (self.tolerance / error).powf(1.0 / (STAGES + 1) as f64);
             let next = h * factor.clamp(0.2, 2.0);
             if error <= self.tolerance {
@@ -110,7 +110,7 @@ impl Implicit {
         }
     }
 
-    /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the tangents as they are.
+    /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the current tangents.
     fn factor(&mut self, system: &System, pieces: &[TimePiece], h: f64) -> Result<()> {
         let n = self.x.len();
         let all = n * STAGES;
@@ -144,7 +144,7 @@ impl Implicit {
         self.lu.factor()
     }
 
-    /// Newton's method for the accelerations, with the tangents of the step's begin; `false`: it failed.
+    /// Newton's method for the accelerations, with the tangents at the start of the step; `false`: it failed.
     fn collocate(
         &mut self,
         system: &System,
@@ -264,7 +264,7 @@ impl Implicit {
             self.largest.0 = self.largest.0.max(x.abs());
             self.largest.1 = self.largest.1.max(v.abs());
         }
-        // Integrals of the last Legendre polynomial are smaller than it by its number, each time.
+        // Each integration divides the last Legendre polynomial by about its number.
         let order = 2.0 * (STAGES - 1) as f64;
         let of = |error: f64, largest: f64| if error > 0.0 { error / largest } else { 0.0 };
         of(last * h / order, self.largest.1).max(of(last * (h / order).powi(2), self.largest.0))

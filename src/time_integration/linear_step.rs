@@ -1,11 +1,11 @@
 //! Steps of a structure that is linear between events: the Taylor series of the exact propagator.
 //!
-//! Between events z′ = A z + g(t) with constant A and harmonic g, whose solution is a matrix exponential.
-//! Its series is summed in the displacements alone, xₖ being their Taylor coefficients:
-//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative
-//! motions y for k > 0. The step is so long that the last terms are below rounding, which needs |A|h of about 2; a step is then exact, and
-//! a polynomial as well (Moler & Van Loan 2003, doi:10.1137/S00361445024180, method 1 with short
-//! steps; Jorba & Zou 2005, doi:10.1080/10586458.2005.10128904, for the choice of h).
+//! Between events z′ = A z + g(t) with constant A and harmonic g, whose solution is a matrix exponential. Its series
+//! is summed in the displacements alone, xₖ being their Taylor coefficients:
+//! (k + 1)(k + 2) M x_{k+2} = F_k − (k + 1) C x_{k+1} − K x_k − f_k, with f_k = slope·y_k of the relative motions y
+//! for k > 0. The length h of the step, |A|h of about 2, keeps the last terms below round-off; a step is then exact,
+//! and a polynomial as well (Moler & Van Loan 2003, doi:10.1137/S00361445024180, method 1 with short steps; Jorba &
+//! Zou 2005, doi:10.1080/10586458.2005.10128904, for the choice of h).
 
 use crate::contact::time_piece::TimePiece;
 use crate::error::{Result, fail, try_vec};
@@ -13,7 +13,7 @@ use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial};
 use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 
-/// Share of the largest term at which the last terms of a step must be.
+/// Share of the largest term below which the last terms of a step must be.
 const NEGLIGIBLE: f64 = 1e-18;
 
 /// Rounds of shortening a step whose largest terms shrink with it.
@@ -22,7 +22,7 @@ const ROUNDS: usize = 100;
 /// Share of the largest term at which the series of a sensitivity is cut off.
 const CUT: f64 = 1e-17;
 
-/// Terms of the series of a sensitivity, whose motions may be far quicker than the solution's.
+/// Terms of the series of a sensitivity, whose motions may be far faster than those of the solution.
 const MOST_TERMS: usize = 400;
 
 /// Memory of the steps.
@@ -87,7 +87,7 @@ impl Taylor {
                 }
                 return Ok(());
             }
-            // A step so long that its terms overflow.
+            // The step is so long that its terms overflow.
             self.trial = 1e-3 * h;
             if self.trial < f64::MIN_POSITIVE {
                 return fail!(NoConvergence, "the motion in time grows beyond all bounds");

@@ -26,14 +26,14 @@ pub struct TimeResponse {
     pub status: Status,
     /// T = 2π/ω
     pub period: f64,
-    /// Largest change of a displacement, velocity or slider over one period, relative to the largest
-    /// displacement or velocity. In a travelling wave it is compared already after the part of the period
-    /// after which another sector moves alike. Infinite where the caller stopped before.
+    /// Largest change of a displacement, velocity or slider over one period, relative to the largest displacement or
+    /// velocity. In a travelling wave the comparison is made after the part of the period after which another sector
+    /// has the same motion. Infinite if the caller stopped before.
     pub residual: f64,
     /// Periods that were integrated, rounded up.
     pub periods: usize,
-    /// Whether periods were marched: with shooting, where Newton's method did not converge from the start.
-    /// Marching leaves an unstable solution.
+    /// Whether periods were marched: with shooting, if Newton's method did not converge from the start. Marching
+    /// leaves an unstable solution.
     pub marched: bool,
     /// Changes of a contact between stick, slip, open and closed, or between the lines of a table, in one
     /// period, all contacts of one sector together.
@@ -50,8 +50,8 @@ pub struct TimeResponse {
 /// Integrates the response of a model to its forces until it is periodic.
 ///
 /// # Errors
-/// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence`
-/// where no steady state was found, `NoBoundedSolution` where the motion grows without end, `OutOfMemory`.
+/// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence` if no
+/// steady state was found, `NoBoundedSolution` if the motion grows without bound, `OutOfMemory`.
 pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
     let mut system = System::new(model, options.omega)?;
     let mut event_loop = EventLoop::new(&system, options.tolerance)?;
@@ -70,7 +70,7 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
         residual: steady.residual,
         periods: steady.periods,
         marched: steady.marched,
-        // All sectors during a lapse move as one of them does in a period.
+        // In a lapse all sectors together move as one of them does in a period.
         events: summary.events,
         ndof: system.ndof,
         harmonics,
@@ -78,11 +78,10 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
     })
 }
 
-/// Times per period of the highest harmonic at which a start drags its sliders along.
+/// Number of times per period of the highest harmonic at which the sliders of an initial motion are updated.
 pub(super) const POINTS_PER_WAVE: usize = 64;
 
-/// The state at time 0 of a periodic motion, each slider at its place after two periods of the motion, begun at
-/// rest.
+/// The state at time 0 of a periodic motion; each slider has its place after two periods of the motion from rest.
 pub(super) fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) -> Result<State> {
     const CONTEXT: &str = "the start of the motion in time";
     let mut state = State::rest(system)?;
@@ -111,7 +110,7 @@ pub(super) fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) 
         }
         for (stretch, e) in state.e.iter_mut().zip(&system.elements) {
             if let Some(slider) = e.slider() {
-                // Its place is kept until the end, where the spring spans from it to x.
+                // The slider's place is kept until the end, where the stretch follows from it and x.
                 let motion = e.relative(&part);
                 let place = slider.drag(motion, *stretch);
                 *stretch = if i < 2 * times { place } else { motion[0] - place };

@@ -1,9 +1,9 @@
-//! The steady state in time: shooting by Newton's method, with marching where it fails.
+//! The steady state in time: shooting by Newton's method, or marching if that fails.
 //!
-//! Unknown is the state z at the begin of a lapse, the equation S G(z) = z with the flow G over the lapse
-//! and the shift S that gives every sector the motion of the one it follows. The monodromy ∂G/∂z is
-//! integrated piece by piece and is exact, since the field is continuous at events. A slider that
-//! never moves may rest anywhere: its equation is void, and it keeps its place at the start.
+//! The unknown is the state z at the start of a lapse, the equation S G(z) = z with the flow G over the lapse and the
+//! shift S that assigns to every sector the motion of the one it follows. The monodromy ∂G/∂z is integrated piece by
+//! piece and is exact, since the field is continuous at events. A slider that never moves may rest anywhere: its
+//! equation is void, and it keeps its initial place.
 
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, Progress};
@@ -12,17 +12,17 @@ use crate::options::{SteadyMethod, TimeOptions};
 use crate::time_integration::event_loop::{EventLoop, LapseSummary, Sensitivity, State};
 use crate::time_integration::unrolled_structure::System;
 
-/// Newton iterations before marching takes over.
+/// Newton iterations before marching replaces them.
 const MOST_ITERATIONS: usize = 30;
 
 /// Smallest share of a Newton step that is tried.
 const SHORTEST: f64 = 1.0 / 64.0;
 
-/// Directions whose monodromy is this near to 1 are not corrected, such as the free rotation of a ring that
-/// friction alone holds: the whole motion may be shifted along them.
+/// Distance from 1 below which directions of the monodromy are not corrected, such as the free rotation of a ring
+/// that friction alone holds: the whole motion may be shifted along them.
 const NEUTRAL: f64 = 1e-9;
 
-/// Periods that are marched when Newton's method has failed for the first time; each time twice as many.
+/// Number of periods that are marched after the first failure of Newton's method; each time twice as many.
 const FIRST_MARCH: usize = 8;
 
 /// Result of a search.
@@ -85,7 +85,7 @@ impl<'a, 'h> Search<'a, 'h> {
         })
     }
 
-    /// Searches the steady state.
+    /// Searches for the steady state.
     pub fn run(mut self) -> Result<Steady> {
         let mut march = FIRST_MARCH;
         let mut marched = false;
@@ -118,7 +118,7 @@ impl<'a, 'h> Search<'a, 'h> {
         }
     }
 
-    /// One lapse from the state, whose image is shifted and compared; `true`: the caller requested a stop.
+    /// Integrates one lapse from the state; the image is shifted and compared. `true`: the caller requested a stop.
     fn lap(&mut self, sensitivity: Option<&mut Sensitivity>) -> Result<bool> {
         if self.laps >= self.most_laps {
             return fail!(
@@ -171,7 +171,7 @@ impl<'a, 'h> Search<'a, 'h> {
         }
     }
 
-    /// Marches period by period until nothing changes.
+    /// Marches period by period until the state no longer changes.
     fn march(&mut self, laps: usize) -> Result<Outcome> {
         for _ in 0..laps {
             if self.lap(None)? {
@@ -209,7 +209,7 @@ impl<'a, 'h> Search<'a, 'h> {
                 match self.lap(None) {
                     Ok(false) => {}
                     Ok(true) => return Ok(Outcome::Stopped),
-                    // A step far too long may lead to a state that cannot be integrated.
+                    // A step that is far too long may lead to a state that cannot be integrated.
                     Err(e)
                         if !(e.recoverable
                             || matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence)) =>
@@ -220,7 +220,7 @@ impl<'a, 'h> Search<'a, 'h> {
                     Err(_) => self.residual = f64::INFINITY,
                 }
                 if converged {
-                    // The last correction; rounding may keep it from being one.
+                    // The last correction; round-off may keep it from reducing the residual.
                     if self.residual > self.options.tolerance {
                         self.state.set(&base);
                         self.residual = residual;
@@ -242,7 +242,7 @@ impl<'a, 'h> Search<'a, 'h> {
     /// Solves (I − S ∂G/∂z) step = S G(z) − z; `false`: it has no solution.
     fn correction(&mut self, s: &Sensitivity, equations: &mut LeastSquares, step: &mut [f64]) -> bool {
         let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
-        // Velocities are measured in displacements, so that pivots compare.
+        // Velocities are scaled to displacements, so that pivots compare.
         let unit = |i: usize| {
             if (n..2 * n).contains(&i) {
                 self.scale.1 / self.scale.0
@@ -320,7 +320,7 @@ fn shifted_from(system: &System, block: usize, i: usize) -> usize {
     group + system.after_lapse(sector) * block + within
 }
 
-/// Gives every sector the values of the one that moves alike a lapse later.
+/// Assigns to every sector the values of the one with the same motion a lapse later.
 fn shift(system: &System, block: usize, from: &[f64], to: &mut [f64]) {
     for (i, to) in to.iter_mut().enumerate() {
         *to = from[shifted_from(system, block, i)];

@@ -1,5 +1,4 @@
-//! Smooth laws at the nodes of an implicit step: their forces, and their tangents by motions and
-//! velocities.
+//! Smooth laws at the nodes of an implicit step: their forces, and their tangents by motions and velocities.
 //!
 //! A law is evaluated at one time as at the samples of a period in harmonic balance.
 
@@ -12,13 +11,13 @@ const CONTEXT: &str = "the contacts at a time";
 
 /// Memory of the laws at the nodes.
 pub(super) struct Smooth {
-    /// Begin of the tangents of each element within those of a node.
+    /// First tangent of each element within those of a node.
     starts: Vec<usize>,
     /// Tangents by motions, d × d, and by velocities, d × d, of every element; node after node.
     tangents: Vec<f64>,
-    /// Count of numbers per node.
+    /// Number of tangents per node.
     per_node: usize,
-    /// Relative motions, velocities and forces of one element, and memory for the law's own use.
+    /// Relative motions, velocities and forces of one element, and memory for the law.
     u: Vec<f64>,
     v: Vec<f64>,
     f: Vec<f64>,

@@ -1,5 +1,5 @@
-//! A step of the integration as a polynomial of every displacement, and the first fall of a margin
-//! through zero within it.
+//! Polynomials of a step of the integration for every displacement, and the first fall of a margin through zero
+//! within it.
 
 use crate::error::{Result, try_vec};
 use crate::time_integration::event_law::{Row, along};
@@ -82,16 +82,15 @@ impl StepPolynomial {
 /// Width of an interval of θ in which two roots cannot be distinguished.
 const FINEST: f64 = 1e-14;
 
-/// A margin this small against its terms counts as zero.
+/// Relative size against its terms below which a margin counts as zero.
 const ZERO: f64 = 4.0 * f64::EPSILON;
 
-/// The first θ in [0, 1] at which a margin m(θ) = Σ cₖθᵏ falls below zero; `None`: it does not.
-/// `zeros` of its first coefficients are zero by construction, apart from rounding.
+/// The first θ in [0, 1] at which a margin m(θ) = Σ cₖθᵏ falls below zero; `None`: it does not. `zeros` of its first
+/// coefficients are zero by construction, apart from round-off.
 ///
-/// None is missed: in Bernstein's form a polynomial has no more roots in an interval than its
-/// coefficients change sign (Farouki 2012, doi:10.1016/j.cagd.2012.03.001). Intervals are halved from
-/// the left until they hold one root or none; two that cannot be distinguished are a touch, which does not
-/// end a piece.
+/// No fall is missed: in Bernstein's form a polynomial has no more roots in an interval than its coefficients change
+/// sign (Farouki 2012, doi:10.1016/j.cagd.2012.03.001). Intervals are halved from the left until they hold one root
+/// or none; two that cannot be distinguished are a touch, which does not end a piece.
 pub(super) fn first_fall(margin: &[f64], zeros: usize) -> Option<f64> {
     let mut c = &margin[zeros.min(margin.len())..];
     while c.last() == Some(&0.0) {
@@ -99,7 +98,7 @@ pub(super) fn first_fall(margin: &[f64], zeros: usize) -> Option<f64> {
     }
     let size: f64 = c.iter().map(|c| c.abs()).sum();
     let mut known = zeros > 0;
-    // At the border, or beyond it by rounding: the first coefficient that is not zero decides.
+    // At the border, or beyond it by round-off, the first coefficient that is not zero decides.
     while *c.first()? <= ZERO * size {
         if known && c[0] < -ZERO * size {
             return Some(0.0);
@@ -136,7 +135,7 @@ fn search(c: &[f64]) -> Option<f64> {
             if b[0] > 0.0 {
                 return Some(root(c, from, to));
             }
-            // A margin that rises again after two roots that could not be distinguished.
+            // The margin rises again after two roots that could not be distinguished.
             continue;
         }
         if to - from < FINEST || open + 2 > DEEPEST {
@@ -167,7 +166,7 @@ fn bernstein(c: &[f64]) -> [f64; DEGREE + 1] {
     b
 }
 
-/// De Casteljau's halves.
+/// The two halves by de Casteljau's algorithm.
 fn halves(b: &[f64]) -> ([f64; DEGREE + 1], [f64; DEGREE + 1]) {
     let n = b.len() - 1;
     let (mut left, mut right) = ([0.0; DEGREE + 1], [0.0; DEGREE + 1]);
@@ -181,8 +180,8 @@ fn halves(b: &[f64]) -> ([f64; DEGREE + 1], [f64; DEGREE + 1]) {
     (left, right)
 }
 
-/// The one root in an interval at whose ends the polynomial has opposite signs, by Newton's method kept
-/// within the bracket.
+/// The one root in an interval at whose ends the polynomial has opposite signs, by Newton's method kept within the
+/// bracket.
 fn root(c: &[f64], mut from: f64, mut to: f64) -> f64 {
     let mut theta = 0.5 * (from + to);
     for _ in 0..100 {

@@ -1,5 +1,5 @@
-//! The structure in time: M ẍ + C ẋ + K x + f = F(t) for all sectors that the wave needs, with its
-//! loads, springs and contacts.
+//! The structure in time: M ẍ + C ẋ + K x + f = F(t) for all sectors that the wave needs, with its loads, springs and
+//! contacts.
 
 use crate::contact::relative_motion::Direction;
 use crate::contact::time_piece::Mode;
@@ -8,7 +8,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
-use crate::time_integration::event_law::{Element, Tie, row, unroll};
+use crate::time_integration::event_law::{Element, Spring, row, unroll};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -90,7 +90,7 @@ pub(super) struct System {
     pub inertia: Sparse,
     /// C
     pub damping: Sparse,
-    /// K with springs and contacts that stick for ever.
+    /// K with springs and contacts that always stick.
     pub stiffness: Sparse,
     pub loads: Vec<Load>,
     /// Contacts with events or smooth laws, all sectors of one contact after the other.
@@ -103,22 +103,22 @@ impl System {
         let structure = model.structure();
         let (ndof, sectors) = (model.ndof(), structure.repeating_sectors());
         let place = |dof: usize, s: usize| s * ndof + dof;
-        let (mut ties, mut elements) = (Vec::new(), Vec::new());
+        let (mut springs, mut elements) = (Vec::new(), Vec::new());
         for spring in model.springs() {
             let between = Direction::between(spring.dof_a, spring.dof_b);
             for s in 0..sectors {
                 let other = (s as i64 + spring.sector_offset).rem_euclid(sectors as i64) as usize;
-                let tie = Tie {
+                let spring = Spring {
                     row: row(&between, (s, other), place),
                     stiffness: spring.stiffness,
                 };
-                try_push(&mut ties, tie, CONTEXT)?;
+                try_push(&mut springs, spring, CONTEXT)?;
             }
         }
-        unroll(model.contacts(), sectors, place, &mut ties, &mut elements)?;
+        unroll(model.contacts(), sectors, place, &mut springs, &mut elements)?;
         let inertia = structure.unrolled(MatrixKind::Mass)?;
         let damping = structure.unrolled(MatrixKind::Damping)?;
-        let stiffness = tied(&structure.unrolled(MatrixKind::Stiffness)?, &ties)?;
+        let stiffness = with_springs(&structure.unrolled(MatrixKind::Stiffness)?, &springs)?;
         let mut loads = Vec::new();
         for force in model.excitation().forces() {
             for s in 0..sectors {
@@ -149,7 +149,7 @@ impl System {
         self.ndof * self.sectors
     }
 
-    /// The part of the period after which every sector moves as another one did before.
+    /// The part of the period after which every sector repeats the motion of another one.
     pub fn lapse(&self) -> f64 {
         TAU / self.omega / self.sectors as f64
     }
@@ -192,11 +192,11 @@ impl System {
         }
     }
 
-    /// Modes at a state; stretches come within their range. `slaved` receives the modes of sliders whose
-    /// place follows from the motion.
-    pub fn begin(&self, x: &[f64], v: &[f64], stretch: &mut [f64], modes: &mut [Mode], slaved: &mut [Option<Mode>]) {
+    /// Sets the modes at a state; stretches are moved into their range. `dependent` receives the modes of sliders
+    /// whose place follows from the motion.
+    pub fn begin(&self, x: &[f64], v: &[f64], stretch: &mut [f64], modes: &mut [Mode], dependent: &mut [Option<Mode>]) {
         for (i, e) in self.elements.iter().enumerate() {
-            (modes[i], slaved[i]) = match e.events() {
+            (modes[i], dependent[i]) = match e.events() {
                 Some(law) => law.begin(&e.instant(x, v), &mut stretch[i]),
                 None => (Mode::Smooth, None),
             };
@@ -204,8 +204,8 @@ impl System {
     }
 }
 
-/// K with springs added.
-fn tied(stiffness: &Csc, ties: &[Tie]) -> Result<Csc> {
+/// K with the springs added.
+fn with_springs(stiffness: &Csc, springs: &[Spring]) -> Result<Csc> {
     let n = stiffness.rows;
     let mut entries = Vec::new();
     for j in 0..n {
@@ -213,10 +213,10 @@ fn tied(stiffness: &Csc, ties: &[Tie]) -> Result<Csc> {
             try_push(&mut entries, (i, j, v), CONTEXT)?;
         }
     }
-    for tie in ties {
-        for &(i, a) in tie.row.iter().flatten() {
-            for &(j, b) in tie.row.iter().flatten() {
-                try_push(&mut entries, (i, j, (tie.stiffness * a * b).into()), CONTEXT)?;
+    for spring in springs {
+        for &(i, a) in spring.row.iter().flatten() {
+            for &(j, b) in spring.row.iter().flatten() {
+                try_push(&mut entries, (i, j, (spring.stiffness * a * b).into()), CONTEXT)?;
             }
         }
     }

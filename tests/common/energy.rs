@@ -1,4 +1,4 @@
-//! What the tests of energies share: comparing, and means and maxima of time signals.
+//! Shared code of the tests of energies: comparisons, and means and maxima of time signals.
 
 use crate::common::{all_harmonics, harmonics};
 use hbvib::options::SolverOptions;
@@ -6,14 +6,14 @@ use hbvib::results::{Branch, Energy};
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-/// Asserts a relative error, and tells it.
+/// Asserts a relative error, and prints it.
 pub fn close(name: &str, found: f64, expected: f64, tolerance: f64) {
     let error = (found - expected).abs() / expected.abs();
     println!("{name}: {found:e}, error {error:.1e}");
     assert!(error < tolerance, "{name}: {found:e}, needs {expected:e}: {error:.1e}");
 }
 
-/// Solved as far as rounding allows.
+/// Options that solve as accurately as round-off allows.
 pub fn exactly(highest: usize) -> SolverOptions {
     SolverOptions {
         tol_residual: 1e-14,
@@ -26,7 +26,7 @@ pub fn energy(branch: &Branch) -> Energy {
     branch.energy_at(0).unwrap()
 }
 
-/// Largest value of a function of the phase of the fundamental, to rounding.
+/// Largest value of a function of the phase of the fundamental, up to round-off.
 pub fn maximum(f: impl Fn(f64) -> f64) -> f64 {
     let n = 2000;
     let width = TAU / f64::from(n);

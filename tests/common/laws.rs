@@ -1,4 +1,4 @@
-//! A contact of every law in a vibration, for the tests of what happens inside contacts.
+//! A contact of every law in a vibration, for the tests of the states inside contacts.
 
 use crate::common::energy::exactly;
 use crate::common::solve_at;
@@ -39,7 +39,7 @@ pub fn shaken() -> Forces {
         .to_vec()
 }
 
-/// The same under constant forces, along the surface and off it.
+/// The same under constant forces, along and normal to the surface.
 pub fn pulled() -> Forces {
     let constant = [(0, 0, 0.8.into()), (2, 0, 0.3.into())];
     shaken().into_iter().chain(constant).collect()
@@ -51,7 +51,7 @@ pub fn shaken_in(harmonics: &[usize]) -> Forces {
     harmonics.iter().flat_map(|&h| times(h)).collect()
 }
 
-/// A plate in a fluid and in a field that couples its directions, a force of which no polynomial is made.
+/// A plate in a fluid and in a field that couples its directions: a force that is no polynomial.
 pub struct Plate;
 
 impl Plate {
@@ -79,13 +79,13 @@ impl UserForce for Plate {
     }
 }
 
-/// A contact in a vibration, with what is asked of it.
+/// A contact in a vibration, with its requirements.
 pub struct Case {
     pub name: &'static str,
     pub contact: Contact,
     pub omega: f64,
     pub highest: usize,
-    /// Samples of the solution; 0 is the law's own choice.
+    /// Samples of the solution; 0 selects the number of the law.
     pub samples: usize,
     pub forces: Forces,
     /// Bound of the difference between area and work, over force times range.
@@ -104,7 +104,7 @@ pub fn case(name: &'static str, contact: Contact) -> Case {
     }
 }
 
-/// One case at least of every law.
+/// At least one case of every law.
 pub fn cases() -> Vec<Case> {
     let ground = [None; 3];
     let over = |kind| Contact::over(vec![0, 1], kind);
@@ -118,7 +118,7 @@ pub fn cases() -> Vec<Case> {
     let table = Table::new(&[-0.5, -0.1, 0.2, 0.6], &[-1.4, -0.1, 0.3, 0.5]).unwrap();
     let damper = Polynomial::scalar(&[0.5, 0.3, 0.2], &[0.02, 0.0, 0.05]).unwrap();
     let caller = || ContactKind::User(User::new(Arc::new(Plate), 2, 0).unwrap());
-    // Samples that make the sampled law as good as the area is asked to be.
+    // These samples make the sampled law accurate enough for the bound of the area.
     let fine = |samples, case: Case| Case { samples, ..case };
     let with = |forces, case: Case| Case { forces, ..case };
     vec![

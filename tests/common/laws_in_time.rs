@@ -1,5 +1,5 @@
-//! What the tests of laws in time share: structures for them, and the way of harmonic balance to the motion in
-//! time.
+//! Shared code of the tests of laws in time: structures for them, and the comparison of harmonic balance with the
+//! motion in time.
 
 use crate::common::{all_harmonics, harmonics, relative_gap, solve_at};
 use hbvib::analysis::time_response::{TimeResponse, time_response};
@@ -15,7 +15,7 @@ use num_complex::Complex64;
 /// Harmonics that are compared.
 pub const COMMON: usize = 5;
 
-/// Times of the period at which motions are looked at.
+/// Number of times of the period at which motions are compared.
 pub const SAMPLES: usize = 200;
 
 /// A structure with contacts and forces (degree of freedom, harmonic, value).
@@ -92,8 +92,8 @@ pub fn in_time(model: &Model, omega: f64, start: Option<&[Complex64]>) -> TimeRe
     found
 }
 
-/// Integrates from the solution of 15 harmonics, and returns the distances from it of those with few and
-/// with many.
+/// Integrates from the solution of 15 harmonics, and returns the distances from it of the solutions with few and with
+/// many.
 pub fn distances(name: &str, model: &Model, omega: f64, [few, many]: [usize; 2]) -> (TimeResponse, [f64; 2]) {
     let balanced = |highest: usize| all_harmonics(&solve_at(model, &harmonics(highest), omega), 0);
     let truth = in_time(model, omega, Some(&balanced(15)));

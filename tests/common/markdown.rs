@@ -1,4 +1,4 @@
-//! The README and the pages of the book as tests read them: blocks of code, links, headings.
+//! The README and the pages of the book in the form that tests read: blocks of code, links, headings.
 
 use crate::common::programs::root;
 use std::collections::BTreeSet;
@@ -69,7 +69,7 @@ pub fn fences(text: &str) -> Vec<Fence> {
     found
 }
 
-/// The lines outside of blocks of code with their numbers, code within a line left out.
+/// The lines outside blocks of code with their numbers, without code within a line.
 fn prose(text: &str) -> Vec<(usize, String)> {
     let mut inside = false;
     let mut found = Vec::new();
@@ -77,7 +77,7 @@ fn prose(text: &str) -> Vec<(usize, String)> {
         if line.starts_with("```") {
             inside = !inside;
         } else if !inside {
-            // Odd parts stand between backticks.
+            // Odd parts are between backticks.
             let parts = line.split('`').enumerate();
             let words: Vec<&str> = parts.map(|(k, part)| if k % 2 == 0 { part } else { "" }).collect();
             found.push((i + 1, words.join("`")));

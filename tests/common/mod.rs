@@ -1,5 +1,5 @@
-//! What the integration tests share: the paper's blisk as one sector and as the full wheel,
-//! reference data, and single points of the forced response.
+//! Shared code of the integration tests: the paper's blisk as one sector and as the full wheel, reference data, and
+//! single points of the forced response.
 
 // Each test crate uses its own part of this module.
 #![allow(dead_code)]
@@ -53,7 +53,7 @@ pub fn data(name: &str) -> Value {
     serde_json::from_str(&text).unwrap_or_else(|e| panic!("{}: {e}", path.display()))
 }
 
-/// A number, which long decimals write as a string.
+/// A number; long decimals are written as a string.
 pub fn number(v: &Value) -> f64 {
     match v {
         Value::String(s) => s.parse().expect("a decimal number"),
@@ -66,10 +66,10 @@ pub fn complex(v: &Value) -> Complex64 {
     Complex64::new(number(&v[0]), number(&v[1]))
 }
 
-/// The blisk of `model.json` with what its studies change. Fields are in SI units.
+/// The blisk of `model.json` with the parameters that its studies change. Fields are in SI units.
 #[derive(Clone, Copy, Debug)]
 pub struct Blisk {
-    /// Ring mass per sector; `None` leaves the ring out.
+    /// Ring mass per sector; `None`: no ring.
     pub ring_mass: Option<f64>,
     pub rpm: f64,
     pub engine_order: i64,
@@ -91,7 +91,7 @@ pub const BASE: Blisk = Blisk {
     load_factor: 1.0,
 };
 
-/// Radius of the ring, which the reference data fix.
+/// Radius of the ring, which the reference data determine.
 const RADIUS: f64 = 0.165;
 /// Factor of the stiffness-proportional damping, a time: no unit of mass or length changes it.
 pub const BETA: f64 = 1.5e-6;
@@ -279,7 +279,7 @@ pub fn phase(harmonic: usize, engine_order: i64, s: usize, sectors: usize) -> Co
     Complex64::cis(-TAU * turns as f64 / sectors as f64)
 }
 
-/// Options with a highest harmonic, all else default.
+/// Options with a highest harmonic; all others are defaults.
 pub fn harmonics(highest: usize) -> SolverOptions {
     SolverOptions {
         harmonics: highest,

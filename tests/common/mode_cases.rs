@@ -1,5 +1,5 @@
-//! What the tests of nonlinear modes share: models without structural damping, sectors without
-//! mirror symmetry, and a solver of its own for the linear problems with two real unknowns.
+//! Shared code of the tests of nonlinear modes: models without structural damping, sectors without mirror symmetry,
+//! and a separate solver for the linear problems with two real unknowns.
 
 use crate::common::{Blisk, SECTORS, all_harmonics, phase};
 use hbvib::analysis::nonlinear_mode;
@@ -39,7 +39,7 @@ pub fn damping(branch: &Branch) -> &[f64] {
     branch.mode_field(ModeField::DampingRatio).unwrap()
 }
 
-/// Frequency and damping ratio of the only solution at the i-th amplitude asked for.
+/// Frequency and damping ratio of the only solution at the i-th requested amplitude.
 pub fn only(branch: &Branch, i: usize) -> (f64, f64, usize) {
     let [special] = branch.at(i) else {
         panic!("{} solutions at amplitude {i}", branch.at(i).len());
@@ -92,8 +92,8 @@ pub fn disk_minus_ring() -> DVector<Complex64> {
 
 /// Real ω and D, and x, at which A(ω, D) x = 0, from a start nearby.
 ///
-/// A bordered system [A b; bᴴ 0] [x; μ] = [0; 1] has μ = 0 where A is singular; Newton's method on
-/// the two parts of μ with differences for its slopes.
+/// A bordered system [A b; bᴴ 0] [x; μ] = [0; 1] has μ = 0 where A is singular; Newton's method solves for the two
+/// parts of μ with difference quotients for its slopes.
 pub fn singular_at(
     a: impl Fn(f64, f64) -> DMatrix<Complex64>,
     start: (f64, f64),
@@ -135,8 +135,8 @@ pub fn singular_at(
     (omega, d, x)
 }
 
-/// A sector of three degrees of freedom without mirror symmetry, its damping in no proportion to
-/// mass and stiffness, a contact to the ground or across to the next sector.
+/// A sector of three degrees of freedom without mirror symmetry, its damping not proportional to mass and stiffness,
+/// a contact to the ground or across to the next sector.
 pub struct Skewed {
     pub engine_order: i64,
     pub sectors: usize,

@@ -1,4 +1,4 @@
-//! Structures whose linear modes are known, and what is asked of a mode.
+//! Structures whose linear modes are known, and checks of a mode.
 
 use crate::common::{B1, B2, BASE, D, NDOF, SECTORS, largest};
 use hbvib::contact::Contact;
@@ -16,8 +16,8 @@ pub fn sector(engine_order: i64) -> Model {
     model
 }
 
-/// A sector without mirror symmetry: a second contact reaches into the next sector, so that the
-/// matrices of a wave are complex.
+/// A sector without mirror symmetry: a second contact connects to the next sector, so that the matrices of a wave are
+/// complex.
 pub fn skewed(engine_order: i64) -> Model {
     let mut model = sector(engine_order);
     model

@@ -1,4 +1,4 @@
-//! Friction in a plane, for its tests: random motions, one law, and what compares numbers.
+//! Friction in a plane, for its tests: random motions, one law, and comparisons of numbers.
 
 use hbvib::aft::Evaluation;
 use hbvib::aft::hysteretic::HystereticEvaluator;

@@ -1,4 +1,4 @@
-//! What the tests of laws without memory share: motions, laws, one evaluation, dense sampling.
+//! Shared code of the tests of laws without memory: motions, laws, one evaluation, dense sampling.
 
 use hbvib::aft::Evaluation;
 use hbvib::aft::memoryless::MemorylessEvaluator;
@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// A packed motion of `directions` signals, rich in harmonics, in numbers of size 1.
+/// A packed motion of `directions` signals with many harmonics, in numbers of size 1.
 pub fn motion(set: &HarmonicSet, directions: usize, seed: usize) -> Vec<f64> {
     let m = set.packed_len();
     (0..directions * m)
@@ -35,12 +35,18 @@ pub fn evaluate(law: &dyn Memoryless, set: &HarmonicSet, omega: f64, motion: &[f
     evaluate_at(0, law, set, omega, motion)
 }
 
-/// The same with samples asked for.
-pub fn evaluate_at(asked: usize, law: &dyn Memoryless, set: &HarmonicSet, omega: f64, motion: &[f64]) -> Evaluation {
-    evaluate_with(law.samples(set.highest_reduced(), asked), law, set, omega, motion)
+/// The same with a requested number of samples.
+pub fn evaluate_at(
+    requested: usize,
+    law: &dyn Memoryless,
+    set: &HarmonicSet,
+    omega: f64,
+    motion: &[f64],
+) -> Evaluation {
+    evaluate_with(law.samples(set.highest_reduced(), requested), law, set, omega, motion)
 }
 
-/// The same with so many samples.
+/// The same with exactly this number of samples.
 pub fn evaluate_with(
     samples: usize,
     law: &dyn Memoryless,
@@ -151,7 +157,7 @@ pub fn tensor(len: usize, seed: usize) -> Vec<f64> {
     (0..len).map(|i| ((i * 53 + seed) as f64 * 0.37).sin()).collect()
 }
 
-/// Coupled stiffness of three directions, of no symmetry.
+/// Coupled stiffness of three directions, without symmetry.
 pub fn coupled() -> Polynomial {
     Polynomial::tensors(3, &tensor(9, 1), &tensor(27, 2), &tensor(81, 3)).unwrap()
 }
@@ -170,7 +176,7 @@ pub fn mixed() -> Polynomial {
     .unwrap()
 }
 
-/// A force of two directions that no polynomial is: a pendulum with a fluid's drag, in a field.
+/// A force of two directions that is no polynomial: a pendulum with a fluid's drag, in a field.
 pub struct Pendulum {
     pub calls: AtomicUsize,
 }
@@ -206,7 +212,7 @@ pub fn pendulum() -> (Arc<Pendulum>, User) {
     (force, user)
 }
 
-/// Whether `set` carries all that the law excites.
+/// Whether `set` carries every harmonic that the law excites.
 pub fn suits(law: &dyn Memoryless, set: &HarmonicSet) -> bool {
     law.is_odd() || !set.is_odd()
 }

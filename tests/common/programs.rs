@@ -1,11 +1,10 @@
-//! What the tests of other languages share: the checkout, the library under test, programs that must
-//! succeed.
+//! Shared code of the tests of other languages: the checkout, the library under test, programs that must succeed.
 
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
-/// The checkout.
+/// The path of the checkout.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
@@ -32,7 +31,7 @@ pub fn soname() -> String {
 
 /// Runs a program that must succeed.
 pub fn run(command: &mut Command) -> Output {
-    // Cargo's search path has the library of the last `cargo build`, which may be an older one.
+    // Cargo's search path contains the library of the last `cargo build`, which may be an older one.
     let output = command.env_remove("LD_LIBRARY_PATH").output().unwrap_or_else(|error| {
         panic!("{command:?} could not be started: {error}. It is NOT tested without it; sh tests/run.sh installs it")
     });
@@ -46,13 +45,12 @@ pub fn run(command: &mut Command) -> Output {
     output
 }
 
-/// What a program printed; it must succeed.
+/// Output of a program, which must succeed.
 pub fn printed(command: &mut Command) -> String {
     String::from_utf8(run(command).stdout).unwrap()
 }
 
-/// The Python of the tests: that of the virtual environment that tests/run.sh makes where the system
-/// has no numpy.
+/// The Python of the tests: that of the virtual environment that tests/run.sh creates if the system has no numpy.
 pub fn python() -> PathBuf {
     let own = root().join(".venv/bin/python");
     if own.is_file() { own } else { "python3".into() }

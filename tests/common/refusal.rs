@@ -1,4 +1,4 @@
-//! What a refused call must look like.
+//! Checks of a refused call.
 
 use crate::common::{BASE, all_harmonics, harmonics, solve_at};
 use hbvib::error::{Result, Status};
@@ -20,7 +20,7 @@ pub fn refused<T>(result: Result<T>, status: Status, words: &[&str]) {
     }
 }
 
-/// Runs `attempts` on the blisk and checks that it answers as before.
+/// Runs `attempts` on the blisk and checks that its results are unchanged.
 pub fn unharmed(attempts: impl FnOnce(&mut Model)) {
     let mut model = BASE.sector();
     let answer = |model: &Model| all_harmonics(&solve_at(model, &harmonics(5), OMEGA), 0);

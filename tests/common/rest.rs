@@ -1,10 +1,10 @@
-//! Where the slider of friction in a plane rests, by trying all candidates: the point nearest to 0 that discs
-//! have in common is 0, the nearest point of one of them, or one where two circles meet.
+//! Rest position of the slider of friction in a plane, by a test of all candidates: the common point of all discs
+//! nearest to 0 is 0, the nearest point of one of them, or one where two circles meet.
 
 /// Centre and radius.
 pub type Disc = ([f64; 2], f64);
 
-/// How far `w` lies outside the disc.
+/// Distance of `w` from the disc; negative inside.
 pub fn outside(w: [f64; 2], (x, radius): Disc) -> f64 {
     (w[0] - x[0]).hypot(w[1] - x[1]) - radius
 }
@@ -37,7 +37,7 @@ pub fn nearest(discs: &[Disc], tolerance: f64) -> Option<[f64; 2]> {
     best
 }
 
-/// The same for many discs: of few that grow by the one most violated.
+/// The same for many discs: starts with few and adds the most violated one.
 pub fn nearest_of_many(discs: &[Disc], tolerance: f64) -> Option<[f64; 2]> {
     let mut few: Vec<Disc> = Vec::new();
     loop {

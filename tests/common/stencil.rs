@@ -1,10 +1,9 @@
 //! Finite differences against analytic derivatives, for the derivative tests.
 //!
-//! Tolerance. Where the slope is monotone in [x − h, x + h], its middle value lies between the
-//! one-sided differences, within half their gap of the central one. The gap is O(h) on smooth
-//! stretches; across the onset of a slip the slope jumps, and may overshoot next to the jump, so
-//! the whole gap is allowed. Round-off adds about 1e-15/h = 1e-9 of the scale; 1e-7 leaves room
-//! for cancellation in long sums.
+//! Tolerance. Where the slope is monotone in [x − h, x + h], its middle value lies between the one-sided differences,
+//! within half their gap of the central one. The gap is O(h) on smooth intervals; across the onset of a slip the
+//! slope jumps, and may overshoot next to the jump, so the whole gap is allowed. Round-off adds about 1e-15/h = 1e-9
+//! of the scale; 1e-7 allows for cancellation in long sums.
 
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -12,7 +11,7 @@ use proptest::test_runner::{Config, RngSeed, TestCaseError};
 
 pub type Checked = Result<(), TestCaseError>;
 
-/// Inputs are random but the same in every run, so that a failure can be looked at.
+/// Inputs are random but the same in every run, so that a failure can be reproduced.
 pub fn config(cases: u32) -> Config {
     Config {
         cases,

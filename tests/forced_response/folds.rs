@@ -3,7 +3,7 @@
 //! one-harmonic Duffing oscillator, whose folds have a closed form.
 
 use hbvib::continuation::corrector::{Corrector, Outcome};
-use hbvib::continuation::special_points::{Event, Locator};
+use hbvib::continuation::special_points::{Locator, SpecialPoint};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Advance, Continuation, Metric, Point, Settings};
 use hbvib::error::Result;
@@ -138,7 +138,7 @@ fn folds_pass_without_help_and_are_found_where_the_closed_form_has_them() {
         let mut locator = Locator::new(2, settings).unwrap();
         let (mut folds, mut peaks) = (Vec::new(), Vec::new());
         for pair in points.windows(2) {
-            for (event, list) in [(Event::Fold, &mut folds), (Event::Peak, &mut peaks)] {
+            for (event, list) in [(SpecialPoint::Fold, &mut folds), (SpecialPoint::Peak, &mut peaks)] {
                 if event.between(&pair[0], &pair[1]) {
                     let found = locator
                         .locate(&mut Duffing::default(), event, &pair[0], &pair[1])

@@ -1,5 +1,5 @@
-//! Reads the declarations of `include/hbvib.h`: exactly the C that the header is made of. Anything else
-//! is an error with its text, so that nothing is passed over.
+//! Reads the declarations of `include/hbvib.h`: exactly the C that the header uses. Anything else is an error with
+//! its text, so that nothing is omitted silently.
 
 /// A scalar type of C or a name.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,9 +20,9 @@ pub enum Base {
 pub struct Type {
     pub base: Base,
     pub is_const: bool,
-    /// Stars behind the base.
+    /// Number of stars after the base.
     pub pointers: usize,
-    /// Length, of a field that is an array.
+    /// Length of a field that is an array.
     pub array: Option<usize>,
 }
 
@@ -73,7 +73,7 @@ pub struct Declarations {
     pub version: [i64; 3],
     pub enums: Vec<Enum>,
     pub opaque: Vec<String>,
-    /// Names for int32_t.
+    /// Other names of int32_t.
     pub aliases: Vec<String>,
     pub structs: Vec<Struct>,
     pub callbacks: Vec<Function>,
@@ -131,7 +131,7 @@ impl Declarations {
         matches!(base, Base::Named(name) if self.opaque.contains(name))
     }
 
-    /// Base with names for int32_t resolved.
+    /// The base with names of int32_t resolved.
     pub fn resolved<'a>(&self, base: &'a Base) -> &'a Base {
         match base {
             Base::Named(name) if self.aliases.contains(name) => &Base::Int32,
@@ -208,7 +208,7 @@ impl Declarations {
         Ok(())
     }
 
-    /// Descriptions that a function shares with another: "Arguments ... as for hbvib_...".
+    /// Copies the descriptions that a function shares with another: "Arguments ... as for hbvib_...".
     fn inherit(&mut self) -> Result<()> {
         for i in 0..self.functions.len() {
             let function = &self.functions[i];
@@ -246,7 +246,7 @@ pub fn sentence(doc: &str) -> &str {
     let mut points = doc.match_indices('.').map(|(i, _)| i);
     let end = points.find(|&i| {
         let rest = &doc[i + 1..];
-        // The points of "0 .. 3" end no sentence.
+        // The points of "0 .. 3" do not end a sentence.
         (rest.is_empty() || rest.starts_with(' ')) && !doc[..i].ends_with(['.', ' '])
     });
     &doc[..end.map_or(doc.len(), |i| i + 1)]
@@ -306,7 +306,7 @@ fn function(name: &str, result: &str, arguments: &str, doc: &[&str], text: Strin
     })
 }
 
-/// The lines of a comment about an argument: "name  text", "a, b  text"; those that follow are indented.
+/// The lines of a comment about an argument: "name  text", "a, b  text"; continuation lines are indented.
 fn described(doc: &[&str], name: &str) -> String {
     let mut lines = doc.iter();
     let names = |line: &str| {
@@ -354,7 +354,7 @@ fn variable(code: &str) -> Result<Variable> {
     })
 }
 
-/// A type and what follows it.
+/// A type and the rest of the code after it.
 fn kind(code: &str) -> Result<(Type, &str)> {
     let (is_const, code) = match code.strip_prefix("const ") {
         Some(rest) => (true, rest),

@@ -4,13 +4,13 @@ use crate::declarations::{Base, Declarations, Function, Result, Struct, Type, Va
 use crate::layout::{Defaults, Layout, Place};
 use std::fmt::Write as _;
 
-/// Columns of free source form, without the sign of continuation.
+/// Columns of free source form, without the continuation sign.
 const COLUMNS: usize = 130;
 
-/// Fortran does not tell letters by case: types whose names are those of constants have others.
+/// Fortran ignores case: types with the names of constants are renamed.
 const RENAMED: [(&str, &str); 1] = [("hbvib_energy", "hbvib_energies")];
 
-/// Defaults that differ from those in C, because indices count from 1, or are told by a name.
+/// Defaults that differ from those in C, because indices count from 1, or a name replaces a number.
 const OWN_DEFAULTS: [(&str, &str, &str); 4] = [
     ("hbvib_matrix", "index_base", "1"),
     ("hbvib_mode_options", "mode_index", "1"),
@@ -77,7 +77,7 @@ fn structure(all: &Declarations, s: &Struct, bytes: &[u8]) -> Result<String> {
     Ok(text)
 }
 
-/// The Fortran type of a field, and its length where it is an array there.
+/// The Fortran type of a field, and its length if it is an array there.
 fn field_type(all: &Declarations, field: &Variable) -> (&'static str, Option<usize>) {
     let kind = &field.kind;
     if kind.pointers > 0 {
@@ -130,7 +130,7 @@ fn default(all: &Declarations, kind: &Type, place: &Place, bytes: &[u8]) -> Resu
     }
 }
 
-/// A real constant, exactly.
+/// A real constant, written exactly.
 fn real(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e6 {
         return format!("{value}");
@@ -206,7 +206,7 @@ fn argument(all: &Declarations, f: &Function, a: &Variable, is_callback: bool) -
     match (base, kind.pointers) {
         (base, 0) => value(value_type(base)),
         (Base::Void, 1) => value("type(c_ptr)"),
-        // Text that the library hands to a callback.
+        // Text that the library passes to a callback.
         (Base::Char, 1) if is_callback => value("type(c_ptr)"),
         (base, 1) if all.is_opaque(base) => value("type(c_ptr)"),
         (base, 2) if all.is_opaque(base) => Ok(("type(c_ptr), intent(inout)".into(), name.clone())),
@@ -221,7 +221,7 @@ fn argument(all: &Declarations, f: &Function, a: &Variable, is_callback: bool) -
             } else {
                 value_type(base)
             };
-            // One number is received in a scalar.
+            // A scalar receives one number.
             let is_one = *base == Base::Int64 && !kind.is_const && !a.doc.contains("numbers");
             let shape = if is_one { "" } else { "(*)" };
             Ok((format!("{of}, intent({intent}){optional}"), format!("{name}{shape}")))
@@ -230,7 +230,7 @@ fn argument(all: &Declarations, f: &Function, a: &Variable, is_callback: bool) -
     }
 }
 
-/// The name of a struct, refused where it is that of a constant in other letters.
+/// The name of a struct; an error if it is that of a constant in other case.
 fn type_name<'a>(all: &Declarations, name: &'a str) -> Result<&'a str> {
     if let Some((_, other)) = RENAMED.iter().find(|(known, _)| *known == name) {
         return Ok(other);
@@ -244,7 +244,7 @@ fn type_name<'a>(all: &Declarations, name: &'a str) -> Result<&'a str> {
     Ok(name)
 }
 
-/// Declarations, neighbours of one type in one statement.
+/// Declarations, with neighbours of one type in one statement.
 fn grouped<K: AsRef<str>>(indent: usize, items: &[(K, String)]) -> String {
     let mut text = String::new();
     let mut rest = items;
@@ -258,7 +258,7 @@ fn grouped<K: AsRef<str>>(indent: usize, items: &[(K, String)]) -> String {
     text
 }
 
-/// A statement with a list, continued on further lines where it is long.
+/// A statement with a list; a long one is continued on further lines.
 fn wrapped(indent: usize, start: &str, items: &[String]) -> String {
     let mut text = format!("{:indent$}{start}", "");
     let mut column = text.len();
@@ -296,7 +296,7 @@ fn comment(indent: usize, sentence: &str) -> String {
     text + &line + "\n"
 }
 
-/// The subroutines of tests/languages/fortran/layout.f90, one a struct, and their calls.
+/// The subroutines of tests/languages/fortran/layout.f90, one per struct, and their calls.
 pub fn layouts(all: &Declarations) -> Result<(String, String)> {
     let (mut calls, mut bodies) = (String::new(), String::new());
     for s in &all.structs {

@@ -1,7 +1,7 @@
-//! Puts the C items that cbindgen writes in the order of `include/hbvib.h`: section by section, and
-//! inside a section in the order in which its source files declare them.
+//! Arranges the C items that cbindgen writes in the order of `include/hbvib.h`: section by section, and inside a
+//! section in the order in which its source files declare them.
 //!
-//! build.rs includes this file, so that it uses the standard library alone.
+//! build.rs includes this file; therefore it uses the standard library alone.
 
 /// A section of the header: title, one line about it, and its files in src/capi.
 pub struct Section {
@@ -78,13 +78,13 @@ pub const SECTIONS: [Section; 11] = [
 /// Longest line of the header.
 const COLUMNS: usize = 100;
 
-/// The files in src/capi that declare items, without ending, in the order of the header.
+/// The files in src/capi that declare items, without extension, in the order of the header.
 pub fn files() -> impl Iterator<Item = &'static str> {
     SECTIONS.iter().flat_map(|section| section.files).copied()
 }
 
-/// The header, from the items as cbindgen writes them, the texts of [`files`], and the three numbers of
-/// the version. An error names what lacks a place, or a line that is too long.
+/// The header, from the items as cbindgen writes them, the texts of [`files`], and the three numbers of the version.
+/// An error names an item without a place, or a line that is too long.
 pub fn assemble(items: &str, sources: &[String], version: &[String; 3]) -> Result<String, String> {
     let mut blocks = blocks(items)?;
     let mut text = prologue(version);
@@ -125,7 +125,7 @@ fn banner(section: &Section) -> String {
     format!("/* {rule}\n * {}: {}\n * {rule} */\n\n", section.title, section.about)
 }
 
-/// Name and text of each item; cbindgen separates them by empty lines.
+/// Name and text of each item; cbindgen separates items by empty lines.
 fn blocks(items: &str) -> Result<Vec<(String, String)>, String> {
     items
         .split("\n\n")

@@ -1,18 +1,18 @@
-//! The layout of the structs of the header, and their defaults as the library itself fills them.
+//! The layout of the structs of the header, and their defaults as the library fills them.
 
 use crate::declarations::{Base, Declarations, Result, Struct, Type};
 use std::collections::HashMap;
 
-/// Where a field lies.
+/// Position of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
     pub offset: usize,
-    /// Bytes of one entry, and how many there are.
+    /// Bytes of one entry, and number of entries.
     pub size: usize,
     pub count: usize,
 }
 
-/// A struct as C lays it out.
+/// The layout of a struct in C.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     pub size: usize,
@@ -54,10 +54,10 @@ fn size(all: &Declarations, kind: &Type) -> Result<usize> {
     }
 }
 
-/// The bytes of each struct after its `_init` function; zeros and its size where it has none.
+/// The bytes of each struct after its `_init` function; zeros and its size if it has none.
 pub type Defaults = HashMap<String, Vec<u8>>;
 
-/// Whether the caller fills a struct, by its `_init` function. Others are written by the library alone.
+/// Whether the caller fills a struct, by its `_init` function. The library alone writes the others.
 pub fn is_filled_by_caller(all: &Declarations, s: &Struct) -> bool {
     all.function(&format!("{}_init", s.name)).is_some()
 }

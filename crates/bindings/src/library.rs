@@ -1,4 +1,4 @@
-//! The shared library, loaded to ask it for the defaults of its structs.
+//! The shared library, loaded to read the defaults of its structs.
 
 use crate::declarations::Result;
 use std::ffi::{CStr, CString, c_char, c_int, c_void};
@@ -12,7 +12,7 @@ unsafe extern "C" {
 
 const RTLD_NOW: c_int = 2;
 
-/// A library that stays loaded.
+/// A library that is never unloaded.
 pub struct Library(*mut c_void);
 
 type Init = unsafe extern "C" fn(*mut c_void, usize) -> i32;

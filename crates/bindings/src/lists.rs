@@ -3,7 +3,7 @@
 use crate::declarations::Declarations;
 use std::fmt::Write as _;
 
-/// The functions by name, one a line.
+/// The functions by name, one per line.
 pub fn symbols(all: &Declarations) -> String {
     let mut names: Vec<_> = all.functions.iter().map(|f| f.name.as_str()).collect();
     names.sort_unstable();

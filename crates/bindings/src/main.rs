@@ -1,18 +1,17 @@
-//! Writes all that follows from the C declarations in src/capi. One command, for developers and for CI:
+//! Writes everything that follows from the C declarations in src/capi. One command, for developers and for CI:
 //!
 //! ```text
 //! cargo run -p hbvib-bindings
 //! ```
 //!
-//! It first has cargo check the library with its feature `bindings`, whose build script writes
-//! `include/hbvib.h`, and build the library without it, as users do. Then it reads the header, asks the
-//! shared library for the defaults of its structs, and writes the generated parts of the Fortran and
-//! Python modules and of the tests. They stand between the lines `BEGIN GENERATED` and `END GENERATED`;
-//! all else in these files is written by hand.
+//! It first runs cargo to check the library with its feature `bindings`, whose build script writes `include/hbvib.h`,
+//! and to build the library without it, as users do. Then it reads the header and, from the shared library, the
+//! defaults of its structs, and writes the generated parts of the Fortran and Python modules and of the tests. These
+//! parts are between the lines `BEGIN GENERATED` and `END GENERATED`; the rest of these files is written by hand.
 
 mod declarations;
 mod fortran;
-// build.rs of the library uses it; here it is tested.
+// build.rs of the library uses this module; its tests run here.
 #[cfg(test)]
 mod header;
 mod layout;

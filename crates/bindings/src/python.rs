@@ -90,7 +90,7 @@ fn short(name: &str) -> &str {
     name.trim_start_matches("hbvib_")
 }
 
-/// A class; a constant where there is one member only.
+/// A class; a constant if there is only one member.
 fn enumeration(e: &Enum) -> String {
     let mut text = String::new();
     if let [(name, value, doc)] = &e.members[..] {
@@ -128,14 +128,14 @@ fn enumeration(e: &Enum) -> String {
     text
 }
 
-/// hbvib_status_code is Status, hbvib_log_level LogLevel.
+/// The class of hbvib_status_code is Status, that of hbvib_log_level LogLevel.
 fn class_name(name: &str) -> String {
     let name = name.strip_suffix("_code").unwrap_or(name);
     let words = name.split('_').map(|word| word[..1].to_ascii_uppercase() + &word[1..]);
     words.collect()
 }
 
-/// Length of what all members begin with, up to an underscore.
+/// Length of the common start of all members, up to an underscore.
 fn common_prefix(e: &Enum) -> usize {
     let first = &e.members[0].0;
     let ends = first.match_indices('_').map(|(i, _)| i + 1);
@@ -188,7 +188,7 @@ fn result(all: &Declarations, f: &Function) -> Result<&'static str> {
     })
 }
 
-/// A method as type checkers see it.
+/// A method in the form that type checkers read.
 fn stub(all: &Declarations, f: &Function) -> Result<String> {
     let mut arguments = vec!["self".to_owned()];
     for a in &f.arguments {
@@ -209,13 +209,13 @@ fn stub(all: &Declarations, f: &Function) -> Result<String> {
     } else {
         "int"
     };
-    // Lines may be broken inside the parentheses alone.
+    // Lines may be broken only inside the parentheses.
     let end = format!(") -> {result}: ...").replace(' ', "\0");
     let line = format!("        def {}({}{end}", f.name, arguments.join(", "));
     Ok(wrapped(&line, "            ").replace('\0', " "))
 }
 
-/// A line, broken at spaces; those that follow begin with `indent`.
+/// A line, broken at spaces; continuation lines begin with `indent`.
 fn wrapped(line: &str, indent: &str) -> String {
     let mut text = String::new();
     let mut rest = line.to_owned();

@@ -5,10 +5,10 @@ use crate::declarations::Result;
 const BEGIN: &str = "BEGIN GENERATED";
 const END: &str = "END GENERATED";
 
-/// A file cut at its markers.
+/// A file split at its markers.
 #[derive(Debug)]
 pub struct Regions<'a> {
-    /// The text by hand, markers included: one more than there are generated parts.
+    /// The text written by hand, markers included: one more than there are generated parts.
     by_hand: Vec<&'a str>,
 }
 

@@ -1,31 +1,31 @@
-//! How the contact forces couple the relative motions: their Jacobians in Newton's matrix, and which
-//! of them leave it because they are those of the reference stiffness.
+//! Coupling of the relative motions by the contact forces: their Jacobians in Newton's matrix, and the elimination of
+//! those that equal the reference stiffness.
 
 use crate::error::Result;
 use crate::problem::contact_forces::{ContactForces, add};
 use core::ops::Range;
 use num_complex::Complex64;
 
-/// Added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact
-/// does not resist a mean motion; where nothing else does, as for a ring free to turn, the mean is
-/// indeterminate and the matrix singular. With the floor it stays where it started.
+/// Term added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact does not
+/// resist a mean motion; where nothing else does, as for a ring free to turn, the mean is indeterminate and the
+/// matrix singular. With the floor it keeps its initial value.
 const MEAN_FLOOR: f64 = 1e-8;
 
 impl ContactForces<'_> {
-    /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the
-    /// contact: then ∂f/∂y = κ, and no change couples back.
+    /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the contact:
+    /// then ∂f/∂y = κ, and no change couples back.
     #[must_use]
     pub fn is_eliminated(&self, coordinate: usize) -> bool {
         self.linear[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
-    /// Whether besides f = κ y, so that nothing at all couples back; a normal load at rest does.
+    /// Whether in addition f = κ y, so that nothing couples back at all; a normal load at rest does.
     #[must_use]
     pub fn is_inactive(&self, coordinate: usize) -> bool {
         self.inactive[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
-    /// Tells per unknown motion whether some force that does not drop out depends on it.
+    /// Marks per unknown motion whether some force that is not eliminated depends on it.
     pub fn mark_active(&self, active: &mut [bool]) {
         let m = self.condensed.set().packed_len();
         active.fill(false);
@@ -36,9 +36,9 @@ impl ContactForces<'_> {
         }
     }
 
-    /// Whether some force that does not drop out depends on the motion of a coordinate.
+    /// Whether some force that is not eliminated depends on the motion of a coordinate.
     #[must_use]
-    pub fn is_felt(&self, coordinate: usize) -> bool {
+    pub fn is_coupled(&self, coordinate: usize) -> bool {
         self.jacobians
             .of_motion(coordinate)
             .any(|(force, _)| !self.is_eliminated(force))
@@ -59,8 +59,8 @@ impl ContactForces<'_> {
         dw
     }
 
-    /// Change of w in all carried harmonics of a coordinate along a change of the motion, with all forces that
-    /// drop out or not.
+    /// Change of w in all carried harmonics of a coordinate along a change of the motion, with all forces, eliminated
+    /// or not.
     pub fn change(&self, direction: &[f64], coordinate: usize, dw: &mut [f64]) {
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -77,7 +77,7 @@ impl ContactForces<'_> {
         }
     }
 
-    /// What is added to the diagonal of a mean in Newton's matrix.
+    /// Term that is added to the diagonal of a mean in Newton's matrix.
     #[must_use]
     pub fn mean_floor(&self, coordinate: usize) -> f64 {
         if self.is_eliminated(coordinate) {
@@ -100,12 +100,12 @@ impl ContactForces<'_> {
         self.jacobians.swap(values);
     }
 
-    /// Adds G (∂f/∂y − κ) in a range of carried harmonics to the column of a Jacobian that belongs to number
-    /// `q` of the packed motion of coordinate `motion`. `flexibility` gives G of a harmonic, force after
-    /// force at a distance of `stride`; `sum` has one number per coordinate.
+    /// Adds G (∂f/∂y − κ) in a range of carried harmonics to the column of a Jacobian that belongs to number `q` of
+    /// the packed motion of coordinate `motion`. `flexibility` returns G of a harmonic, force after force at a
+    /// distance of `stride`; `sum` has one number per coordinate.
     ///
-    /// A column is written from top to bottom and the forces are summed before, because the Jacobian
-    /// of many contacts is far larger than any cache.
+    /// A column is written from top to bottom and the forces are summed before, because the Jacobian of many contacts
+    /// is far larger than any cache.
     pub fn couple<'g>(
         &self,
         harmonics: Range<usize>,
@@ -173,7 +173,7 @@ impl ContactForces<'_> {
     /// packed motion of coordinate `motion`. `flexibility` holds G harmonic after harmonic for each coordinate, force
     /// after force; `change` has the length of a packed signal.
     ///
-    /// Where many harmonics are carried this is quicker than [`Self::couple`]: what is read and written lies in a row.
+    /// Where many harmonics are carried this is faster than [`Self::couple`]: reads and writes are contiguous.
     pub fn couple_all(
         &self,
         (motion, q): (usize, usize),
@@ -205,8 +205,7 @@ impl ContactForces<'_> {
         }
     }
 
-    /// Adds Re(g·∂w/∂y) of the force of coordinate `force` in harmonic i to one row of a Jacobian with
-    /// `n` rows.
+    /// Adds Re(g·∂w/∂y) of the force of coordinate `force` in harmonic i to one row of a Jacobian with `n` rows.
     pub fn couple_scalar(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
         let set = self.condensed.set();
         let m = set.packed_len();

@@ -1,15 +1,14 @@
-//! What the laws look like at other motions and other samples: where they are linear, and how much
-//! their sampling matters.
+//! Properties of the laws at other motions and other samples: their linear ranges, and their sampling error.
 
 use crate::contact::linearisation::Range;
 use crate::error::{Error, Result, try_push};
 use crate::problem::contact_forces::{ContactForces, gather};
 
 impl ContactForces<'_> {
-    /// What sampling matters: ‖F_N − F_M‖/‖F_N‖ over the forces of all laws that are sampled, with M =
-    /// N/2 (2N where N is too few to halve), at given motions and frequency. 0 where all laws are exact.
-    /// It tells the size of the error and is no bound of it. NaN where a law does not answer to the
-    /// check, which ends no branch.
+    /// Relative change of the forces with the number of samples: ‖F_N − F_M‖/‖F_N‖ over the forces of all sampled
+    /// laws, with M = N/2 (2N where N is too small to halve), at given motions and frequency; 0 if all laws are
+    /// exact. It indicates the size of the error and is not a bound. NaN if a law fails at the other samples; this
+    /// ends no branch.
     ///
     /// # Errors
     /// Those of callbacks that give up.
