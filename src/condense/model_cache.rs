@@ -44,6 +44,7 @@ impl ModelCache {
     }
 
     /// The numbers of harmonics.
+    #[must_use]
     pub fn numbers(&self) -> impl DoubleEndedIterator<Item = usize> + ExactSizeIterator + '_ {
         self.slots.iter().map(|slot| slot.0)
     }
