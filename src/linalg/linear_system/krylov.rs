@@ -1,8 +1,8 @@
 //! The iterative backend: products with J, preconditioned by the factors of the block between the unknowns that couple
 //! strongly, and by the identity beyond it.
 //!
-//! GMRES sees K M⁻¹, M being the block beside the units of the other unknowns. A block that is the whole matrix is solved
-//! directly.
+//! GMRES iterates with K M⁻¹, where M holds the block and the units of the other unknowns. A block that is the whole
+//! matrix is solved directly.
 
 use crate::error::{Result, fail, try_vec};
 use crate::linalg::gmres::gmres;
@@ -157,6 +157,9 @@ impl LinearSystem for KrylovSystem {
     }
 
     fn apply(&mut self, jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()> {
+        if self.is_direct() {
+            return self.block.apply(jacobian, x, out);
+        }
         let border = (&self.column[..], self.scales, &self.row[..]);
         product(jacobian, border, &mut self.scaled, x, out)
     }

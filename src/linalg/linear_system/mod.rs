@@ -102,3 +102,140 @@ pub trait LinearSystem {
     /// an iteration.
     fn is_positive(&self) -> bool;
 }
+
+#[cfg(test)]
+mod tests {
+    use super::dense::DenseSystem;
+    use super::krylov::KrylovSystem;
+    use super::{Border, Jacobian, LinearSystem, MatrixFree};
+    use crate::error::{Result, Status};
+
+    /// A matrix whose unknowns are groups of `group` numbers, of which the later ones couple weakly.
+    struct Toy {
+        n: usize,
+        group: usize,
+        matrix: Vec<f64>,
+        kept: Vec<f64>,
+    }
+
+    impl Toy {
+        fn new(n: usize, group: usize, seed: f64) -> Self {
+            let mut matrix = vec![0.0; n * n];
+            for (k, a) in matrix.iter_mut().enumerate() {
+                let (row, column) = (k % n, k / n);
+                let weak = |i: usize| if i % group < 2 { 1.0 } else { 0.05 };
+                let noise = (k as f64 * 0.37 + seed).sin() * weak(row) * weak(column);
+                *a = f64::from(u8::from(row == column)) * 1.5 + 0.3 * noise;
+            }
+            Self {
+                n,
+                group,
+                matrix,
+                kept: Vec::new(),
+            }
+        }
+    }
+
+    impl Jacobian for Toy {
+        fn size(&self) -> usize {
+            self.n
+        }
+
+        fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+            matrix.copy_from_slice(&self.matrix);
+            active.fill(true);
+        }
+
+        fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
+            Some(self)
+        }
+    }
+
+    impl MatrixFree for Toy {
+        fn group(&self) -> usize {
+            self.group
+        }
+
+        fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
+            let inner: Vec<usize> = (0..self.n).filter(|i| i % self.group < part).collect();
+            for (k, &column) in inner.iter().enumerate() {
+                for (r, &row) in inner.iter().enumerate() {
+                    matrix[k * inner.len() + r] = self.matrix[column * self.n + row];
+                }
+            }
+            active.fill(true);
+            Ok(())
+        }
+
+        fn keep(&mut self) -> Result<()> {
+            self.kept.clone_from(&self.matrix);
+            Ok(())
+        }
+
+        fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()> {
+            out.fill(0.0);
+            for (column, d) in self.kept.chunks_exact(self.n).zip(d) {
+                for (out, a) in out.iter_mut().zip(column) {
+                    *out += a * d;
+                }
+            }
+            Ok(())
+        }
+    }
+
+    /// ‖K x − b‖/‖b‖ of the solution x, and x.
+    fn solved(system: &mut dyn LinearSystem, toy: &mut Toy, scales: (f64, f64)) -> (f64, Vec<f64>) {
+        let n = toy.n;
+        let column: Vec<f64> = (0..n).map(|k| (k as f64 * 0.9).cos()).collect();
+        let row: Vec<f64> = (0..=n).map(|k| (k as f64 * 0.7 + 0.2).sin()).collect();
+        let b: Vec<f64> = (0..=n).map(|k| (k as f64 * 2.1).sin() + 1.0).collect();
+        let border = Border {
+            column: &column,
+            scales,
+            row: &row,
+        };
+        system.update(toy, border).unwrap();
+        system.factor().unwrap();
+        let (mut x, mut product) = (b.clone(), vec![0.0; n + 1]);
+        assert!(system.solve(toy, &mut x).unwrap());
+        system.apply(toy, &x, &mut product).unwrap();
+        let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
+        let difference: Vec<f64> = product.iter().zip(&b).map(|(p, b)| p - b).collect();
+        (size(&difference) / size(&b), x)
+    }
+
+    #[test]
+    fn both_backends_solve_the_same_bordered_system() {
+        for (groups, group) in [(4, 7), (60, 3)] {
+            for scales in [(1.0, 1.0), (0.7, 3.0)] {
+                let n = groups * group;
+                let mut toy = Toy::new(n, group, 0.3);
+                let (gap, dense) = solved(&mut DenseSystem::new(n).unwrap(), &mut toy, scales);
+                assert!(gap < 1e-12, "{gap:e}");
+                for part in [2, group] {
+                    let mut krylov = KrylovSystem::new(n, (group, part), 1e-12, 100).unwrap();
+                    let (gap, x) = solved(&mut krylov, &mut toy, scales);
+                    assert!(gap < 1e-11, "{gap:e}");
+                    let largest = dense.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+                    for (a, b) in x.iter().zip(&dense) {
+                        assert!((a - b).abs() < 1e-9 * largest, "{part} of {group}: {a} {b}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_is_refused() {
+        let mut toy = Toy::new(6, 3, 0.3);
+        toy.matrix.fill(0.0);
+        let border = Border {
+            column: &[0.0; 6],
+            scales: (1.0, 1.0),
+            row: &[0.0; 7],
+        };
+        let mut system = DenseSystem::new(6).unwrap();
+        system.update(&mut toy, border).unwrap();
+        assert_eq!(system.factor().unwrap_err().status, Status::Singular);
+    }
+}
