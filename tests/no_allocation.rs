@@ -424,7 +424,7 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
         let contact = if body % 2 == 0 {
             Contact::friction_3d([dof(0), dof(1), dof(2)], [None; 3], (0.7, 0.9), 0.3, preload)
         } else {
-            Contact::friction([dof(0), dof(2)], [None; 2], (0.7, 0.9), 0.3, preload)
+            Contact::friction_2d([dof(0), dof(2)], [None; 2], (0.7, 0.9), 0.3, preload)
         };
         model.add_contact(&contact).unwrap();
         // The ground is what presses: a constant load holds the body to it.

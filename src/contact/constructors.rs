@@ -48,7 +48,13 @@ impl Contact {
     /// Friction of stiffness `kt` along a direction under a normal load of stiffness `kn`, between the
     /// degrees of freedom (tangential, normal) of side `a` and side `b`; `None` is the ground.
     #[must_use]
-    pub fn friction(a: [Option<usize>; 2], b: [Option<usize>; 2], (kt, kn): (f64, f64), mu: f64, preload: f64) -> Self {
+    pub fn friction_2d(
+        a: [Option<usize>; 2],
+        b: [Option<usize>; 2],
+        (kt, kn): (f64, f64),
+        mu: f64,
+        preload: f64,
+    ) -> Self {
         Self {
             kind: kinds::Friction2d,
             dof_a: [a[0], None, a[1]],

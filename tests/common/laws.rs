@@ -114,7 +114,7 @@ pub fn cases() -> Vec<Case> {
         kn: 0.0,
         ..plane(tangents, load)
     };
-    let pair = |load| Contact::friction([Some(0), Some(2)], [None; 2], (2.5, 1.5), 0.4, load);
+    let pair = |load| Contact::friction_2d([Some(0), Some(2)], [None; 2], (2.5, 1.5), 0.4, load);
     let table = Table::new(&[-0.5, -0.1, 0.2, 0.6], &[-1.4, -0.1, 0.3, 0.5]).unwrap();
     let damper = Polynomial::scalar(&[0.5, 0.3, 0.2], &[0.02, 0.0, 0.05]).unwrap();
     let caller = || ContactKind::User(User::new(Arc::new(Plate), 2, 0).unwrap());

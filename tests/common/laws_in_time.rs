@@ -63,7 +63,7 @@ pub const KN: f64 = 3.0;
 /// Friction between the first two degrees of freedom of [`slanted`] and the ground; a negative preload is a
 /// gap.
 pub fn friction(mu: f64, preload: f64) -> Contact {
-    let contact = Contact::friction([Some(0), Some(1)], [None, None], (KT, KN), mu, preload.max(0.0));
+    let contact = Contact::friction_2d([Some(0), Some(1)], [None, None], (KT, KN), mu, preload.max(0.0));
     Contact {
         gap: (-preload).max(0.0) / KN,
         ..contact

@@ -287,7 +287,7 @@ fn lists_name_degrees_of_freedom_of_the_model_once() {
         over(&[0, 1, 4], Status::Index, &["dofs[2] = 4", "0 .. 3"]);
         over(&[3, 1, 3], Status::Argument, &["dofs[0] and dofs[2] are both 3"]);
         over(&[0, 1], Status::Dimension, &["2 degrees of freedom"]);
-        let side = Contact::friction([Some(2), Some(2)], [None; 2], (1.0, 1.0), 0.3, 1.0);
+        let side = Contact::friction_2d([Some(2), Some(2)], [None; 2], (1.0, 1.0), 0.3, 1.0);
         refused(
             model.add_contact(&side),
             Status::Argument,

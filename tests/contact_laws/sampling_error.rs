@@ -108,7 +108,7 @@ fn laws_that_are_exact_have_nothing_to_check() {
         (Contact::jenkins(0, None, 1.0, 0.5, 0.6), 0),
         (Contact::cubic(0, None, 0.5, 0.2), 64),
         (
-            Contact::friction([Some(0), Some(2)], [None; 2], (1.0, 0.9), 0.4, 0.5),
+            Contact::friction_2d([Some(0), Some(2)], [None; 2], (1.0, 0.9), 0.4, 0.5),
             0,
         ),
         (Contact::between(0, None, ContactKind::Polynomial(cubic)), 64),

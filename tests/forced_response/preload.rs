@@ -44,7 +44,7 @@ fn contacts(preload: f64) -> [(Contact, usize); 2] {
     let ground = [None; 3];
     [
         (
-            Contact::friction([Some(0), Some(2)], [None; 2], (KT, KN), MU, preload),
+            Contact::friction_2d([Some(0), Some(2)], [None; 2], (KT, KN), MU, preload),
             1,
         ),
         (

@@ -109,7 +109,7 @@ fn friction_under_a_load_that_stays_is_a_jenkins_contact() {
     // The normal motion is free of the others and not forced: its load is shared by two springs.
     let (m, k, c) = ([1.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 2.0], [0.05, 0.0, 0.0, 0.3]);
     let of = |contact| model(2, [&m, &c, &k], &[contact], &[(0, 1, 0.5.into())]);
-    let varying = Contact::friction([Some(0), Some(1)], [None, None], (2.0, 3.0), 0.5, 1.0);
+    let varying = Contact::friction_2d([Some(0), Some(1)], [None, None], (2.0, 3.0), 0.5, 1.0);
     let constant = Contact::jenkins(0, None, 2.0, 0.5, 1.0 * 2.0 / (2.0 + 3.0));
     for omega in [0.6, 1.1] {
         let [a, b] = [&varying, &constant].map(|c| in_time(&of(c.clone()), omega, None));
@@ -173,7 +173,7 @@ fn friction_across_sectors_of_a_wave_is_what_harmonic_balance_tends_to() {
             model.set_coupling(which, &MatrixView::dense(2, &next)).unwrap();
         }
         model.set_wave(engine_order);
-        let mut contact = Contact::friction([Some(0), Some(1)], [Some(0), Some(1)], (KT, KN), 0.4, 0.8);
+        let mut contact = Contact::friction_2d([Some(0), Some(1)], [Some(0), Some(1)], (KT, KN), 0.4, 0.8);
         contact.sector_offset = 1;
         model.add_contact(&contact).unwrap();
         for (dof, harmonic, value) in forces(1.5) {
@@ -199,7 +199,7 @@ fn masses_pressed_statically_that_lift_off_are_what_harmonic_balance_tends_to() 
         c[i * n + i] = 0.25;
     }
     let pressed = |a: usize, b: Option<usize>, preload: f64| {
-        Contact::friction([Some(a), Some(a + 3)], [b, b.map(|b| b + 3)], (4.0, 6.0), 0.3, preload)
+        Contact::friction_2d([Some(a), Some(a + 3)], [b, b.map(|b| b + 3)], (4.0, 6.0), 0.3, preload)
     };
     let contacts = [
         pressed(0, None, 0.9),

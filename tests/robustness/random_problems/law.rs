@@ -208,7 +208,7 @@ impl Law {
             Self::Jenkins { kt, limit } => Contact::jenkins(a.unwrap(), b, kt, 1.0, limit),
             Self::Friction2d { kt, kn, mu, load } => Contact {
                 gap: gap(load, kn),
-                ..Contact::friction(side(0), side(1), (kt, kn), mu, load.max(0.0))
+                ..Contact::friction_2d(side(0), side(1), (kt, kn), mu, load.max(0.0))
             },
             Self::Plane {
                 kt,
