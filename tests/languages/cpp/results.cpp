@@ -129,7 +129,7 @@ void friction() {
   std::vector<Complex> plane(64);
   std::copy(x.data(), x.data() + x.size(), plane.begin());
   const Contact::Dofs side = {0, 1, HBVIB_GROUND}, ground = {HBVIB_GROUND, HBVIB_GROUND, HBVIB_GROUND};
-  const auto friction = Contact::friction_2d(HBVIB_FRICTION_3D, side, ground, kt, 0, mu, preload);
+  const auto friction = Contact::friction(HBVIB_FRICTION_3D, side, ground, kt, 0, mu, preload);
   const auto along = hbvib::contact_evaluate(friction, 31, 4096, peak.omega, plane);
   near(std::abs(along.force[1] - force.force[1]) + 1, 1, 1e-4, "friction in a plane, moved along a line, is the same law");
   claim(std::abs(along.force[33]) < 1e-12, "and has no force across it");
