@@ -4,10 +4,11 @@ use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::estimate::{
-    CONTEXT, MOST_EXTENDED, MOST_UNKNOWNS, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
+    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
 };
 use crate::error_estimate::extended_newton::extend;
-use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
+use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
 use crate::linalg::norm;
@@ -17,6 +18,12 @@ use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
 use std::sync::Arc;
+
+/// Evaluations, each with a product, for which the work must suffice.
+const EVALUATIONS: f64 = 6.0;
+
+/// Factorisations of the block for which the work must suffice.
+const FACTORISATIONS: f64 = 8.0;
 
 /// Estimates the errors of points of one model, one after the other.
 pub struct ForcedEstimator<'a> {
@@ -55,13 +62,15 @@ impl<'a> ForcedEstimator<'a> {
         or_unknown(found, solved, 0.0)
     }
 
-    /// The harmonics to which a point is extended; `None` where the problem would be too large.
-    fn extent(&mut self, solved: &Solved<'_>) -> Result<Option<Extent>> {
+    /// The harmonics to which a point is extended; `None` where the work does not suffice.
+    fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let most = cutoff_harmonic::affordable(solved.condensed, MOST_UNKNOWNS);
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
-        if own > most || least > cutoff_harmonic::affordable(solved.condensed, MOST_EXTENDED) {
+        let most = work.highest(solved.condensed, &self.options, EVALUATIONS, |sizes| {
+            sizes.evaluation() + sizes.product(0.0, sizes.packed())
+        });
+        if least > most {
             return Ok(None);
         }
         if self.cutoff.is_none() {
@@ -83,7 +92,8 @@ impl<'a> ForcedEstimator<'a> {
     }
 
     fn extend(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
-        let Some(extent) = self.extent(solved)? else {
+        let work = Work::of_point(&Sizes::new(solved.condensed, self.options.samples));
+        let Some(extent) = self.extent(solved, &work)? else {
             return solved.unknown(0.0, true).map(Some);
         };
         let slot = self.models.slot_with(extent.highest);
@@ -102,22 +112,38 @@ impl<'a> ForcedEstimator<'a> {
         })?;
         let condensed = &*resolution.condensed;
         let set = condensed.set();
-        let core = set.numbers().partition_point(|&h| h <= extent.core);
+        let sizes = Sizes::new(condensed, resolution.samples);
+        let compliant = set.numbers().partition_point(|&h| h <= extent.core);
+        let factored = factored(&sizes, compliant, &work);
         let mut system = match self.extended.take() {
             Some((kept, mut system)) if kept == slot => {
-                system.set_point(omega, core)?;
+                system.set_point(omega, factored, work)?;
                 system
             }
             _ => {
                 let range = (omega, omega);
                 let problem = HarmonicBalance::new(condensed, self.response, range, resolution.samples, None)?;
-                ExtendedSystem::iterative(problem, omega, core)?
+                ExtendedSystem::iterative(problem, omega, factored, (sizes, work))?
             }
         };
         let found = on(&mut system, condensed, solved, extent, self.options.tol_residual);
         self.extended = Some((slot, system));
         found
     }
+}
+
+/// The compliant harmonics in one block as far as the work allows to factor it, and the others each by itself.
+fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
+    let fits = |block: usize| {
+        let packed = sizes.packed().min(2.0 * block as f64);
+        let pairs = (compliant - block) as f64;
+        FACTORISATIONS * sizes.factors(packed, pairs) <= work.left() && work.fits(sizes.bytes(packed, pairs))
+    };
+    let block = (1..=compliant)
+        .rev()
+        .find(|&block| fits(block))
+        .unwrap_or(compliant.min(1));
+    Factored { block, each: compliant }
 }
 
 fn on(
