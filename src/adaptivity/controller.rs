@@ -12,6 +12,7 @@ use crate::adaptivity::discretised::{Assessment, Discretised};
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::SpecialKind;
 
@@ -38,9 +39,6 @@ const BACKTRACK: usize = 3;
 
 /// Most refinements of one point.
 const MOST_REFINEMENTS: usize = 12;
-
-/// Cancel flag of a caller.
-type Cancelled<'c> = Option<&'c dyn Fn() -> bool>;
 
 /// A point with its resolution.
 pub(crate) type PointAt<'p> = (&'p Point, usize);
@@ -108,7 +106,7 @@ impl AdaptivityController {
         equations: &mut dyn Discretised,
         mut point: Point,
         keep_parameter: bool,
-        cancelled: Cancelled<'_>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Refined> {
         let done = |point| Ok(Refined { point, stuck: false });
         if !equations.levels().is_automatic() {
@@ -139,9 +137,9 @@ impl AdaptivityController {
             let next = next.min(last);
             let may_refine = !accepted && next > level && !found.estimate.too_large && refinements < MOST_REFINEMENTS;
             let better = if accepted && next < level {
-                resolve_at(equations, (&point, level), next, keep_parameter, cancelled)?
+                resolve_at(equations, (&point, level), next, keep_parameter, interrupt)?
             } else if may_refine {
-                refine_to(equations, &point, &found.estimate, next, keep_parameter, cancelled)?
+                refine_to(equations, &point, &found.estimate, next, keep_parameter, interrupt)?
             } else {
                 None
             };
@@ -160,10 +158,10 @@ impl AdaptivityController {
     pub fn backtrack(
         equations: &mut dyn Discretised,
         (point, level): PointAt<'_>,
-        cancelled: Cancelled<'_>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let to = (level.max(equations.resolution()) + BACKTRACK).min(equations.levels().last());
-        resolve_at(equations, (point, level), to, true, cancelled)
+        resolve_at(equations, (point, level), to, true, interrupt)
     }
 
     /// Whether a point beside the curve meets the tolerance; if not, the resolution has been raised, and the point is
@@ -196,7 +194,12 @@ impl AdaptivityController {
     }
 
     /// The point recorded last with the harmonics with which the branch continues: resolved if they change.
-    pub fn adjust(&mut self, equations: &mut dyn Discretised, point: Point, cancelled: Cancelled<'_>) -> Result<Point> {
+    pub fn adjust(
+        &mut self,
+        equations: &mut dyn Discretised,
+        point: Point,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Point> {
         let level = equations.resolution();
         let Some((error, required)) = self.last else {
             return Ok(point);
@@ -212,7 +215,7 @@ impl AdaptivityController {
         }
         // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch
         // continues.
-        let Some(found) = resolve_at(equations, (&point, level), next, true, cancelled)? else {
+        let Some(found) = resolve_at(equations, (&point, level), next, true, interrupt)? else {
             return Ok(point);
         };
         let before = equations.transfer(&point, level)?;
@@ -273,12 +276,12 @@ fn resolve_at(
     (point, level): PointAt<'_>,
     to: usize,
     keep_parameter: bool,
-    cancelled: Cancelled<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Point>> {
     let from = equations.resolution();
     equations.select(to)?;
     let start = equations.transfer(point, level)?;
-    let found = equations.resolve(&start, keep_parameter, cancelled)?;
+    let found = equations.resolve(&start, keep_parameter, interrupt)?;
     if found.is_none() {
         equations.select(from)?;
     }
@@ -293,7 +296,7 @@ fn refine_to(
     estimate: &Estimate,
     to: usize,
     keep_parameter: bool,
-    cancelled: Cancelled<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Point>> {
     let from = equations.resolution();
     equations.select(to)?;
@@ -301,7 +304,7 @@ fn refine_to(
         // Where the plane across the branch has no solution near, a fixed parameter may have one.
         for fixed in [keep_parameter, true] {
             let start = equations.transfer_corrected(point, from, estimate)?;
-            if let Some(found) = equations.resolve(&start, fixed, cancelled)? {
+            if let Some(found) = equations.resolve(&start, fixed, interrupt)? {
                 return Ok(Some(found));
             }
         }
@@ -310,7 +313,7 @@ fn refine_to(
     for level in from + 1..=to {
         equations.select(level)?;
         let start = equations.transfer(&reached, level - 1)?;
-        match equations.resolve(&start, keep_parameter, cancelled)? {
+        match equations.resolve(&start, keep_parameter, interrupt)? {
             Some(found) => reached = found,
             None if level == from + 1 => {
                 equations.select(from)?;

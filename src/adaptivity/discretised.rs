@@ -4,6 +4,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
+use crate::interrupt::Interrupt;
 use crate::problem::Problem;
 use crate::results::{Branch, SpecialKind};
 
@@ -34,12 +35,7 @@ pub(crate) trait Discretised {
     fn transfer_corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point>;
 
     /// Solves near a point with the current harmonics, see [`crate::continuation::resolve`].
-    fn resolve(
-        &mut self,
-        near: &Point,
-        keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
-    ) -> Result<Option<Point>>;
+    fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>>;
 
     /// Estimates the error of a solved point of the current resolution; `None` unless requested.
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>>;

@@ -12,6 +12,7 @@ use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Estimate, Solved};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::spring::along;
 use crate::options::SolverOptions;
@@ -64,6 +65,7 @@ impl<'a> Equations<'a> {
 /// A forced response in the form that the tracer follows.
 pub(super) struct ForcedDiscretised<'a> {
     settings: Settings,
+    interrupt: &'a Interrupt<'a>,
     resolutions: Resolutions<'a, Equations<'a>>,
     recorder: BranchRecorder<'a>,
     estimator: Option<ForcedEstimator<'a>>,
@@ -82,6 +84,7 @@ impl<'a> ForcedDiscretised<'a> {
         (levels, extended): (&'a HarmonicLevels<'a>, &'a ModelCache),
         (level, guess): (usize, Option<Vec<f64>>),
         response: usize,
+        interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let resolution = levels.at(level)?;
         let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
@@ -93,6 +96,7 @@ impl<'a> ForcedDiscretised<'a> {
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
             settings,
+            interrupt,
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended)),
             stale: false,
             estimated: None,
@@ -181,14 +185,9 @@ impl Discretised for ForcedDiscretised<'_> {
         Ok(start)
     }
 
-    fn resolve(
-        &mut self,
-        near: &Point,
-        keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
-    ) -> Result<Option<Point>> {
+    fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
         let Equations { problem, corrector, .. } = &mut self.resolutions.current;
-        let found = resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)?;
+        let found = resolve(problem, corrector, &self.settings, near, keep_parameter, interrupt)?;
         self.stale = found.is_none();
         Ok(found)
     }
@@ -226,7 +225,7 @@ impl Recorder for ForcedDiscretised<'_> {
         let mut found = None;
         if !kind.is_fold() {
             problem.set_pointwise(true);
-            let resolved = resolve(problem, corrector, &self.settings, point, true, None);
+            let resolved = resolve(problem, corrector, &self.settings, point, true, self.interrupt);
             problem.set_pointwise(false);
             found = resolved?;
         }

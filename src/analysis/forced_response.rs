@@ -13,6 +13,7 @@ use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
@@ -38,6 +39,7 @@ pub fn forced_response(
     if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
+    let interrupt = hooks.interrupt();
     let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::new(model, &options, range.omega_start)
@@ -62,13 +64,16 @@ pub fn forced_response(
     };
     let extended = ModelCache::for_estimates()?;
     let models = (&levels, &extended);
-    let mut response = ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof)?;
+    let mut response = ForcedDiscretised::new(
+        model,
+        solver,
+        settings,
+        models,
+        (level, given),
+        response_dof,
+        &interrupt,
+    )?;
     let held = response.branch().reduction().held_by_contacts;
-    let first = match first_point(&mut response, &settings, hooks) {
-        Ok(First::Found(point, way)) => Some((point, way)),
-        Ok(First::Cancelled) => None,
-        Err(e) => return Err(with_reason(e, model, range.omega_start, &resolution.condensed, held)),
-    };
     let course = Course {
         settings,
         range: (range.omega_start, range.omega_stop),
@@ -77,13 +82,14 @@ pub fn forced_response(
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
-    let mut tracer = BranchTracer::new(course, solver.tolerance);
-    let outcome = match first {
-        Some((first, way)) => {
+    let mut tracer = BranchTracer::new(course, solver.tolerance, &interrupt);
+    let outcome = match first_point(&mut response, &settings, &interrupt) {
+        Ok(First { point, way }) => {
             hooks.log(LogLevel::Info, way.sentence());
-            tracer.trace(&mut response, first, hooks)
+            tracer.trace(&mut response, point, hooks)
         }
-        None => Ok(Status::StoppedByCaller),
+        Err(e) if e.status == Status::StoppedByCaller => Err(e),
+        Err(e) => return Err(with_reason(e, model, range.omega_start, &resolution.condensed, held)),
     };
     let mut ending = Ending::of(outcome, response.branch())?;
     if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
@@ -94,12 +100,13 @@ pub fn forced_response(
 }
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest.
-fn first_point(response: &mut ForcedDiscretised<'_>, settings: &Settings, hooks: &Hooks<'_>) -> Result<First> {
-    let found = initial_point::solve(response.problem(), settings, hooks.cancelled);
+fn first_point(response: &mut ForcedDiscretised<'_>, settings: &Settings, interrupt: &Interrupt<'_>) -> Result<First> {
+    let found = initial_point::solve(response.problem(), settings, interrupt);
     match found {
         Err(e) if e.status == Status::NoConvergence && response.resolution() > 0 => {
             response.select(0)?;
-            initial_point::solve(response.problem(), settings, hooks.cancelled).map_err(|_| e)
+            let again = initial_point::solve(response.problem(), settings, interrupt);
+            again.map_err(|new| if interrupt.is_stopped() { new } else { e })
         }
         found => found,
     }

@@ -10,6 +10,7 @@ use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy};
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::error_estimate::{Estimate, Solved};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
@@ -188,14 +189,9 @@ impl Discretised for ModeDiscretised<'_> {
         Ok(start)
     }
 
-    fn resolve(
-        &mut self,
-        near: &Point,
-        keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
-    ) -> Result<Option<Point>> {
+    fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
         let Equations { problem, corrector, .. } = &mut self.resolutions.current;
-        resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)
+        resolve(problem, corrector, &self.settings, near, keep_parameter, interrupt)
     }
 
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {

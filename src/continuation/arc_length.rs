@@ -12,6 +12,7 @@ use crate::continuation::predictor::Cubic;
 use crate::continuation::settings::Settings;
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 use num_complex::Complex64;
@@ -67,7 +68,6 @@ enum Attempt {
     Good { point: Point, error: f64 },
     Poor { error: f64 },
     Failed,
-    Cancelled,
 }
 
 impl Continuation {
@@ -126,8 +126,9 @@ impl Continuation {
     /// Finds the next point. It must not be called again once the end of the range was reported.
     ///
     /// # Errors
-    /// Those of the problem; `Callback` if a callback of the caller failed down to the smallest step.
-    pub fn advance(&mut self, problem: &mut dyn Problem, cancelled: Option<&dyn Fn() -> bool>) -> Result<Advance> {
+    /// Those of the problem; `Callback` if a callback of the caller failed down to the smallest step;
+    /// `StoppedByCaller`.
+    pub fn advance(&mut self, problem: &mut dyn Problem, interrupt: &Interrupt<'_>) -> Result<Advance> {
         let metric = self.metric();
         let n = self.row.len() - 1;
         let order = if self.previous.is_some() { 4.0 } else { 2.0 };
@@ -142,12 +143,11 @@ impl Continuation {
                 // The range ends here: predict exactly to its end, and solve there at the fixed parameter.
                 let (mut v, amplitude) = self.predict(metric, length)?;
                 v[n] = bound;
-                self.try_point(problem, metric, v, amplitude, length, true, cancelled)?
+                self.try_point(problem, metric, v, amplitude, length, true, interrupt)?
             } else {
-                self.try_point(problem, metric, v, amplitude, step, false, cancelled)?
+                self.try_point(problem, metric, v, amplitude, step, false, interrupt)?
             };
             match attempt {
-                Attempt::Cancelled => return Ok(Advance::Stopped(Status::StoppedByCaller)),
                 Attempt::Good { point, error } => {
                     if fixed.is_none() && self.overshoot(point.parameter()).is_some() {
                         // The correction ran past the end: repeat with a shorter step.
@@ -168,7 +168,7 @@ impl Continuation {
                     // The code below uses the corrector again.
                     let failure = self.corrector.failure();
                     if length <= CORNER_STEP
-                        && let Some(point) = self.turn_corner(problem, metric, length, cancelled)?
+                        && let Some(point) = self.turn_corner(problem, metric, length, interrupt)?
                     {
                         return self.accept(point, None);
                     }
@@ -191,7 +191,7 @@ impl Continuation {
         problem: &mut dyn Problem,
         metric: Metric,
         step: f64,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let n = self.row.len() - 1;
         let mut v = try_copy(&self.current.v, CONTEXT)?;
@@ -213,7 +213,7 @@ impl Continuation {
             metric.add(&mut v, length, &self.row);
             let outcome = self
                 .corrector
-                .correct(problem, &mut v, &self.row, metric, false, cancelled)?;
+                .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
             let Outcome::Converged(corrected) = outcome else {
                 continue;
             };
@@ -300,7 +300,7 @@ impl Continuation {
         amplitude: Complex64,
         step: f64,
         keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Attempt> {
         let n = v.len() - 1;
         let predicted = try_copy(&v, CONTEXT)?;
@@ -310,11 +310,10 @@ impl Continuation {
         }
         let corrected = match self
             .corrector
-            .correct(problem, &mut v, &self.row, metric, false, cancelled)?
+            .correct(problem, &mut v, &self.row, metric, false, interrupt)?
         {
             Outcome::Converged(corrected) => corrected,
             Outcome::Failed => return Ok(Attempt::Failed),
-            Outcome::Cancelled => return Ok(Attempt::Cancelled),
         };
         if keep_parameter {
             v[n] = predicted[n];

@@ -3,6 +3,7 @@
 
 use crate::continuation::Metric;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
@@ -35,8 +36,6 @@ pub enum Outcome {
     Converged(Corrected),
     /// It found no solution.
     Failed,
-    /// The caller cancelled it.
-    Cancelled,
 }
 
 /// Origin of the stored factors.
@@ -112,7 +111,7 @@ impl Corrector {
     ///
     /// # Errors
     /// Those of the problem, except for singular matrices and laws that another motion may not fail: those end as
-    /// [`Outcome::Failed`].
+    /// [`Outcome::Failed`]. `StoppedByCaller`.
     pub fn correct(
         &mut self,
         problem: &mut dyn Problem,
@@ -120,7 +119,7 @@ impl Corrector {
         row: &[f64],
         metric: Metric,
         damped: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Outcome> {
         self.failure = None;
         if !self.evaluates(problem, v)? {
@@ -130,9 +129,7 @@ impl Corrector {
         let mut last_size = f64::INFINITY;
         let n = v.len() - 1;
         for iteration in 0..=self.max_iterations {
-            if cancelled.is_some_and(|f| f()) {
-                return Ok(Outcome::Cancelled);
-            }
+            interrupt.check()?;
             let residual = self.relative_residual();
             // The damping test compares steps by one matrix, that of the iteration.
             let reuse = iteration > 0 && !damped;

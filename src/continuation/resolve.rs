@@ -3,6 +3,7 @@
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 
@@ -10,17 +11,17 @@ use crate::problem::Problem;
 const NEAR: f64 = 0.3;
 
 /// Solves from `near`, at its parameter or in the plane across its tangent, along which the found point's own tangent
-/// points. `None` where Newton's method fails, converges to another solution or is cancelled.
+/// points. `None` where Newton's method fails or converges to another solution.
 ///
 /// # Errors
-/// Those of the problem.
+/// Those of the problem; `StoppedByCaller`.
 pub fn resolve(
     problem: &mut dyn Problem,
     corrector: &mut Corrector,
     settings: &Settings,
     near: &Point,
     keep_parameter: bool,
-    cancelled: Option<&dyn Fn() -> bool>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Point>> {
     let n = near.unknowns().len();
     let metric = Metric::along(norm(near.unknowns()), settings);
@@ -31,7 +32,7 @@ pub fn resolve(
         metric.unit(&near.tangent, &mut row);
     }
     let mut v = try_copy(&near.v, "a point of the branch")?;
-    let outcome = corrector.correct(problem, &mut v, &row, metric, true, cancelled)?;
+    let outcome = corrector.correct(problem, &mut v, &row, metric, true, interrupt)?;
     let Outcome::Converged(corrected) = outcome else {
         return Ok(None);
     };
