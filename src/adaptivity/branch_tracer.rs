@@ -234,7 +234,8 @@ impl<'a> BranchTracer<'a> {
         let settings = &self.course.settings;
         let previous = analysis.transfer(previous, resolution)?;
         let metric = Metric::along(norm(point.unknowns()), settings);
-        let forward = metric.dot(&point.v, &point.tangent) > metric.dot(&previous.v, &point.tangent);
+        let forward = metric.dot(&point.v, &point.tangent) > metric.dot(&previous.v, &point.tangent)
+            && !point.skips_folds_from(&previous);
         let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
         Ok(!forward || point.parameter() < low || point.parameter() > high)
     }

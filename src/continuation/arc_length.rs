@@ -339,7 +339,7 @@ impl Continuation {
         let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
         let far = chord > 3.0 * step;
         let error = self.prediction_error(&predicted, &point, amplitude);
-        if turned || jumped || back || far {
+        if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
         }
         if !self.steps.accepts(error) {
