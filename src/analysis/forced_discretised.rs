@@ -73,6 +73,8 @@ pub(super) struct ForcedDiscretised<'a> {
     stale: bool,
     /// Error of the point estimated last, until it is recorded.
     estimated: Option<f64>,
+    /// Newton iterations of the first point.
+    first_iterations: usize,
 }
 
 impl<'a> ForcedDiscretised<'a> {
@@ -100,7 +102,13 @@ impl<'a> ForcedDiscretised<'a> {
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended)),
             stale: false,
             estimated: None,
+            first_iterations: 0,
         })
+    }
+
+    /// Notes the first point: its iterations bound the work of an estimate.
+    pub fn note_first(&mut self, first: &Point) {
+        self.first_iterations = first.iterations;
     }
 
     /// The complete branch.
@@ -138,6 +146,7 @@ impl<'a> ForcedDiscretised<'a> {
             omega: point.parameter(),
             response: response[observed(condensed)] * condensed.length(),
             sticks: Some(problem.forces().all_stuck()),
+            iterations: self.first_iterations,
         };
         estimator.at(&solved).map(Some)
     }

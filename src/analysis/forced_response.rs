@@ -86,6 +86,7 @@ pub fn forced_response(
     let outcome = match first_point(&mut response, &settings, &interrupt) {
         Ok(First { point, way }) => {
             hooks.log(LogLevel::Info, way.sentence());
+            response.note_first(&point);
             tracer.trace(&mut response, point, hooks)
         }
         Err(e) if e.status == Status::StoppedByCaller => Err(e),

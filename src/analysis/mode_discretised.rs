@@ -107,6 +107,7 @@ impl<'a> ModeDiscretised<'a> {
             omega,
             response: equations.response[condensed.set().fundamental()] * condensed.length(),
             sticks: Some(equations.problem.forces().all_stuck()),
+            iterations: 0,
         };
         estimator.at(&solved, point.parameter(), damping).map(Some)
     }

@@ -117,6 +117,12 @@ impl Continuation {
         &self.current
     }
 
+    /// Newton steps of all points so far, of those that failed too.
+    #[must_use]
+    pub fn steps_taken(&self) -> usize {
+        self.corrector.steps_taken()
+    }
+
     /// The point before it.
     #[must_use]
     pub fn previous(&self) -> Option<&Point> {

@@ -59,6 +59,8 @@ pub struct Corrector {
     next: Vec<f64>,
     tolerance: f64,
     max_iterations: usize,
+    /// Newton steps taken so far, over all corrections.
+    steps_taken: usize,
     failure: Option<Error>,
 }
 
@@ -93,8 +95,20 @@ impl Corrector {
             next: try_vec(n + 1, 0.0, "Newton's method")?,
             tolerance,
             max_iterations,
+            steps_taken: 0,
             failure: None,
         })
+    }
+
+    /// Newton steps of all corrections so far.
+    #[must_use]
+    pub fn steps_taken(&self) -> usize {
+        self.steps_taken
+    }
+
+    /// Counts the steps of another corrector, which prepared a correction of this one.
+    pub fn count_steps(&mut self, of_other: usize) {
+        self.steps_taken += of_other;
     }
 
     /// The failure of the last correction, if a law could not evaluate its force at some motion.
@@ -147,6 +161,7 @@ impl Corrector {
                 break;
             }
             last_size = size;
+            self.steps_taken += 1;
             if damped {
                 match self.damped_step(problem, v, metric, size, damping)? {
                     Some(used) => damping = used,

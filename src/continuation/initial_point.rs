@@ -67,15 +67,26 @@ const FAR: f64 = 1e12;
 /// against a large motion.
 const UNBALANCED: f64 = 1e-2;
 
-/// Solves for the first point at `settings.start`.
+/// Solves for the first point at `settings.start`. Its iterations are those of all attempts, homotopies included.
 ///
 /// # Errors
 /// `NoConvergence` if every method failed, or the failure of a law if that was the cause; `Singular` if the linear
 /// structure has no solution; those of the problem; `StoppedByCaller`.
 pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interrupt<'_>) -> Result<First> {
+    let mut corrector = Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?;
+    let mut first = try_each_way(problem, settings, &mut corrector, interrupt)?;
+    first.point.iterations = corrector.steps_taken();
+    Ok(first)
+}
+
+fn try_each_way(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    corrector: &mut Corrector,
+    interrupt: &Interrupt<'_>,
+) -> Result<First> {
     let n = problem.size();
     let p = settings.start;
-    let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations)?;
     let mut v = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut failure = None;
     for kind in [InitialGuess::Given, InitialGuess::Stuck, InitialGuess::Reference] {
@@ -89,7 +100,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interru
         }
         if exists {
             v[n] = p;
-            match at_fixed(problem, settings, &mut corrector, &mut v, interrupt)? {
+            match at_fixed(problem, settings, corrector, &mut v, interrupt)? {
                 Outcome::Converged(corrected) if !is_far(problem, &v[..n], p, corrected.residual)? => {
                     v[n] = p;
                     return Ok(First {
@@ -102,7 +113,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interru
         }
         // The homotopy is more reliable than a poorer initial guess.
         if let Some(u) = &homotopy_guess {
-            let reached = homotopy(problem, settings, u, &mut corrector, interrupt);
+            let reached = homotopy(problem, settings, u, corrector, interrupt);
             if let Some(first) = attempt(reached, None, &mut failure)? {
                 return Ok(first);
             }
@@ -110,7 +121,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interru
         }
     }
     if problem.is_bounded() {
-        let reached = try_anchors(problem, settings, &mut corrector, interrupt);
+        let reached = try_anchors(problem, settings, corrector, interrupt);
         if let Some(first) = attempt(reached, None, &mut failure)? {
             return Ok(first);
         }
@@ -282,7 +293,10 @@ fn follow(
     let mut continuation = Continuation::new(*settings, Point::new(v, corrected, 0.0))?;
     for _ in 0..MAX_HOMOTOPY_POINTS {
         match continuation.advance(problem, interrupt)? {
-            Advance::Accepted { point, last: true } => return Ok(Reached::End(point.v)),
+            Advance::Accepted { point, last: true } => {
+                corrector.count_steps(continuation.steps_taken());
+                return Ok(Reached::End(point.v));
+            }
             Advance::Accepted { point, .. } => {
                 if left(&point.v) < left(&nearest) {
                     nearest = point.v;
@@ -291,5 +305,6 @@ fn follow(
             Advance::LeftAtStart { .. } | Advance::Stopped(_) => break,
         }
     }
+    corrector.count_steps(continuation.steps_taken());
     Ok(Reached::Part(nearest))
 }

@@ -94,6 +94,8 @@ pub struct Solved<'a> {
     pub response: Complex64,
     /// Whether all contacts stick, if that is known.
     pub sticks: Option<bool>,
+    /// Newton iterations of a solution without a neighbour, by which the work of an estimate is bounded.
+    pub iterations: usize,
 }
 
 impl Solved<'_> {

@@ -23,7 +23,7 @@ use std::sync::Arc;
 const EVALUATIONS: f64 = 6.0;
 
 /// Factorisations of the block for which the work must suffice.
-const FACTORISATIONS: f64 = 8.0;
+const FACTORISATIONS: f64 = 5.0;
 
 /// Estimates the errors of points of one model, one after the other.
 pub struct ForcedEstimator<'a> {
@@ -92,7 +92,7 @@ impl<'a> ForcedEstimator<'a> {
     }
 
     fn extend(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
-        let work = Work::of_point(&Sizes::new(solved.condensed, self.options.samples));
+        let work = Work::of_point(&Sizes::new(solved.condensed, self.options.samples), solved.iterations);
         let Some(extent) = self.extent(solved, &work)? else {
             return solved.unknown(0.0, true).map(Some);
         };
