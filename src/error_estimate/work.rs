@@ -20,7 +20,7 @@ const MULTIPLE: f64 = 4.0;
 const LEAST: f64 = 3e6;
 
 /// Bytes that every estimate may take, and as a multiple of those of the point.
-const BYTES: (f64, f64) = (32e6, 8.0);
+const BYTES: (f64, f64) = (100e6, 4.0);
 
 /// Operations of a law for each direction, for each number of its motion, and for each number of its Jacobian.
 const OF_LAW: (f64, f64, f64) = (8e3, 3e2, 12.0);
@@ -165,7 +165,7 @@ impl Work {
         let base = point.set().base();
         let fits = |highest: usize| {
             let sizes = Sizes::extended(point, highest, extended_options(options, highest).samples);
-            self.fits(sizes.bytes(0.0, 0.0)) && times * operations(&sizes) <= self.operations
+            self.fits(2.0 * sizes.bytes(0.0, 0.0)) && times * operations(&sizes) <= self.operations
         };
         let (mut low, mut high) = (0, affordable(point, MOST_EXTENDED) / base);
         while high > low {
