@@ -126,6 +126,11 @@ impl<P: Problem> ExtendedSystem<P> {
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
 
+    /// The work that is left.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
     /// Numbers of a packed signal in the block, and pairs factored each by itself.
     fn factored_numbers(&self) -> (f64, f64) {
         let pairs = self.factored.each.saturating_sub(self.factored.block);

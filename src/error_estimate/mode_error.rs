@@ -138,9 +138,9 @@ impl<'a> ModeEstimator<'a> {
             return solved.exact(damping).map(Some);
         }
         let of_damping = |u: &[f64]| Epmc::damping_of_change(u).abs();
-        let enough = |change: &[f64], next: &[f64]| {
+        let enough = |_: &Epmc<'_>, _: &[f64], change: &[f64], next: &[f64]| {
             let (moved, last) = (norm(&change[..n - 2]), norm(&next[..n - 2]));
-            let (changed, left) = (of_damping(change), of_damping(next));
+            let (changed, left) = (of_damping(change), of_damping(&next[..n]));
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs())
         };

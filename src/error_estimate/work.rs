@@ -119,6 +119,11 @@ impl Sizes {
         self.evaluation() + self.factors(self.packed, 0.0)
     }
 
+    /// Whether several Newton iterations with the whole matrix cost no more than any estimate may.
+    pub fn is_cheap(&self) -> bool {
+        ITERATIONS as f64 * self.iteration() <= LEAST
+    }
+
     /// Bytes of the contact Jacobians, with their copies, of the tables of samples, and of the factors.
     pub fn bytes(&self, packed: f64, pairs: f64) -> f64 {
         let order = self.coordinates * packed;
