@@ -39,6 +39,14 @@ pub(crate) trait Discretised {
 
     /// Estimates the error of a solved point of the current resolution; `None` unless requested.
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>>;
+
+    /// The share of the harmonics above half of the carried ones in the motion of a point, see
+    /// [`crate::adaptivity::estimate_spacing`].
+    fn share_of_highest(&self, point: &Point) -> f64;
+
+    /// Takes the estimate made last over to another point of the current resolution, its errors times a factor. `false`
+    /// where the point is to be estimated: where the caller asks for every estimate, or nothing is nonlinear.
+    fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool>;
 }
 
 /// Storage of the points of an analysis.

@@ -2,6 +2,7 @@
 
 use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
+use crate::adaptivity::estimate_spacing::share_of_highest;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::analysis::point_error::observed;
@@ -73,6 +74,10 @@ pub(super) struct ForcedDiscretised<'a> {
     stale: bool,
     /// Error of the point estimated last, until it is recorded.
     estimated: Option<f64>,
+    /// Error of the point estimated last.
+    last_error: f64,
+    /// Whether the caller requests the estimate of every point.
+    estimates_each: bool,
     /// Newton iterations of the first point.
     first_iterations: usize,
 }
@@ -102,6 +107,8 @@ impl<'a> ForcedDiscretised<'a> {
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended)),
             stale: false,
             estimated: None,
+            last_error: f64::NAN,
+            estimates_each: solver.estimate_error,
             first_iterations: 0,
         })
     }
@@ -208,10 +215,24 @@ impl Discretised for ForcedDiscretised<'_> {
             return Ok(None);
         };
         self.estimated = Some(estimate.response);
+        self.last_error = estimate.response;
         Ok(Some(Assessment {
             error: estimate.response,
             estimate,
         }))
+    }
+
+    fn share_of_highest(&self, point: &Point) -> f64 {
+        share_of_highest(self.resolutions.current.resolution.condensed.set(), point.unknowns())
+    }
+
+    fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool> {
+        self.refresh(point)?;
+        if self.estimates_each || self.resolutions.current.problem.forces().all_stuck() {
+            return Ok(false);
+        }
+        self.estimated = Some(self.last_error * factor);
+        Ok(true)
     }
 }
 

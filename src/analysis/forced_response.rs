@@ -44,7 +44,12 @@ pub fn forced_response(
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::new(model, &options, range.omega_start)
     })?;
-    let level = levels.first(solver.harmonics);
+    // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
+    let level = if levels.is_automatic() && range.guess.is_none() {
+        0
+    } else {
+        levels.first(solver.harmonics)
+    };
     let resolution = levels.at(level)?;
     let response_dof = match solver.response_dof {
         Some(dof) => dof,
@@ -83,7 +88,7 @@ pub fn forced_response(
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
     let mut tracer = BranchTracer::new(course, solver.tolerance, &interrupt);
-    let outcome = match first_point(&mut response, &settings, &interrupt) {
+    let outcome = match first_point(&mut response, &settings, solver.harmonics, &interrupt) {
         Ok(First { point, way }) => {
             hooks.log(LogLevel::Info, way.sentence());
             response.note_first(&point);
@@ -100,17 +105,29 @@ pub fn forced_response(
     response.finish(model, solver, &ending, tracer.estimates())
 }
 
-/// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest.
-fn first_point(response: &mut ForcedDiscretised<'_>, settings: &Settings, interrupt: &Interrupt<'_>) -> Result<First> {
-    let found = initial_point::solve(response.problem(), settings, interrupt);
-    match found {
-        Err(e) if e.status == Status::NoConvergence && response.resolution() > 0 => {
-            response.select(0)?;
-            let again = initial_point::solve(response.problem(), settings, interrupt);
-            again.map_err(|new| if interrupt.is_stopped() { new } else { e })
+/// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and
+/// with those of the options.
+fn first_point(
+    response: &mut ForcedDiscretised<'_>,
+    settings: &Settings,
+    harmonics: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<First> {
+    let mut failure = match initial_point::solve(response.problem(), settings, interrupt) {
+        Err(e) if e.status == Status::NoConvergence && response.levels().is_automatic() => e,
+        found => return found,
+    };
+    for level in [0, response.levels().first(harmonics)] {
+        if level == response.resolution() {
+            continue;
         }
-        found => found,
+        response.select(level)?;
+        match initial_point::solve(response.problem(), settings, interrupt) {
+            Err(e) if e.status == Status::NoConvergence => failure = e,
+            found => return found,
+        }
     }
+    Err(failure)
 }
 
 /// The harmonics in which forces act.
