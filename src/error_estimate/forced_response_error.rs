@@ -183,6 +183,10 @@ impl<'a> ForcedEstimator<'a> {
         let condensed = &*resolution.condensed;
         let set = condensed.set();
         let sizes = Sizes::new(condensed, resolution.samples);
+        let mut work = work;
+        if !work.spend(sizes.flexibility()) {
+            return Ok((None, work));
+        }
         let compliant = set.numbers().partition_point(|&h| h <= extent.core);
         let factored = factored(&sizes, compliant, &work);
         let kept = self.extended.iter().position(|(kept, _)| *kept == slot);

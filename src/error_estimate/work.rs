@@ -22,6 +22,12 @@ const LEAST: f64 = 3e6;
 /// Bytes that every estimate may take, and as a multiple of those of the point.
 const BYTES: (f64, f64) = (100e6, 4.0);
 
+/// Tables of the flexibility, per harmonic, whose time the preparation and the solution of such a point take.
+const TABLES: f64 = 6.0;
+
+/// Unknowns of a structure that one of them couples with in the factors.
+const WIDTH: f64 = 300.0;
+
 /// Operations of a law for each direction, for each number of its motion, and for each number of its Jacobian.
 const OF_LAW: (f64, f64, f64) = (8e3, 3e2, 12.0);
 
@@ -44,6 +50,8 @@ pub(super) struct Sizes {
     sampling: f64,
     /// Numbers in the tables of a sampled law.
     tables: f64,
+    /// Operations of the flexibility of the structure in one harmonic at one frequency.
+    flexibility: f64,
 }
 
 impl Sizes {
@@ -69,14 +77,17 @@ impl Sizes {
             sampled += d * d * count;
             tables = tables.max(d * count);
         }
+        let (ndof, coordinates) = (condensed.ndof() as f64, condensed.coordinates() as f64);
+        let width = ndof.min(WIDTH);
         Self {
-            coordinates: condensed.coordinates() as f64,
+            coordinates,
             harmonics: (pairs + mean) as f64,
             packed,
             blocks,
             directions,
             sampling: OF_SAMPLE * sampled * packed,
             tables: tables * packed,
+            flexibility: OF_FACTORS * ndof * width * (8.0 / 3.0 * width + 8.0 * coordinates),
         }
     }
 
@@ -114,6 +125,11 @@ impl Sizes {
         2.0 * self.blocks * self.packed * self.packed + couple + 2.0 * order * order + BASIS * self.unknowns()
     }
 
+    /// Operations of the flexibility in all harmonics at a frequency.
+    pub fn flexibility(&self) -> f64 {
+        self.harmonics * self.flexibility
+    }
+
     /// Operations of one Newton iteration with the whole matrix.
     fn iteration(&self) -> f64 {
         self.evaluation() + self.factors(self.packed, 0.0)
@@ -149,7 +165,8 @@ impl Work {
     /// The work for a point of these sizes, whose solution without a neighbour takes so many Newton iterations.
     pub fn of_point(point: &Sizes, iterations: usize) -> Self {
         Self {
-            operations: LEAST + MULTIPLE * iterations.max(ITERATIONS) as f64 * point.iteration(),
+            operations: LEAST
+                + MULTIPLE * (iterations.max(ITERATIONS) as f64 * point.iteration() + TABLES * point.flexibility()),
             bytes: BYTES.0 + BYTES.1 * point.bytes(point.packed, 0.0),
         }
     }
@@ -170,7 +187,8 @@ impl Work {
         let base = point.set().base();
         let fits = |highest: usize| {
             let sizes = Sizes::extended(point, highest, extended_options(options, highest).samples);
-            self.fits(2.0 * sizes.bytes(0.0, 0.0)) && times * operations(&sizes) <= self.operations
+            self.fits(2.0 * sizes.bytes(0.0, 0.0))
+                && sizes.flexibility() + times * operations(&sizes) <= self.operations
         };
         let (mut low, mut high) = (0, affordable(point, MOST_EXTENDED) / base);
         while high > low {
