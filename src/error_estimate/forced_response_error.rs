@@ -3,6 +3,7 @@
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
+use crate::error_estimate::doubling::Doubling;
 use crate::error_estimate::estimate::{
     CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
 };
@@ -25,8 +26,8 @@ const EVALUATIONS: f64 = 6.0;
 /// Factorisations of the block for which the work must suffice.
 const FACTORISATIONS: f64 = 5.0;
 
-/// Last change of the response, relative to the whole, at which it has settled.
-const SETTLED: f64 = 0.3;
+/// Estimates that a ratio serves before it is found anew.
+const MOST_USES: usize = 3;
 
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
@@ -40,6 +41,9 @@ pub struct ForcedEstimator<'a> {
     models: &'a ModelCache,
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
+    /// Ratio of the whole change of the response to that of the first extension, the harmonic of that extension, and the
+    /// estimates that it served.
+    ratio: Option<(usize, f64, usize)>,
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -53,6 +57,7 @@ impl<'a> ForcedEstimator<'a> {
             cutoff: None,
             models,
             extended: Vec::new(),
+            ratio: None,
         }
     }
 
@@ -117,11 +122,15 @@ impl<'a> ForcedEstimator<'a> {
         Ok(self.extend_to(solved, None, extent, work)?.0)
     }
 
-    /// Extends to twice the harmonics, to four times, and on: up to the core, or until the response has settled, so that
-    /// the last change is a small share of the whole. Where the structure is compliant in many harmonics the full core
-    /// costs far more than the point, and the response needs few of them.
+    /// Extends to twice the harmonics, to four times, and on: up to the core, or until the next change of the response,
+    /// as the last two predict it, is a small share of the whole. Where the structure is compliant in many harmonics
+    /// the full core costs far more than the point, and the response needs few of them.
+    ///
+    /// The ratio of the whole change to that of the first extension changes little along a branch: it serves some of the
+    /// following estimates with the same harmonics, which then take one extension each.
     fn extend_by_doubling(&mut self, solved: &Solved<'_>, extent: Extent, mut work: Work) -> Result<Option<Estimate>> {
         let mut highest = extent.least;
+        let mut series = Doubling::new(solved.response);
         let mut last: Option<Estimate> = None;
         loop {
             let stage = Extent {
@@ -136,25 +145,39 @@ impl<'a> ForcedEstimator<'a> {
             let (found, left) = self.extend_to(solved, from, stage, work)?;
             work = left;
             let Some(mut found) = found.filter(|found| found.certified) else {
-                return Ok(None);
+                return Ok(last.filter(|_| series.suffices()).map(|last| series.completed(last)));
             };
-            let settled = last.as_ref().is_some_and(|last| {
-                let change = (found.corrected.response - last.corrected.response).norm();
-                change <= SETTLED * (found.corrected.response - solved.response).norm()
-            });
+            series.add(found.corrected.response);
             found.steps += last.as_ref().map_or(0, |last| last.steps);
-            if settled || (highest >= extent.core && !extent.short) {
+            if highest >= extent.core && !extent.short {
                 return Ok(Some(found));
             }
-            highest = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
-            if !extent.short {
-                highest = highest.min(extent.highest);
+            if let Some(ratio) = self.ratio_for(extent.least).filter(|_| last.is_none()) {
+                return Ok(Some(series.scaled(found, ratio)));
             }
-            if highest > self.affordable(solved, &work) {
+            let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
+            let next = if extent.short { next } else { next.min(extent.highest) };
+            let ends = next > self.affordable(solved, &work);
+            if series.has_settled() || (ends && series.suffices()) {
+                self.ratio = Some((extent.least, series.ratio(), 0));
+                return Ok(Some(series.completed(found)));
+            }
+            if ends {
                 return solved.unknown(0.0, false).map(Some);
             }
+            highest = next;
             last = Some(found);
         }
+    }
+
+    /// The ratio found for points with these harmonics, as long as it serves.
+    fn ratio_for(&mut self, least: usize) -> Option<f64> {
+        let (of, ratio, used) = self.ratio.as_mut()?;
+        if *of != least || *used == MOST_USES {
+            return None;
+        }
+        *used += 1;
+        Some(*ratio)
     }
 
     /// Extends a point to the highest harmonic of an extent, from a solution with fewer of them or from the point itself.

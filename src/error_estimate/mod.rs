@@ -1,6 +1,7 @@
 //! The error that the omitted harmonics cause at a solved point.
 
 pub mod cutoff_harmonic;
+mod doubling;
 mod estimate;
 mod extended_newton;
 mod extended_system;

@@ -1,0 +1,124 @@
+//! The response of a point as its harmonics are doubled: how much of the change is still missing.
+//!
+//! With X₀ the response of the point, Xₖ that of the k-th extension and dₖ = |Xₖ − Xₖ₋₁| the next change is about
+//! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q.
+
+use crate::error_estimate::Estimate;
+use crate::error_estimate::forced_response_error::relative;
+use num_complex::Complex64;
+
+/// The next change, relative to the whole, at which the response has settled, and at which it will do where no further
+/// extension is possible.
+const SETTLED: f64 = 0.2;
+const SUFFICIENT: f64 = 0.6;
+
+/// Responses of a point and of its extensions.
+#[derive(Clone, Debug)]
+pub(super) struct Doubling {
+    point: Complex64,
+    last: Complex64,
+    /// First change, and the last two.
+    first: f64,
+    changes: [f64; 2],
+    extensions: usize,
+}
+
+impl Doubling {
+    /// The response of the point.
+    pub fn new(point: Complex64) -> Self {
+        Self {
+            point,
+            last: point,
+            first: 0.0,
+            changes: [0.0; 2],
+            extensions: 0,
+        }
+    }
+
+    /// Adds the response of the next extension.
+    pub fn add(&mut self, response: Complex64) {
+        let change = (response - self.last).norm();
+        if self.extensions == 0 {
+            self.first = change;
+        }
+        self.changes = [self.changes[1], change];
+        self.last = response;
+        self.extensions += 1;
+    }
+
+    /// The next change, relative to the whole one; infinite where it is not known.
+    fn next(&self) -> f64 {
+        let [before, last] = self.changes;
+        if self.extensions < 2 || before == 0.0 {
+            return f64::INFINITY;
+        }
+        let whole = (self.last - self.point).norm();
+        if last == 0.0 {
+            0.0
+        } else {
+            last * (last / before) / whole
+        }
+    }
+
+    /// Whether the response has settled.
+    pub fn has_settled(&self) -> bool {
+        self.next() <= SETTLED
+    }
+
+    /// Whether the whole change is known well enough where no further extension is possible.
+    pub fn suffices(&self) -> bool {
+        self.next() <= SUFFICIENT
+    }
+
+    /// Ratio of the whole change to the first.
+    pub fn ratio(&self) -> f64 {
+        (self.last - self.point).norm() * (1.0 + self.next()) / self.first
+    }
+
+    /// The estimate of the last extension with the change that is missing.
+    pub fn completed(&self, mut estimate: Estimate) -> Estimate {
+        estimate.response *= 1.0 + self.next();
+        estimate
+    }
+
+    /// The estimate of the first extension with a ratio found before.
+    pub fn scaled(&self, mut estimate: Estimate, ratio: f64) -> Estimate {
+        estimate.response = relative(ratio * self.first, self.last);
+        estimate
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Doubling;
+    use num_complex::Complex64;
+
+    /// Responses whose error falls by a factor q with each doubling.
+    fn series(q: f64, extensions: usize) -> Doubling {
+        let at = |k: i32| Complex64::new(1.0 + 1e-3 * q.powi(k), -2.0);
+        let mut series = Doubling::new(at(0));
+        for k in 1..=extensions {
+            series.add(at(k as i32));
+        }
+        series
+    }
+
+    #[test]
+    fn two_extensions_of_a_fast_series_settle() {
+        for q in [0.05, 0.15, 0.3] {
+            assert!(!series(q, 1).has_settled());
+            let two = series(q, 2);
+            assert!(two.has_settled(), "{q}");
+            // The whole change is the error 1e-3 itself, the first one (1 − q) of it.
+            let error = two.ratio() * 1e-3 * (1.0 - q);
+            assert!((error / 1e-3 - 1.0).abs() < 0.1, "{q}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_slow_series_takes_more() {
+        assert!(!series(0.8, 2).has_settled());
+        assert!(!series(1.0, 2).suffices());
+        assert!(series(0.5, 3).has_settled());
+    }
+}
