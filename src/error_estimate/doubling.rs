@@ -12,6 +12,9 @@ use num_complex::Complex64;
 const SETTLED: f64 = 0.2;
 const SUFFICIENT: f64 = 0.6;
 
+/// Largest change, relative to the tolerance, that is harmless after one extension and after more.
+const HARMLESS: (f64, f64) = (0.05, 0.3);
+
 /// Responses of a point and of its extensions.
 #[derive(Clone, Debug)]
 pub(super) struct Doubling {
@@ -68,6 +71,28 @@ impl Doubling {
     /// Whether the whole change is known well enough where no further extension is possible.
     pub fn suffices(&self) -> bool {
         self.next() <= SUFFICIENT
+    }
+
+    /// Whether the whole change stays far below a tolerance even if the next changes are as large as the last one. One
+    /// extension alone shows less than two.
+    pub fn is_harmless(&self, tolerance: f64) -> bool {
+        let whole = (self.last - self.point).norm();
+        let [_, last] = self.changes;
+        let size = self.last.norm();
+        match self.extensions {
+            0 => false,
+            1 => whole <= HARMLESS.0 * tolerance * size,
+            _ => whole + 2.0 * last <= HARMLESS.1 * tolerance * size,
+        }
+    }
+
+    /// The estimate of the last extension, with another change like the last one.
+    pub fn bounded(&self, mut estimate: Estimate) -> Estimate {
+        let [_, last] = self.changes;
+        if self.extensions > 1 {
+            estimate.response += relative(last, self.last);
+        }
+        estimate
     }
 
     /// Ratio of the whole change to the first.

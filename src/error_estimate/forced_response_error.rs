@@ -147,6 +147,7 @@ impl<'a> ForcedEstimator<'a> {
             let Some(mut found) = found.filter(|found| found.certified) else {
                 return Ok(last.filter(|_| series.suffices()).map(|last| series.completed(last)));
             };
+
             series.add(found.corrected.response);
             found.steps += last.as_ref().map_or(0, |last| last.steps);
             if highest >= extent.core && !extent.short {
@@ -154,6 +155,9 @@ impl<'a> ForcedEstimator<'a> {
             }
             if let Some(ratio) = self.ratio_for(extent.least).filter(|_| last.is_none()) {
                 return Ok(Some(series.scaled(found, ratio)));
+            }
+            if series.is_harmless(self.options.tolerance) {
+                return Ok(Some(series.bounded(found)));
             }
             let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
             let next = if extent.short { next } else { next.min(extent.highest) };
