@@ -515,8 +515,6 @@ class Branch;
 struct Hooks {
   /// Called at each point; returns nothing, or true to stop and keep the points.
   Callback<bool, const hbvib_progress&> progress{};
-  /// Called with the phase and its share, from the set-up on; returns nothing, or true to stop.
-  Callback<bool, const hbvib_phase_report&> phase{};
   /// Receives log lines; the text is valid during the call.
   std::function<void(hbvib_log_level, const char*)> log{};
   /// The finest lines that `log` wants.
@@ -525,6 +523,8 @@ struct Hooks {
   const std::atomic<std::int32_t>* cancel = nullptr;
   /// Receives what was found where a callback's exception ends a solve; an empty Branch if nothing was.
   Branch* partial = nullptr;
+  /// Called with the phase and its share, from the set-up on; returns nothing, or true to stop.
+  Callback<bool, const hbvib_phase_report&> phase{};
 };
 
 /// One period for which a force is computed, as views of N samples: f(j, i), df_du(j, i, k). Write f, z and

@@ -66,13 +66,12 @@ fn follow(
         levels.first(solver.harmonics)
     };
     let resolution = levels.at(level)?;
-    let response_dof = match solver.response_dof {
-        Some(dof) => dof,
+    let response_dof = if let Some(dof) = solver.response_dof {
+        dof
+    } else {
         // The lower end is used, so that both directions follow the same degree of freedom.
-        None => {
-            let omega = range.omega_start.min(range.omega_stop);
-            forced_dof_with_largest_motion(model, &resolution.condensed, omega, interrupt)?
-        }
+        let omega = range.omega_start.min(range.omega_stop);
+        forced_dof_with_largest_motion(model, &resolution.condensed, omega, interrupt)?
     };
     let given = match range.guess {
         Some(guess) => Some(relative_motion(resolution, model.ndof(), guess)?),
@@ -87,15 +86,8 @@ fn follow(
     };
     let extended = ModelCache::for_estimates()?;
     let models = (&levels, &extended);
-    let mut response = ForcedDiscretised::new(
-        model,
-        solver,
-        settings,
-        models,
-        (level, given),
-        response_dof,
-        &interrupt,
-    )?;
+    let mut response =
+        ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt)?;
     let held = response.branch().reduction().held_by_contacts;
     let course = Course {
         settings,
@@ -119,12 +111,13 @@ fn follow(
         }
     };
     let mut ending = Ending::of(outcome, response.branch())?;
-    if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
-        if let Some(&omega) = response.branch().omega().last() {
-            match unbounded_response::reason(model, omega, interrupt) {
-                Ok(reason) => ending.reason = reason,
-                Err(e) => ending.status = e.status,
-            }
+    if ending.status == Status::StoppedStepTooSmall
+        && ending.reason.is_none()
+        && let Some(&omega) = response.branch().omega().last()
+    {
+        match unbounded_response::reason(model, omega, interrupt) {
+            Ok(reason) => ending.reason = reason,
+            Err(e) => ending.status = e.status,
         }
     }
     response.finish(model, solver, &ending, tracer.estimates())

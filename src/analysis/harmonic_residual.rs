@@ -96,10 +96,12 @@ pub fn forced_residual_with(
     if assembled.is_err() {
         // No half of a residual is left.
         r.fill(Complex64::new(f64::NAN, f64::NAN));
-        jacobian.into_iter().for_each(|j| j.fill(f64::NAN));
-        d_omega
-            .into_iter()
-            .for_each(|d| d.fill(Complex64::new(f64::NAN, f64::NAN)));
+        if let Some(j) = jacobian {
+            j.fill(f64::NAN);
+        }
+        if let Some(d) = d_omega {
+            d.fill(Complex64::new(f64::NAN, f64::NAN));
+        }
     }
     assembled
 }
@@ -120,7 +122,7 @@ fn assemble(
     }
     if let Some(j) = jacobian.as_deref_mut() {
         for column in j.chunks_exact_mut(order) {
-            interrupt.check()?;
+            interrupt.check_before(order as u64)?;
             column.fill(0.0);
         }
     }

@@ -57,6 +57,7 @@ fn first_bad_pivot(
     margin: Vec<(usize, usize, Complex64)>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<usize>> {
+    interrupt.check()?;
     let n = a.rows;
     let margin = Csc::from_triplets(n, n, margin)?;
     let a = Csc::sum(

@@ -78,9 +78,11 @@ impl Factor {
     pub fn factor(&mut self, a: &Csc, interrupt: &Interrupt<'_>) -> Result<()> {
         match &mut self.kind {
             Kind::Dense(lu) => {
+                interrupt.check()?;
                 let dense = lu.matrix();
                 dense.fill(Complex64::ZERO);
                 a.add_to_dense(Complex64::ONE, dense);
+                interrupt.check()?;
                 lu.factor(interrupt)
             }
             Kind::Sparse(sparse) => {

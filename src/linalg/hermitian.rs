@@ -264,14 +264,14 @@ mod tests {
             let (values, x) = eigen(&mut a.clone(), n, &Interrupt::none()).unwrap();
             assert!(values.is_sorted());
             let column = |k: usize| &x[k * n..(k + 1) * n];
-            for k in 0..n {
+            for (k, value) in values.iter().enumerate() {
                 for l in 0..n {
                     let product: Complex64 = column(k).iter().zip(column(l)).map(|(x, y)| x.conj() * y).sum();
                     assert!((product - f64::from(u8::from(k == l))).norm() < 1e-13);
                 }
                 for i in 0..n {
                     let ax: Complex64 = (0..n).map(|j| a[j * n + i] * column(k)[j]).sum();
-                    assert!((ax - values[k] * column(k)[i]).norm() < 1e-12 * n as f64);
+                    assert!((ax - value * column(k)[i]).norm() < 1e-12 * n as f64);
                 }
             }
         }
@@ -285,7 +285,7 @@ mod tests {
         for i in 0..n {
             a[i * n + i] = 2.0.into();
             if i % length > 0 {
-                a[i * n + i - 1] = (-Complex64::I).into();
+                a[i * n + i - 1] = -Complex64::I;
                 a[(i - 1) * n + i] = Complex64::I;
             }
         }

@@ -28,6 +28,7 @@ const EXTRA_STEPS: usize = 120;
 /// `Singular` when K + σM is singular, `NotPositiveDefinite` when M is negative in some direction, `NoConvergence`,
 /// `OutOfMemory`; `StoppedByCaller`.
 pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
+    interrupt.check()?;
     let n = k.rows;
     let diagonal = |a: &Csc| (0..n).map(|i| a.get(i, i).re).sum::<f64>();
     let (stiff, heavy) = (diagonal(k), diagonal(m));
@@ -38,6 +39,7 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     // eigenvalues well separated from the rest.
     let shift = 1e-7 * stiff / heavy;
     let shifted = Csc::sum(n, &[(Complex64::ONE, k, Form::Plain), (shift.into(), m, Form::Plain)])?;
+    interrupt.check()?;
     let mut search = Search {
         factor: Factor::new(&shifted, 1)?,
         mass: m,

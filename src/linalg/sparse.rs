@@ -1,6 +1,6 @@
 //! Compressed sparse columns with complex values: the storage of all structural matrices.
 
-use crate::error::{Result, try_extend, try_push, try_vec};
+use crate::error::{Error, Result, try_extend, try_push, try_vec};
 use num_complex::Complex64;
 
 /// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
@@ -83,8 +83,9 @@ impl Csc {
         // One column after the other: its entries by their rows, and the rows that it has.
         let mut column = try_vec(n, Complex64::ZERO, CONTEXT)?;
         let mut in_column = try_vec(n, 0, CONTEXT)?;
-        let mut rows: Vec<usize> = Vec::new();
+        let mut rows = try_vec(n, 0, CONTEXT)?;
         for j in 0..n {
+            // At most n rows, for which there is memory.
             rows.clear();
             let mut next = transposed.iter();
             for (c, a, form) in terms {
@@ -97,16 +98,17 @@ impl Csc {
                     if in_column[i] != j + 1 {
                         in_column[i] = j + 1;
                         column[i] = Complex64::ZERO;
-                        try_push(&mut rows, i, CONTEXT)?;
+                        rows.push(i);
                     }
                     column[i] += c * if *form == Form::Conjugated { v.conj() } else { v };
                 }
             }
             rows.sort_unstable();
             try_extend(&mut sum.row_idx, &rows, CONTEXT)?;
-            for &i in &rows {
-                try_push(&mut sum.values, column[i], CONTEXT)?;
-            }
+            sum.values
+                .try_reserve(rows.len())
+                .map_err(|_| Error::out_of_memory(CONTEXT))?;
+            sum.values.extend(rows.iter().map(|&i| column[i]));
             sum.col_ptr[j + 1] = sum.row_idx.len();
         }
         Ok(sum)

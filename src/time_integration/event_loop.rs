@@ -157,7 +157,9 @@ impl EventLoop {
         system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.dependent);
         self.zeros.fill(Zeros::default());
         if let Some(s) = sensitivity.as_deref_mut() {
+            system.interrupt.check()?;
             self.identity(system, state, s);
+            system.interrupt.check()?;
         }
         for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
             *moved |= mode.moves_slider();
@@ -215,6 +217,7 @@ impl EventLoop {
                 t + theta * h
             };
         }
+        system.interrupt.check()?;
         if let Some(s) = sensitivity {
             // The place of a slider that still moves follows from the motion.
             for (i, e) in system.elements.iter().enumerate() {

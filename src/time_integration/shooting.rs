@@ -191,7 +191,10 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     /// Newton's method with halved steps where a whole one increases the error.
     fn shoot(&mut self) -> Result<Outcome> {
         let m = self.state.len();
+        let interrupt = self.system.interrupt;
+        interrupt.check()?;
         let mut sensitivity = Sensitivity::new(&self.state)?;
+        interrupt.check()?;
         let mut equations = LeastSquares::new(m)?;
         let mut step = try_vec(m, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
