@@ -12,6 +12,8 @@ use std::io::Write;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use hbvib::interrupt::Interrupt;
+
 use hbvib::SolverOptions;
 use hbvib::condense::Condensed;
 use hbvib::linalg::bordered::Bordered;
@@ -87,11 +89,12 @@ impl Request {
     fn run(&self, screen: &mut impl Write) -> Result<(), Box<dyn Error>> {
         let model = self.plate.forced(self.force, LIFT)?;
         let omega = self.omega;
-        let condensed = Condensed::new(&model, &self.solver, omega)?;
+        let condensed = Condensed::new(&model, &self.solver, omega, &Interrupt::none())?;
         let response = self.plate.tips()[0] + Z;
         let begin = Instant::now();
-        let mut problem = HarmonicBalance::new(&condensed, response, (omega, omega), 0, None)?;
-        let mut forces = ContactForces::new(&condensed, 0)?;
+        let interrupt = Interrupt::none();
+        let mut problem = HarmonicBalance::new(&condensed, response, (omega, omega), 0, None, &interrupt)?;
+        let mut forces = ContactForces::new(&condensed, 0, &interrupt)?;
         let n = problem.size();
         let mut u = vec![0.0; n];
         let mut at = Residual::new(n)?;
@@ -120,14 +123,23 @@ impl Request {
             done?;
             let (evaluation, done) = timed(|| {
                 let done = problem.evaluate(&u, omega, &mut at);
-                problem.fill(&mut jacobian, &mut active);
+                problem.fill(&mut jacobian, &mut active)?;
                 done
             });
             done?;
             let residual = norm(&at.values) / at.scale;
             let slip = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
             let solved_for = active.iter().filter(|a| **a).count();
-            let (factor, done) = timed(|| lu.factor(&jacobian, &at.d_parameter, &active, (1.0, omega), &row));
+            let (factor, done) = timed(|| {
+                lu.factor(
+                    &jacobian,
+                    &at.d_parameter,
+                    &active,
+                    (1.0, omega),
+                    &row,
+                    &Interrupt::none(),
+                )
+            });
             done?;
             for (s, r) in step.iter_mut().zip(&at.values) {
                 *s = -r;

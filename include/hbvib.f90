@@ -55,6 +55,10 @@ module hbvib
       HBVIB_DZ_DU_BEFORE = 4, HBVIB_DZ_DU = 5, HBVIB_DZ_DV_BEFORE = 6, HBVIB_DZ_DV = 7, HBVIB_DZ_DOMEGA = 8
    ! hbvib_log_level
    integer(c_int32_t), parameter, public :: HBVIB_LOG_NONE = 0, HBVIB_LOG_WARN = 1, HBVIB_LOG_INFO = 2, HBVIB_LOG_DEBUG = 3
+   ! hbvib_phase
+   integer(c_int32_t), parameter, public :: HBVIB_PHASE_SETUP = 0, HBVIB_PHASE_MODES = 1, HBVIB_PHASE_CONDENSATION = 2, &
+      HBVIB_PHASE_FIRST_POINT = 3, HBVIB_PHASE_CONTINUATION = 4, HBVIB_PHASE_ESTIMATE = 5, HBVIB_PHASE_TIME_INTEGRATION = 6, &
+      HBVIB_PHASE_RESULTS = 7, HBVIB_PHASE_FACTORISATION = 8
    ! hbvib_field
    integer(c_int32_t), parameter, public :: HBVIB_OMEGA = 0, HBVIB_AMPLITUDE = 1, HBVIB_DAMPING_RATIO = 2, HBVIB_ENERGY = 3, &
       HBVIB_DISSIPATION = 4, HBVIB_RESIDUAL = 5, HBVIB_NEWTON_ITERATIONS = 6, HBVIB_ERROR_ESTIMATE = 7, &
@@ -137,12 +141,19 @@ module hbvib
       real(c_double) :: parameter = 0, amplitude = 0, residual = 0, step = 0, fraction_done = 0
    end type hbvib_progress
 
+   !> Phase of a running call, passed to the phase callback.
+   type, bind(c) :: hbvib_phase_report
+      integer(c_int32_t) :: struct_size = 16, phase = 0
+      real(c_double) :: share = 0
+   end type hbvib_phase_report
+
    !> Callbacks and cancel flag of a solve.
    type, bind(c) :: hbvib_hooks
-      integer(c_int32_t) :: struct_size = 40, log_level = 0
+      integer(c_int32_t) :: struct_size = 48, log_level = 0
       type(c_ptr) :: user = c_null_ptr
       type(c_funptr) :: progress = c_null_funptr, log = c_null_funptr
       type(c_ptr) :: cancel = c_null_ptr
+      type(c_funptr) :: phase = c_null_funptr
    end type hbvib_hooks
 
    !> Options of hbvib_forced_response.
@@ -263,6 +274,14 @@ module hbvib
          type(hbvib_force_call), intent(in) :: call
          integer(c_int32_t) :: answer
       end function hbvib_force_fn
+
+      !> Called at the begin of a phase, whenever its share has grown by 0.01, and after some ten milliseconds of work.
+      function hbvib_phase_fn(user, report) bind(c) result(answer)
+         import
+         type(c_ptr), value :: user
+         type(hbvib_phase_report), intent(in) :: report
+         integer(c_int32_t) :: answer
+      end function hbvib_phase_fn
 
       !> Called at each accepted point.
       function hbvib_progress_fn(user, progress) bind(c) result(answer)
@@ -656,6 +675,16 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_harmonics
 
+      function hbvib_branch_harmonics_with_hooks(branch, point, first_dof, n_dof, x, x_len, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: point, first_dof, n_dof
+         complex(c_double_complex), intent(inout) :: x(*)
+         integer(c_int64_t), value :: x_len
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_harmonics_with_hooks
+
       function hbvib_branch_time_history(branch, point, dof, n, x) bind(c) result(status)
          import
          type(c_ptr), value :: branch
@@ -663,6 +692,15 @@ module hbvib
          real(c_double), intent(inout) :: x(*)
          integer(c_int32_t) :: status
       end function hbvib_branch_time_history
+
+      function hbvib_branch_time_history_with_hooks(branch, point, dof, n, x, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: point, dof, n
+         real(c_double), intent(inout) :: x(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_time_history_with_hooks
 
       function hbvib_branch_slip_fraction(branch, point, shares, shares_len) bind(c) result(status)
          import
@@ -732,6 +770,15 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_energy
 
+      function hbvib_branch_energy_with_hooks(branch, point, out, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: point
+         type(hbvib_energies), intent(inout) :: out
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_energy_with_hooks
+
       function hbvib_branch_contact_loop(branch, point, contact, direction, n, motion, force, state) bind(c) result(status)
          import
          type(c_ptr), value :: branch
@@ -740,6 +787,17 @@ module hbvib
          integer(c_int32_t), intent(inout), optional :: state(*)
          integer(c_int32_t) :: status
       end function hbvib_branch_contact_loop
+
+      function hbvib_branch_contact_loop_with_hooks(branch, point, contact, direction, n, motion, force, state, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: point, contact, direction, n
+         real(c_double), intent(inout), optional :: motion(*), force(*)
+         integer(c_int32_t), intent(inout), optional :: state(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_contact_loop_with_hooks
 
       function hbvib_contact_summary_init(s, size_of_s) bind(c) result(status)
          import
@@ -756,6 +814,15 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_contact_summary
 
+      function hbvib_branch_contact_summary_with_hooks(branch, point, contact, out, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: point, contact
+         type(hbvib_contact_summary), intent(inout) :: out
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_contact_summary_with_hooks
+
       function hbvib_linear_modes(model, diameter, contacts, count, omega, shapes) bind(c) result(status)
          import
          type(c_ptr), value :: model
@@ -766,6 +833,18 @@ module hbvib
          complex(c_double_complex), intent(inout), optional :: shapes(*)
          integer(c_int32_t) :: status
       end function hbvib_linear_modes
+
+      function hbvib_linear_modes_with_hooks(model, diameter, contacts, count, omega, shapes, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: diameter
+         integer(c_int32_t), value :: contacts
+         integer(c_int64_t), value :: count
+         real(c_double), intent(inout) :: omega(*)
+         complex(c_double_complex), intent(inout), optional :: shapes(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_linear_modes_with_hooks
 
       function hbvib_mode_options_init(o, size_of_o) bind(c) result(status)
          import
@@ -833,6 +912,20 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_synthesis
 
+      function hbvib_branch_synthesis_with_hooks(branch, model, options, capacity, omega, response, modal_amplitude, count, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch, model
+         type(hbvib_synthesis_options), intent(in), optional :: options
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: omega(*)
+         complex(c_double_complex), intent(inout), optional :: response(*)
+         real(c_double), intent(inout), optional :: modal_amplitude(*)
+         integer(c_int64_t), intent(inout) :: count
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_synthesis_with_hooks
+
       function hbvib_branch_synthesis_peaks(branch, model, options, capacity, omega, amplitude, log10_amplitude, damping_ratio, &
          other_mode, flags, count) bind(c) result(status)
          import
@@ -844,6 +937,19 @@ module hbvib
          integer(c_int64_t), intent(inout) :: count
          integer(c_int32_t) :: status
       end function hbvib_branch_synthesis_peaks
+
+      function hbvib_branch_synthesis_peaks_with_hooks(branch, model, options, capacity, omega, amplitude, log10_amplitude, &
+         damping_ratio, other_mode, flags, count, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch, model
+         type(hbvib_synthesis_options), intent(in), optional :: options
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: omega(*), amplitude(*), log10_amplitude(*), damping_ratio(*), other_mode(*)
+         integer(c_int32_t), intent(inout), optional :: flags(*)
+         integer(c_int64_t), intent(inout) :: count
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_branch_synthesis_peaks_with_hooks
 
       function hbvib_time_options_init(o, size_of_o) bind(c) result(status)
          import
@@ -917,6 +1023,22 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_contact_evaluate
 
+      function hbvib_contact_evaluate_with_hooks(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
+         jac_len, hooks) bind(c) result(status)
+         import
+         type(hbvib_contact), intent(in) :: c
+         integer(c_int64_t), value :: harmonics, samples
+         real(c_double), value :: omega
+         complex(c_double_complex), intent(in) :: motion(*)
+         integer(c_int64_t), value :: motion_len
+         complex(c_double_complex), intent(inout) :: force(*)
+         integer(c_int64_t), value :: force_len
+         real(c_double), intent(inout), optional :: jac(*)
+         integer(c_int64_t), value :: jac_len
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_contact_evaluate_with_hooks
+
       function hbvib_forced_residual(model, solver, omega, x, x_len, r, r_len, jac, jac_len, d_omega, &
          d_omega_len) bind(c) result(status)
          import
@@ -933,6 +1055,24 @@ module hbvib
          integer(c_int64_t), value :: d_omega_len
          integer(c_int32_t) :: status
       end function hbvib_forced_residual
+
+      function hbvib_forced_residual_with_hooks(model, solver, omega, x, x_len, r, r_len, jac, jac_len, d_omega, d_omega_len, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         real(c_double), value :: omega
+         complex(c_double_complex), intent(in) :: x(*)
+         integer(c_int64_t), value :: x_len
+         complex(c_double_complex), intent(inout) :: r(*)
+         integer(c_int64_t), value :: r_len
+         real(c_double), intent(inout), optional :: jac(*)
+         integer(c_int64_t), value :: jac_len
+         complex(c_double_complex), intent(inout), optional :: d_omega(*)
+         integer(c_int64_t), value :: d_omega_len
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_forced_residual_with_hooks
 
       function hbvib_index_from_one(name, index, count, from_zero) bind(c) result(status)
          import
@@ -1010,7 +1150,7 @@ module hbvib
       procedure :: synthesis_peaks => branch_synthesis_peaks
    end type hbvib_branch
 
-   !> hbvib_hooks(progress=..., log=..., log_level=..., user=c_loc(...), cancel=c_loc(flag)) from procedures.
+   !> hbvib_hooks(progress=..., log=..., log_level=..., user=c_loc(...), cancel=c_loc(flag), phase=...) from procedures.
    interface hbvib_hooks
       module procedure hooks_of
    end interface hbvib_hooks
@@ -1062,11 +1202,12 @@ contains
       end do
    end function hbvib_text
 
-   function hooks_of(progress, log, log_level, user, cancel) result(hooks)
+   function hooks_of(progress, log, log_level, user, cancel, phase) result(hooks)
       procedure(hbvib_progress_fn), optional :: progress
       procedure(hbvib_log_fn), optional :: log
       integer(i32), intent(in), optional :: log_level
       type(c_ptr), intent(in), optional :: user, cancel
+      procedure(hbvib_phase_fn), optional :: phase
       type(hbvib_hooks) :: hooks
       if (present(progress)) hooks%progress = c_funloc(progress)
       if (present(log)) hooks%log = c_funloc(log)
@@ -1074,6 +1215,7 @@ contains
       if (present(log_level)) hooks%log_level = log_level
       if (present(user)) hooks%user = user
       if (present(cancel)) hooks%cancel = cancel
+      if (present(phase)) hooks%phase = c_funloc(phase)
    end function hooks_of
 
    !> Arrays of a force call: u(i, j) is motion i at sample j, df_du(k, i, j) the derivative of force i by motion k there.
@@ -1579,12 +1721,13 @@ contains
 
    !> Undamped natural modes: the lowest size(omega) of them, shapes(ndof, size(omega)). contacts: HBVIB_CONTACTS_STUCK (default) or
    !> HBVIB_CONTACTS_FREE. diameter: default 0.
-   function model_linear_modes(self, omega, shapes, diameter, contacts) result(status)
+   function model_linear_modes(self, omega, shapes, diameter, contacts, hooks) result(status)
       class(hbvib_model), intent(in) :: self
       real(dp), intent(inout), contiguous :: omega(:)
       complex(dp), intent(inout), contiguous, optional :: shapes(:, :)
       integer, intent(in), optional :: diameter
       integer(i32), intent(in), optional :: contacts
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status, state
       integer(i64) :: d
       status = HBVIB_OK
@@ -1596,7 +1739,8 @@ contains
          call same_length(status, 'shapes(:, 1)', size(shapes, 1, i64), hbvib_model_dofs(self%handle))
          call same_length(status, 'shapes(1, :)', size(shapes, 2, i64), size(omega, kind=i64))
       end if
-      if (status == HBVIB_OK) status = hbvib_linear_modes(self%handle, d, state, size(omega, kind=i64), omega, shapes)
+      if (status == HBVIB_OK) status = hbvib_linear_modes_with_hooks(self%handle, d, state, size(omega, kind=i64), &
+                                                                     omega, shapes, hooks)
    end function model_linear_modes
 
    !> id receives the number of the contact, from 1.
@@ -2029,7 +2173,7 @@ contains
    end function model_verify
 
    !> Residual r(ndof, 0:H) of harmonic balance at x(ndof, 0:H), derivatives jac (2 (H + 1) ndof square) and d_omega (as r).
-   function model_forced_residual(self, omega, x, r, jac, d_omega, solver) result(status)
+   function model_forced_residual(self, omega, x, r, jac, d_omega, solver, hooks) result(status)
       class(hbvib_model), intent(in) :: self
       real(dp), intent(in) :: omega
       complex(dp), intent(in), contiguous :: x(:, 0:)
@@ -2037,6 +2181,7 @@ contains
       real(dp), intent(inout), contiguous, optional :: jac(:, :)
       complex(dp), intent(inout), contiguous, optional :: d_omega(:, 0:)
       type(hbvib_solver_options), intent(in), optional :: solver
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       type(hbvib_solver_options), allocatable :: chosen
       integer(i64) :: ndof, n_jac, n_omega
@@ -2055,8 +2200,9 @@ contains
          call same_length(status, 'd_omega(:, 0)', size(d_omega, 1, i64), ndof)
          n_omega = size(d_omega)
       end if
-      if (status == HBVIB_OK) status = hbvib_forced_residual(self%handle, chosen, omega, x, size(x, kind=i64), r, &
-                                                             size(r, kind=i64), jac, n_jac, d_omega, n_omega)
+      if (status == HBVIB_OK) status = hbvib_forced_residual_with_hooks(self%handle, chosen, omega, x, size(x, kind=i64), &
+                                                                        r, size(r, kind=i64), jac, n_jac, d_omega, n_omega, &
+                                                                        hooks)
    end function model_forced_residual
 
    ! ---- Branches ----
@@ -2145,10 +2291,11 @@ contains
    end function view_of
 
    !> Harmonics x(ndof, 0:H) of all degrees of freedom at a stored point.
-   function branch_harmonics(self, point, x) result(status)
+   function branch_harmonics(self, point, x, hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: point
       complex(dp), allocatable, intent(inout) :: x(:, :)
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       type(hbvib_reduction) :: size_of
       complex(dp), allocatable :: found(:, :)
@@ -2157,15 +2304,16 @@ contains
       if (status /= HBVIB_OK) return
       allocate (found(size_of%degrees_of_freedom, 0:size_of%harmonics_asked), stat=stat)
       status = made(stat)
-      if (status == HBVIB_OK) status = self%harmonics_into(point, 1, found)
+      if (status == HBVIB_OK) status = self%harmonics_into(point, 1, found, hooks)
       if (status == HBVIB_OK) call move_alloc(found, x)
    end function branch_harmonics
 
    !> Harmonics x(:, 0:H) of size(x, 1) degrees of freedom from first_dof on.
-   function branch_harmonics_into(self, point, first_dof, x) result(status)
+   function branch_harmonics_into(self, point, first_dof, x, hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: point, first_dof
       complex(dp), intent(inout), contiguous :: x(:, 0:)
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       type(hbvib_reduction) :: size_of
       integer(i64) :: p, first
@@ -2173,7 +2321,7 @@ contains
       call to_zero(status, 'first_dof', int(first_dof, i64), size_of%degrees_of_freedom, first)
       call point_to_zero(self, status, point, p)
       if (status == HBVIB_OK) &
-         status = hbvib_branch_harmonics(self%handle, p, first, size(x, 1, i64), x, size(x, kind=i64))
+         status = hbvib_branch_harmonics_with_hooks(self%handle, p, first, size(x, 1, i64), x, size(x, kind=i64), hooks)
    end function branch_harmonics_into
 
    !> Number of a stored point, from 0.
@@ -2277,39 +2425,43 @@ contains
    end function special
 
    !> Energies and losses of a stored point.
-   function branch_energy(self, point, energy) result(status)
+   function branch_energy(self, point, energy, hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: point
       type(hbvib_energies), intent(out) :: energy
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       integer(i64) :: p
       status = HBVIB_OK
       call point_to_zero(self, status, point, p)
-      if (status == HBVIB_OK) status = hbvib_branch_energy(self%handle, p, energy)
+      if (status == HBVIB_OK) status = hbvib_branch_energy_with_hooks(self%handle, p, energy, hooks)
    end function branch_energy
 
    !> Motion of a degree of freedom over a period: x(j) at omega t = 2 pi (j - 1) / size(x).
-   function branch_time_history(self, point, dof, x) result(status)
+   function branch_time_history(self, point, dof, x, hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: point, dof
       real(dp), intent(inout), contiguous :: x(:)
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       type(hbvib_reduction) :: size_of
       integer(i64) :: p, d
       status = hbvib_branch_reduction(self%handle, size_of)
       call to_zero(status, 'dof', int(dof, i64), size_of%degrees_of_freedom, d)
       call point_to_zero(self, status, point, p)
-      if (status == HBVIB_OK) status = hbvib_branch_time_history(self%handle, p, d, size(x, kind=i64), x)
+      if (status == HBVIB_OK) status = hbvib_branch_time_history_with_hooks(self%handle, p, d, size(x, kind=i64), x, &
+                                                                             hooks)
    end function branch_time_history
 
    !> Hysteresis loop of a contact in direction 1 (default) .. contact_summary's directions, at as many times as the arrays, equally
    !> long, have entries. At least one of motion, force and state.
-   function branch_contact_loop(self, point, contact, motion, force, state, direction) result(status)
+   function branch_contact_loop(self, point, contact, motion, force, state, direction, hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: point, contact
       real(dp), intent(inout), contiguous, optional :: motion(:), force(:)
       integer(i32), intent(inout), contiguous, optional :: state(:)
       integer, intent(in), optional :: direction
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       type(hbvib_contact_summary) :: summary
       integer(i64) :: p, c, d, n
@@ -2325,18 +2477,20 @@ contains
       if (present(motion)) n = size(motion)
       if (present(force)) call same_length(status, 'force', size(force, kind=i64), n)
       if (present(state)) call same_length(status, 'state', size(state, kind=i64), n)
-      if (status == HBVIB_OK) status = hbvib_branch_contact_loop(self%handle, p, c, d, n, motion, force, state)
+      if (status == HBVIB_OK) status = hbvib_branch_contact_loop_with_hooks(self%handle, p, c, d, n, motion, force, &
+                                                                            state, hooks)
    end function branch_contact_loop
 
    !> Work, shares of the period and ranges of a contact at a stored point.
-   function branch_contact_summary(self, point, contact, summary) result(status)
+   function branch_contact_summary(self, point, contact, summary, hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       integer, intent(in) :: point, contact
       type(hbvib_contact_summary), intent(out) :: summary
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       integer(i64) :: p, c
       call contact_to_zero(self, status, point, contact, p, c)
-      if (status == HBVIB_OK) status = hbvib_branch_contact_summary(self%handle, p, c, summary)
+      if (status == HBVIB_OK) status = hbvib_branch_contact_summary_with_hooks(self%handle, p, c, summary, hooks)
    end function branch_contact_summary
 
    subroutine contact_to_zero(self, status, point, contact, p, c)
@@ -2376,12 +2530,13 @@ contains
    end function branch_mode_info
 
    !> Response to the forces of model, synthesised from a nonlinear mode: frequencies, fundamentals, modal amplitudes.
-   function branch_synthesis(self, model, omega, response, modal_amplitude, options) result(status)
+   function branch_synthesis(self, model, omega, response, modal_amplitude, options, hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       type(hbvib_model), intent(in) :: model
       real(dp), allocatable, intent(inout), optional :: omega(:), modal_amplitude(:)
       complex(dp), allocatable, intent(inout), optional :: response(:)
       type(hbvib_synthesis_options), intent(in), optional :: options
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       real(dp), allocatable :: w(:), a(:)
       complex(dp), allocatable :: x(:)
@@ -2393,7 +2548,7 @@ contains
       allocate (w(2*n), a(2*n), x(2*n), stat=stat)
       status = made(stat)
       if (status == HBVIB_OK) &
-         status = hbvib_branch_synthesis(self%handle, model%handle, options, 2*n, w, x, a, n)
+         status = hbvib_branch_synthesis_with_hooks(self%handle, model%handle, options, 2*n, w, x, a, n, hooks)
       if (status /= HBVIB_OK) return
       if (present(omega)) omega = w(:n)
       if (present(response)) response = x(:n)
@@ -2401,13 +2556,14 @@ contains
    end function branch_synthesis
 
    !> Resonances of the synthesised response; flags are sums of HBVIB_SYNTHESIS_ANOTHER_MODE and so on.
-   function branch_synthesis_peaks(self, model, omega, amplitude, log10_amplitude, damping_ratio, other_mode, flags, options) &
-      result(status)
+   function branch_synthesis_peaks(self, model, omega, amplitude, log10_amplitude, damping_ratio, other_mode, flags, options, &
+                                   hooks) result(status)
       class(hbvib_branch), intent(in) :: self
       type(hbvib_model), intent(in) :: model
       real(dp), allocatable, intent(inout), optional :: omega(:), amplitude(:), log10_amplitude(:), damping_ratio(:), other_mode(:)
       integer(i32), allocatable, intent(inout), optional :: flags(:)
       type(hbvib_synthesis_options), intent(in), optional :: options
+      type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
       real(dp), allocatable :: x(:, :)
       integer(i32), allocatable :: bits(:)
@@ -2418,8 +2574,9 @@ contains
       do while (status == HBVIB_OK)
          allocate (x(n, 5), bits(n), stat=stat)
          status = made(stat)
-         if (status == HBVIB_OK) status = hbvib_branch_synthesis_peaks(self%handle, model%handle, options, n, x(:, 1), x(:, 2), &
-                                                                       x(:, 3), x(:, 4), x(:, 5), bits, n)
+         if (status == HBVIB_OK) status = hbvib_branch_synthesis_peaks_with_hooks(self%handle, model%handle, options, n, &
+                                                                                 x(:, 1), x(:, 2), x(:, 3), x(:, 4), &
+                                                                                 x(:, 5), bits, n, hooks)
          if (status /= HBVIB_E_DIMENSION .or. n <= size(bits)) exit
          deallocate (x, bits)
          status = HBVIB_OK

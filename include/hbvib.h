@@ -1012,6 +1012,43 @@ typedef enum {
   HBVIB_LOG_DEBUG = 3,
 } hbvib_log_level;
 
+/// Phases of a running call.
+typedef enum {
+  /// Checks of the model and its assembly.
+  HBVIB_PHASE_SETUP = 0,
+  /// Natural frequencies and mode shapes.
+  HBVIB_PHASE_MODES = 1,
+  /// Condensation onto the contacts and tables of their flexibility.
+  HBVIB_PHASE_CONDENSATION = 2,
+  /// Search for the first point of a branch.
+  HBVIB_PHASE_FIRST_POINT = 3,
+  /// Points of a branch, one after the other.
+  HBVIB_PHASE_CONTINUATION = 4,
+  /// Error estimate of a point.
+  HBVIB_PHASE_ESTIMATE = 5,
+  /// Integration in time; the share is that of a lapse.
+  HBVIB_PHASE_TIME_INTEGRATION = 6,
+  /// Harmonics, energies and other results of solved motions.
+  HBVIB_PHASE_RESULTS = 7,
+  /// One factorisation of a sparse matrix, which cannot be stopped, begins.
+  HBVIB_PHASE_FACTORISATION = 8,
+} hbvib_phase;
+
+/// Phase of a running call, passed to the phase callback.
+typedef struct {
+  /// Bytes of this struct as the library knows it.
+  uint32_t struct_size;
+  /// HBVIB_PHASE_SETUP .. HBVIB_PHASE_FACTORISATION; later versions may add others.
+  int32_t phase;
+  /// Part of the phase that is done, 0 to 1. It begins again with each phase.
+  double share;
+} hbvib_phase_report;
+
+/// Called at the begin of a phase, whenever its share has grown by 0.01, and after some ten
+/// milliseconds of work. A result other than 0 stops the call and keeps the points. Accepted points
+/// have a callback of their own, because callers count its calls.
+typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
+
 /// Called at each accepted point. A result other than 0 stops the solve and keeps the points.
 typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress);
 
@@ -1034,9 +1071,11 @@ typedef struct {
   hbvib_progress_fn progress;
   /// Called with each line of the log. May be NULL.
   hbvib_log_fn log;
-  /// Read in each Newton iteration: a number other than 0 stops the solve and keeps the points.
+  /// Read often, in every long loop: a number other than 0 stops the call and keeps the points.
   /// Another thread or a signal handler may set it; the library never writes it. May be NULL.
   const hbvib_cancel_flag *cancel;
+  /// Called with the phase of the call, from the set-up on. May be NULL.
+  hbvib_phase_fn phase;
 } hbvib_hooks;
 
 /// Fills hooks with no callback and no flag.
@@ -1227,6 +1266,25 @@ hbvib_status hbvib_branch_harmonics(const hbvib_branch *branch,
                                     double *x,
                                     int64_t x_len);
 
+/// The same as hbvib_branch_harmonics; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// point      number of a point of the curve, or of a peak, fold or requested solution.
+/// first_dof  first degree of freedom of the range, from 0.
+/// n_dof      number of degrees of freedom, at least 1.
+/// x          receives (H + 1) x n_dof complex numbers, harmonic after harmonic; untouched on
+///            error.
+/// x_len      complex numbers in it.
+/// hooks      phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_harmonics.
+hbvib_status hbvib_branch_harmonics_with_hooks(const hbvib_branch *branch,
+                                               int64_t point,
+                                               int64_t first_dof,
+                                               int64_t n_dof,
+                                               double *x,
+                                               int64_t x_len,
+                                               const hbvib_hooks *hooks);
+
 /// Motion of a degree of freedom over one period of the fundamental at a stored point, in the
 /// caller's unit of length: entry j at omega t = 2 pi j / n.
 ///
@@ -1241,6 +1299,22 @@ hbvib_status hbvib_branch_time_history(const hbvib_branch *branch,
                                        int64_t dof,
                                        int64_t n,
                                        double *x);
+
+/// The same as hbvib_branch_time_history; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
+/// dof    degree of freedom, from 0.
+/// n      number of times, 1 .. 2^24.
+/// x      receives n doubles; untouched on error.
+/// hooks  phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_time_history.
+hbvib_status hbvib_branch_time_history_with_hooks(const hbvib_branch *branch,
+                                                  int64_t point,
+                                                  int64_t dof,
+                                                  int64_t n,
+                                                  double *x,
+                                                  const hbvib_hooks *hooks);
 
 /// Shares of the period that each contact slips at a stored point.
 ///
@@ -1404,6 +1478,18 @@ hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
 hbvib_status hbvib_branch_energy(const hbvib_branch *branch, int64_t point, hbvib_energy *out);
 
+/// The same as hbvib_branch_energy; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and out is untouched.
+///
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
+/// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
+/// hooks  phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_energy.
+hbvib_status hbvib_branch_energy_with_hooks(const hbvib_branch *branch,
+                                            int64_t point,
+                                            hbvib_energy *out,
+                                            const hbvib_hooks *hooks);
+
 /// State of a contact at one time.
 typedef enum {
   /// It sticks, or presses. Contacts that never slip, contacts without force and laws without
@@ -1445,6 +1531,31 @@ hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
                                        double *motion,
                                        double *force,
                                        int32_t *state);
+
+/// The same as hbvib_branch_contact_loop; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// point      number of a point of the curve, or of a peak, fold or requested solution.
+/// contact    number from hbvib_model_add_contact.
+/// direction  one of the directions of the contact from 0, in the order t1, t2, n of those in which
+///            it acts: 0 for laws of one direction. hbvib_contact_summary has their number.
+/// n          number of times, 1 .. 2^24.
+/// motion     receives n relative motions, side a minus side b, or NULL.
+/// force      receives n forces f, which act on side a as + f and on side b as - f in
+///            M x'' + C x' + K x + f = f_ex; or NULL. Along the normal f is minus the normal load.
+/// state      receives n states of the contact, HBVIB_STATE_STICK and so on, the same for all its
+///            directions, or NULL. Not all three may be NULL.
+/// hooks      phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_contact_loop.
+hbvib_status hbvib_branch_contact_loop_with_hooks(const hbvib_branch *branch,
+                                                  int64_t point,
+                                                  int64_t contact,
+                                                  int64_t direction,
+                                                  int64_t n,
+                                                  double *motion,
+                                                  double *force,
+                                                  int32_t *state,
+                                                  const hbvib_hooks *hooks);
 
 /// Numbers of one contact over one period, in the units of the caller. Ranges are exact for the
 /// motion of the point, and so are all numbers of HBVIB_JENKINS, HBVIB_CUBIC and HBVIB_UNILATERAL;
@@ -1503,6 +1614,20 @@ hbvib_status hbvib_branch_contact_summary(const hbvib_branch *branch,
                                           int64_t contact,
                                           hbvib_contact_summary *out);
 
+/// The same as hbvib_branch_contact_summary; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and out is untouched.
+///
+/// point    number of a point of the curve, or of a peak, fold or requested solution.
+/// contact  number from hbvib_model_add_contact.
+/// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
+/// hooks    phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_contact_summary.
+hbvib_status hbvib_branch_contact_summary_with_hooks(const hbvib_branch *branch,
+                                                     int64_t point,
+                                                     int64_t contact,
+                                                     hbvib_contact_summary *out,
+                                                     const hbvib_hooks *hooks);
+
 /* ==============================================================================================
  * Modes: linear and nonlinear modes, responses synthesised from them
  * ============================================================================================== */
@@ -1535,6 +1660,25 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
                                 int64_t count,
                                 double *omega,
                                 double *shapes);
+
+/// The same as hbvib_linear_modes; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
+/// contacts  HBVIB_CONTACTS_FREE, or HBVIB_CONTACTS_STUCK: linear springs kt.
+/// count     number of requested modes, at least 1.
+/// omega     receives `count` natural angular frequencies.
+/// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
+///           phi^H M phi = 1 over one sector; or NULL.
+/// hooks     phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_linear_modes.
+hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model,
+                                           int64_t diameter,
+                                           int32_t contacts,
+                                           int64_t count,
+                                           double *omega,
+                                           double *shapes,
+                                           const hbvib_hooks *hooks);
 
 /// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
 typedef enum {
@@ -1760,6 +1904,31 @@ hbvib_status hbvib_branch_synthesis(const hbvib_branch *branch,
                                     double *modal_amplitude,
                                     int64_t *count);
 
+/// The same as hbvib_branch_synthesis; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// branch           a nonlinear mode.
+/// model            the model of the mode, or one with other forces or damping; forces in other
+///                  harmonics have no effect.
+/// options          NULL: the defaults.
+/// capacity         numbers that fit into each array; twice the points of the branch suffice.
+/// omega            receives the angular frequencies of the force, or NULL.
+/// response         receives the fundamentals of the branch's response degree of freedom, complex,
+///                  in phase with the force where real; or NULL.
+/// modal_amplitude  receives the modal amplitudes, or NULL.
+/// count            receives how many points there are, also when `capacity` is too small.
+/// hooks            phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_synthesis.
+hbvib_status hbvib_branch_synthesis_with_hooks(const hbvib_branch *branch,
+                                               const hbvib_model *model,
+                                               const hbvib_synthesis_options *options,
+                                               int64_t capacity,
+                                               double *omega,
+                                               double *response,
+                                               double *modal_amplitude,
+                                               int64_t *count,
+                                               const hbvib_hooks *hooks);
+
 /// Reasons to doubt a synthesised resonance: bits of a sum.
 typedef enum {
   /// No reason for doubt was found.
@@ -1801,6 +1970,36 @@ hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
                                           double *other_mode,
                                           int32_t *flags,
                                           int64_t *count);
+
+/// The same as hbvib_branch_synthesis_peaks; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// branch, model           as for hbvib_branch_synthesis.
+/// options                 NULL: the defaults.
+/// capacity                numbers that fit into each array.
+/// omega                   receives their angular frequencies, or NULL.
+/// amplitude               receives the amplitudes |X_1| of the response degree of freedom, or
+///                         NULL.
+/// log10_amplitude         receives the amplitudes as the branch measures them, log10, or NULL.
+/// damping_ratio           receives the total damping ratios there, or NULL.
+/// other_mode              receives the distance to the nearest other natural frequency of the wave
+///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
+/// count                   receives how many there are, also when `capacity` is too small.
+/// hooks                   phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_synthesis_peaks.
+hbvib_status hbvib_branch_synthesis_peaks_with_hooks(const hbvib_branch *branch,
+                                                     const hbvib_model *model,
+                                                     const hbvib_synthesis_options *options,
+                                                     int64_t capacity,
+                                                     double *omega,
+                                                     double *amplitude,
+                                                     double *log10_amplitude,
+                                                     double *damping_ratio,
+                                                     double *other_mode,
+                                                     int32_t *flags,
+                                                     int64_t *count,
+                                                     const hbvib_hooks *hooks);
 
 /* ==============================================================================================
  * Time: integration in time, and points of a branch compared with it
@@ -2052,6 +2251,38 @@ hbvib_status hbvib_contact_evaluate(const hbvib_contact *c,
                                     double *jac,
                                     int64_t jac_len);
 
+/// The same as hbvib_contact_evaluate; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// c           the law and its constants.
+/// harmonics   highest harmonic number H, 0 .. 100000.
+/// samples     0: events are located exactly where the law has them; else samples per period, at
+///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact in both cases;
+///             HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number that
+///             follows from H.
+/// omega       angular frequency, >= 0; has an effect on laws that depend on velocities.
+/// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
+///             part of Y_0 has no effect.
+/// motion_len  complex numbers in it, d (H + 1).
+/// force       receives d (H + 1) complex numbers, F_0 .. F_H of one direction after the other.
+/// force_len   complex numbers in it, d (H + 1).
+/// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
+///             or NULL.
+/// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
+/// hooks       phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_contact_evaluate.
+hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c,
+                                               int64_t harmonics,
+                                               int64_t samples,
+                                               double omega,
+                                               const double *motion,
+                                               int64_t motion_len,
+                                               double *force,
+                                               int64_t force_len,
+                                               double *jac,
+                                               int64_t jac_len,
+                                               const hbvib_hooks *hooks);
+
 /// Residual R_h = (K - h^2 omega^2 M + i h omega C) X_h + f_h - F_h of harmonic balance at a motion
 /// of the caller, for continuation methods of the caller and for tests. Nothing is removed:
 /// harmonics 0 .. H of all degrees of freedom, harmonic after harmonic.
@@ -2083,6 +2314,36 @@ hbvib_status hbvib_forced_residual(const hbvib_model *model,
                                    int64_t jac_len,
                                    double *d_omega,
                                    int64_t d_omega_len);
+
+/// The same as hbvib_forced_residual; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and the arrays are untouched or hold NaN.
+///
+/// solver       options, of which harmonics and samples are used; NULL: the defaults.
+/// omega        angular frequency, >= 0.
+/// x            (H + 1) x ndof complex numbers; the imaginary part of the mean is no unknown.
+/// x_len        complex numbers in it.
+/// r            receives as many complex numbers; the imaginary part of the rows of the mean is
+///              that of x.
+/// r_len        complex numbers in it.
+/// jac          receives d R / d X over the pairs (re, im), real, column-major of order
+///              2 (H + 1) ndof; or NULL.
+/// jac_len      doubles in it; 0 with NULL.
+/// d_omega      receives d R / d omega, complex like r; or NULL.
+/// d_omega_len  complex numbers in it; 0 with NULL.
+/// hooks        phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_forced_residual.
+hbvib_status hbvib_forced_residual_with_hooks(const hbvib_model *model,
+                                              const hbvib_solver_options *solver,
+                                              double omega,
+                                              const double *x,
+                                              int64_t x_len,
+                                              double *r,
+                                              int64_t r_len,
+                                              double *jac,
+                                              int64_t jac_len,
+                                              double *d_omega,
+                                              int64_t d_omega_len,
+                                              const hbvib_hooks *hooks);
 
 /// Turns an index of a language that counts from 1 into one that counts from 0, and refuses an
 /// index outside with a sentence in numbers from 1: "dof = 0, needs 1 .. 4".

@@ -91,6 +91,11 @@ class Call {
     if (thrown_) std::rethrow_exception(std::exchange(thrown_, nullptr));
     if (result < 0) throw Error(static_cast<hbvib_status>(result), hbvib_last_error_argument(), hbvib_last_error());
   }
+  /// The same for a call that has no points to keep: a stop is an Error (HBVIB_STOPPED_BY_CALLER).
+  void done_whole(Index result) {
+    done(result);
+    if (result == HBVIB_STOPPED_BY_CALLER) throw Error(HBVIB_STOPPED_BY_CALLER, 0, hbvib_last_error());
+  }
 
   /// Runs a callback; `failed` is the answer where it throws, or where one before it has thrown.
   template <class F>
@@ -518,6 +523,8 @@ struct Hooks {
   const std::atomic<std::int32_t>* cancel = nullptr;
   /// Receives what was found where a callback's exception ends a solve; an empty Branch if nothing was.
   Branch* partial = nullptr;
+  /// Called with the phase and its share, from the set-up on; returns nothing, or true to stop.
+  Callback<bool, const hbvib_phase_report&> phase{};
 };
 
 /// One period for which a force is computed, as views of N samples: f(j, i), df_du(j, i, k). Write f, z and
@@ -563,6 +570,10 @@ struct Owned {
   Forces forces;
 };
 
+/// Calls a function that takes hooks last and has no points to keep.
+template <class F, class... A>
+void call_whole(const Hooks& hooks, F function, A... arguments);
+
 /// Common part of Model and Branch: shared only with calls that run, and with views.
 template <class Handle, hbvib_status (*release)(Handle*)>
 class Object {
@@ -585,6 +596,12 @@ class Object {
     const auto keep = core_;
     return call(function, get(), arguments...);
   }
+  /// The same with hooks, see call_whole.
+  template <class F, class... A>
+  void use_whole(const Hooks& hooks, F function, A... arguments) const {
+    const auto keep = core_;
+    call_whole(hooks, function, get(), arguments...);
+  }
 
   std::shared_ptr<Core> core_;
 };
@@ -596,6 +613,7 @@ struct BoundHooks : Filled<hbvib_hooks, hbvib_hooks_init> {
                   "the library reads the flag as a plain number");
     user = const_cast<Hooks*>(&hooks);
     progress = on_progress;
+    phase = on_phase;
     if (hooks.log) log = on_log, log_level = hooks.log_level;
     cancel = reinterpret_cast<const hbvib_cancel_flag*>(hooks.cancel);
   }
@@ -605,10 +623,21 @@ struct BoundHooks : Filled<hbvib_hooks, hbvib_hooks_init> {
     const auto& progress = static_cast<const Hooks*>(user)->progress;
     return Call::guard(1, [&] { return progress && progress(*p) ? 1 : 0; });
   }
+  static std::int32_t on_phase(void* user, const hbvib_phase_report* p) noexcept {
+    const auto& phase = static_cast<const Hooks*>(user)->phase;
+    return Call::guard(1, [&] { return phase && phase(*p) ? 1 : 0; });
+  }
   static void on_log(void* user, std::int32_t level, const char* line) noexcept {
     Call::guard(0, [&] { return static_cast<const Hooks*>(user)->log(static_cast<hbvib_log_level>(level), line), 0; });
   }
 };
+
+template <class F, class... A>
+void call_whole(const Hooks& hooks, F function, A... arguments) {
+  const BoundHooks bound(hooks);
+  Call frame;
+  frame.done_whole(function(arguments..., &bound));
+}
 
 inline std::int32_t on_force(void* user, const hbvib_force_call* period) noexcept {
   return Call::guard(-1, [&] { return static_cast<const UserForce*>(user)->force(ForceCall(*period)); });
@@ -705,16 +734,16 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
     return {v.data, v.rank, {v.shape[0], v.shape[1], v.shape[2]}, {v.stride[0], v.stride[1], v.stride[2]}, core_};
   }
   /// Harmonics of a range of degrees of freedom at a point, (H + 1) x n_dof; n_dof = -1: to the last.
-  View<const Complex> harmonics(Index point, Index first_dof = 0, Index n_dof = -1) const {
+  View<const Complex> harmonics(Index point, Index first_dof = 0, Index n_dof = -1, const Hooks& hooks = {}) const {
     const Reduction whole = reduction();
     const Index n = n_dof == -1 ? std::max<Index>(whole.degrees_of_freedom - first_dof, 1) : n_dof, rows = whole.harmonics_asked + 1;
     const detail::Array<Complex> x(detail::room(rows, n));
-    harmonics(point, first_dof, n, Span<Complex>(x.data(), detail::extent(rows, n)));
+    harmonics(point, first_dof, n, Span<Complex>(x.data(), detail::extent(rows, n)), hooks);
     return x.view({rows, n});
   }
   /// The same into an array of the caller, harmonic after harmonic.
-  void harmonics(Index point, Index first_dof, Index n_dof, Span<Complex> x) const {
-    use(hbvib_branch_harmonics, point, first_dof, n_dof, detail::flat(x.data()), x.length());
+  void harmonics(Index point, Index first_dof, Index n_dof, Span<Complex> x, const Hooks& hooks = {}) const {
+    use_whole(hooks, hbvib_branch_harmonics_with_hooks, point, first_dof, n_dof, detail::flat(x.data()), x.length());
   }
   /// Share of the period that each contact slips.
   std::vector<double> slip_fraction(Index point) const {
@@ -744,29 +773,38 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
     for (std::size_t i = 0; i < point.size(); i++) all.push_back({amplitude[i], point[i]});
     return all;
   }
-  Energy energy(Index point) const { return filled<Energy>(hbvib_branch_energy, point); }
-  ContactSummary contact_summary(Index point, Index contact) const {
-    return filled<ContactSummary>(hbvib_branch_contact_summary, point, contact);
+  Energy energy(Index point, const Hooks& hooks = {}) const {
+    Energy out;
+    use_whole(hooks, hbvib_branch_energy_with_hooks, point, &out);
+    return out;
+  }
+  ContactSummary contact_summary(Index point, Index contact, const Hooks& hooks = {}) const {
+    ContactSummary out;
+    use_whole(hooks, hbvib_branch_contact_summary_with_hooks, point, contact, &out);
+    return out;
   }
   ModePoint mode_point(Index point) const { return filled<ModePoint>(hbvib_branch_mode_point, point); }
   ModeInfo mode_info() const { return filled<ModeInfo>(hbvib_branch_mode_info); }
   /// Motion over a period at n times.
-  std::vector<double> time_history(Index point, Index dof, Index n) const {
+  std::vector<double> time_history(Index point, Index dof, Index n, const Hooks& hooks = {}) const {
     std::vector<double> x(detail::room(n));
-    use(hbvib_branch_time_history, point, dof, n, x.data());
+    use_whole(hooks, hbvib_branch_time_history_with_hooks, point, dof, n, x.data());
     return x;
   }
   /// Hysteresis loop of a contact at n times.
-  ContactLoop contact_loop(Index point, Index contact, Index direction, Index n) const {
+  ContactLoop contact_loop(Index point, Index contact, Index direction, Index n, const Hooks& hooks = {}) const {
     const std::size_t room = detail::room(n);
     ContactLoop loop{std::vector<double>(room), std::vector<double>(room), std::vector<std::int32_t>(room)};
-    use(hbvib_branch_contact_loop, point, contact, direction, n, loop.motion.data(), loop.force.data(), loop.state.data());
+    use_whole(hooks, hbvib_branch_contact_loop_with_hooks, point, contact, direction, n, loop.motion.data(), loop.force.data(),
+              loop.state.data());
     return loop;
   }
   /// Response to the forces of a model, from this nonlinear mode.
-  Synthesis synthesis(const Model& model, const SynthesisOptions& options = SynthesisOptions()) const;
+  Synthesis synthesis(const Model& model, const SynthesisOptions& options = SynthesisOptions(),
+                      const Hooks& hooks = {}) const;
   /// Its resonances.
-  std::vector<SynthesisPeak> synthesis_peaks(const Model& model, const SynthesisOptions& options = SynthesisOptions()) const;
+  std::vector<SynthesisPeak> synthesis_peaks(const Model& model, const SynthesisOptions& options = SynthesisOptions(),
+                      const Hooks& hooks = {}) const;
 
  private:
   friend class Model;
@@ -907,11 +945,12 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     return gap;
   }
 
-  LinearModes linear_modes(Index diameter, hbvib_contact_state contacts, Index count) const {
+  /// A stop by the hooks is Error (HBVIB_STOPPED_BY_CALLER), as in all functions that return no branch.
+  LinearModes linear_modes(Index diameter, hbvib_contact_state contacts, Index count, const Hooks& hooks = {}) const {
     const Index n = dofs();
     LinearModes modes{std::vector<double>(detail::room(count)), {}};
     const detail::Array<Complex> shapes(detail::room(count, n));
-    use(hbvib_linear_modes, diameter, contacts, count, modes.omega.data(), detail::flat(shapes.data()));
+    use_whole(hooks, hbvib_linear_modes_with_hooks, diameter, contacts, count, modes.omega.data(), detail::flat(shapes.data()));
     modes.shapes = shapes.view({count, n});
     return modes;
   }
@@ -924,12 +963,13 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     return solve(hbvib_nonlinear_mode, solver, range, hooks);
   }
   /// Residual of harmonic balance at x, (H + 1) x ndof, with its derivatives if requested.
-  Residual forced_residual(const SolverOptions& solver, double omega, In<Complex> x, bool derivatives = false) const {
+  Residual forced_residual(const SolverOptions& solver, double omega, In<Complex> x, bool derivatives = false,
+                           const Hooks& hooks = {}) const {
     const Index n = x.length(), order = 2 * n;
     Residual out{std::vector<Complex>(detail::room(n)), {}, std::vector<Complex>(derivatives ? detail::room(n) : 0)};
     double* const d_omega = derivatives ? detail::flat(out.d_omega.data()) : nullptr;
     const detail::Array<double> jacobian(derivatives ? detail::extent(order, order) : 0);
-    use(hbvib_forced_residual, &solver, omega, detail::flat(x.data()), n, detail::flat(out.r.data()), n, jacobian.data(),
+    use_whole(hooks, hbvib_forced_residual_with_hooks, &solver, omega, detail::flat(x.data()), n, detail::flat(out.r.data()), n, jacobian.data(),
         jacobian.length(), d_omega, derivatives ? n : 0);
     if (derivatives) out.jacobian = {jacobian.data(), 2, {order, order, 1}, {1, order, 1}, jacobian.numbers};
     return out;
@@ -992,25 +1032,26 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   }
 };
 
-inline Synthesis Branch::synthesis(const Model& model, const SynthesisOptions& options) const {
+inline Synthesis Branch::synthesis(const Model& model, const SynthesisOptions& options, const Hooks& hooks) const {
   const auto keep = model.core_;
   Index count = 2 * points();
   Synthesis s{std::vector<double>(detail::extent(count)), std::vector<Complex>(detail::extent(count)), std::vector<double>(detail::extent(count))};
-  use(hbvib_branch_synthesis, model.get(), &options, count, s.omega.data(), detail::flat(s.response.data()), s.modal_amplitude.data(), &count);
+  use_whole(hooks, hbvib_branch_synthesis_with_hooks, model.get(), &options, count, s.omega.data(), detail::flat(s.response.data()), s.modal_amplitude.data(), &count);
   s.omega.resize(detail::extent(count));
   s.response.resize(s.omega.size());
   s.modal_amplitude.resize(s.omega.size());
   return s;
 }
 
-inline std::vector<SynthesisPeak> Branch::synthesis_peaks(const Model& model, const SynthesisOptions& options) const {
+inline std::vector<SynthesisPeak> Branch::synthesis_peaks(const Model& model, const SynthesisOptions& options,
+                                                          const Hooks& hooks) const {
   const auto keep = model.core_;
   Index count = 0;
-  use(hbvib_branch_synthesis_peaks, model.get(), &options, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &count);
+  use_whole(hooks, hbvib_branch_synthesis_peaks_with_hooks, model.get(), &options, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &count);
   const std::size_t n = detail::extent(count);
   std::vector<double> omega(n), amplitude(n), log10_amplitude(n), damping_ratio(n), other_mode(n);
   std::vector<std::int32_t> flags(n);
-  use(hbvib_branch_synthesis_peaks, model.get(), &options, count, omega.data(), amplitude.data(), log10_amplitude.data(),
+  use_whole(hooks, hbvib_branch_synthesis_peaks_with_hooks, model.get(), &options, count, omega.data(), amplitude.data(), log10_amplitude.data(),
       damping_ratio.data(), other_mode.data(), flags.data(), &count);
   std::vector<SynthesisPeak> all;
   for (std::size_t i = 0; i < n; i++)
@@ -1020,11 +1061,11 @@ inline std::vector<SynthesisPeak> Branch::synthesis_peaks(const Model& model, co
 
 /// Force of one contact law on d prescribed motions of harmonics 0 .. H, one motion after the other.
 inline ContactForce contact_evaluate(const Contact& law, Index harmonics, Index samples, double omega, In<Complex> motion,
-                                     bool derivatives = false) {
+                                     bool derivatives = false, const Hooks& hooks = {}) {
   const Index n = motion.length(), order = 2 * n;
   ContactForce out{std::vector<Complex>(detail::room(n)), {}};
   const detail::Array<double> jacobian(derivatives ? detail::extent(order, order) : 0);
-  detail::call(hbvib_contact_evaluate, &law, harmonics, samples, omega, detail::flat(motion.data()), n, detail::flat(out.force.data()), n,
+  detail::call_whole(hooks, hbvib_contact_evaluate_with_hooks, &law, harmonics, samples, omega, detail::flat(motion.data()), n, detail::flat(out.force.data()), n,
                jacobian.data(), jacobian.length());
   if (derivatives) out.jacobian = {jacobian.data(), 2, {order, order, 1}, {1, order, 1}, jacobian.numbers};
   return out;

@@ -17,9 +17,9 @@ Threads     Any number of threads may solve one model and read one branch at onc
             Changing or freeing an object in use is BusyError.
 Callbacks   run on the calling thread. An exception that they raise leaves the call that led there, the same object;
             an attribute `branch` holds the points found so far, if the solve had begun a branch.
-Ctrl-C      stops a solve at its next point, in time integration at the next period: while a solve runs in the
-            main thread, the handler of SIGINT is wrapped, as asyncio does, and KeyboardInterrupt carries
-            `branch` as well. Other calls end first.
+Ctrl-C      stops every call that may be long within a fraction of a second: while it runs in the main thread, the
+            handler of SIGINT is wrapped, as asyncio does, and KeyboardInterrupt carries `branch` as well where points
+            were found. One factorisation of a large sparse matrix ends first.
 """
 from __future__ import annotations
 
@@ -35,6 +35,7 @@ import threading
 import warnings
 import weakref
 from collections import namedtuple
+from functools import partial
 from typing import TYPE_CHECKING, Any, Callable, Iterator, NamedTuple, Optional, Sequence
 
 import numpy as np
@@ -144,6 +145,19 @@ class LogLevel(enum.IntEnum):
     DEBUG = 3  #: Detail for debugging.
 
 
+class Phase(enum.IntEnum):
+    """Phases of a running call."""
+    SETUP = 0  #: Checks of the model and its assembly.
+    MODES = 1  #: Natural frequencies and mode shapes.
+    CONDENSATION = 2  #: Condensation onto the contacts and tables of their flexibility.
+    FIRST_POINT = 3  #: Search for the first point of a branch.
+    CONTINUATION = 4  #: Points of a branch, one after the other.
+    ESTIMATE = 5  #: Error estimate of a point.
+    TIME_INTEGRATION = 6  #: Integration in time; the share is that of a lapse.
+    RESULTS = 7  #: Harmonics, energies and other results of solved motions.
+    FACTORISATION = 8  #: One factorisation of a sparse matrix, which cannot be stopped, begins.
+
+
 class Field(enum.IntEnum):
     """Results that a branch holds for each point of the curve."""
     OMEGA = 0  #: Angular frequency.
@@ -236,7 +250,9 @@ solver_options: uint32 struct_size; int32 num_threads; double tolerance; int64 h
     estimate_error
 progress: uint32 struct_size; int32 newton_iterations; int64 point; double parameter amplitude residual step
     fraction_done
-hooks: uint32 struct_size; int32 log_level; pointer user; progress_fn progress; log_fn log; pointer cancel
+phase_report: uint32 struct_size; int32 phase; double share
+hooks: uint32 struct_size; int32 log_level; pointer user; progress_fn progress; log_fn log; pointer cancel; phase_fn
+    phase
 forced_options: uint32 struct_size; int32 reserved; double omega_start omega_stop; pointer at; int64 at_len; pointer
     guess; int64 guess_len
 view: uint32 struct_size; int32 scalar rank reserved; pointer data; int64 shape[3] stride[3]
@@ -266,6 +282,7 @@ verification: uint32 struct_size; int32 same_solution marched reserved; int64 ha
 # Types of callbacks, in the kinds of functions.
 _CALLBACKS = {
     "force_fn": "p force_call -> int32",
+    "phase_fn": "p phase_report -> int32",
     "progress_fn": "p progress -> int32",
     "log_fn": "p i text -> none",
 }
@@ -321,7 +338,9 @@ branch_status: h
 view_init: view z
 branch_field: h i view
 branch_harmonics: h l l l p l
+branch_harmonics_with_hooks: h l l l p l hooks
 branch_time_history: h l l l p
+branch_time_history_with_hooks: h l l l p hooks
 branch_slip_fraction: h l p l
 branch_peaks: h l p p p p
 branch_folds: h l p p p p
@@ -330,10 +349,14 @@ reduction_init: reduction z
 branch_reduction: h reduction
 energy_init: energy z
 branch_energy: h l energy
+branch_energy_with_hooks: h l energy hooks
 branch_contact_loop: h l l l l p p p
+branch_contact_loop_with_hooks: h l l l l p p p hooks
 contact_summary_init: contact_summary z
 branch_contact_summary: h l l contact_summary
+branch_contact_summary_with_hooks: h l l contact_summary hooks
 linear_modes: h l i l p p
+linear_modes_with_hooks: h l i l p p hooks
 mode_options_init: mode_options z
 nonlinear_mode: h solver_options mode_options hooks p
 mode_point_init: mode_point z
@@ -342,7 +365,9 @@ mode_info_init: mode_info z
 branch_mode_info: h mode_info
 synthesis_options_init: synthesis_options z
 branch_synthesis: h h synthesis_options l p p p p
+branch_synthesis_with_hooks: h h synthesis_options l p p p p hooks
 branch_synthesis_peaks: h h synthesis_options l p p p p p p p
+branch_synthesis_peaks_with_hooks: h h synthesis_options l p p p p p p p hooks
 time_options_init: time_options z
 time_info_init: time_info z
 time_response: h time_options hooks p l p l time_info
@@ -350,7 +375,9 @@ verify_options_init: verify_options z
 verification_init: verification z
 verify: h h l verify_options hooks p l p l verification
 contact_evaluate: contact l l d p l p l p l
+contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
+forced_residual_with_hooks: h solver_options d p l p l p l p l hooks
 index_from_one: p l l p
 """
 
@@ -417,7 +444,11 @@ if TYPE_CHECKING:
         def hbvib_branch_field(self, branch: Any, field: int, out: Any) -> int: ...
         def hbvib_branch_harmonics(self, branch: Any, point: int, first_dof: int, n_dof: int, x: Any, x_len:
             int) -> int: ...
+        def hbvib_branch_harmonics_with_hooks(self, branch: Any, point: int, first_dof: int, n_dof: int, x: Any, x_len:
+            int, hooks: Any) -> int: ...
         def hbvib_branch_time_history(self, branch: Any, point: int, dof: int, n: int, x: Any) -> int: ...
+        def hbvib_branch_time_history_with_hooks(self, branch: Any, point: int, dof: int, n: int, x: Any, hooks:
+            Any) -> int: ...
         def hbvib_branch_slip_fraction(self, branch: Any, point: int, shares: Any, shares_len: int) -> int: ...
         def hbvib_branch_peaks(self, branch: Any, capacity: int, omega: Any, amplitude: Any, point: Any, count:
             Any) -> int: ...
@@ -429,12 +460,19 @@ if TYPE_CHECKING:
         def hbvib_branch_reduction(self, branch: Any, out: Any) -> int: ...
         def hbvib_energy_init(self, e: Any, size_of_e: int) -> int: ...
         def hbvib_branch_energy(self, branch: Any, point: int, out: Any) -> int: ...
+        def hbvib_branch_energy_with_hooks(self, branch: Any, point: int, out: Any, hooks: Any) -> int: ...
         def hbvib_branch_contact_loop(self, branch: Any, point: int, contact: int, direction: int, n: int, motion: Any,
             force: Any, state: Any) -> int: ...
+        def hbvib_branch_contact_loop_with_hooks(self, branch: Any, point: int, contact: int, direction: int, n: int,
+            motion: Any, force: Any, state: Any, hooks: Any) -> int: ...
         def hbvib_contact_summary_init(self, s: Any, size_of_s: int) -> int: ...
         def hbvib_branch_contact_summary(self, branch: Any, point: int, contact: int, out: Any) -> int: ...
+        def hbvib_branch_contact_summary_with_hooks(self, branch: Any, point: int, contact: int, out: Any, hooks:
+            Any) -> int: ...
         def hbvib_linear_modes(self, model: Any, diameter: int, contacts: int, count: int, omega: Any, shapes:
             Any) -> int: ...
+        def hbvib_linear_modes_with_hooks(self, model: Any, diameter: int, contacts: int, count: int, omega: Any,
+            shapes: Any, hooks: Any) -> int: ...
         def hbvib_mode_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_nonlinear_mode(self, model: Any, solver: Any, mode: Any, hooks: Any, out: Any) -> int: ...
         def hbvib_mode_point_init(self, p: Any, size_of_p: int) -> int: ...
@@ -444,9 +482,14 @@ if TYPE_CHECKING:
         def hbvib_synthesis_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_branch_synthesis(self, branch: Any, model: Any, options: Any, capacity: int, omega: Any, response:
             Any, modal_amplitude: Any, count: Any) -> int: ...
+        def hbvib_branch_synthesis_with_hooks(self, branch: Any, model: Any, options: Any, capacity: int, omega: Any,
+            response: Any, modal_amplitude: Any, count: Any, hooks: Any) -> int: ...
         def hbvib_branch_synthesis_peaks(self, branch: Any, model: Any, options: Any, capacity: int, omega: Any,
             amplitude: Any, log10_amplitude: Any, damping_ratio: Any, other_mode: Any, flags: Any, count:
             Any) -> int: ...
+        def hbvib_branch_synthesis_peaks_with_hooks(self, branch: Any, model: Any, options: Any, capacity: int, omega:
+            Any, amplitude: Any, log10_amplitude: Any, damping_ratio: Any, other_mode: Any, flags: Any, count: Any,
+            hooks: Any) -> int: ...
         def hbvib_time_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_time_info_init(self, i: Any, size_of_i: int) -> int: ...
         def hbvib_time_response(self, model: Any, options: Any, hooks: Any, harmonics: Any, harmonics_len: int, samples:
@@ -457,8 +500,12 @@ if TYPE_CHECKING:
             harmonics_len: int, errors: Any, errors_len: int, out: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
+        def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,
+            motion_len: int, force: Any, force_len: int, jac: Any, jac_len: int, hooks: Any) -> int: ...
         def hbvib_forced_residual(self, model: Any, solver: Any, omega: float, x: Any, x_len: int, r: Any, r_len: int,
             jac: Any, jac_len: int, d_omega: Any, d_omega_len: int) -> int: ...
+        def hbvib_forced_residual_with_hooks(self, model: Any, solver: Any, omega: float, x: Any, x_len: int, r: Any,
+            r_len: int, jac: Any, jac_len: int, d_omega: Any, d_omega_len: int, hooks: Any) -> int: ...
         def hbvib_index_from_one(self, name: Any, index: int, count: int, from_zero: Any) -> int: ...
 # END GENERATED
 
@@ -602,6 +649,10 @@ class OutOfMemoryError(Error, MemoryError):
 
 class CallbackError(Error, RuntimeError):
     """A force callback refused, or wrote numbers that are not finite."""
+
+
+class Stopped(Error):
+    """A phase callback or the cancel flag stopped a call that has no points to keep."""
 
 
 class StoppedEarly(RuntimeWarning):
@@ -890,7 +941,7 @@ def _call(name: str, *arguments: Any, guard: Optional[_Guard] = None) -> int:
 
 
 class CancelFlag:
-    """Stops a solve from another thread: `set()` is looked at in every Newton iteration. Hand it in as cancel=."""
+    """Stops a call from another thread: `set()` is looked at in every long loop. Hand it in as cancel=."""
 
     def __init__(self) -> None:
         self.value = ctypes.c_int32(0)
@@ -910,9 +961,9 @@ def _refused(answer: Any) -> bool:
 
 
 def _hooks(guard: _Guard, progress: Optional[Callable], log: Optional[Callable], log_level: Any,
-           cancel: Optional[CancelFlag]) -> Any:
-    """The hooks of one solve. Ctrl-C and failures of `log` need progress, too."""
-    for name, function in (("progress", progress), ("log", log)):
+           cancel: Optional[CancelFlag], phase: Optional[Callable] = None) -> Any:
+    """The hooks of one call. Ctrl-C and failures of `log` need the callback of phases, too."""
+    for name, function in (("progress", progress), ("log", log), ("phase", phase)):
         if function is not None and not callable(function):
             raise TypeError(f"{name} is not callable")
     if cancel is not None and not isinstance(cancel, CancelFlag):
@@ -928,17 +979,40 @@ def _hooks(guard: _Guard, progress: Optional[Callable], log: Optional[Callable],
         stop = progress is not None and guard.held is None and guard.run(stops, state.contents)
         return int(stop or guard.held is not None)
 
+    def refuses(report: Any) -> bool:
+        known = Phase(report.phase) if report.phase in Phase.__members__.values() else report.phase
+        try:
+            return _refused(phase(known, report.share))
+        except StopIteration:
+            return True
+
+    def on_phase(_: Any, report: Any) -> int:
+        stop = phase is not None and guard.held is None and guard.run(refuses, report.contents)
+        return int(stop or guard.held is not None)
+
     def on_log(_: Any, level: int, text: bytes) -> None:
         guard.run(log, LogLevel(level), text.decode(errors="replace"))
 
     hooks = _new("hbvib_hooks")
-    if progress is not None or log is not None or guard.wrapped:
+    if progress is not None or phase is not None or log is not None or guard.wrapped:
         hooks.progress = _TYPES["progress_fn"](on_progress)
+        hooks.phase = _TYPES["phase_fn"](on_phase)
     if log is not None:
         hooks.log, hooks.log_level = _TYPES["log_fn"](on_log), _member(LogLevel, log_level)
     if cancel is not None:
         hooks.cancel = ctypes.addressof(cancel.value)
     return hooks
+
+
+def _stoppable(name: str, *arguments: Any, phase: Optional[Callable] = None,
+               cancel: Optional[CancelFlag] = None) -> int:
+    """Calls a function that has no points to keep by its variant with hooks, so that Ctrl-C stops it as well."""
+    with _Guard() as guard:
+        hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)
+        status = _call(name + "_with_hooks", *arguments, hooks, guard=guard)
+    if status == Status.STOPPED_BY_CALLER:
+        raise Stopped(_sentence(status), Status(status), 0)
+    return status
 
 
 class ForceCall:
@@ -1305,12 +1379,16 @@ class Model(_Owner):
         self._call("hbvib_check_jacobian", contact, omega, amplitude, len(amplitude), gap)
         return JacobianGap.of(gap)
 
-    def linear_modes(self, count: int, diameter: int = 0, contacts: Any = ContactState.STUCK) -> Modes:
+    def linear_modes(self, count: int, diameter: int = 0, contacts: Any = ContactState.STUCK, *,
+                     phase: Optional[Callable[[Phase, float], Any]] = None,
+                     cancel: Optional[CancelFlag] = None) -> Modes:
         """Undamped natural modes: omega (count), ascending, and shapes (count, ndof), complex, phi^H M phi = 1.
 
-        diameter   nodal diameter of the wave, 0 .. sectors / 2.    contacts   "stuck" or "free"."""
+        diameter   nodal diameter of the wave, 0 .. sectors / 2.    contacts   "stuck" or "free".
+        phase, cancel   as in forced_response; Stopped is raised where they stop it."""
         omega, shapes = np.empty(count), np.empty((count, self.ndof), complex)
-        self._call("hbvib_linear_modes", diameter, _member(ContactState, contacts), count, omega, shapes)
+        _stoppable("hbvib_linear_modes", self.handle, diameter, _member(ContactState, contacts), count, omega, shapes,
+                   phase=phase, cancel=cancel)
         return Modes(omega, shapes)
 
     def _solve(self, name: str, solver: dict, options: Any, hooks: tuple) -> Branch:
@@ -1333,7 +1411,8 @@ class Model(_Owner):
     def forced_response(self, omega: Any, *, at: Optional[ArrayLike] = None, guess: Optional[ArrayLike] = None,
                         progress: Optional[Callable[[Progress], Any]] = None,
                         log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
-                        cancel: Optional[CancelFlag] = None, **solver: Any) -> Branch:
+                        cancel: Optional[CancelFlag] = None,
+                        phase: Optional[Callable[[Phase, float], Any]] = None, **solver: Any) -> Branch:
         """Follows the periodic response over a range of frequency.
 
         omega     (start, stop) in rad per time unit, downward where stop is the lower; or one frequency.
@@ -1341,6 +1420,7 @@ class Model(_Owner):
         guess     start values, (H + 1, ndof) complex, such as Branch.harmonics gives.
         progress  progress(Progress) after each point: False, or raising StopIteration, stops and keeps the points.
         log       log(LogLevel, text), lines up to log_level.
+        phase     phase(Phase, share) in all phases from the set-up on: False, or raising StopIteration, stops.
         cancel    a CancelFlag.
         Others are the solver options of hbvib.h: tolerance, or harmonics for a fixed number, max_harmonics, samples,
         response_dof, step, step_min, step_max, tol_residual, max_newton, max_points, keep_even_harmonics,
@@ -1348,14 +1428,15 @@ class Model(_Owner):
         start, stop = (omega, omega) if np.ndim(omega) == 0 else omega
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))
-        return self._solve("hbvib_forced_response", solver, options, (progress, log, log_level, cancel))
+        return self._solve("hbvib_forced_response", solver, options, (progress, log, log_level, cancel, phase))
 
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,
                        shape: Optional[ArrayLike] = None, damping_form: Any = DampingForm.MASS, diameter: int = -1,
                        mode_index: int = 0, near_omega: float = 0, amplitude_contact: int = -1, reference_dof: int = -1,
                        progress: Optional[Callable[[Progress], Any]] = None,
                        log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
-                       cancel: Optional[CancelFlag] = None, **solver: Any) -> Branch:
+                       cancel: Optional[CancelFlag] = None,
+                       phase: Optional[Callable[[Phase, float], Any]] = None, **solver: Any) -> Branch:
         """Follows a nonlinear mode over a range of amplitude: frequency and damping ratio against it.
 
         log10_amplitude   (start, stop), rising: of sqrt(X_1^H M X_1), or with amplitude_contact of |Y_1| of a contact.
@@ -1368,19 +1449,20 @@ class Model(_Owner):
                        damping_form=_member(DampingForm, damping_form), mode_index=mode_index, near_omega=near_omega,
                        amplitude_contact=amplitude_contact, reference_dof=reference_dof, **_counted_array("at", at),
                        **_counted_array("shape", shape, np.complex128, [self.ndof]))
-        return self._solve("hbvib_nonlinear_mode", solver, options, (progress, log, log_level, cancel))
+        return self._solve("hbvib_nonlinear_mode", solver, options, (progress, log, log_level, cancel, phase))
 
     def time_response(self, omega: float, *, harmonics: int = 9, samples: int = 0, method: Any = SteadyMethod.SHOOTING,
                       start: Optional[ArrayLike] = None, progress: Optional[Callable[[Progress], Any]] = None,
                       log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
-                      cancel: Optional[CancelFlag] = None, **options: Any) -> TimeResponse:
+                      cancel: Optional[CancelFlag] = None,
+                      phase: Optional[Callable[[Phase, float], Any]] = None, **options: Any) -> TimeResponse:
         """The periodic response at one frequency by integration in time: a check of any point of a branch.
 
         start      (H + 1, ndof) complex motion to start from, such as Branch.harmonics gives; None: rest.
         method     "shooting" or "marching".    tolerance, max_periods   see hbvib.h.
         progress   after each period; the rest as in forced_response.
         Returns harmonics (harmonics + 1, ndof) complex, samples (samples, ndof) at equidistant times, info, and status:
-        STOPPED_BY_CALLER where the results are those of the last period, not steady."""
+        STOPPED_BY_CALLER where the results are those of the last period, not steady, or NaN after cancel."""
         settings = _options(
             "time_response", "hbvib_time_options", options, "start start_len", omega=omega, harmonics=harmonics,
             samples=samples, method=_member(SteadyMethod, method),
@@ -1388,7 +1470,7 @@ class Model(_Owner):
         shapes = (max(settings.harmonics, -1) + 1, self.ndof), (max(settings.samples, 0), self.ndof)
         x, times, info = np.empty(shapes[0], complex), np.empty(shapes[1]), _new("hbvib_time_info")
         with _Guard() as guard:
-            hooks = _hooks(guard, progress, log, log_level, cancel)
+            hooks = _hooks(guard, progress, log, log_level, cancel, phase)
             status = _call("hbvib_time_response", self.handle, settings, hooks, x, x.size,
                            times if times.size else None, times.size, info, guard=guard)
         return TimeResponse(x, times, TimeInfo.of(info), Status(status))
@@ -1396,34 +1478,38 @@ class Model(_Owner):
     def verify(self, branch: Branch, point: int, *, method: Any = SteadyMethod.SHOOTING,
                progress: Optional[Callable[[Progress], Any]] = None,
                log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
-               cancel: Optional[CancelFlag] = None, **options: Any) -> Verification:
+               cancel: Optional[CancelFlag] = None,
+               phase: Optional[Callable[[Phase, float], Any]] = None, **options: Any) -> Verification:
         """How far a point of a forced response of this model is from the motion that integration in time finds from it.
 
         method     "shooting" or "marching".    tolerance, max_periods, same_within   see hbvib.h.
         progress   after each period; the rest as in forced_response.
         Returns harmonics (H + 1, ndof) complex in time, errors (H + 1), info, whose response_error is that of the
         response and whose same_solution is False where the integration ended far from the point, and status:
-        STOPPED_BY_CALLER where all of it compares with the last period, not steady."""
+        STOPPED_BY_CALLER where all of it compares with the last period, not steady, or is NaN after cancel."""
         settings = _options("verify", "hbvib_verify_options", options, method=_member(SteadyMethod, method))
         rows = branch.reduction.harmonics_asked + 1
         x, errors, info = np.empty((rows, self.ndof), complex), np.empty(rows), _new("hbvib_verification")
         with _Guard() as guard:
-            hooks = _hooks(guard, progress, log, log_level, cancel)
+            hooks = _hooks(guard, progress, log, log_level, cancel, phase)
             status = _call("hbvib_verify", self.handle, branch.handle, point, settings, hooks, x, x.size, errors,
                            errors.size, info, guard=guard)
         return Verification(x, errors, VerificationInfo.of(info), Status(status))
 
     def forced_residual(self, omega: float, x: ArrayLike, *, jacobian: bool = False, d_omega: bool = False,
-                        samples: int = 0) -> Residual:
+                        samples: int = 0, phase: Optional[Callable[[Phase, float], Any]] = None,
+                        cancel: Optional[CancelFlag] = None) -> Residual:
         """Residual of harmonic balance at x, (H + 1, ndof) complex: an array like x; with jacobian the real matrix
-        d R / d X over the pairs (re, im), of order 2 x.size; with d_omega an array like x; else None."""
+        d R / d X over the pairs (re, im), of order 2 x.size; with d_omega an array like x; else None.
+
+        phase, cancel   as in forced_response; Stopped is raised where they stop it."""
         x = _array("x", x, np.complex128, [None, self.ndof])
         solver = _new("hbvib_solver_options", harmonics=len(x) - 1, samples=samples)
         residual = np.empty_like(x)
         matrix = np.empty((2 * x.size,) * 2, order="F") if jacobian else None
         slope = np.empty_like(x) if d_omega else None
-        self._call("hbvib_forced_residual", solver, omega, x, x.size, residual, x.size, matrix,
-                   matrix.size if jacobian else 0, slope, x.size if d_omega else 0)
+        _stoppable("hbvib_forced_residual", self.handle, solver, omega, x, x.size, residual, x.size, matrix,
+                   matrix.size if jacobian else 0, slope, x.size if d_omega else 0, phase=phase, cancel=cancel)
         return Residual(residual, matrix, slope)
 
 
@@ -1434,15 +1520,19 @@ verify = Model.verify
 
 
 def evaluate_contact(kind: Any, motion: ArrayLike, *, omega: float = 1, samples: int = 0, jacobian: bool = False,
+                     phase: Optional[Callable[[Phase, float], Any]] = None,
+                     cancel: Optional[CancelFlag] = None,
                      **constants: Any) -> ContactForce:
     """Force of one contact law on prescribed harmonics of its motions, (H + 1) or (d, H + 1) complex: an array like
-    it, and with jacobian the real d F / d Y over the pairs (re, im), of order 2 d (H + 1), else None."""
+    it, and with jacobian the real d F / d Y over the pairs (re, im), of order 2 d (H + 1), else None.
+
+    phase, cancel   as in forced_response; Stopped is raised where they stop it."""
     law = _law("evaluate_contact", kind, constants)
     motion = _array("motion", motion, np.complex128, [None] * (2 if np.ndim(motion) == 2 else 1))
     force = np.empty_like(motion)
     matrix = np.empty((2 * motion.size,) * 2, order="F") if jacobian else None
-    _call("hbvib_contact_evaluate", law, motion.shape[-1] - 1, samples, omega, motion, motion.size, force, force.size,
-          matrix, matrix.size if jacobian else 0)
+    _stoppable("hbvib_contact_evaluate", law, motion.shape[-1] - 1, samples, omega, motion, motion.size, force,
+               force.size, matrix, matrix.size if jacobian else 0, phase=phase, cancel=cancel)
     return ContactForce(force, matrix)
 
 
@@ -1574,21 +1664,34 @@ class Branch(_Owner):
         """Numbers of a point of a nonlinear mode."""
         return self._filled(ModePoint, point, name="mode_point")
 
-    def energy(self, point: int) -> Energy:
-        """Energies and losses of a point."""
-        return self._filled(Energy, point, name="energy")
+    def energy(self, point: int, *, phase: Optional[Callable[[Phase, float], Any]] = None,
+               cancel: Optional[CancelFlag] = None) -> Energy:
+        """Energies and losses of a point.
 
-    def summary(self, point: int, contact: int) -> ContactSummary:
-        """Work, shares of the period, ranges and loads of a contact at a point."""
-        return self._filled(ContactSummary, point, contact, name="contact_summary")
+        phase, cancel   as in forced_response; Stopped is raised where they stop it."""
+        energy = _new("hbvib_energy")
+        _stoppable("hbvib_branch_energy", self.handle, point, energy, phase=phase, cancel=cancel)
+        return Energy.of(energy)
 
-    def harmonics(self, point: int, first_dof: int = 0, n_dof: Optional[int] = None) -> np.ndarray:
-        """Harmonics 0 .. H at a point, (H + 1, n_dof) complex, a copy; n_dof None: all from first_dof on."""
+    def summary(self, point: int, contact: int, *, phase: Optional[Callable[[Phase, float], Any]] = None,
+                cancel: Optional[CancelFlag] = None) -> ContactSummary:
+        """Work, shares of the period, ranges and loads of a contact at a point. phase, cancel: as in energy."""
+        summary = _new("hbvib_contact_summary")
+        _stoppable("hbvib_branch_contact_summary", self.handle, point, contact, summary, phase=phase, cancel=cancel)
+        return ContactSummary.of(summary)
+
+    def harmonics(self, point: int, first_dof: int = 0, n_dof: Optional[int] = None, *,
+                  phase: Optional[Callable[[Phase, float], Any]] = None,
+                  cancel: Optional[CancelFlag] = None) -> np.ndarray:
+        """Harmonics 0 .. H at a point, (H + 1, n_dof) complex, a copy; n_dof None: all from first_dof on.
+
+        phase, cancel   as in forced_response; Stopped is raised where they stop it. So in the methods below."""
         reduction = self.reduction
         if n_dof is None:
             n_dof = max(reduction.degrees_of_freedom - _whole(first_dof), 1)
         x = np.empty((reduction.harmonics_asked + 1, n_dof), complex)
-        self._call("hbvib_branch_harmonics", point, first_dof, n_dof, x, x.size)
+        _stoppable("hbvib_branch_harmonics", self.handle, point, first_dof, n_dof, x, x.size, phase=phase,
+                   cancel=cancel)
         return x
 
     def slip(self, point: int) -> np.ndarray:
@@ -1597,24 +1700,30 @@ class Branch(_Owner):
         self._call("hbvib_branch_slip_fraction", point, shares, shares.size)
         return shares
 
-    def time_history(self, point: int, dof: int, n: int = 256) -> np.ndarray:
+    def time_history(self, point: int, dof: int, n: int = 256, *,
+                     phase: Optional[Callable[[Phase, float], Any]] = None,
+                     cancel: Optional[CancelFlag] = None) -> np.ndarray:
         """Motion of a degree of freedom over one period at a point, n equidistant times."""
         x = np.empty(n)
-        self._call("hbvib_branch_time_history", point, dof, n, x)
+        _stoppable("hbvib_branch_time_history", self.handle, point, dof, n, x, phase=phase, cancel=cancel)
         return x
 
-    def loop(self, point: int, contact: int, direction: int = 0, n: int = 256) -> Loop:
+    def loop(self, point: int, contact: int, direction: int = 0, n: int = 256, *,
+             phase: Optional[Callable[[Phase, float], Any]] = None,
+             cancel: Optional[CancelFlag] = None) -> Loop:
         """Hysteresis loop of a contact over one period at a point: motion, force and state (State), n each."""
         motion, force, state = np.empty(n), np.empty(n), np.empty(n, np.int32)
-        self._call("hbvib_branch_contact_loop", point, contact, direction, n, motion, force, state)
+        _stoppable("hbvib_branch_contact_loop", self.handle, point, contact, direction, n, motion, force, state,
+                   phase=phase, cancel=cancel)
         return Loop(motion, force, state)
 
-    def _listed(self, name: str, arguments: tuple, dtypes: Sequence) -> list:
+    def _listed(self, name: str, arguments: tuple, dtypes: Sequence, stop: Optional[dict] = None) -> list:
         """Arrays as long as the library says: a first call gets the count, a second one the numbers."""
         count = ctypes.c_int64()
-        self._call(name, *arguments, 0, *[None] * len(dtypes), count)
+        run = self._call if stop is None else partial(_stoppable, **stop)
+        run(name, *arguments, 0, *[None] * len(dtypes), count)
         arrays = [np.empty(count.value, dtype) for dtype in dtypes]
-        self._call(name, *arguments, count.value, *arrays, count)
+        run(name, *arguments, count.value, *arrays, count)
         return arrays
 
     def peaks(self) -> Points:
@@ -1631,7 +1740,8 @@ class Branch(_Owner):
 
     def synthesis(self, model: Model, **options: Any) -> Synthesis:
         """The response to the forces of a model, from this nonlinear mode: omega, response (complex fundamental of
-        the response degree of freedom), modal_amplitude. Options: force_factor, damping_ratio, model_damping."""
+        the response degree of freedom), modal_amplitude. Options: force_factor, damping_ratio, model_damping, and
+        phase, cancel as in energy."""
         return Synthesis(*self._synthesis("synthesis", model, options, [float, complex, float]))
 
     def synthesis_peaks(self, model: Model, **options: Any) -> SynthesisPeaks:
@@ -1640,5 +1750,6 @@ class Branch(_Owner):
         return SynthesisPeaks(*self._synthesis("synthesis_peaks", model, options, [float] * 5 + [np.int32]))
 
     def _synthesis(self, name: str, model: Model, options: dict, dtypes: Sequence) -> list:
+        stop = {key: options.pop(key, None) for key in ("phase", "cancel")}
         settings = _options(name, "hbvib_synthesis_options", options)
-        return self._listed("hbvib_branch_" + name, (model.handle, settings), dtypes)
+        return self._listed("hbvib_branch_" + name, (self.handle, model.handle, settings), dtypes, stop)

@@ -42,8 +42,15 @@ pub struct PhaseReport {
 /// Receiver of phase reports; `true` stops the call.
 pub type PhaseSink<'a> = dyn Fn(&PhaseReport) -> bool + 'a;
 
-/// Smallest increase of the share that is reported: at most a hundred reports per phase.
+/// Smallest increase of the share that is reported.
 const REPORTED: f64 = 0.01;
+
+/// Operations after which the phase is reported again, whatever its share: some ten milliseconds, so that a caller whose
+/// receiver looks for signals sees them in time.
+const BETWEEN_REPORTS: u64 = 20_000_000;
+
+/// Operations that a check without a number stands for.
+const OF_ONE_CHECK: u64 = 10_000;
 
 /// Asked by every long loop whether the caller wants to stop; see the module.
 pub struct Interrupt<'a> {
@@ -52,6 +59,10 @@ pub struct Interrupt<'a> {
     stopped: Cell<bool>,
     current: Cell<PhaseReport>,
     checks: Cell<u64>,
+    /// Most operations between two checks.
+    largest: Cell<u64>,
+    /// Operations since the last report.
+    work: Cell<u64>,
 }
 
 impl<'a> Interrupt<'a> {
@@ -67,6 +78,8 @@ impl<'a> Interrupt<'a> {
                 share: f64::NEG_INFINITY,
             }),
             checks: Cell::new(0),
+            largest: Cell::new(0),
+            work: Cell::new(0),
         }
     }
 
@@ -82,11 +95,26 @@ impl<'a> Interrupt<'a> {
     /// `StoppedByCaller`.
     #[inline]
     pub fn check(&self) -> Result<()> {
+        self.check_before(OF_ONE_CHECK)
+    }
+
+    /// Checks before about this number of operations, which no check interrupts.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    #[inline]
+    pub fn check_before(&self, operations: u64) -> Result<()> {
         self.checks.set(self.checks.get() + 1);
         if self.stopped.get() || self.cancelled.is_some_and(|f| f()) {
             return Err(self.stop());
         }
-        Ok(())
+        self.largest.set(self.largest.get().max(operations));
+        let work = self.work.get().saturating_add(operations);
+        self.work.set(work);
+        if work < BETWEEN_REPORTS {
+            return Ok(());
+        }
+        self.report(self.current.get())
     }
 
     /// Whether a check has failed: the call is on its way back.
@@ -95,14 +123,20 @@ impl<'a> Interrupt<'a> {
         self.stopped.get()
     }
 
+    /// Largest number of operations that no check interrupted.
+    #[must_use]
+    pub fn largest(&self) -> u64 {
+        self.largest.get()
+    }
+
     /// Number of checks made, a measure of work that does not depend on the machine.
     #[must_use]
     pub fn checks(&self) -> u64 {
         self.checks.get()
     }
 
-    /// Checks, and reports the phase with its completed share: at its begin, and whenever the share has grown by a
-    /// hundredth.
+    /// Checks, and reports the phase with its completed share: at its begin, whenever the share has grown by a hundredth,
+    /// and after some ten million operations.
     ///
     /// # Errors
     /// `StoppedByCaller`.
@@ -140,6 +174,7 @@ impl<'a> Interrupt<'a> {
 
     fn report(&self, report: PhaseReport) -> Result<()> {
         self.current.set(report);
+        self.work.set(0);
         match self.sink {
             Some(sink) if sink(&report) => Err(self.stop()),
             _ => Ok(()),
@@ -183,15 +218,23 @@ mod tests {
         for i in 0..10_000 {
             interrupt.part(Phase::Condensation, i, 10_000).unwrap();
         }
-        assert_eq!(reports.borrow().len(), 100);
+        let within = BETWEEN_REPORTS / OF_ONE_CHECK;
+        assert!((100..=100 + 10_000 / within as usize).contains(&reports.borrow().len()));
+        reports.borrow_mut().clear();
         for _ in 0..3 {
             interrupt.announce_factorisation().unwrap();
         }
         interrupt.part(Phase::Condensation, 9_999, 10_000).unwrap();
-        assert_eq!(reports.borrow().len(), 103);
+        assert_eq!(reports.borrow().len(), 3);
         interrupt.phase(Phase::Estimate, 0.0).unwrap();
         interrupt.phase(Phase::Continuation, 0.3).unwrap();
         assert!((reports.borrow().last().unwrap().share - 0.3).abs() < 1e-15);
-        assert_eq!(reports.borrow().len(), 105);
+        assert_eq!(reports.borrow().len(), 5);
+        // A long loop within one part is reported by its work.
+        for _ in 0..10 {
+            interrupt.check_before(BETWEEN_REPORTS / 2).unwrap();
+        }
+        assert_eq!(reports.borrow().len(), 10);
+        assert_eq!(interrupt.largest(), BETWEEN_REPORTS / 2);
     }
 }

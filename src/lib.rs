@@ -84,9 +84,11 @@ pub use model::structure::MatrixKind;
 // Analyses.
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use analysis::forced_response::forced_response;
-pub use analysis::harmonic_residual::{contact_evaluate, forced_residual};
+pub use analysis::harmonic_residual::{
+    ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
+};
 pub use analysis::nonlinear_mode::nonlinear_mode;
-pub use analysis::point_error::estimate_at;
+pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};

@@ -109,8 +109,9 @@ fn no_evaluation_allocates(model: &Model) {
     for (highest, samples) in WAYS {
         let options = options(highest, samples);
         let omega = TAU * 208.85;
-        let condensed = Condensed::new(model, &options, omega).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
+        let condensed = Condensed::new(model, &options, omega, &Interrupt::none()).unwrap();
+        let interrupt = Interrupt::none();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None, &interrupt).unwrap();
         let n = problem.size();
         let mut u = vec![0.0; n];
         let mut at = Residual::new(n).unwrap();
@@ -124,7 +125,7 @@ fn no_evaluation_allocates(model: &Model) {
                     u[k % n] *= 1.5;
                     let factor = 1.0 + (factor - 1.0) * f64::from(k as u32 + 1);
                     problem.evaluate(&u, omega * factor, &mut at).unwrap();
-                    problem.fill(&mut matrix, &mut active);
+                    problem.fill(&mut matrix, &mut active).unwrap();
                 }
             });
             assert_eq!(
@@ -140,7 +141,7 @@ fn no_evaluation_allocates(model: &Model) {
 
 #[test]
 fn the_energy_balance_of_a_point_allocates_nothing() {
-    let condensed = Condensed::new(&BASE.sector(), &options(9, 0), TAU * 208.85).unwrap();
+    let condensed = Condensed::new(&BASE.sector(), &options(9, 0), TAU * 208.85, &Interrupt::none()).unwrap();
     let x = vec![Complex64::ONE; condensed.set().numbers().len() * condensed.ndof()];
     let packed = vec![1.0; condensed.coordinates() * condensed.set().packed_len()];
     let (count, found) = allocations(|| balance(&condensed, 1300.0, &x, &packed, &packed));
@@ -165,8 +166,10 @@ fn an_evaluation_of_a_mode_allocates_nothing() {
         };
         for (highest, samples) in WAYS {
             let options = options(highest, samples);
-            let (condensed, _) = Condensed::for_mode(&model, &options, form, &linear.shape).unwrap();
-            let mut problem = Epmc::new(&condensed, &gauge, &linear, samples).unwrap();
+            let (condensed, _) =
+                Condensed::for_mode(&model, &options, form, &linear.shape, &Interrupt::none()).unwrap();
+            let interrupt = Interrupt::none();
+            let mut problem = Epmc::new(&condensed, &gauge, &linear, samples, &interrupt).unwrap();
             let n = problem.size();
             let mut u = vec![0.0; n];
             let mut at = Residual::new(n).unwrap();
@@ -180,7 +183,7 @@ fn an_evaluation_of_a_mode_allocates_nothing() {
                     // The motion changes too: other turning points, other slips.
                     u[k % n] *= 1.5;
                     problem.evaluate(&u, onset + 0.5 * k as f64, &mut at).unwrap();
-                    problem.fill(&mut matrix, &mut active);
+                    problem.fill(&mut matrix, &mut active).unwrap();
                 }
             });
             assert_eq!(count, 0, "{form:?}, H = {highest}, {samples} samples");
@@ -217,9 +220,10 @@ fn many_contacts_along_a_sweep_allocate_only_where_a_panel_is_laid() {
     model.set_rayleigh(0.0, 0.02).unwrap();
     model.add_force(0, 1, 1.0.into()).unwrap();
     let options = options(3, 0);
-    let condensed = Condensed::new(&model, &options, 0.8).unwrap();
+    let condensed = Condensed::new(&model, &options, 0.8, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.9), 0, None).unwrap();
+    let interrupt = Interrupt::none();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.9), 0, None, &interrupt).unwrap();
     let size = problem.size();
     let mut v = vec![0.0; size + 1];
     assert!(problem.initial_guess(InitialGuess::Stuck, 0.8, &mut v[..size]).unwrap());
@@ -259,8 +263,9 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
     for (highest, samples) in WAYS {
         let options = options(highest, samples);
         let omega = TAU * 208.85;
-        let condensed = Condensed::new(&model, &options, omega).unwrap();
-        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None).unwrap();
+        let condensed = Condensed::new(&model, &options, omega, &Interrupt::none()).unwrap();
+        let interrupt = Interrupt::none();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), samples, None, &interrupt).unwrap();
         let n = problem.size();
         let mut v = vec![0.0; n + 1];
         assert!(problem.initial_guess(InitialGuess::Stuck, omega, &mut v[..n]).unwrap());
@@ -370,7 +375,7 @@ fn a_callback_with_states_is_asked_without_memory() {
     let motion: Vec<f64> = (0..11).map(|i| (0.7 + f64::from(i)).sin()).collect();
     let mut way = HystereticEvaluator::new(&set, &law, 256).unwrap();
     let mut out = Evaluation::new(&set, 1).unwrap();
-    let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out));
+    let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out, &Interrupt::none()));
     result.unwrap();
     assert_eq!(count, 0);
     // A load that stays is crept away; the fundamental is filtered, Z = 0.1 X/(1 - 0.9 exp(-2 pi i/256)).
@@ -395,7 +400,7 @@ fn a_law_marched_over_samples_asks_for_no_memory() {
         let motion: Vec<f64> = (0..33).map(|i| (0.7 + f64::from(i)).sin()).collect();
         let mut way = HystereticEvaluator::new(&set, &law, 128).unwrap();
         let mut out = Evaluation::new(&set, 3).unwrap();
-        let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out));
+        let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out, &Interrupt::none()));
         result.unwrap();
         assert_eq!(count, 0, "load {load}");
         assert_eq!(out.open_fraction > 0.0, load < 1.0);
@@ -440,9 +445,10 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
     model.add_force(14, 1, Complex64::new(0.0, 0.4)).unwrap();
     let omega = 1.3;
     let options = options(5, 0);
-    let condensed = Condensed::new(&model, &options, omega).unwrap();
+    let condensed = Condensed::new(&model, &options, omega, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = HarmonicBalance::new(&condensed, 0, (omega, 1.1 * omega), 0, None).unwrap();
+    let interrupt = Interrupt::none();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (omega, 1.1 * omega), 0, None, &interrupt).unwrap();
     let size = problem.size();
     let mut v = vec![0.0; size + 1];
     problem

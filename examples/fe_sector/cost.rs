@@ -5,6 +5,8 @@ use std::f64::consts::TAU;
 use std::io::Write;
 use std::time::{Duration, Instant};
 
+use hbvib::interrupt::Interrupt;
+
 use hbvib::condense::Condensed;
 use hbvib::condense::flexibility::Workspace;
 use hbvib::linalg::lu::Lu;
@@ -78,7 +80,7 @@ fn dense_lu(n: usize) -> Result<Duration, Box<dyn Error>> {
             *x = (k as f64 * 0.37).sin() + if k % (n + 1) == 0 { 4.0 } else { 0.0 };
         }
         let begin = Instant::now();
-        lu.factor()?;
+        lu.factor(&Interrupt::none())?;
         best = best.min(begin.elapsed());
     }
     Ok(best)
@@ -86,13 +88,13 @@ fn dense_lu(n: usize) -> Result<Duration, Box<dyn Error>> {
 
 /// Time of factorising the dynamic stiffness and solving for every contact, all harmonics.
 fn factorisation(model: &Model, solver: &SolverOptions, omega: f64) -> Result<Duration, Box<dyn Error>> {
-    let condensed = Condensed::new(model, solver, omega)?;
+    let condensed = Condensed::new(model, solver, omega, &Interrupt::none())?;
     let mut workspace = Workspace::new(&condensed, None)?;
     let mut best = Duration::MAX;
     for _ in 0..REPEATS {
         let begin = Instant::now();
         for i in 0..condensed.blocks().len() {
-            workspace.evaluate(&condensed, i, omega, false)?;
+            workspace.evaluate(&condensed, i, omega, false, &Interrupt::none())?;
         }
         best = best.min(begin.elapsed());
     }

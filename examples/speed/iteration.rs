@@ -8,6 +8,7 @@ use hbvib::aft::{Evaluation, Evaluator};
 use hbvib::condense::Condensed;
 use hbvib::continuation::Metric;
 use hbvib::continuation::corrector::{Corrector, Outcome};
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::bordered::Bordered;
 use hbvib::linalg::linear_system::Jacobian;
 use hbvib::linalg::norm;
@@ -74,8 +75,10 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
         ..SolverOptions::default()
     };
     let omega = 208.85 * TAU;
-    let condensed = Condensed::new(&parameters.model()?, &options, omega)?;
-    let mut problem = HarmonicBalance::new(&condensed, model::B2, (207.0 * TAU, 211.0 * TAU), samples, None)?;
+    let never = Interrupt::none();
+    let condensed = Condensed::new(&parameters.model()?, &options, omega, &never)?;
+    let range = (207.0 * TAU, 211.0 * TAU);
+    let mut problem = HarmonicBalance::new(&condensed, model::B2, range, samples, None, &never)?;
     let n = problem.size();
     let mut v = vec![0.0; n + 1];
     v[n] = omega;
@@ -87,7 +90,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
         u: 10.0 * norm(&v[..n]),
         p: 4.0 * TAU,
     };
-    let Outcome::Converged(found) = corrector.correct(&mut problem, &mut v, &row, metric, true, None)? else {
+    let Outcome::Converged(found) = corrector.correct(&mut problem, &mut v, &row, metric, true, &never)? else {
         return Err("the point of the measurement was not found".into());
     };
     // In the plane across the branch, as in continuation.
@@ -109,7 +112,7 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
         evaluator.prepare(set, black_box(u));
         Ok(())
     })?;
-    let law = time(|| Ok(evaluator.evaluate(law, set, black_box(u), omega, &mut out)?))?;
+    let law = time(|| Ok(evaluator.evaluate(law, set, black_box(u), omega, &mut out, &never)?))?;
     let mut at = Residual::new(n)?;
     let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
     let mut turn = false;
@@ -121,13 +124,14 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
     let residual = time(|| Ok(problem.evaluate(u, other(), &mut at)?))?;
     let matrix = time(|| {
         problem.evaluate(u, other(), &mut at)?;
-        problem.fill(&mut jacobian, &mut active);
+        problem.fill(&mut jacobian, &mut active)?;
         Ok(())
     })?;
     let mut bordered = Bordered::new(n)?;
     let mut b = vec![1.0; n + 1];
     let dense = time(|| {
-        bordered.factor(&jacobian, &at.d_parameter, &active, (metric.u, metric.p), &row)?;
+        let scales = (metric.u, metric.p);
+        bordered.factor(&jacobian, &at.d_parameter, &active, scales, &row, &never)?;
         bordered.solve(black_box(&mut b));
         Ok(())
     })?;
@@ -139,12 +143,12 @@ fn measure(force: f64, highest: usize, samples: usize) -> Result<Parts, Box<dyn 
             *s = v * (1.0 + 1e-4);
         }
         start[n] = omega;
-        match corrector.correct(&mut problem, &mut start, &row, metric, false, None)? {
+        match corrector.correct(&mut problem, &mut start, &row, metric, false, &never)? {
             Outcome::Converged(found) => {
                 iterations = found.iterations + 1;
                 Ok(())
             }
-            _ => Err("a point was not corrected".into()),
+            Outcome::Failed => Err("a point was not corrected".into()),
         }
     })?;
     let micro = 1e6;

@@ -7,7 +7,7 @@ use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status};
 use crate::hooks::{Hooks, LogLevel, Progress};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::problem::Problem;
 use crate::results::SpecialKind;
@@ -90,6 +90,9 @@ impl<'a> BranchTracer<'a> {
 
             // Predict and correct.
             let before = analysis.resolution();
+            let parameter = continuation.current().parameter();
+            self.interrupt
+                .phase(Phase::Continuation, self.fraction_done(parameter))?;
             let (point, end) = match continuation.advance(analysis.problem(), self.interrupt)? {
                 Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
@@ -176,8 +179,6 @@ impl<'a> BranchTracer<'a> {
 
     /// Reports the point recorded last to the caller; `true` if the caller stops the run.
     pub fn report(&self, analysis: &dyn Traceable, hooks: &mut Hooks<'_>, point: &Point) -> bool {
-        let (start, end) = self.course.range;
-        let range = end - start;
         let branch = analysis.branch();
         hooks.report(&Progress {
             point: branch.points(),
@@ -185,13 +186,19 @@ impl<'a> BranchTracer<'a> {
             amplitude: branch.amplitude().last().copied().unwrap_or(0.0),
             residual: point.residual,
             step: point.step,
-            fraction_done: if range == 0.0 {
-                1.0
-            } else {
-                ((point.parameter() - start) / range).clamp(0.0, 1.0)
-            },
+            fraction_done: self.fraction_done(point.parameter()),
             newton_iterations: point.iterations,
         })
+    }
+
+    /// Completed share of the range at a parameter value.
+    fn fraction_done(&self, parameter: f64) -> f64 {
+        let (start, end) = self.course.range;
+        let range = end - start;
+        if range == 0.0 {
+            return 1.0;
+        }
+        ((parameter - start) / range).clamp(0.0, 1.0)
     }
 
     fn record_sharpened(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<()> {

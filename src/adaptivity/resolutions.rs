@@ -70,12 +70,13 @@ impl<'a, E> Resolutions<'a, E> {
         self.highest = self.highest.max(self.index);
     }
 
-    /// The parts that were removed from the problem with the most harmonics.
+    /// The parts that were removed from the problem with the most harmonics; `first` are those of the first one.
     ///
     /// # Errors
-    /// Those of [`crate::condense::Condensed::reduction`].
-    pub fn reduction(&self, model: &Model, solver: &SolverOptions) -> Result<Reduction> {
-        self.levels.at(self.highest)?.condensed.reduction(model, solver)
+    /// Those of condensing the model.
+    pub fn reduction(&self, model: &Model, solver: &SolverOptions, first: &Reduction) -> Result<Reduction> {
+        let condensed = &self.levels.at(self.highest)?.condensed;
+        Ok(condensed.reduction_with(model, solver, first.held_by_contacts))
     }
 
     /// A point of another resolution in the current harmonics, see [`transferred_point`].

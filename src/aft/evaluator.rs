@@ -10,6 +10,7 @@ use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use crate::contact::law::{Form, Law};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 
 /// Evaluators of laws, with their tables.
 pub struct Evaluator {
@@ -141,7 +142,7 @@ impl Evaluator {
     /// of one direction needs its motion prepared.
     ///
     /// # Errors
-    /// Those of callbacks.
+    /// Those of callbacks; `StoppedByCaller`.
     pub fn evaluate(
         &mut self,
         law: &dyn Law,
@@ -149,15 +150,21 @@ impl Evaluator {
         motion: &[f64],
         omega: f64,
         out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         match (law.form(), &mut self.scalar) {
             (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
-            (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => evaluator.evaluate(law, set, motion, out),
-            (Form::PiecewiseLinear(law), Scalar::Sampled(evaluator)) => evaluator.evaluate(law, set, motion, out),
+            (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => {
+                evaluator.evaluate(law, set, motion, out, interrupt)?;
+            }
+            (Form::PiecewiseLinear(law), Scalar::Sampled(evaluator)) => {
+                evaluator.evaluate(law, set, motion, out, interrupt)?;
+            }
             (Form::VaryingNormalLoad(law), _) => {
                 let Some(evaluator) = &mut self.varying_load else {
                     return fail!(Internal, "no memory for the pieces of a contact law");
                 };
+                interrupt.check()?;
                 evaluator.evaluate(law, set, motion, out);
             }
             (Form::Hysteretic(law), _) => {
@@ -166,7 +173,7 @@ impl Evaluator {
                 let Some(evaluator) = self.hysteretic.iter_mut().find(|e| e.suits(law, requested)) else {
                     return fail!(Internal, "no memory for the march of a contact law");
                 };
-                return evaluator.evaluate(law, omega, motion, out);
+                return evaluator.evaluate(law, omega, motion, out, interrupt);
             }
             (Form::Memoryless(law), _) => {
                 let highest = set.highest_reduced();
@@ -174,6 +181,7 @@ impl Evaluator {
                 let Some(evaluator) = self.memoryless.iter_mut().find(|e| e.suits(law, requested)) else {
                     return fail!(Internal, "no memory for the samples of a contact law");
                 };
+                interrupt.check()?;
                 return evaluator.evaluate(law, set, omega, motion, out);
             }
         }

@@ -19,6 +19,7 @@ use crate::contact::law::Hysteretic;
 use crate::contact::march::{March, Sticking, StuckState};
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 
 /// Largest number of marches that may end in a step of Newton's method.
 const NEWTON_MARCHES: usize = 100;
@@ -120,11 +121,18 @@ impl HystereticEvaluator {
     ///
     /// # Errors
     /// Those of the law; `NoConvergence` if its states do not become periodic, `NotFinite` if they do not stay
-    /// finite.
-    pub fn evaluate(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64], out: &mut Evaluation) -> Result<()> {
-        let virgin = self.find_periodic_states(law, omega, motion)?;
+    /// finite; `StoppedByCaller`.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn Hysteretic,
+        omega: f64,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let virgin = self.find_periodic_states(law, omega, motion, interrupt)?;
         let omega = self.base * omega;
-        self.differentiate_start(law, omega)?;
+        self.differentiate_start(law, omega, interrupt)?;
         for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
             sums.fill(0.0);
         }
@@ -146,11 +154,17 @@ impl HystereticEvaluator {
     ///
     /// # Errors
     /// Those of [`Self::evaluate`].
-    pub fn find_periodic_states(&mut self, law: &dyn Hysteretic, omega: f64, motion: &[f64]) -> Result<bool> {
+    pub fn find_periodic_states(
+        &mut self,
+        law: &dyn Hysteretic,
+        omega: f64,
+        motion: &[f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
         // The period of the law is 2π/(gω), that of the set.
         let omega = self.base * omega;
         self.signals.fill(omega, motion);
-        self.find_period(law, omega)
+        self.find_period(law, omega, interrupt)
     }
 
     /// Applies the weights to the Fourier sums and forms the offset.
@@ -209,7 +223,7 @@ impl HystereticEvaluator {
     /// slip led, this state lies on the border of those without slip; its place there depends on the slip of the
     /// earlier marches, which a step of Newton's method does not follow. The law is then marched from the load on, if
     /// that takes no more than [`MARCHES`].
-    fn find_period(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
+    fn find_period(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
         let Signals { samples, u, .. } = &self.signals;
         let sticking = law.stuck_state(*samples, u, &mut self.stuck);
         self.starts_stuck = sticking == Sticking::Here;
@@ -217,9 +231,9 @@ impl HystereticEvaluator {
             self.starts[..self.states].copy_from_slice(&self.stuck.z);
             self.sensitivity.stuck(&self.stuck, &self.signals, omega);
             let defect = if self.starts_stuck {
-                self.search(law, omega, 0, STUCK_MARCHES)?
+                self.search(law, omega, (0, STUCK_MARCHES), interrupt)?
             } else {
-                self.search(law, omega, NEWTON_MARCHES, NEWTON_MARCHES)?
+                self.search(law, omega, (NEWTON_MARCHES, NEWTON_MARCHES), interrupt)?
             };
             if defect == 0.0 {
                 return Ok(self.starts_stuck && self.stuck.virgin);
@@ -227,11 +241,11 @@ impl HystereticEvaluator {
             self.starts_stuck = false;
         }
         let virgin = self.load(law, omega)?;
-        let mut defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
+        let mut defect = self.search(law, omega, (NEWTON_MARCHES, MARCHES), interrupt)?;
         // A law that cannot stick slips, and has one periodic state, for every method.
         let guessed = sticking == Sticking::Unknown && self.by_newton[..self.marches - 1].contains(&true);
-        if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, 0, MARCHES)? > 0.0 {
-            defect = self.search(law, omega, NEWTON_MARCHES, MARCHES)?;
+        if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, (0, MARCHES), interrupt)? > 0.0 {
+            defect = self.search(law, omega, (NEWTON_MARCHES, MARCHES), interrupt)?;
         }
         if defect > 0.0 {
             return Err(Error::new(
@@ -247,11 +261,18 @@ impl HystereticEvaluator {
 
     /// Marches from the first start until the states return up to round-off, with Newton's method up to the march
     /// `newton_until`. Returns their difference at the last march, 0 if they return.
-    fn search(&mut self, law: &dyn Hysteretic, omega: f64, newton_until: usize, most: usize) -> Result<f64> {
+    fn search(
+        &mut self,
+        law: &dyn Hysteretic,
+        omega: f64,
+        (newton_until, most): (usize, usize),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<f64> {
         let (s, n) = (self.states, self.signals.samples);
         let tolerance = f64::EPSILON * (64.0 + 4.0 * (n as f64).sqrt());
         let mut before = f64::INFINITY;
         for k in 0..most {
+            interrupt.check()?;
             self.march_from(law, omega, k)?;
             let end = &self.march.z[(n - 1) * s..n * s];
             for ((step, end), start) in self.step.iter_mut().zip(end).zip(&self.starts[k * s..]) {
@@ -297,13 +318,14 @@ impl HystereticEvaluator {
 
     /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part depends on the earlier
     /// marches; their derivatives are then followed from the load on.
-    fn differentiate_start(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<()> {
+    fn differentiate_start(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         if self.starts_stuck {
             return Ok(());
         }
         let last = self.marches - 1;
         if self.map.has_kept && last > 0 {
             for k in 0..last {
+                interrupt.check()?;
                 self.march_from(law, omega, k)?;
                 if self.by_newton[k] {
                     self.map.form(&self.march, self.signals.samples);

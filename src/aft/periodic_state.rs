@@ -14,6 +14,7 @@
 use crate::contact::march::March;
 use crate::error::Result;
 use crate::error::try_vec;
+use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 
 /// Squarings in the search for Π; a part that decays by less than 1e-10 per period counts as kept.
@@ -68,7 +69,7 @@ impl ReturnMap {
                 matrix[column * s + row] = unit - self.p[row * s + column] + self.kept[row * s + column];
             }
         }
-        self.is_regular = self.factors.factor().is_ok();
+        self.is_regular = self.factors.factor(&Interrupt::none()).is_ok();
     }
 
     /// Π = lim ((I + P)/2)^(2ⁿ): the mean with I keeps an eigenvalue of 1 and damps all others on the unit circle, −1

@@ -11,6 +11,7 @@ use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -75,18 +76,31 @@ impl Exact {
     }
 
     /// Force and Jacobian of `law` for the prepared motion; see [`crate::aft`].
-    pub fn evaluate(&mut self, law: &dyn PiecewiseLinear, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn PiecewiseLinear,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         self.pieces.clear();
         law.pieces(set, motion, &self.extrema, &mut self.pieces);
         self.assembly.start(out);
         let turn = TAU / set.stride() as f64;
         for piece in &self.pieces {
+            interrupt.check()?;
             transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
             let state = law.state(piece);
             self.assembly
                 .add(set, (piece, state), &self.transform, piece.anchor, out);
         }
+        interrupt.check()?;
         self.assembly.finish(set, motion, out);
+        Ok(())
     }
 }
 

@@ -8,6 +8,7 @@ use crate::contact::law::PiecewiseLinear;
 use crate::contact::piece::Piece;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -64,12 +65,23 @@ impl Sampled {
     }
 
     /// Force and Jacobian of `law` for the prepared motion; see [`crate::aft`].
-    pub fn evaluate(&mut self, law: &dyn PiecewiseLinear, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn PiecewiseLinear,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         self.pieces.clear();
         law.sampled_pieces(&self.samples, &mut self.pieces);
         self.assembly.start(out);
         let n = self.samples.len();
         for piece in &self.pieces {
+            interrupt.check()?;
             // (1/N) Σ e^{−inτⱼ} over the samples of the piece.
             self.transform.fill(Complex64::ZERO);
             for j in piece.start as usize..piece.end as usize {
@@ -87,6 +99,8 @@ impl Sampled {
             self.assembly
                 .add(set, (piece, law.state(piece)), &self.transform, anchor, out);
         }
+        interrupt.check()?;
         self.assembly.finish(set, motion, out);
+        Ok(())
     }
 }

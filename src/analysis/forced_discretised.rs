@@ -31,10 +31,16 @@ struct Equations<'a> {
 }
 
 impl<'a> Equations<'a> {
-    fn new(resolution: &'a Resolution, settings: &Settings, response: usize, given: Option<Vec<f64>>) -> Result<Self> {
+    fn new(
+        resolution: &'a Resolution,
+        settings: &Settings,
+        response: usize,
+        given: Option<Vec<f64>>,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Result<Self> {
         let (condensed, samples) = (&*resolution.condensed, resolution.samples);
         let range = (settings.start, settings.end);
-        let problem = HarmonicBalance::new(condensed, response, range, samples, given)?;
+        let problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
         Ok(Self {
             corrector: Corrector::new(problem.unknowns(), settings.tolerance, settings.max_iterations)?,
             response: try_vec(condensed.blocks().len(), Complex64::ZERO, "the response")?,
@@ -95,16 +101,16 @@ impl<'a> ForcedDiscretised<'a> {
     ) -> Result<Self> {
         let resolution = levels.at(level)?;
         let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
-        let reduction = resolution.condensed.reduction(model, solver)?;
+        let reduction = resolution.condensed.reduction(model, solver, interrupt)?;
         let branch = Branch::new(resolution, reduction, reported, response)?;
         let estimates = solver.estimate_error || levels.is_automatic();
-        let equations = Equations::new(resolution, &settings, response, guess)?;
+        let equations = Equations::new(resolution, &settings, response, guess, interrupt)?;
         Ok(Self {
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
             settings,
             interrupt,
-            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended)),
+            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended, interrupt)),
             stale: false,
             estimated: None,
             last_error: f64::NAN,
@@ -120,7 +126,9 @@ impl<'a> ForcedDiscretised<'a> {
 
     /// The complete branch.
     pub fn finish(self, model: &Model, solver: &SolverOptions, ending: &Ending, estimates: usize) -> Result<Branch> {
-        let reduction = self.resolutions.reduction(model, solver)?;
+        let reduction = self
+            .resolutions
+            .reduction(model, solver, self.recorder.branch().reduction())?;
         self.recorder.finish(ending, reduction, estimates)
     }
 
@@ -183,8 +191,10 @@ impl Discretised for ForcedDiscretised<'_> {
     fn select(&mut self, resolution: usize) -> Result<()> {
         self.stale |= resolution != self.resolutions.index();
         let (settings, response) = (&self.settings, self.recorder.branch().response_dof());
-        self.resolutions
-            .select(resolution, |level| Equations::new(level, settings, response, None))
+        let interrupt = self.interrupt;
+        self.resolutions.select(resolution, |level| {
+            Equations::new(level, settings, response, None, interrupt)
+        })
     }
 
     fn transfer(&self, point: &Point, from: usize) -> Result<Point> {

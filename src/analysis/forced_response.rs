@@ -13,7 +13,7 @@ use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
@@ -40,9 +40,24 @@ pub fn forced_response(
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
     let interrupt = hooks.interrupt();
+    match follow(model, solver, range, hooks, &interrupt) {
+        Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver),
+        outcome => outcome,
+    }
+}
+
+/// The branch from a model to its recorded points. A stop before there is a branch is an error.
+fn follow(
+    model: &Model,
+    solver: &SolverOptions,
+    range: &ForcedOptions<'_>,
+    hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Branch> {
+    interrupt.phase(Phase::Setup, 0.0)?;
     let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
-        Condensed::new(model, &options, range.omega_start)
+        Condensed::new(model, &options, range.omega_start, interrupt)
     })?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
     let level = if levels.is_automatic() && range.guess.is_none() {
@@ -51,10 +66,12 @@ pub fn forced_response(
         levels.first(solver.harmonics)
     };
     let resolution = levels.at(level)?;
-    let response_dof = match solver.response_dof {
-        Some(dof) => dof,
+    let response_dof = if let Some(dof) = solver.response_dof {
+        dof
+    } else {
         // The lower end is used, so that both directions follow the same degree of freedom.
-        None => forced_dof_with_largest_motion(model, &resolution.condensed, range.omega_start.min(range.omega_stop))?,
+        let omega = range.omega_start.min(range.omega_stop);
+        forced_dof_with_largest_motion(model, &resolution.condensed, omega, interrupt)?
     };
     let given = match range.guess {
         Some(guess) => Some(relative_motion(resolution, model.ndof(), guess)?),
@@ -69,15 +86,8 @@ pub fn forced_response(
     };
     let extended = ModelCache::for_estimates()?;
     let models = (&levels, &extended);
-    let mut response = ForcedDiscretised::new(
-        model,
-        solver,
-        settings,
-        models,
-        (level, given),
-        response_dof,
-        &interrupt,
-    )?;
+    let mut response =
+        ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt)?;
     let held = response.branch().reduction().held_by_contacts;
     let course = Course {
         settings,
@@ -87,20 +97,28 @@ pub fn forced_response(
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
-    let mut tracer = BranchTracer::new(course, solver.tolerance, &interrupt);
-    let outcome = match first_point(&mut response, &settings, solver.harmonics, &interrupt) {
+    let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
+    let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {
         Ok(First { point, way }) => {
             hooks.log(LogLevel::Info, way.sentence());
             response.note_first(&point);
             tracer.trace(&mut response, point, hooks)
         }
         Err(e) if e.status == Status::StoppedByCaller => Err(e),
-        Err(e) => return Err(with_reason(e, model, range.omega_start, &resolution.condensed, held)),
+        Err(e) => {
+            let at = (model, range.omega_start, &*resolution.condensed);
+            return Err(with_reason(e, at, held, interrupt));
+        }
     };
     let mut ending = Ending::of(outcome, response.branch())?;
-    if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
-        let last = response.branch().omega().last();
-        ending.reason = last.and_then(|&omega| unbounded_response::reason(model, omega));
+    if ending.status == Status::StoppedStepTooSmall
+        && ending.reason.is_none()
+        && let Some(&omega) = response.branch().omega().last()
+    {
+        match unbounded_response::reason(model, omega, interrupt) {
+            Ok(reason) => ending.reason = reason,
+            Err(e) => ending.status = e.status,
+        }
     }
     response.finish(model, solver, &ending, tracer.estimates())
 }
@@ -113,6 +131,7 @@ fn first_point(
     harmonics: usize,
     interrupt: &Interrupt<'_>,
 ) -> Result<First> {
+    interrupt.phase(Phase::FirstPoint, 0.0)?;
     let mut failure = match initial_point::solve(response.problem(), settings, interrupt) {
         Err(e) if e.status == Status::NoConvergence && response.levels().is_automatic() => e,
         found => return found,
@@ -142,12 +161,18 @@ fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
 
 /// The error with its reason, as far as it is known: no bounded solution exists, or, with preloaded contacts, the
 /// static solution or the load path from it was not found.
-fn with_reason(e: Error, model: &Model, omega: f64, condensed: &Condensed, held: usize) -> Error {
+fn with_reason(
+    e: Error,
+    (model, omega, condensed): (&Model, f64, &Condensed),
+    held: usize,
+    interrupt: &Interrupt<'_>,
+) -> Error {
     if e.status != Status::NoConvergence {
         return e;
     }
-    if let Some(reason) = unbounded_response::reason(model, omega) {
-        return reason;
+    match unbounded_response::reason(model, omega, interrupt) {
+        Err(reason) | Ok(Some(reason)) => return reason,
+        Ok(None) => {}
     }
     if !condensed.is_preloaded() {
         return e;
@@ -163,13 +188,18 @@ fn with_reason(e: Error, model: &Model, omega: f64, condensed: &Condensed, held:
 
 /// The forced degree of freedom with the largest fundamental at `omega`, with every contact at its reference
 /// stiffness.
-fn forced_dof_with_largest_motion(model: &Model, condensed: &Condensed, omega: f64) -> Result<usize> {
+fn forced_dof_with_largest_motion(
+    model: &Model,
+    condensed: &Condensed,
+    omega: f64,
+    interrupt: &Interrupt<'_>,
+) -> Result<usize> {
     let set = condensed.set();
     let observed = set.numbers().iter().position(|&h| h > 0).unwrap_or(0);
     let n = model.ndof();
     let mut x = try_vec(n, Complex64::ZERO, "the response")?;
     let rest = try_vec(condensed.coordinates(), Complex64::ZERO, "the response")?;
-    Workspace::new(condensed, None)?.recover(condensed, observed, omega, &rest, &mut x)?;
+    Workspace::new(condensed, None)?.recover(condensed, observed, omega, &rest, &mut x, interrupt)?;
     let mut best = 0;
     let mut found = false;
     for force in model.excitation().forces() {

@@ -5,6 +5,7 @@ use crate::aft::{Evaluation, Evaluator};
 use crate::contact::{self, Contact};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, along, relative_row};
@@ -28,8 +29,26 @@ pub fn forced_residual(
     omega: f64,
     x: &[Complex64],
     r: &mut [Complex64],
-    mut jacobian: Option<&mut [f64]>,
-    mut d_omega: Option<&mut [Complex64]>,
+    jacobian: Option<&mut [f64]>,
+    d_omega: Option<&mut [Complex64]>,
+) -> Result<()> {
+    forced_residual_with(model, solver, omega, x, (r, jacobian, d_omega), &Interrupt::none())
+}
+
+/// Receivers of a residual, its Jacobian and its derivative by ω, see [`forced_residual`].
+pub type ResidualArrays<'a> = (&'a mut [Complex64], Option<&'a mut [f64]>, Option<&'a mut [Complex64]>);
+
+/// The same as [`forced_residual`], and the caller may stop it: the arrays are then untouched or NaN.
+///
+/// # Errors
+/// As [`forced_residual`]; `StoppedByCaller`.
+pub fn forced_residual_with(
+    model: &Model,
+    solver: &SolverOptions,
+    omega: f64,
+    x: &[Complex64],
+    (r, mut jacobian, mut d_omega): ResidualArrays<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<()> {
     solver.fixed().check()?;
     if !omega.is_finite() || omega < 0.0 {
@@ -60,20 +79,55 @@ pub fn forced_residual(
         }
     }
     // All steps that can fail come before the arrays of the caller are changed.
-    let contact = ContactTerms::new(model, solver, omega, x)?;
+    let contact = ContactTerms::new(model, solver, omega, x, interrupt)?;
     let mut dynamic = Vec::new();
     for h in 0..=highest {
+        interrupt.part(Phase::Setup, h, highest + 1)?;
         try_push(&mut dynamic, Dynamic::new(model, h, omega)?, "the dynamic stiffness")?;
     }
 
+    let assembled = assemble(
+        model,
+        (&dynamic, &contact),
+        x,
+        (r, jacobian.as_deref_mut(), d_omega.as_deref_mut()),
+        interrupt,
+    );
+    if assembled.is_err() {
+        // No half of a residual is left.
+        r.fill(Complex64::new(f64::NAN, f64::NAN));
+        if let Some(j) = jacobian {
+            j.fill(f64::NAN);
+        }
+        if let Some(d) = d_omega {
+            d.fill(Complex64::new(f64::NAN, f64::NAN));
+        }
+    }
+    assembled
+}
+
+/// Fills the arrays with the sum of all terms.
+fn assemble(
+    model: &Model,
+    (dynamic, contact): (&[Dynamic], &ContactTerms),
+    x: &[Complex64],
+    (r, mut jacobian, mut d_omega): ResidualArrays<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let n = model.ndof();
+    let order = 2 * x.len();
     r.fill(Complex64::ZERO);
     if let Some(d) = d_omega.as_deref_mut() {
         d.fill(Complex64::ZERO);
     }
     if let Some(j) = jacobian.as_deref_mut() {
-        j.fill(0.0);
+        for column in j.chunks_exact_mut(order) {
+            interrupt.check_before(order as u64)?;
+            column.fill(0.0);
+        }
     }
     for (h, dynamic) in dynamic.iter().enumerate() {
+        interrupt.part(Phase::Results, h, x.len() / n)?;
         let range = h * n..(h + 1) * n;
         model.excitation().add_to(h, -1.0, &mut r[range.clone()]);
         dynamic
@@ -86,6 +140,7 @@ pub fn forced_residual(
         }
         if let Some(j) = jacobian.as_deref_mut() {
             for column in 0..n {
+                interrupt.check()?;
                 for (row, v) in dynamic.z.column(column) {
                     add_block(j, order, range.start + row, range.start + column, v, h == 0);
                 }
@@ -100,8 +155,7 @@ pub fn forced_residual(
             }
         }
     }
-    contact.add(n, r, jacobian, d_omega);
-    Ok(())
+    contact.add(n, r, jacobian, d_omega, interrupt)
 }
 
 fn check_len(name: &str, len: usize, needed: usize) -> Result<()> {
@@ -162,7 +216,13 @@ struct ContactTerms {
 }
 
 impl ContactTerms {
-    fn new(model: &Model, solver: &SolverOptions, omega: f64, x: &[Complex64]) -> Result<Self> {
+    fn new(
+        model: &Model,
+        solver: &SolverOptions,
+        omega: f64,
+        x: &[Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Self> {
         const CONTEXT: &str = "the contacts";
         let n = model.ndof();
         let set = HarmonicSet::all(solver.harmonics)?;
@@ -182,7 +242,7 @@ impl ContactTerms {
                 }
                 try_push(&mut rows, own, CONTEXT)?;
             }
-            let evaluation = evaluate(contact, &set, solver.samples, omega, &packed)?;
+            let evaluation = evaluate(contact, &set, (solver.samples, omega), &packed, interrupt)?;
             try_push(&mut terms, (rows, evaluation), CONTEXT)?;
         }
         Ok(Self { set, terms })
@@ -195,10 +255,12 @@ impl ContactTerms {
         r: &mut [Complex64],
         mut jacobian: Option<&mut [f64]>,
         mut d_omega: Option<&mut [Complex64]>,
-    ) {
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let order = 2 * r.len();
         let m = self.set.packed_len();
         for (rows, evaluation) in &self.terms {
+            interrupt.check()?;
             for (k, own) in rows.iter().enumerate() {
                 self.add_force(own, &evaluation.force[k * m..(k + 1) * m], n, r);
                 if let Some(d) = d_omega.as_deref_mut() {
@@ -217,10 +279,12 @@ impl ContactTerms {
                         force: k * m,
                         motion: l * m,
                     };
+                    interrupt.check()?;
                     block.add(force, motion, n, jacobian, order);
                 }
             }
         }
+        Ok(())
     }
 
     /// Adds rᴴ f of one direction.
@@ -280,7 +344,13 @@ impl Block<'_> {
 }
 
 /// A law in the caller's units at packed motions.
-fn evaluate(contact: &Contact, set: &HarmonicSet, samples: usize, omega: f64, packed: &[f64]) -> Result<Evaluation> {
+fn evaluate(
+    contact: &Contact,
+    set: &HarmonicSet,
+    (samples, omega): (usize, f64),
+    packed: &[f64],
+    interrupt: &Interrupt<'_>,
+) -> Result<Evaluation> {
     let law = contact.law(1.0)?;
     if omega == 0.0 && matches!(law.form(), contact::Form::Hysteretic(_)) {
         return fail!(
@@ -291,7 +361,7 @@ fn evaluate(contact: &Contact, set: &HarmonicSet, samples: usize, omega: f64, pa
     let mut evaluation = Evaluation::new(set, contact.directions())?;
     let mut evaluator = Evaluator::new(set, samples, core::iter::once(&*law))?;
     evaluator.prepare(set, &packed[..set.packed_len()]);
-    evaluator.evaluate(&*law, set, packed, omega, &mut evaluation)?;
+    evaluator.evaluate(&*law, set, packed, omega, &mut evaluation, interrupt)?;
     Ok(evaluation)
 }
 
@@ -310,6 +380,22 @@ pub fn contact_evaluate(
     motion: &[Complex64],
     force: &mut [Complex64],
     jacobian: Option<&mut [f64]>,
+) -> Result<()> {
+    let at = (harmonics, samples, omega);
+    contact_evaluate_with(contact, at, motion, force, jacobian, &Interrupt::none())
+}
+
+/// The same as [`contact_evaluate`], and the caller may stop it; arrays are untouched then.
+///
+/// # Errors
+/// As [`contact_evaluate`]; `StoppedByCaller`.
+pub fn contact_evaluate_with(
+    contact: &Contact,
+    (harmonics, samples, omega): (usize, usize, f64),
+    motion: &[Complex64],
+    force: &mut [Complex64],
+    jacobian: Option<&mut [f64]>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<()> {
     contact.check_constants()?;
     SolverOptions {
@@ -341,7 +427,7 @@ pub fn contact_evaluate(
             set.set(packed, i, z);
         }
     }
-    let evaluation = evaluate(contact, &set, samples, omega, &packed)?;
+    let evaluation = evaluate(contact, &set, (samples, omega), &packed, interrupt)?;
     for (force, packed) in force.chunks_exact_mut(count).zip(evaluation.force.chunks_exact(m)) {
         for (i, f) in force.iter_mut().enumerate() {
             *f = set.get(packed, i);

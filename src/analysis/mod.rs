@@ -15,9 +15,11 @@ pub mod verify;
 
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::analysis::forced_response::forced_response;
-pub use crate::analysis::harmonic_residual::{contact_evaluate, forced_residual};
+pub use crate::analysis::harmonic_residual::{
+    contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
+};
 pub use crate::analysis::nonlinear_mode::nonlinear_mode;
 pub use crate::analysis::point_error::estimate_at;
-pub use crate::analysis::synthesis::synthesise;
+pub use crate::analysis::synthesis::{synthesise, synthesise_with};
 pub use crate::analysis::time_response::time_response;
 pub use crate::analysis::verify::{Verification, verify};

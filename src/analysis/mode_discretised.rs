@@ -93,7 +93,9 @@ impl<'a> ModeDiscretised<'a> {
 
     /// The complete branch.
     pub fn finish(self, model: &Model, solver: &SolverOptions, ending: &Ending, estimates: usize) -> Result<Branch> {
-        let reduction = self.resolutions.reduction(model, solver)?;
+        let reduction = self
+            .resolutions
+            .reduction(model, solver, self.recorder.branch().reduction())?;
         self.recorder.finish(ending, reduction, estimates)
     }
 

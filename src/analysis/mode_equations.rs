@@ -3,6 +3,7 @@
 use crate::continuation::corrector::Corrector;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
@@ -19,6 +20,7 @@ const CONTEXT: &str = "the nonlinear mode";
 pub(super) struct LinearStart<'a> {
     pub linear: &'a LinearMode,
     pub gauge: &'a Gauge,
+    pub interrupt: &'a Interrupt<'a>,
 }
 
 /// The equations at one resolution.
@@ -39,7 +41,13 @@ impl<'a> Equations<'a> {
     /// Memory for a resolution.
     pub fn new(resolution: &'a Resolution, start: &LinearStart<'a>, settings: &Settings) -> Result<Self> {
         let condensed = &*resolution.condensed;
-        let problem = Epmc::new(condensed, start.gauge, start.linear, resolution.samples)?;
+        let problem = Epmc::new(
+            condensed,
+            start.gauge,
+            start.linear,
+            resolution.samples,
+            start.interrupt,
+        )?;
         let unknowns = problem.size();
         Ok(Self {
             corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,

@@ -15,8 +15,9 @@ use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::{Hooks, LogLevel};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::model::repeated_modes::Multiple;
 use crate::model::spring::{along, relative_row};
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::Problem;
@@ -77,21 +78,63 @@ pub fn nonlinear_mode(
             "contact {id} presses at rest; nonlinear modes under constant forces are not provided yet"
         );
     }
-    match range.diameter {
-        None => on_wave(model, solver, range, hooks),
+    let other_wave;
+    let model = match range.diameter {
+        None => model,
         Some(diameter) => {
             let mut model = model.try_clone()?;
             model.set_wave(diameter as i64);
-            on_wave(&model, solver, range, hooks)
+            other_wave = model;
+            &other_wave
         }
+    };
+    let interrupt = hooks.interrupt();
+    match on_wave(model, solver, range, hooks, &interrupt) {
+        Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
+        outcome => outcome,
     }
 }
 
+/// The mode of a run that was stopped before its linear mode was known: zeros in place of its numbers.
+fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Result<Branch> {
+    let mut branch = Branch::stopped(model, solver)?;
+    let info = ModeInfo {
+        index: 0,
+        omega: 0.0,
+        multiplicity: 0,
+        multiple: Multiple::Single,
+        reference_dof: 0,
+        engine_order: model.structure().engine_order(),
+        amplitude: range.amplitude,
+        linear_up_to: f64::NEG_INFINITY,
+        stuck: Vec::new(),
+        free: Vec::new(),
+    };
+    let linear = LinearMode {
+        omega: 0.0,
+        damping: 0.0,
+        shape: Vec::new(),
+    };
+    let gauge = Gauge {
+        contact: None,
+        reference_dof: 0,
+    };
+    let ends = (range.log10_start, range.log10_stop);
+    branch.set_mode(ModeData::new(info, linear, gauge, ends));
+    Ok(branch)
+}
+
 /// The mode on the wave of the model's engine order.
-fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<Branch> {
-    let interrupt = hooks.interrupt();
-    let chosen = model.select_mode(range.choice)?;
-    let damped = model.damped_mode(&chosen, range.damping_form)?;
+fn on_wave(
+    model: &Model,
+    solver: &SolverOptions,
+    range: &ModeOptions<'_>,
+    hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Branch> {
+    interrupt.phase(Phase::Setup, 0.0)?;
+    let chosen = model.select_mode_with(range.choice, interrupt)?;
+    let damped = model.damped_mode_with(&chosen, range.damping_form, interrupt)?;
     let mut linear = LinearMode {
         omega: damped.omega,
         damping: damped.damping,
@@ -100,7 +143,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     let gauge = gauge(model, range, &mut linear)?;
     let levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
-        Ok(Condensed::for_mode(model, &options, range.damping_form, &linear.shape)?.0)
+        Ok(Condensed::for_mode(model, &options, range.damping_form, &linear.shape, interrupt)?.0)
     })?;
     let level = levels.first(solver.harmonics);
     let resolution = levels.at(level)?;
@@ -120,7 +163,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
             chosen.omega
         );
     }
-    if let Some(id) = static_force(condensed, linear.omega, resolution.samples)? {
+    if let Some(id) = static_force(condensed, linear.omega, resolution.samples, interrupt)? {
         return fail!(
             Unsupported,
             "contact {id} has a force at rest; nonlinear modes under constant forces are not provided yet"
@@ -128,10 +171,16 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     }
     let response = solver.response_dof.unwrap_or(gauge.reference_dof);
     let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
-    let branch = Branch::new(resolution, condensed.reduction(model, solver)?, reported, response)?;
+    let branch = Branch::new(
+        resolution,
+        condensed.reduction(model, solver, interrupt)?,
+        reported,
+        response,
+    )?;
     let start = (&linear, &gauge);
     let estimates = solver.estimate_error || levels.is_automatic();
-    let estimator = estimates.then(|| ModeEstimator::new(model, solver, range.damping_form, start, response));
+    let estimator =
+        estimates.then(|| ModeEstimator::new(model, solver, range.damping_form, start, response, interrupt));
     let settings = Settings {
         start: range.log10_start,
         end: range.log10_stop,
@@ -142,6 +191,7 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     let begin = LinearStart {
         linear: &linear,
         gauge: &gauge,
+        interrupt,
     };
     let mut mode = ModeDiscretised::new(begin, solver, settings, (&levels, level), branch, estimator)?;
     let (linear_up_to, nearly) = mode.linear_up_to(range.log10_start)?;
@@ -164,8 +214,8 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     ));
     let onset = Onset { linear_up_to, nearly };
     let (course, settings) = course(solver, range, settings, onset);
-    let mut tracer = BranchTracer::new(course, solver.tolerance, &interrupt);
-    let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, &interrupt);
+    let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
+    let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, interrupt);
     let ending = Ending::of(outcome, mode.branch())?;
     mode.finish(model, solver, &ending, tracer.estimates())
 }
@@ -290,6 +340,7 @@ fn trace(
         None
     };
     let near = if corner.is_some() { onset.beyond() } else { onset.nearly };
+    interrupt.phase(Phase::FirstPoint, 0.0)?;
     match first_nonlinear(mode.problem(), &settings, near, corner.as_ref(), max_points, interrupt) {
         Ok(first) => {
             hooks.log(LogLevel::Info, "first point with slip or a nonlinear force solved");

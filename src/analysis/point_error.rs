@@ -5,6 +5,7 @@ use crate::error::{Result, fail};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::error_estimate::{Estimate, Solved};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
 use crate::results::Branch;
@@ -24,6 +25,20 @@ const ITERATIONS: usize = 200;
 /// `Index` for an unknown point, `Argument` for another model or other options than those of the branch, `Callback`
 /// for a law of the caller that fails, `OutOfMemory`.
 pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point: usize) -> Result<Estimate> {
+    estimate_at_with(model, solver, branch, point, &Interrupt::none())
+}
+
+/// The same as [`estimate_at`], and the caller may stop it.
+///
+/// # Errors
+/// As [`estimate_at`]; `StoppedByCaller`.
+pub fn estimate_at_with(
+    model: &Model,
+    solver: &SolverOptions,
+    branch: &Branch,
+    point: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<Estimate> {
     solver.check()?;
     let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
         return fail!(
@@ -68,7 +83,7 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
     };
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
         let models = ModelCache::for_estimates()?;
-        return ForcedEstimator::new(model, solver, branch.response_dof(), &models).at(&solved);
+        return ForcedEstimator::new(model, solver, branch.response_dof(), &models, interrupt).at(&solved);
     };
     let wave;
     let model = if model.structure().engine_order() == data.info.engine_order {
@@ -84,7 +99,7 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
         _ => DampingForm::Mass,
     };
     let start = (&data.linear, &data.gauge);
-    let mut estimator = ModeEstimator::new(model, solver, form, start, branch.response_dof());
+    let mut estimator = ModeEstimator::new(model, solver, form, start, branch.response_dof(), interrupt);
     estimator.at(&solved, at.log10_amplitude, at.damping_ratio)
 }
 

@@ -132,7 +132,7 @@ pub fn synthesise_with(
         response_dof: branch.response_dof(),
     };
     let mut states = Vec::new();
-    let mut recovery = Recovery::at(branch, 0)?;
+    let mut recovery = Recovery::at(branch, 0, interrupt)?;
     let mut x = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
     for point in 0..branch.points() {
         interrupt.part(Phase::Results, point, branch.points())?;

@@ -17,7 +17,8 @@ use std::f64::consts::TAU;
 /// Distance of a point from the periodic motion that integration in time finds from it.
 #[derive(Clone, Debug)]
 pub struct Verification {
-    /// `Ok`, or `StoppedByCaller`: then all numbers compare with the last period, which is not steady.
+    /// `Ok`, or `StoppedByCaller`: then all numbers compare with a period that is not steady, or are NaN if no period
+    /// was recorded.
     pub status: Status,
     /// Whether the point counts as the same solution.
     ///
@@ -95,20 +96,22 @@ pub fn verify(
     let (highest, ndof) = (branch.harmonics(), branch.ndof());
     let len = (highest + 1).saturating_mul(ndof);
     let mut x = try_vec(len, Complex64::ZERO, "the harmonics of the point")?;
-    branch.harmonics_at(point, &mut x)?;
-    let time = time_response(
-        model,
-        &TimeOptions {
-            omega,
-            method: options.method,
-            harmonics: highest,
-            samples: times(highest),
-            tolerance: options.tolerance,
-            max_periods: options.max_periods,
-            start: Some(&x),
-        },
-        hooks,
-    )?;
+    let interrupt = hooks.interrupt();
+    let recovered = branch.harmonics_at_with(point, &mut x, &interrupt);
+    let options_in_time = TimeOptions {
+        omega,
+        method: options.method,
+        harmonics: highest,
+        samples: times(highest),
+        tolerance: options.tolerance,
+        max_periods: options.max_periods,
+        start: Some(&x),
+    };
+    let time = match recovered {
+        Ok(()) => time_response(model, &options_in_time, hooks)?,
+        Err(e) if e.status == Status::StoppedByCaller => TimeResponse::stopped(model, &options_in_time)?,
+        Err(e) => return Err(e),
+    };
     let found = compare(&x, time, branch.response_dof(), options.same_within)?;
     if !found.same && found.status == Status::Ok {
         hooks.log(

@@ -126,13 +126,15 @@ pub(super) fn remember(sentence: &str, argument: i32) {
 
 /// Attributes an error to an argument of the C function.
 pub(super) trait WithArgument<T> {
-    /// The same error with the number of the argument, counted from 1, unless it already has one.
+    /// The same error with the number of the argument, counted from 1, unless it already has one. A stop by the caller
+    /// belongs to no argument.
     fn with_argument(self, argument: i32) -> Result<T>;
 }
 
 impl<T> WithArgument<T> for Result<T> {
     fn with_argument(self, argument: i32) -> Result<T> {
-        self.map_err(|e| if e.argument == 0 { e.in_argument(argument) } else { e })
+        let attribute = |e: &Error| e.argument == 0 && e.status != Status::StoppedByCaller;
+        self.map_err(|e| if attribute(&e) { e.in_argument(argument) } else { e })
     }
 }
 

@@ -6,6 +6,7 @@ use super::boundary::{WithArgument, call};
 use super::contacts::{hbvib_contact, law};
 use super::handles::read;
 use super::model::hbvib_model;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::solve_options::{harmonics_and_samples, hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::load;
@@ -54,7 +55,60 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
     jac: *mut f64,
     jac_len: i64,
 ) -> hbvib_status {
+    unsafe {
+        hbvib_contact_evaluate_with_hooks(
+            c,
+            harmonics,
+            samples,
+            omega,
+            motion,
+            motion_len,
+            force,
+            force_len,
+            jac,
+            jac_len,
+            core::ptr::null(),
+        )
+    }
+}
+
+/// The same as hbvib_contact_evaluate; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// c           the law and its constants.
+/// harmonics   highest harmonic number H, 0 .. 100000.
+/// samples     0: events are located exactly where the law has them; else samples per period, at
+///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact in both cases;
+///             HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number that
+///             follows from H.
+/// omega       angular frequency, >= 0; has an effect on laws that depend on velocities.
+/// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
+///             part of Y_0 has no effect.
+/// motion_len  complex numbers in it, d (H + 1).
+/// force       receives d (H + 1) complex numbers, F_0 .. F_H of one direction after the other.
+/// force_len   complex numbers in it, d (H + 1).
+/// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
+///             or NULL.
+/// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
+/// hooks       phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_contact_evaluate.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_contact_evaluate_with_hooks(
+    c: *const hbvib_contact,
+    harmonics: i64,
+    samples: i64,
+    omega: f64,
+    motion: *const f64,
+    motion_len: i64,
+    force: *mut f64,
+    force_len: i64,
+    jac: *mut f64,
+    jac_len: i64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 11) }?;
         let mut contact = law(&unsafe { load(c, 1) }?).with_argument(1)?;
         if matches!(contact.kind, ContactKind::Friction3d) && contact.kn != 0.0 {
             // A degree of freedom along n declares that the load varies.
@@ -93,7 +147,13 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
             0 => None,
             len => Some(unsafe { output(jac, len, 9, "jac") }?),
         };
-        analysis::contact_evaluate(&contact, harmonics, samples, omega, motion, force, jac).with_argument(5)?;
+        let at = (harmonics, samples, omega);
+        let evaluated = unsafe {
+            with_interrupt(&hooks, |interrupt| {
+                analysis::contact_evaluate_with(&contact, at, motion, force, jac, interrupt)
+            })
+        };
+        evaluated.with_argument(5)?;
         Ok(Status::Ok)
     })
 }
@@ -133,8 +193,60 @@ pub unsafe extern "C" fn hbvib_forced_residual(
     d_omega: *mut f64,
     d_omega_len: i64,
 ) -> hbvib_status {
+    unsafe {
+        hbvib_forced_residual_with_hooks(
+            model,
+            solver,
+            omega,
+            x,
+            x_len,
+            r,
+            r_len,
+            jac,
+            jac_len,
+            d_omega,
+            d_omega_len,
+            core::ptr::null(),
+        )
+    }
+}
+
+/// The same as hbvib_forced_residual; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and the arrays are untouched or hold NaN.
+///
+/// solver       options, of which harmonics and samples are used; NULL: the defaults.
+/// omega        angular frequency, >= 0.
+/// x            (H + 1) x ndof complex numbers; the imaginary part of the mean is no unknown.
+/// x_len        complex numbers in it.
+/// r            receives as many complex numbers; the imaginary part of the rows of the mean is
+///              that of x.
+/// r_len        complex numbers in it.
+/// jac          receives d R / d X over the pairs (re, im), real, column-major of order
+///              2 (H + 1) ndof; or NULL.
+/// jac_len      doubles in it; 0 with NULL.
+/// d_omega      receives d R / d omega, complex like r; or NULL.
+/// d_omega_len  complex numbers in it; 0 with NULL.
+/// hooks        phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_forced_residual.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_forced_residual_with_hooks(
+    model: *const hbvib_model,
+    solver: *const hbvib_solver_options,
+    omega: f64,
+    x: *const f64,
+    x_len: i64,
+    r: *mut f64,
+    r_len: i64,
+    jac: *mut f64,
+    jac_len: i64,
+    d_omega: *mut f64,
+    d_omega_len: i64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     const COMPLEX: &str = "(harmonics + 1) * ndof";
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 12) }?;
         let model = read::<Model>(model, 1)?;
         let solver = unsafe { solver_options(solver, model.ndof()) }?;
         if !omega.is_finite() {
@@ -188,7 +300,11 @@ pub unsafe extern "C" fn hbvib_forced_residual(
         if let Some(i) = x.iter().position(|z| !z.is_finite()) {
             return fail!(NotFinite, "x[{i}] is not finite").with_argument(4);
         }
-        analysis::forced_residual(&model, &solver, omega, x, r, jac, d_omega)?;
+        unsafe {
+            with_interrupt(&hooks, |interrupt| {
+                analysis::forced_residual_with(&model, &solver, omega, x, (r, jac, d_omega), interrupt)
+            })
+        }?;
         Ok(Status::Ok)
     })
 }

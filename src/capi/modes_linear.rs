@@ -7,6 +7,7 @@ use super::boundary::{WithArgument, call};
 use super::cyclic::nodal_diameter;
 use super::handles::read;
 use super::model::hbvib_model;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
@@ -44,7 +45,32 @@ pub unsafe extern "C" fn hbvib_linear_modes(
     omega: *mut f64,
     shapes: *mut f64,
 ) -> hbvib_status {
+    unsafe { hbvib_linear_modes_with_hooks(model, diameter, contacts, count, omega, shapes, core::ptr::null()) }
+}
+
+/// The same as hbvib_linear_modes; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
+/// contacts  HBVIB_CONTACTS_FREE, or HBVIB_CONTACTS_STUCK: linear springs kt.
+/// count     number of requested modes, at least 1.
+/// omega     receives `count` natural angular frequencies.
+/// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
+///           phi^H M phi = 1 over one sector; or NULL.
+/// hooks     phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_linear_modes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
+    model: *const hbvib_model,
+    diameter: i64,
+    contacts: i32,
+    count: i64,
+    omega: *mut f64,
+    shapes: *mut f64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 7) }?;
         let model = read::<Model>(model, 1)?;
         let diameter = nodal_diameter(&model, diameter, 2)?;
         let state = contact_state(contacts)?;
@@ -56,7 +82,11 @@ pub unsafe extern "C" fn hbvib_linear_modes(
         if wanted == 0 || wanted > model.ndof() {
             return fail!(Dimension, "count = {count}, needs 1 .. ndof = {}", model.ndof()).with_argument(4);
         }
-        let modes = model.lowest_modes(diameter, state, wanted)?;
+        let modes = unsafe {
+            with_interrupt(&hooks, |interrupt| {
+                model.lowest_modes_with(diameter, state, wanted, interrupt)
+            })
+        }?;
         if wanted > modes.omega.len() {
             return fail!(
                 Dimension,

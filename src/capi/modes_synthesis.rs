@@ -7,9 +7,10 @@ use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
 use super::model::hbvib_model;
 use super::solve::hbvib_branch;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
-use crate::analysis::synthesis::{Synthesis, SynthesisPeak, synthesise};
+use crate::analysis::synthesis::{Synthesis, SynthesisPeak, synthesise_with};
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
 use crate::options::SynthesisOptions;
@@ -87,13 +88,57 @@ pub unsafe extern "C" fn hbvib_branch_synthesis(
     modal_amplitude: *mut f64,
     count: *mut i64,
 ) -> hbvib_status {
+    unsafe {
+        hbvib_branch_synthesis_with_hooks(
+            branch,
+            model,
+            options,
+            capacity,
+            omega,
+            response,
+            modal_amplitude,
+            count,
+            core::ptr::null(),
+        )
+    }
+}
+
+/// The same as hbvib_branch_synthesis; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// branch           a nonlinear mode.
+/// model            the model of the mode, or one with other forces or damping; forces in other
+///                  harmonics have no effect.
+/// options          NULL: the defaults.
+/// capacity         numbers that fit into each array; twice the points of the branch suffice.
+/// omega            receives the angular frequencies of the force, or NULL.
+/// response         receives the fundamentals of the branch's response degree of freedom, complex,
+///                  in phase with the force where real; or NULL.
+/// modal_amplitude  receives the modal amplitudes, or NULL.
+/// count            receives how many points there are, also when `capacity` is too small.
+/// hooks            phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_synthesis.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_branch_synthesis_with_hooks(
+    branch: *const hbvib_branch,
+    model: *const hbvib_model,
+    options: *const hbvib_synthesis_options,
+    capacity: i64,
+    omega: *mut f64,
+    response: *mut f64,
+    modal_amplitude: *mut f64,
+    count: *mut i64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 9) }?;
         let capacity = arrays::count(capacity, 4, "capacity")?;
         check_pointer(count, 8, "count")?;
         let omega = optional((omega, 5), "omega")?;
         let response = optional((response, 6), "response")?;
         let modal = optional((modal_amplitude, 7), "modal_amplitude")?;
-        let found = unsafe { synthesis(branch, model, options) }?.points;
+        let found = unsafe { synthesis(branch, model, options, &hooks) }?.points;
         let none = omega.is_none() && response.is_none() && modal.is_none();
         if !none && capacity < found.len() {
             unsafe { count.write(found.len() as i64) };
@@ -175,7 +220,59 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
     flags: *mut i32,
     count: *mut i64,
 ) -> hbvib_status {
+    unsafe {
+        hbvib_branch_synthesis_peaks_with_hooks(
+            branch,
+            model,
+            options,
+            capacity,
+            omega,
+            amplitude,
+            log10_amplitude,
+            damping_ratio,
+            other_mode,
+            flags,
+            count,
+            core::ptr::null(),
+        )
+    }
+}
+
+/// The same as hbvib_branch_synthesis_peaks; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// branch, model           as for hbvib_branch_synthesis.
+/// options                 NULL: the defaults.
+/// capacity                numbers that fit into each array.
+/// omega                   receives their angular frequencies, or NULL.
+/// amplitude               receives the amplitudes |X_1| of the response degree of freedom, or
+///                         NULL.
+/// log10_amplitude         receives the amplitudes as the branch measures them, log10, or NULL.
+/// damping_ratio           receives the total damping ratios there, or NULL.
+/// other_mode              receives the distance to the nearest other natural frequency of the wave
+///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
+/// count                   receives how many there are, also when `capacity` is too small.
+/// hooks                   phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_synthesis_peaks.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_branch_synthesis_peaks_with_hooks(
+    branch: *const hbvib_branch,
+    model: *const hbvib_model,
+    options: *const hbvib_synthesis_options,
+    capacity: i64,
+    omega: *mut f64,
+    amplitude: *mut f64,
+    log10_amplitude: *mut f64,
+    damping_ratio: *mut f64,
+    other_mode: *mut f64,
+    flags: *mut i32,
+    count: *mut i64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 12) }?;
         let capacity = arrays::count(capacity, 4, "capacity")?;
         check_pointer(count, 11, "count")?;
         let columns: [(*mut f64, i32, &str, Column); 5] = [
@@ -191,7 +288,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
         }
         let flags = optional((flags, 10), "flags")?;
         wanted |= flags.is_some();
-        let found = unsafe { synthesis(branch, model, options) }?.peaks;
+        let found = unsafe { synthesis(branch, model, options, &hooks) }?.peaks;
         unsafe { count.write(found.len() as i64) };
         if wanted && capacity < found.len() {
             return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(4);
@@ -215,6 +312,7 @@ unsafe fn synthesis(
     branch: *const hbvib_branch,
     model: *const hbvib_model,
     options: *const hbvib_synthesis_options,
+    hooks: &hbvib_hooks,
 ) -> Result<Synthesis> {
     let kept = read::<KeptBranch>(branch, 1)?;
     let model = read::<Model>(model, 2)?;
@@ -232,7 +330,12 @@ unsafe fn synthesis(
         };
         chosen.check().with_argument(3)?;
     }
-    synthesise(&kept.branch, &model, &chosen).map_err(|e| match e.status {
+    let found = unsafe {
+        with_interrupt(hooks, |interrupt| {
+            synthesise_with(&kept.branch, &model, &chosen, interrupt)
+        })
+    };
+    found.map_err(|e| match e.status {
         Status::Unsupported => e.in_argument(1),
         Status::Argument | Status::Dimension => e.in_argument(2),
         _ => e,

@@ -9,6 +9,7 @@ use super::indices::{index, times};
 use super::matrices::hbvib_scalar;
 use super::outcome::Outcome;
 use super::solve::hbvib_branch;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::{Status, fail, try_vec};
@@ -243,7 +244,32 @@ pub unsafe extern "C" fn hbvib_branch_harmonics(
     x: *mut f64,
     x_len: i64,
 ) -> hbvib_status {
+    unsafe { hbvib_branch_harmonics_with_hooks(branch, point, first_dof, n_dof, x, x_len, core::ptr::null()) }
+}
+
+/// The same as hbvib_branch_harmonics; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// point      number of a point of the curve, or of a peak, fold or requested solution.
+/// first_dof  first degree of freedom of the range, from 0.
+/// n_dof      number of degrees of freedom, at least 1.
+/// x          receives (H + 1) x n_dof complex numbers, harmonic after harmonic; untouched on
+///            error.
+/// x_len      complex numbers in it.
+/// hooks      phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_harmonics.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_harmonics_with_hooks(
+    branch: *const hbvib_branch,
+    point: i64,
+    first_dof: i64,
+    n_dof: i64,
+    x: *mut f64,
+    x_len: i64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 7) }?;
         let kept = read::<KeptBranch>(branch, 1)?;
         let branch = &kept.branch;
         let n = branch.ndof();
@@ -257,7 +283,7 @@ pub unsafe extern "C" fn hbvib_branch_harmonics(
         let rows = branch.harmonics() + 1;
         exact_len(x_len, rows.saturating_mul(dofs), 6, "(harmonics + 1) * n_dof")?;
         let mut all = try_vec(rows.saturating_mul(n), Complex64::ZERO, "the harmonics")?;
-        branch.harmonics_at(point, &mut all)?;
+        unsafe { with_interrupt(&hooks, |interrupt| branch.harmonics_at_with(point, &mut all, interrupt)) }?;
         for (h, row) in all.chunks_exact(n).enumerate() {
             let part = &row[first..first + dofs];
             unsafe { x.add(2 * h * dofs).copy_from(part.as_ptr().cast(), 2 * dofs) };
@@ -283,14 +309,36 @@ pub unsafe extern "C" fn hbvib_branch_time_history(
     n: i64,
     x: *mut f64,
 ) -> hbvib_status {
+    unsafe { hbvib_branch_time_history_with_hooks(branch, point, dof, n, x, core::ptr::null()) }
+}
+
+/// The same as hbvib_branch_time_history; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
+/// dof    degree of freedom, from 0.
+/// n      number of times, 1 .. 2^24.
+/// x      receives n doubles; untouched on error.
+/// hooks  phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_time_history.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_time_history_with_hooks(
+    branch: *const hbvib_branch,
+    point: i64,
+    dof: i64,
+    n: i64,
+    x: *mut f64,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 6) }?;
         let kept = read::<KeptBranch>(branch, 1)?;
         let branch = &kept.branch;
         let point = index(point, branch.stored(), 2, "point")?;
         let dof = index(dof, branch.ndof(), 3, "dof")?;
         let n = times(n, 4)?;
         check_pointer(x, 5, "x")?;
-        let found = branch.time_history(point, dof, n)?;
+        let found = unsafe { with_interrupt(&hooks, |interrupt| branch.time_history_with(point, dof, n, interrupt)) }?;
         unsafe { x.copy_from(found.as_ptr(), found.len()) };
         Ok(Status::Ok)
     })

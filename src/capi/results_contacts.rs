@@ -7,6 +7,7 @@ use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
 use super::indices::{index, times};
 use super::solve::hbvib_branch;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::contact::contact_state::State;
@@ -58,7 +59,51 @@ pub unsafe extern "C" fn hbvib_branch_contact_loop(
     force: *mut f64,
     state: *mut i32,
 ) -> hbvib_status {
+    unsafe {
+        hbvib_branch_contact_loop_with_hooks(
+            branch,
+            point,
+            contact,
+            direction,
+            n,
+            motion,
+            force,
+            state,
+            core::ptr::null(),
+        )
+    }
+}
+
+/// The same as hbvib_branch_contact_loop; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
+///
+/// point      number of a point of the curve, or of a peak, fold or requested solution.
+/// contact    number from hbvib_model_add_contact.
+/// direction  one of the directions of the contact from 0, in the order t1, t2, n of those in which
+///            it acts: 0 for laws of one direction. hbvib_contact_summary has their number.
+/// n          number of times, 1 .. 2^24.
+/// motion     receives n relative motions, side a minus side b, or NULL.
+/// force      receives n forces f, which act on side a as + f and on side b as - f in
+///            M x'' + C x' + K x + f = f_ex; or NULL. Along the normal f is minus the normal load.
+/// state      receives n states of the contact, HBVIB_STATE_STICK and so on, the same for all its
+///            directions, or NULL. Not all three may be NULL.
+/// hooks      phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_contact_loop.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_branch_contact_loop_with_hooks(
+    branch: *const hbvib_branch,
+    point: i64,
+    contact: i64,
+    direction: i64,
+    n: i64,
+    motion: *mut f64,
+    force: *mut f64,
+    state: *mut i32,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 9) }?;
         let kept = read::<KeptBranch>(branch, 1)?;
         let branch = &kept.branch;
         let point = index(point, branch.stored(), 2, "point")?;
@@ -80,7 +125,11 @@ pub unsafe extern "C" fn hbvib_branch_contact_loop(
         let motion = optional((motion, 6), "motion")?;
         let force = optional((force, 7), "force")?;
         let state = optional((state, 8), "state")?;
-        let found = branch.contact_loop(point, contact, n)?;
+        let found = unsafe {
+            with_interrupt(&hooks, |interrupt| {
+                branch.contact_loop_with(point, contact, n, interrupt)
+            })
+        }?;
         // Times run slowest: one direction is every d-th number.
         for (out, values) in [(motion, &found.motion), (force, &found.force)] {
             if let Some(p) = out {
@@ -185,13 +234,37 @@ pub unsafe extern "C" fn hbvib_branch_contact_summary(
     contact: i64,
     out: *mut hbvib_contact_summary,
 ) -> hbvib_status {
+    unsafe { hbvib_branch_contact_summary_with_hooks(branch, point, contact, out, core::ptr::null()) }
+}
+
+/// The same as hbvib_branch_contact_summary; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and out is untouched.
+///
+/// point    number of a point of the curve, or of a peak, fold or requested solution.
+/// contact  number from hbvib_model_add_contact.
+/// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
+/// hooks    phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_contact_summary.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_contact_summary_with_hooks(
+    branch: *const hbvib_branch,
+    point: i64,
+    contact: i64,
+    out: *mut hbvib_contact_summary,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 5) }?;
         let kept = read::<KeptBranch>(branch, 1)?;
         let branch = &kept.branch;
         let point = index(point, branch.stored(), 2, "point")?;
         let contact = index(contact, branch.contacts(), 3, "contact")?;
         unsafe { check_out(out, 4) }?;
-        let s = branch.contact_summary(point, contact)?;
+        let s = unsafe {
+            with_interrupt(&hooks, |interrupt| {
+                branch.contact_summary_with(point, contact, interrupt)
+            })
+        }?;
         let value = hbvib_contact_summary {
             work: s.work,
             slip_share: s.slip_share,

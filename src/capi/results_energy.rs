@@ -6,6 +6,7 @@ use super::boundary::call;
 use super::handles::{KeptBranch, read};
 use super::indices::index;
 use super::solve::hbvib_branch;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init};
 use crate::error::Status;
@@ -93,11 +94,29 @@ pub unsafe extern "C" fn hbvib_branch_energy(
     point: i64,
     out: *mut hbvib_energy,
 ) -> hbvib_status {
+    unsafe { hbvib_branch_energy_with_hooks(branch, point, out, core::ptr::null()) }
+}
+
+/// The same as hbvib_branch_energy; a hook or the cancel flag may stop it. The status
+/// is then HBVIB_STOPPED_BY_CALLER, and out is untouched.
+///
+/// point  number of a point of the curve, or of a peak, fold or requested solution.
+/// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
+/// hooks  phase, log and cancellation; progress is not called. NULL: none.
+/// Errors and threads: as for hbvib_branch_energy.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_energy_with_hooks(
+    branch: *const hbvib_branch,
+    point: i64,
+    out: *mut hbvib_energy,
+    hooks: *const hbvib_hooks,
+) -> hbvib_status {
     call(|| {
+        let hooks = unsafe { load_hooks(hooks, 4) }?;
         let kept = read::<KeptBranch>(branch, 1)?;
         let point = index(point, kept.branch.stored(), 2, "point")?;
         unsafe { check_out(out, 3) }?;
-        let e = kept.branch.energy_at(point)?;
+        let e = unsafe { with_interrupt(&hooks, |interrupt| kept.branch.energy_at_with(point, interrupt)) }?;
         let value = hbvib_energy {
             twice_mean_kinetic: e.twice_mean_kinetic,
             kinetic_mean: e.kinetic_mean,

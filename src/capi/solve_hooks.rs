@@ -1,4 +1,4 @@
-//! Section "Solve" of the header: progress, log and cancellation.
+//! Section "Solve" of the header: progress, phases, log and cancellation.
 
 #![allow(non_camel_case_types)]
 
@@ -8,6 +8,7 @@ use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::error::{Result, TEXT_CAPACITY, fail};
 use crate::hooks::{Hooks, LogLevel, Progress};
+use crate::interrupt::{Interrupt, PhaseReport, PhaseSink};
 use core::ffi::{c_char, c_void};
 use core::ptr;
 use core::sync::atomic::{AtomicI32, Ordering};
@@ -47,6 +48,47 @@ pub enum hbvib_log_level {
     HBVIB_LOG_DEBUG = 3,
 }
 
+/// Phases of a running call.
+#[repr(C)]
+pub enum hbvib_phase {
+    /// Checks of the model and its assembly.
+    HBVIB_PHASE_SETUP = 0,
+    /// Natural frequencies and mode shapes.
+    HBVIB_PHASE_MODES = 1,
+    /// Condensation onto the contacts and tables of their flexibility.
+    HBVIB_PHASE_CONDENSATION = 2,
+    /// Search for the first point of a branch.
+    HBVIB_PHASE_FIRST_POINT = 3,
+    /// Points of a branch, one after the other.
+    HBVIB_PHASE_CONTINUATION = 4,
+    /// Error estimate of a point.
+    HBVIB_PHASE_ESTIMATE = 5,
+    /// Integration in time; the share is that of a lapse.
+    HBVIB_PHASE_TIME_INTEGRATION = 6,
+    /// Harmonics, energies and other results of solved motions.
+    HBVIB_PHASE_RESULTS = 7,
+    /// One factorisation of a sparse matrix, which cannot be stopped, begins.
+    HBVIB_PHASE_FACTORISATION = 8,
+}
+
+/// Phase of a running call, passed to the phase callback.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_phase_report {
+    /// Bytes of this struct as the library knows it.
+    pub struct_size: u32,
+    /// HBVIB_PHASE_SETUP .. HBVIB_PHASE_FACTORISATION; later versions may add others.
+    pub phase: i32,
+    /// Part of the phase that is done, 0 to 1. It begins again with each phase.
+    pub share: f64,
+}
+
+/// Called at the begin of a phase, whenever its share has grown by 0.01, and after some ten
+/// milliseconds of work. A result other than 0 stops the call and keeps the points. Accepted points
+/// have a callback of their own, because callers count its calls.
+pub type hbvib_phase_fn =
+    Option<unsafe extern "C-unwind" fn(user: *mut c_void, report: *const hbvib_phase_report) -> i32>;
+
 /// Called at each accepted point. A result other than 0 stops the solve and keeps the points.
 pub type hbvib_progress_fn =
     Option<unsafe extern "C-unwind" fn(user: *mut c_void, progress: *const hbvib_progress) -> i32>;
@@ -72,9 +114,11 @@ pub struct hbvib_hooks {
     pub progress: hbvib_progress_fn,
     /// Called with each line of the log. May be NULL.
     pub log: hbvib_log_fn,
-    /// Read in each Newton iteration: a number other than 0 stops the solve and keeps the points.
+    /// Read often, in every long loop: a number other than 0 stops the call and keeps the points.
     /// Another thread or a signal handler may set it; the library never writes it. May be NULL.
     pub cancel: *const hbvib_cancel_flag,
+    /// Called with the phase of the call, from the set-up on. May be NULL.
+    pub phase: hbvib_phase_fn,
 }
 
 unsafe impl VersionedStruct for hbvib_hooks {
@@ -89,6 +133,7 @@ unsafe impl VersionedStruct for hbvib_hooks {
             progress: None,
             log: None,
             cancel: ptr::null(),
+            phase: None,
         }
     }
 }
@@ -136,16 +181,31 @@ pub(super) unsafe fn with_hooks<T>(h: &hbvib_hooks, then: impl FnOnce(&mut Hooks
             outside(|| unsafe { f(user, level as i32, text.as_ptr().cast()) });
         }
     });
+    let phase = h.phase.map(|f| {
+        move |report: &PhaseReport| {
+            let state = hbvib_phase_report {
+                struct_size: size_of::<hbvib_phase_report>() as u32,
+                phase: report.phase as i32,
+                share: report.share.clamp(0.0, 1.0),
+            };
+            outside(|| unsafe { f(user, &raw const state) }) != 0
+        }
+    });
     let flag = h.cancel;
     // An aligned load as that of a volatile in C, but defined while another thread writes.
     let cancelled = || unsafe { AtomicI32::from_ptr(flag.cast_mut()) }.load(Ordering::Relaxed) != 0;
     let mut hooks = Hooks {
         progress: progress.as_mut().map(|f| f as &mut dyn FnMut(&Progress) -> bool),
         cancelled: (!flag.is_null()).then_some(&cancelled as &dyn Fn() -> bool),
-        phase: None,
+        phase: phase.as_ref().map(|f| f as &PhaseSink<'_>),
         log: log.as_mut().map(|f| f as &mut dyn FnMut(LogLevel, &str)),
     };
     then(&mut hooks)
+}
+
+/// Passes an interrupt with the hooks of the caller to a function that has no points to report.
+pub(super) unsafe fn with_interrupt<T>(h: &hbvib_hooks, then: impl FnOnce(&Interrupt<'_>) -> T) -> T {
+    unsafe { with_hooks(h, |hooks| then(&hooks.interrupt())) }
 }
 
 /// The hooks given as the argument of this number; NULL is none.

@@ -19,6 +19,7 @@ use crate::condense::relative_coordinates::{
 use crate::contact::Contact;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::power_of_two;
 use crate::model::Model;
 use crate::model::spring::along;
@@ -34,8 +35,9 @@ impl Condensed {
     ///
     /// # Errors
     /// `Argument` for a force beyond the carried harmonics, `Unsupported` or `Argument` for missing
-    /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`.
-    pub fn new(model: &Model, options: &SolverOptions, omega: f64) -> Result<Self> {
+    /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`;
+    /// `StoppedByCaller`.
+    pub fn new(model: &Model, options: &SolverOptions, omega: f64, interrupt: &Interrupt<'_>) -> Result<Self> {
         let mut forced = Vec::new();
         for force in model
             .excitation()
@@ -51,7 +53,7 @@ impl Condensed {
             // Without forces the solution is zero, and the fundamental carries it.
             forced.push(usize::from(options.harmonics > 0));
         }
-        let (mut condensed, assembled) = Self::unscaled(model, options, &forced, omega, None)?;
+        let (mut condensed, assembled) = Self::unscaled(model, options, (&forced, omega), None, interrupt)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
         // underflows whatever the units.
         let largest = model
@@ -66,7 +68,7 @@ impl Condensed {
         let mut workspace = Workspace::new(&condensed, None)?;
         let mut motion = 0.0_f64;
         for i in 0..condensed.blocks.len() {
-            workspace.evaluate(&condensed, i, omega, false)?;
+            workspace.evaluate(&condensed, i, omega, false, interrupt)?;
             motion = motion.max(workspace.largest_motion());
         }
         let scale = power_of_two(motion);
@@ -90,9 +92,10 @@ impl Condensed {
         options: &SolverOptions,
         form: DampingForm,
         shape: &[Complex64],
+        interrupt: &Interrupt<'_>,
     ) -> Result<(Self, f64)> {
         // A mode has a linear frequency, so that the stiffness of the structure alone sets the scale.
-        let (mut condensed, assembled) = Self::unscaled(model, options, &[1], 0.0, Some((form, shape)))?;
+        let (mut condensed, assembled) = Self::unscaled(model, options, (&[1], 0.0), Some((form, shape)), interrupt)?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
         let motion = rows.iter().fold(0.0_f64, |m, row| m.max(along(row, shape).norm()));
@@ -100,14 +103,36 @@ impl Condensed {
         Ok((condensed, motion))
     }
 
+    /// A model without any harmonic, for the branch of a run that was stopped before the condensation.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn without_harmonics(model: &Model) -> Result<Self> {
+        Ok(Self {
+            set: HarmonicSet::all(0)?,
+            ndof: model.ndof(),
+            length: 1.0,
+            blocks: Vec::new(),
+            laws: Vec::new(),
+            stiffness: Vec::new(),
+            can_stick: Vec::new(),
+            preloaded: false,
+            reference: Reference::Complex,
+            share: Vec::new(),
+            contact_classes: ContactClasses::new(model)?,
+            sectors: model.structure().sectors(),
+            in_step: model.structure().in_step(),
+        })
+    }
+
     /// The condensed model without its scale of lengths: no forces and no laws yet; `omega` sets the size of
     /// inertia. Also returns the coordinates of the active contacts.
     pub(super) fn unscaled(
         model: &Model,
         options: &SolverOptions,
-        forced: &[usize],
-        omega: f64,
+        (forced, omega): (&[usize], f64),
         mode: Option<(DampingForm, &[Complex64])>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {
         let contact_classes = ContactClasses::new(model)?;
         let active = &contact_classes.active;
@@ -152,9 +177,10 @@ impl Condensed {
             }
         }
         let mut blocks = Vec::new();
-        for &number in set.numbers() {
+        for (i, &number) in set.numbers().iter().enumerate() {
+            interrupt.part(Phase::Condensation, i, set.numbers().len())?;
             let kappa = |c: usize| reference.kappa(stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
-            let mut block = harmonic_block(model, number, &contact_classes, &representatives, kappa)?;
+            let mut block = harmonic_block(model, number, (&contact_classes, &representatives), kappa, interrupt)?;
             block.artificial = match mode {
                 None => Artificial::None,
                 Some((DampingForm::Mass, _)) => Artificial::Mass,

@@ -6,6 +6,7 @@
 
 use crate::condense::{Artificial, Condensed, HarmonicBlock};
 use crate::error::{Error, Result, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::{self, ComplexSum};
 use crate::linalg::sparse::Csc;
@@ -65,15 +66,23 @@ impl DynamicStiffness {
     /// ratio.
     ///
     /// # Errors
-    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact.
-    pub fn factor(&mut self, condensed: &Condensed, i: usize, omega: Complex64, damping: f64) -> Result<()> {
+    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact; `StoppedByCaller`.
+    pub fn factor(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: Complex64,
+        damping: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let block = &condensed.blocks()[i];
         let z = &mut self.z[i];
         let sum = Combination::value(block, omega, damping);
         for (at, z) in z.values.iter_mut().enumerate() {
             *z = sum.at(block, at);
         }
-        self.factor.factor(z).map_err(|e| at_harmonic(e, block, omega.re))
+        let factored = self.factor.factor(z, interrupt);
+        factored.map_err(|e| at_harmonic(e, block, omega.re))
     }
 
     /// Solves Z X = B (or Zᵀ X = B) in place with the current factors, those of the i-th harmonic at `omega`.
@@ -87,9 +96,10 @@ impl DynamicStiffness {
         omega: f64,
         b: &mut [Complex64],
         transposed: bool,
+        interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         self.factor
-            .solve(b, transposed)
+            .solve(b, transposed, interrupt)
             .map_err(|e| at_harmonic(e, &condensed.blocks()[i], omega))
     }
 
@@ -108,10 +118,11 @@ impl DynamicStiffness {
         at: (f64, f64),
         b: &[Complex64],
         x: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let noise = self.refinement(condensed, i, at, b, x, false)?;
+        let noise = self.refinement((condensed, i), at, b, x, false, interrupt)?;
         if noise > NOISE && !self.sums.is_empty() {
-            self.refinement(condensed, i, at, b, x, true)?;
+            self.refinement((condensed, i), at, b, x, true, interrupt)?;
         }
         Ok(())
     }
@@ -119,12 +130,12 @@ impl DynamicStiffness {
     /// One step x += Z⁻¹(b − Z x); returns the relative change of the relative motions.
     fn refinement(
         &mut self,
-        condensed: &Condensed,
-        i: usize,
+        (condensed, i): (&Condensed, usize),
         at: (f64, f64),
         b: &[Complex64],
         x: &mut [Complex64],
         exact: bool,
+        interrupt: &Interrupt<'_>,
     ) -> Result<f64> {
         let block = &condensed.blocks()[i];
         let sum = Combination::value(block, at.0.into(), at.1);
@@ -142,7 +153,7 @@ impl DynamicStiffness {
                 }
             }
         }
-        let solved = self.factor.solve(&mut self.remainder, false);
+        let solved = self.factor.solve(&mut self.remainder, false, interrupt);
         solved.map_err(|e| at_harmonic(e, block, at.0))?;
         let mut change = (0.0_f64, 0.0_f64);
         for row in &block.rows {

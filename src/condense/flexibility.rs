@@ -8,6 +8,7 @@ use crate::condense::Condensed;
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, product};
 use crate::contact::relative_motion::Direction;
 use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
 use crate::model::spring::{along, relative_row};
 use num_complex::Complex64;
 
@@ -83,8 +84,9 @@ impl Workspace {
         omega: Complex64,
         left: &mut [Complex64],
         right: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.dynamic.factor(condensed, i, omega, 0.0)?;
+        self.dynamic.factor(condensed, i, omega, 0.0, interrupt)?;
         for (v, transposed) in [(right, false), (left, true)] {
             self.product.fill(Complex64::ZERO);
             add_slope_product(
@@ -97,7 +99,7 @@ impl Workspace {
                 &mut self.product,
             );
             v.copy_from_slice(&self.product);
-            self.dynamic.solve(condensed, i, omega.re, v, transposed)?;
+            self.dynamic.solve(condensed, i, omega.re, v, transposed, interrupt)?;
             let size = v.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
             for z in v.iter_mut() {
                 *z /= size;
@@ -130,7 +132,7 @@ impl Workspace {
     }
 
     /// Fills the columns Z⁻¹ B.
-    fn solve_columns(&mut self, condensed: &Condensed, i: usize, omega: f64) -> Result<()> {
+    fn solve_columns(&mut self, condensed: &Condensed, i: usize, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let coordinates = condensed.coordinates();
@@ -141,16 +143,25 @@ impl Workspace {
             }
         }
         self.columns[coordinates * n..].copy_from_slice(&block.force);
-        self.dynamic.solve(condensed, i, omega, &mut self.columns, false)
+        self.dynamic
+            .solve(condensed, i, omega, &mut self.columns, false, interrupt)
     }
 
     /// Evaluates H of the i-th carried harmonic at `omega`, and ∂H/∂ω if `slopes`.
     ///
     /// # Errors
-    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact.
-    pub fn evaluate(&mut self, condensed: &Condensed, i: usize, omega: f64, slopes: bool) -> Result<&Table> {
-        self.dynamic.factor(condensed, i, omega.into(), self.damping)?;
-        self.solve_columns(condensed, i, omega)?;
+    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact; `StoppedByCaller`.
+    pub fn evaluate(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        slopes: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<&Table> {
+        self.dynamic
+            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        self.solve_columns(condensed, i, omega, interrupt)?;
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
@@ -178,12 +189,14 @@ impl Workspace {
                 column[p] += a;
             }
         }
-        self.dynamic.solve(condensed, i, omega, &mut self.rows, true)?;
+        self.dynamic
+            .solve(condensed, i, omega, &mut self.rows, true, interrupt)?;
         for (column, table) in self
             .columns
             .chunks_exact(n)
             .zip(self.table.slope.chunks_exact_mut(outputs))
         {
+            interrupt.check()?;
             self.product.fill(Complex64::ZERO);
             let at = (omega.into(), self.damping);
             add_slope_product(condensed, i, at, Variable::Omega, false, column, &mut self.product);
@@ -215,8 +228,10 @@ impl Workspace {
         omega: f64,
         contact_force: &[Complex64],
         x: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        self.dynamic.factor(condensed, i, omega.into(), self.damping)?;
+        self.dynamic
+            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
         let block = &condensed.blocks()[i];
         self.load.copy_from_slice(&block.force);
         for (row, w) in block.rows.iter().zip(contact_force) {
@@ -226,7 +241,7 @@ impl Workspace {
         }
         let at = (omega, self.damping);
         x.copy_from_slice(&self.load);
-        self.dynamic.solve(condensed, i, omega, x, false)?;
-        self.dynamic.refine(condensed, i, at, &self.load, x)
+        self.dynamic.solve(condensed, i, omega, x, false, interrupt)?;
+        self.dynamic.refine(condensed, i, at, &self.load, x, interrupt)
     }
 }

@@ -6,6 +6,7 @@ use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
 use crate::condense::resonance_poles;
 use crate::error::{Result, try_push};
+use crate::interrupt::{Interrupt, Phase};
 
 /// Degrees of freedom above which a sweep interpolates.
 const INTERPOLATE_ABOVE: usize = 32;
@@ -27,8 +28,8 @@ impl FrequencyCache {
     /// Tables for a sweep over `range` = (start, end), with `response` as the last row.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, response: usize, range: (f64, f64)) -> Result<Self> {
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn new(condensed: &Condensed, response: usize, range: (f64, f64), interrupt: &Interrupt<'_>) -> Result<Self> {
         const CONTEXT: &str = "the contact flexibility";
         let coordinates = condensed.coordinates();
         let (start, end) = range;
@@ -36,10 +37,12 @@ impl FrequencyCache {
         let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
         let mut interpolations = Vec::new();
-        for i in 0..condensed.blocks().len() {
+        let count = condensed.blocks().len();
+        for i in 0..count {
+            interrupt.part(Phase::Condensation, i, count)?;
             try_push(&mut tables, Table::new(coordinates)?, CONTEXT)?;
             if sweep && condensed.ndof() > INTERPOLATE_ABOVE {
-                let resonances = resonance_poles::near(condensed, &mut workspace, i, range)?;
+                let resonances = resonance_poles::near(condensed, &mut workspace, i, range, interrupt)?;
                 let interpolation = FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE)?;
                 try_push(&mut interpolations, interpolation, CONTEXT)?;
             }
@@ -71,23 +74,24 @@ impl FrequencyCache {
     ///
     /// # Errors
     /// Those of [`Workspace::evaluate`].
-    pub fn tabulate(&mut self, condensed: &Condensed, omega: f64) -> Result<()> {
+    pub fn tabulate(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         if self.tabulated == Some((omega, self.pointwise)) {
             return Ok(());
         }
         self.tabulated = None;
         let workspace = &mut self.workspace;
         for (i, table) in self.current.iter_mut().enumerate() {
+            interrupt.check()?;
             let done = match self.interpolations.get_mut(i) {
                 Some(interpolation) if !self.pointwise => interpolation.evaluate(omega, table, |w, values| {
-                    values.copy_from_slice(&workspace.evaluate(condensed, i, w, false)?.value);
+                    values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
                     Ok(())
                 })?,
                 _ => false,
             };
             if !done {
                 // A derived clone_from would allocate at each frequency.
-                let found = workspace.evaluate(condensed, i, omega, !self.pointwise)?;
+                let found = workspace.evaluate(condensed, i, omega, !self.pointwise, interrupt)?;
                 table.value.copy_from_slice(&found.value);
                 table.slope.copy_from_slice(&found.slope);
             }

@@ -2,6 +2,7 @@
 
 use crate::condense::contact_classes::ContactClasses;
 use crate::error::{Result, try_push, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::{Row, relative_row};
@@ -62,9 +63,9 @@ impl HarmonicBlock {
 pub(super) fn harmonic_block(
     model: &Model,
     number: usize,
-    contact_classes: &ContactClasses,
-    representatives: &[(usize, usize)],
+    (contact_classes, representatives): (&ContactClasses, &[(usize, usize)]),
     kappa: impl Fn(usize) -> Complex64,
+    interrupt: &Interrupt<'_>,
 ) -> Result<HarmonicBlock> {
     let structure = model.structure();
     let n = model.ndof();
@@ -80,7 +81,9 @@ pub(super) fn harmonic_block(
         Ok(rows)
     };
     let rows = rows_of(representatives)?;
+    interrupt.check()?;
     let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
+    interrupt.check()?;
     let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
     let mut references = Vec::new();
     for (c, row) in rows.iter().enumerate() {
@@ -91,6 +94,7 @@ pub(super) fn harmonic_block(
         }
     }
     let references = Csc::from_triplets(n, n, references)?;
+    interrupt.check()?;
     // Zero factors add the pattern alone.
     let (one, zero) = (Complex64::ONE, Complex64::ZERO);
     let reference = Csc::sum(
@@ -102,6 +106,7 @@ pub(super) fn harmonic_block(
             (zero, &mass, Form::Plain),
         ],
     )?;
+    interrupt.check()?;
     Ok(HarmonicBlock {
         number,
         damping: damping.aligned(&reference)?,

@@ -6,6 +6,7 @@
 use crate::condense::Condensed;
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product};
 use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 
 /// x and its derivatives in one harmonic.
@@ -42,18 +43,26 @@ impl Modal {
     /// w = f − κ y.
     ///
     /// # Errors
-    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact.
-    pub fn solve(&mut self, condensed: &Condensed, i: usize, omega: f64, damping: f64, w: &[Complex64]) -> Result<()> {
+    /// `Singular` naming the harmonic, at an undamped resonance that moves no contact; `StoppedByCaller`.
+    pub fn solve(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        (omega, damping): (f64, f64),
+        w: &[Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let n = self.x.len();
         let rows = &condensed.blocks()[i].rows;
-        self.dynamic.factor(condensed, i, omega.into(), damping)?;
+        self.dynamic.factor(condensed, i, omega.into(), damping, interrupt)?;
         self.columns.fill(Complex64::ZERO);
         for (column, row) in self.columns.chunks_exact_mut(n).zip(rows) {
             for &(p, a) in row.iter().flatten() {
                 column[p] += a.conj();
             }
         }
-        self.dynamic.solve(condensed, i, omega, &mut self.columns, false)?;
+        self.dynamic
+            .solve(condensed, i, omega, &mut self.columns, false, interrupt)?;
         self.x.fill(Complex64::ZERO);
         for (column, w) in self.columns.chunks_exact(n).zip(w) {
             for (x, z) in self.x.iter_mut().zip(column) {
@@ -68,7 +77,7 @@ impl Modal {
             }
         }
         self.dynamic
-            .refine(condensed, i, (omega, damping), &self.by_damping, &mut self.x)?;
+            .refine(condensed, i, (omega, damping), &self.by_damping, &mut self.x, interrupt)?;
         let at = (omega.into(), damping);
         for (derivative, by) in [
             (&mut self.by_omega, Variable::Omega),
@@ -76,7 +85,7 @@ impl Modal {
         ] {
             derivative.fill(Complex64::ZERO);
             add_slope_product(condensed, i, at, by, false, &self.x, derivative);
-            self.dynamic.solve(condensed, i, omega, derivative, false)?;
+            self.dynamic.solve(condensed, i, omega, derivative, false, interrupt)?;
             for z in derivative.iter_mut() {
                 *z = -*z;
             }

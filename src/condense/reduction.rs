@@ -2,6 +2,7 @@
 
 use crate::condense::Condensed;
 use crate::error::Result;
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::SolverOptions;
 
@@ -39,14 +40,20 @@ impl Condensed {
     /// The parts of the problem that were removed.
     ///
     /// # Errors
-    /// Those of [`Model::rigid_modes`].
-    pub fn reduction(&self, model: &Model, options: &SolverOptions) -> Result<Reduction> {
+    /// Those of [`Model::rigid_modes`]; `StoppedByCaller`.
+    pub fn reduction(&self, model: &Model, options: &SolverOptions, interrupt: &Interrupt<'_>) -> Result<Reduction> {
         let held_by_contacts = if self.set.has_mean() && self.coordinates() > 0 {
-            model.rigid_modes(0)?
+            model.rigid_modes(0, interrupt)?
         } else {
             0
         };
-        Ok(Reduction {
+        Ok(self.reduction_with(model, options, held_by_contacts))
+    }
+
+    /// The same with the number of rigid-body modes that contacts alone hold.
+    #[must_use]
+    pub fn reduction_with(&self, model: &Model, options: &SolverOptions, held_by_contacts: usize) -> Reduction {
+        Reduction {
             sectors: model.structure().sectors(),
             degrees_of_freedom: self.ndof,
             coordinates: self.coordinates(),
@@ -59,6 +66,6 @@ impl Condensed {
             even_removed: self.set.is_odd(),
             unknowns: self.unknowns(),
             held_by_contacts,
-        })
+        }
     }
 }

@@ -7,6 +7,7 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, Status, try_push};
+use crate::interrupt::Interrupt;
 use crate::linalg::lanczos;
 use crate::linalg::sparse::{Csc, Form};
 use num_complex::Complex64;
@@ -24,8 +25,14 @@ const TOLERANCE: f64 = 1e-12;
 /// be found the list is shorter, which affects the speed only.
 ///
 /// # Errors
-/// `OutOfMemory`.
-pub fn near(condensed: &Condensed, workspace: &mut Workspace, i: usize, range: (f64, f64)) -> Result<Vec<Complex64>> {
+/// `OutOfMemory`; `StoppedByCaller`.
+pub fn near(
+    condensed: &Condensed,
+    workspace: &mut Workspace,
+    i: usize,
+    range: (f64, f64),
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<Complex64>> {
     let block = &condensed.blocks()[i];
     let mut found = Vec::new();
     let h = block.number as f64;
@@ -43,9 +50,9 @@ pub fn near(condensed: &Condensed, workspace: &mut Workspace, i: usize, range: (
     )?;
     let mut mass = reference.try_clone()?;
     mass.values.copy_from_slice(&block.mass);
-    let modes = match lanczos::lowest(&hermitian, &mass, MODES) {
+    let modes = match lanczos::lowest(&hermitian, &mass, MODES, interrupt) {
         Ok(modes) => modes,
-        Err(e) if e.status == Status::OutOfMemory => return Err(e),
+        Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
         Err(_) => return Ok(found),
     };
     let (low, high) = (range.0.min(range.1), range.0.max(range.1));
@@ -56,7 +63,7 @@ pub fn near(condensed: &Condensed, workspace: &mut Workspace, i: usize, range: (
             continue;
         }
         let shape: Vec<Complex64> = modes.vectors.column(mode).iter().copied().collect();
-        let pole = refine(condensed, workspace, i, omega.into(), shape)?;
+        let pole = refine(condensed, workspace, i, (omega.into(), shape), interrupt)?;
         if let Some(p) = pole.filter(|p| p.re > low - 2.0 * width && p.re < high + 2.0 * width) {
             let known = found.iter().any(|q: &Complex64| (q - p).norm() <= 1e-6 * p.norm());
             if !known {
@@ -72,8 +79,8 @@ fn refine(
     condensed: &Condensed,
     workspace: &mut Workspace,
     i: usize,
-    mut p: Complex64,
-    shape: Vec<Complex64>,
+    (mut p, shape): (Complex64, Vec<Complex64>),
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Complex64>> {
     let mut left: Vec<Complex64> = shape.iter().map(Complex64::conj).collect();
     let mut right = shape;
@@ -90,9 +97,9 @@ fn refine(
             return Ok(Some(p));
         }
         last = step.norm();
-        match workspace.inverse_step(condensed, i, p, &mut left, &mut right) {
+        match workspace.inverse_step(condensed, i, p, &mut left, &mut right, interrupt) {
             Ok(()) => {}
-            Err(e) if e.status == Status::OutOfMemory => return Err(e),
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
             // The matrix is singular up to rounding: p is the resonance.
             Err(_) => return Ok(Some(p)),
         }

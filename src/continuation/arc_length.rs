@@ -205,7 +205,7 @@ impl Continuation {
         metric.add(&mut v, step, &self.row);
         let found = self
             .corrector
-            .direction_at(problem, &v, &self.row, metric, &mut self.scratch)?;
+            .direction_at(problem, &v, &self.row, metric, &mut self.scratch, interrupt)?;
         let Some(positive) = found else { return Ok(None) };
         metric.unit(&self.scratch, &mut self.row);
         if positive != self.current.positive {

@@ -147,14 +147,14 @@ impl Corrector {
             let residual = self.relative_residual();
             // The damping test compares steps by one matrix, that of the iteration.
             let reuse = iteration > 0 && !damped;
-            if !residual.is_finite() || !self.newton_step(problem, metric, row, reuse)? {
+            if !residual.is_finite() || !self.newton_step(problem, metric, row, reuse, interrupt)? {
                 return Ok(Outcome::Failed);
             }
             let size = norm(&self.step);
             let round_off = self.is_round_off(v, metric);
             let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
             if (residual <= self.tolerance && near) || round_off {
-                let found = self.finish(problem, v, metric, iteration, residual)?;
+                let found = self.finish(problem, v, metric, (iteration, residual), interrupt)?;
                 return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
             }
             if iteration == self.max_iterations || (!damped && size > last_size) {
@@ -163,7 +163,7 @@ impl Corrector {
             last_size = size;
             self.steps_taken += 1;
             if damped {
-                match self.damped_step(problem, v, metric, size, damping)? {
+                match self.damped_step(problem, v, metric, (size, damping), interrupt)? {
                     Some(used) => damping = used,
                     None => break,
                 }
@@ -209,45 +209,58 @@ impl Corrector {
     }
 
     /// Updates the linear system with Newton's matrix at the point evaluated last.
-    fn update(&mut self, problem: &mut dyn Problem, metric: Metric, row: &[f64]) -> Result<()> {
+    fn update(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        row: &[f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let border = Border {
             column: &self.at.d_parameter,
             scales: (metric.u, metric.p),
             row,
         };
-        self.system.update(problem, border)
+        self.system.update(problem, border, interrupt)
     }
 
     /// Factors the current matrix; `false` where it is singular.
-    fn factor(&mut self) -> Result<bool> {
-        let factored = tolerate(self.system.factor())?;
+    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let factored = tolerate(self.system.factor(interrupt))?;
         self.factors = if factored { Factors::Own } else { Factors::None };
         Ok(factored)
     }
 
     /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
     /// earlier iteration may be reused where the matrix has hardly changed.
-    fn newton_step(&mut self, problem: &mut dyn Problem, metric: Metric, row: &[f64], reuse: bool) -> Result<bool> {
+    fn newton_step(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        row: &[f64],
+        reuse: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
         let n = self.step.len() - 1;
         for (s, r) in self.step.iter_mut().zip(&self.at.values) {
             *s = -r;
         }
         self.step[n] = 0.0;
         self.factors = if reuse { Factors::Earlier } else { Factors::None };
-        self.update(problem, metric, row)?;
-        self.solve(problem, STEP_ERROR)
+        self.update(problem, metric, row, interrupt)?;
+        self.solve(problem, STEP_ERROR, interrupt)
     }
 
     /// Solves for `step` with the current matrix, by factors of an earlier one to the given error; `false` where it
     /// is singular.
-    fn solve(&mut self, problem: &mut dyn Problem, error: f64) -> Result<bool> {
+    fn solve(&mut self, problem: &mut dyn Problem, error: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
         if self.factors == Factors::Earlier && self.system.solve_by_earlier_factors(error, &mut self.step) {
             return Ok(true);
         }
-        if self.factors != Factors::Own && !self.factor()? {
+        if self.factors != Factors::Own && !self.factor(interrupt)? {
             return Ok(false);
         }
-        self.system.solve(problem, &mut self.step)
+        self.system.solve(problem, &mut self.step, interrupt)
     }
 
     /// Tries λ = min(1, 4·last), halving; returns the accepted λ.
@@ -256,12 +269,13 @@ impl Corrector {
         problem: &mut dyn Problem,
         v: &mut [f64],
         metric: Metric,
-        size: f64,
-        last: f64,
+        (size, last): (f64, f64),
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<f64>> {
         let n = v.len() - 1;
         let mut damping = (4.0 * last).min(1.0);
         while damping >= SMALLEST_DAMPING {
+            interrupt.check()?;
             self.trial.copy_from_slice(v);
             metric.add(&mut self.trial, damping, &self.step);
             let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
@@ -271,7 +285,7 @@ impl Corrector {
                     *s = -r;
                 }
                 self.next[n] = 0.0;
-                let solved = self.system.solve(problem, &mut self.next)?;
+                let solved = self.system.solve(problem, &mut self.next, interrupt)?;
                 let shrunk = solved && norm(&self.next) <= (1.0 - 0.25 * damping) * size;
                 if shrunk || self.relative_residual() <= self.tolerance {
                     v.copy_from_slice(&self.trial);
@@ -290,15 +304,15 @@ impl Corrector {
         problem: &mut dyn Problem,
         v: &mut [f64],
         metric: Metric,
-        iterations: usize,
-        residual: f64,
+        (iterations, residual): (usize, f64),
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Corrected>> {
         let n = v.len() - 1;
         let mut tangent = try_copy(&self.step, "Newton's method")?;
         metric.unscale(&mut tangent);
         let (at_residual, correction) = problem.observe(&v[..n], &tangent);
         metric.add(v, 1.0, &self.step);
-        if !self.tangent(problem, metric, &mut tangent)? {
+        if !self.tangent(problem, metric, &mut tangent, interrupt)? {
             return Ok(None);
         }
         let (_, slope) = problem.observe(&v[..n], &tangent);
@@ -314,11 +328,17 @@ impl Corrector {
     }
 
     /// Unit tangent of the current matrix, in unscaled numbers; `false` where it is singular.
-    fn tangent(&mut self, problem: &mut dyn Problem, metric: Metric, tangent: &mut [f64]) -> Result<bool> {
+    fn tangent(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        tangent: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
         let n = self.step.len() - 1;
         self.step.fill(0.0);
         self.step[n] = 1.0;
-        if !self.solve(problem, TANGENT_ERROR)? {
+        if !self.solve(problem, TANGENT_ERROR, interrupt)? {
             return Ok(false);
         }
         let length = norm(&self.step);
@@ -341,12 +361,13 @@ impl Corrector {
         row: &[f64],
         metric: Metric,
         tangent: &mut [f64],
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<bool>> {
         if !self.evaluates(problem, v)? {
             return Ok(None);
         }
-        self.update(problem, metric, row)?;
-        if !self.factor()? || !self.tangent(problem, metric, tangent)? {
+        self.update(problem, metric, row, interrupt)?;
+        if !self.factor(interrupt)? || !self.tangent(problem, metric, tangent, interrupt)? {
             return Ok(None);
         }
         Ok(Some(self.system.is_positive()))

@@ -46,8 +46,8 @@ impl Jacobian for NewtonHomotopy<'_> {
         self.problem.size()
     }
 
-    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
-        self.problem.fill(matrix, active);
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
+        self.problem.fill(matrix, active)?;
         let n = active.len();
         // A column of the identity remains one.
         for (i, column) in matrix.chunks_exact_mut(n.max(1)).enumerate() {
@@ -58,6 +58,7 @@ impl Jacobian for NewtonHomotopy<'_> {
                 column[i] += 1.0 - self.share;
             }
         }
+        Ok(())
     }
 }
 

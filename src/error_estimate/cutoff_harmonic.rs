@@ -8,9 +8,10 @@
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
-use crate::error::{Result, try_vec};
+use crate::error::{Result, Status, try_vec};
 use crate::error_estimate::estimate::CONTEXT;
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
 use crate::linalg::inner;
 use crate::linalg::lu::Lu;
@@ -68,11 +69,11 @@ pub(super) struct CutoffHarmonic {
 
 impl CutoffHarmonic {
     /// Memory for a condensed model.
-    pub fn new(condensed: Condensed) -> Result<Self> {
+    pub fn new(condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Self> {
         let coordinates = condensed.coordinates();
         Ok(Self {
             workspace: Workspace::new(&condensed, None)?,
-            highest: highest_frequency(&condensed),
+            highest: highest_frequency(&condensed, interrupt)?,
             vectors: [
                 try_vec(coordinates, Complex64::ZERO, CONTEXT)?,
                 try_vec(coordinates, Complex64::ZERO, CONTEXT)?,
@@ -86,7 +87,7 @@ impl CutoffHarmonic {
 
     /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
     /// ω; `from` where it is compliant in none.
-    pub fn at(&mut self, omega: f64, from: usize, most: usize) -> Result<usize> {
+    pub fn at(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
         if let Some((frequency, near, searched_from)) = self.found
             && (omega / near - 1.0).abs() <= NEAR
             && from >= searched_from
@@ -94,8 +95,8 @@ impl CutoffHarmonic {
             return Ok(((frequency / omega).round() as usize).clamp(from, most.max(from)));
         }
         let last = match self.highest {
-            Some(highest) => self.check_each(omega, highest, from, most)?,
-            None => self.check_some(omega, from, most)?,
+            Some(highest) => self.check_each(omega, highest, (from, most), interrupt)?,
+            None => self.check_some(omega, from, most, interrupt)?,
         };
         if last < most {
             self.found = Some((last as f64 * omega, omega, from));
@@ -103,13 +104,19 @@ impl CutoffHarmonic {
         Ok(last)
     }
 
-    fn check_each(&mut self, omega: f64, highest: f64, from: usize, most: usize) -> Result<usize> {
+    fn check_each(
+        &mut self,
+        omega: f64,
+        highest: f64,
+        (from, most): (usize, usize),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<usize> {
         let set = self.condensed.set();
         let step = set.base() * set.stride();
         let most = carried_to(set, most);
         let mut above = carried_from(set, ((highest / omega) as usize + 1).max(from + 1));
         let mut below = from;
-        while above < most && self.compliant(omega, above)? {
+        while above < most && self.compliant(omega, above, interrupt)? {
             (below, above) = (above, carried_from(self.condensed.set(), 2 * above));
         }
         above = above.min(most);
@@ -118,7 +125,7 @@ impl CutoffHarmonic {
             while above > below + step {
                 let middle = carried_from(self.condensed.set(), below.midpoint(above));
                 let middle = middle.min(above - step);
-                if self.compliant(omega, middle)? {
+                if self.compliant(omega, middle, interrupt)? {
                     below = middle;
                 } else {
                     above = middle;
@@ -128,7 +135,7 @@ impl CutoffHarmonic {
         }
         let mut h = above;
         while h > from {
-            if self.compliant(omega, h)? {
+            if self.compliant(omega, h, interrupt)? {
                 return Ok(h);
             }
             if h <= step {
@@ -139,15 +146,15 @@ impl CutoffHarmonic {
         Ok(from)
     }
 
-    fn check_some(&mut self, omega: f64, from: usize, most: usize) -> Result<usize> {
+    fn check_some(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
         let mut h = most;
         let mut above = most;
         while h > from {
-            if self.compliant(omega, h)? {
+            if self.compliant(omega, h, interrupt)? {
                 // Nearer to the last one, but not to a single harmonic: each costs a factorisation.
                 while above - h > 1 + (FINE * h as f64) as usize {
                     let middle = h.midpoint(above);
-                    if self.compliant(omega, middle)? {
+                    if self.compliant(omega, middle, interrupt)? {
                         h = middle;
                     } else {
                         above = middle;
@@ -162,7 +169,8 @@ impl CutoffHarmonic {
     }
 
     /// Whether ‖kt^½ G kt^½‖ ≥ ½ in harmonic h.
-    fn compliant(&mut self, omega: f64, h: usize) -> Result<bool> {
+    fn compliant(&mut self, omega: f64, h: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
+        interrupt.check()?;
         let condensed = &self.condensed;
         let Some(i) = block_of(condensed, h) else {
             return Ok(false);
@@ -170,7 +178,10 @@ impl CutoffHarmonic {
         // The matrices of a wave are the same for all its harmonics.
         let effective = omega * h as f64 / condensed.set().numbers()[i] as f64;
         let n = condensed.coordinates();
-        let table = &self.workspace.evaluate(condensed, i, effective, false)?.value;
+        let table = &self
+            .workspace
+            .evaluate(condensed, i, effective, false, interrupt)?
+            .value;
         // G = (1 − G_κ κ)⁻¹ G_κ, both sides times kt^½.
         let a = self.lu.matrix();
         for c in 0..n {
@@ -183,10 +194,11 @@ impl CutoffHarmonic {
             }
         }
         // The matrix is singular at a resonance of the structure without contacts.
-        if self.lu.factor().is_err() {
-            return Ok(true);
+        match self.lu.factor(interrupt) {
+            Err(e) if e.status == Status::Singular => return Ok(true),
+            factored => factored?,
         }
-        self.lu.solve_columns(&mut self.matrix, false);
+        self.lu.solve_columns(&mut self.matrix, false, interrupt)?;
         Ok(spectral_norm(&self.matrix, &mut self.vectors) >= COMPLIANT)
     }
 }
@@ -229,10 +241,10 @@ fn spectral_norm(a: &[Complex64], [x, y]: &mut [Vec<Complex64>; 2]) -> f64 {
 }
 
 /// Highest natural frequency over the waves of a small structure without its contacts; `None` if it is not known.
-fn highest_frequency(condensed: &Condensed) -> Option<f64> {
+fn highest_frequency(condensed: &Condensed, interrupt: &Interrupt<'_>) -> Result<Option<f64>> {
     let n = condensed.ndof();
     if n > SMALL_UP_TO {
-        return None;
+        return Ok(None);
     }
     let mut highest = 0.0_f64;
     for block in condensed.blocks().iter().take(2 * condensed.in_step() + 1) {
@@ -246,12 +258,16 @@ fn highest_frequency(condensed: &Condensed) -> Option<f64> {
             }
         }
         if (&k - k.adjoint()).norm() > 1e-9 * k.norm() {
-            return None;
+            return Ok(None);
         }
-        let pairs = eigen::generalised(&k, &m).ok()?;
+        let pairs = match eigen::generalised(&k, &m, interrupt) {
+            Err(e) if e.status == Status::StoppedByCaller => return Err(e),
+            Err(_) => return Ok(None),
+            Ok(pairs) => pairs,
+        };
         highest = pairs.values.iter().fold(highest, |w, x| w.max(x.max(0.0).sqrt()));
     }
-    Some(highest)
+    Ok(Some(highest))
 }
 
 /// The lowest harmonic number not below h that sets like `set` carry.
@@ -272,6 +288,7 @@ mod tests {
     use crate::condense::Condensed;
     use crate::contact::Contact;
     use crate::fourier::HarmonicSet;
+    use crate::interrupt::Interrupt;
     use crate::linalg::matrix_view::MatrixView;
     use crate::model::Model;
     use crate::model::structure::MatrixKind;
@@ -319,10 +336,10 @@ mod tests {
             }
             model.add_contact(&Contact::jenkins(0, None, kt, 0.5, 1.0)).unwrap();
             model.add_force(0, 1, 1.0.into()).unwrap();
-            let condensed = Condensed::new(&model, &SolverOptions::default(), omega).unwrap();
-            let mut cutoff = CutoffHarmonic::new(condensed).unwrap();
+            let condensed = Condensed::new(&model, &SolverOptions::default(), omega, &Interrupt::none()).unwrap();
+            let mut cutoff = CutoffHarmonic::new(condensed, &Interrupt::none()).unwrap();
             let last = ((k + 2.0 * kt) / mass).sqrt() / omega;
-            let found = cutoff.at(omega, 1, 3001).unwrap();
+            let found = cutoff.at(omega, 1, 3001, &Interrupt::none()).unwrap();
             assert!(
                 found as f64 >= last - 2.0 && found as f64 <= last + 2.0,
                 "{found} for {last}"

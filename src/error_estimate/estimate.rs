@@ -18,6 +18,7 @@
 use crate::condense::Condensed;
 use crate::error::{Result, Status, try_push, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::options::{MAX_SAMPLES, SolverOptions};
 use crate::problem::contact_forces::ContactForces;
@@ -100,7 +101,7 @@ pub struct Solved<'a> {
 
 impl Solved<'_> {
     /// Whether every law is linear at this point, so that no harmonic is missing.
-    pub(super) fn is_linear(&self) -> Result<bool> {
+    pub(super) fn is_linear(&self, interrupt: &Interrupt<'_>) -> Result<bool> {
         if self.condensed.coordinates() == 0 {
             return Ok(true);
         }
@@ -108,7 +109,7 @@ impl Solved<'_> {
             return Ok(sticks);
         }
         // The result for a contact that sticks does not depend on the samples.
-        let mut forces = ContactForces::unchecked(self.condensed, 0)?;
+        let mut forces = ContactForces::unchecked(self.condensed, 0, interrupt)?;
         match forces.evaluate(self.motion, self.omega) {
             Err(e) if e.recoverable => Ok(false),
             Err(e) => Err(e),

@@ -3,6 +3,7 @@
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::estimate::{CONTEXT, SHARE};
 use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::problem::Problem;
 
@@ -62,6 +63,7 @@ pub(super) fn extend<P: Problem>(
     start: &[f64],
     enough: impl Fn(&P, &[f64], &[f64], &[f64]) -> bool,
     weak: bool,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<ExtendedSolution>> {
     let n = start.len();
     let mut z = try_copy(start, CONTEXT)?;
@@ -71,7 +73,8 @@ pub(super) fn extend<P: Problem>(
     let mut trial = try_vec(n, 0.0, CONTEXT)?;
     let mut damping = 1.0_f64;
     for steps in 1..=MOST_STEPS {
-        if !system.factor()? || !system.step(&mut step)? {
+        interrupt.part(Phase::Estimate, steps - 1, MOST_STEPS)?;
+        if !system.factor(interrupt)? || !system.step(&mut step, interrupt)? {
             return Ok(None);
         }
         let size = norm(&step);
@@ -91,7 +94,7 @@ pub(super) fn extend<P: Problem>(
             }
             let last = damping <= SMALLEST_DAMPING;
             if system.evaluate(&trial)? {
-                if !system.step(&mut next[..n])? {
+                if !system.step(&mut next[..n], interrupt)? {
                     return Ok(None);
                 }
                 if last || norm(&next) <= (1.0 - 0.25 * damping) * size {

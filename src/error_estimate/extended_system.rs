@@ -3,6 +3,7 @@
 use crate::error::{Result, Status, try_vec};
 use crate::error_estimate::estimate::CONTEXT;
 use crate::error_estimate::work::{Sizes, Work};
+use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::krylov::KrylovSystem;
 use crate::linalg::linear_system::{Border, LinearSystem};
@@ -92,7 +93,7 @@ impl<P: Problem> ExtendedSystem<P> {
 
     /// Factors Newton's matrix at the point evaluated last; `false` where it is singular, or the work does not
     /// suffice.
-    pub fn factor(&mut self) -> Result<bool> {
+    pub fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
         let (packed, pairs) = self.factored_numbers();
         if !self.work.spend(self.sizes.factors(packed, pairs)) {
             return Ok(false);
@@ -102,8 +103,8 @@ impl<P: Problem> ExtendedSystem<P> {
             scales: (1.0, 1.0),
             row: &self.row,
         };
-        self.system.update(&mut self.problem, border)?;
-        match self.system.factor() {
+        self.system.update(&mut self.problem, border, interrupt)?;
+        match self.system.factor(interrupt) {
             Err(e) if e.status == Status::Singular => Ok(false),
             factored => factored.map(|()| true),
         }
@@ -111,7 +112,7 @@ impl<P: Problem> ExtendedSystem<P> {
 
     /// −J⁻¹R with the matrix factored last and R as evaluated last; `false` where the iteration did not converge with
     /// the work that is left.
-    pub fn step(&mut self, step: &mut [f64]) -> Result<bool> {
+    pub fn step(&mut self, step: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
         let n = step.len();
         let (packed, pairs) = self.factored_numbers();
         let each = self.sizes.product(packed, pairs);
@@ -121,7 +122,7 @@ impl<P: Problem> ExtendedSystem<P> {
             *b = -r;
         }
         self.b[n] = 0.0;
-        let solved = self.system.solve(&mut self.problem, &mut self.b)?;
+        let solved = self.system.solve(&mut self.problem, &mut self.b, interrupt)?;
         step.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }

@@ -12,6 +12,7 @@ use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
 use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::SolverOptions;
@@ -39,6 +40,7 @@ pub struct ForcedEstimator<'a> {
     response: usize,
     cutoff: Option<CutoffHarmonic>,
     models: &'a ModelCache,
+    interrupt: &'a Interrupt<'a>,
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
     /// Ratio of the whole change of the response to that of the first extension, the harmonic of that extension, and the
@@ -49,13 +51,20 @@ pub struct ForcedEstimator<'a> {
 impl<'a> ForcedEstimator<'a> {
     /// For solutions of `model` with these options, observing degree of freedom `response`.
     #[must_use]
-    pub fn new(model: &'a Model, options: &SolverOptions, response: usize, models: &'a ModelCache) -> Self {
+    pub fn new(
+        model: &'a Model,
+        options: &SolverOptions,
+        response: usize,
+        models: &'a ModelCache,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Self {
         Self {
             model,
             options: *options,
             response,
             cutoff: None,
             models,
+            interrupt,
             extended: Vec::new(),
             ratio: None,
         }
@@ -64,9 +73,10 @@ impl<'a> ForcedEstimator<'a> {
     /// The estimate at a solved point; not certified if it could not be made.
     ///
     /// # Errors
-    /// Those of callbacks that give up.
+    /// Those of callbacks that give up; `StoppedByCaller`.
     pub fn at(&mut self, solved: &Solved<'_>) -> Result<Estimate> {
-        if solved.is_linear()? {
+        self.interrupt.phase(Phase::Estimate, 0.0)?;
+        if solved.is_linear(self.interrupt)? {
             return solved.exact(0.0);
         }
         let found = self.extend(solved);
@@ -85,13 +95,13 @@ impl<'a> ForcedEstimator<'a> {
         if self.cutoff.is_none() {
             let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
             let options = extended_options(&self.options, waves);
-            let condensed = Condensed::new(self.model, &options, solved.omega)?;
-            self.cutoff = Some(CutoffHarmonic::new(condensed)?);
+            let condensed = Condensed::new(self.model, &options, solved.omega, self.interrupt)?;
+            self.cutoff = Some(CutoffHarmonic::new(condensed, self.interrupt)?);
         }
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
         };
-        let core = cutoff.at(solved.omega, set.base(), most)?;
+        let core = cutoff.at(solved.omega, set.base(), most, self.interrupt)?;
         Ok(Some(Extent {
             core,
             highest: core.max(least),
@@ -200,7 +210,7 @@ impl<'a> ForcedEstimator<'a> {
         let omega = solved.omega;
         let resolution = self.models.model(slot, |highest| {
             let options = extended_options(&self.options, highest);
-            let condensed = Condensed::new(self.model, &options, omega)?;
+            let condensed = Condensed::new(self.model, &options, omega, self.interrupt)?;
             let carried = condensed.set().numbers().last().copied().unwrap_or(0);
             Ok(Resolution {
                 samples: extended_options(&self.options, carried).samples,
@@ -223,7 +233,14 @@ impl<'a> ForcedEstimator<'a> {
             system
         } else {
             let range = (omega, omega);
-            let problem = HarmonicBalance::new(condensed, self.response, range, resolution.samples, None)?;
+            let problem = HarmonicBalance::new(
+                condensed,
+                self.response,
+                range,
+                resolution.samples,
+                None,
+                self.interrupt,
+            )?;
             ExtendedSystem::iterative(problem, omega, factored, (sizes, work))?
         };
         let found = on(
@@ -232,6 +249,7 @@ impl<'a> ForcedEstimator<'a> {
             (solved, from),
             extent,
             self.options.tol_residual,
+            self.interrupt,
         );
         let left = system.work();
         if self.extended.len() == MOST_KEPT {
@@ -262,6 +280,7 @@ fn on(
     (solved, from): (&Solved<'_>, Option<&Corrected>),
     extent: Extent,
     tolerance: f64,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Estimate>> {
     let (omega, set) = (solved.omega, condensed.set());
     if set.numbers().len() == solved.condensed.set().numbers().len() {
@@ -290,7 +309,7 @@ fn on(
         let (x, dx) = problem.observe(at, next);
         dx.norm() <= SHARE * (x + dx - solved.response / length).norm() || dx.norm() <= ROUNDING * x.norm()
     };
-    let Some(extended) = extend(system, &start, enough, extent.weak)? else {
+    let Some(extended) = extend(system, &start, enough, extent.weak, interrupt)? else {
         return Ok(None);
     };
     let mut z = extended.corrected()?;

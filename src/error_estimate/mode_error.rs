@@ -11,6 +11,7 @@ use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::forced_response_error::{omits_nothing, relative};
 use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::norm;
 use crate::model::Model;
@@ -35,6 +36,7 @@ pub struct ModeEstimator<'a> {
     linear: &'a LinearMode,
     gauge: &'a Gauge,
     response: usize,
+    interrupt: &'a Interrupt<'a>,
     cutoff: Option<CutoffHarmonic>,
     /// The extended model used last.
     extended: Option<Condensed>,
@@ -50,6 +52,7 @@ impl<'a> ModeEstimator<'a> {
         form: DampingForm,
         (linear, gauge): (&'a LinearMode, &'a Gauge),
         response: usize,
+        interrupt: &'a Interrupt<'a>,
     ) -> Self {
         Self {
             model,
@@ -58,6 +61,7 @@ impl<'a> ModeEstimator<'a> {
             linear,
             gauge,
             response,
+            interrupt,
             cutoff: None,
             extended: None,
         }
@@ -67,9 +71,10 @@ impl<'a> ModeEstimator<'a> {
     /// made.
     ///
     /// # Errors
-    /// Those of callbacks that give up.
+    /// Those of callbacks that give up; `StoppedByCaller`.
     pub fn at(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Estimate> {
-        if solved.is_linear()? {
+        self.interrupt.phase(Phase::Estimate, 0.0)?;
+        if solved.is_linear(self.interrupt)? {
             return solved.exact(damping);
         }
         let found = self.extend(solved, log10_amplitude, damping);
@@ -78,7 +83,7 @@ impl<'a> ModeEstimator<'a> {
 
     fn condensed(&self, highest: usize) -> Result<Condensed> {
         let options = extended_options(&self.options, highest);
-        Ok(Condensed::for_mode(self.model, &options, self.form, &self.linear.shape)?.0)
+        Ok(Condensed::for_mode(self.model, &options, self.form, &self.linear.shape, self.interrupt)?.0)
     }
 
     fn extend(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Option<Estimate>> {
@@ -94,12 +99,12 @@ impl<'a> ModeEstimator<'a> {
         }
         if self.cutoff.is_none() {
             let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
-            self.cutoff = Some(CutoffHarmonic::new(self.condensed(waves)?)?);
+            self.cutoff = Some(CutoffHarmonic::new(self.condensed(waves)?, self.interrupt)?);
         }
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
         };
-        let highest = cutoff.at(solved.omega, least, most)?;
+        let highest = cutoff.at(solved.omega, least, most, self.interrupt)?;
         let spare = (highest as f64 * SPARE) as usize;
         let carries = |c: &Condensed| c.set().numbers().last().is_some_and(|h| (highest..=spare).contains(h));
         if !self.extended.as_ref().is_some_and(carries) {
@@ -124,7 +129,7 @@ impl<'a> ModeEstimator<'a> {
         let set = condensed.set();
         let highest = set.numbers().last().copied().unwrap_or(0);
         let samples = extended_options(&self.options, highest).samples;
-        let problem = Epmc::new(condensed, self.gauge, self.linear, samples)?;
+        let problem = Epmc::new(condensed, self.gauge, self.linear, samples, self.interrupt)?;
         let n = problem.size();
         let mut system = ExtendedSystem::dense(problem, p, Sizes::new(condensed, samples), work)?;
         let a = 10f64.powf(p);
@@ -144,7 +149,7 @@ impl<'a> ModeEstimator<'a> {
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs())
         };
-        let Some(extended) = extend(&mut system, &start, enough, false)? else {
+        let Some(extended) = extend(&mut system, &start, enough, false, self.interrupt)? else {
             return Ok(None);
         };
         let z = extended.corrected()?;

@@ -8,6 +8,7 @@
 mod factor_reuse;
 
 use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 
 /// The parts of the matrix [J·u, r·p; row].
@@ -74,7 +75,7 @@ impl Bordered {
     /// unknowns whose column of J differs from that of the identity.
     ///
     /// # Errors
-    /// `Singular`.
+    /// `Singular`; `StoppedByCaller`.
     pub fn factor(
         &mut self,
         jacobian: &[f64],
@@ -82,6 +83,7 @@ impl Bordered {
         is_active: &[bool],
         (u_scale, p_scale): (f64, f64),
         row: &[f64],
+        interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         let n = self.n;
         self.active.clear();
@@ -117,7 +119,7 @@ impl Bordered {
         let begin = self.rest.len();
         self.rest.extend(self.eliminated.iter().map(|&t| column[t] * p_scale));
         to[m - 1] = row[n] - dot(&self.border, &self.rest[begin..]) / u_scale;
-        self.lu.factor()
+        self.lu.factor(interrupt)
     }
 
     /// Whether the determinant of the factored matrix is positive.
@@ -178,7 +180,9 @@ mod tests {
         let rhs: Vec<f64> = (0..=n).map(|k| (k as f64 * 2.1).sin() + 1.0).collect();
         let solve = |active: &[bool]| {
             let mut bordered = Bordered::new(n).unwrap();
-            bordered.factor(&jacobian, &column, active, (0.7, 3.0), &row).unwrap();
+            bordered
+                .factor(&jacobian, &column, active, (0.7, 3.0), &row, &Interrupt::none())
+                .unwrap();
             let mut b = rhs.clone();
             bordered.solve(&mut b);
             b

@@ -2,6 +2,7 @@
 //! find a negative direction by chance only.
 
 use crate::error::{Error, Result, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
@@ -19,8 +20,8 @@ const CONTEXT: &str = "a Cholesky factorisation";
 /// factorisation of M + 1e-10 diag(M).
 ///
 /// # Errors
-/// `NotPositiveDefinite` with a sentence about the mass matrix, `OutOfMemory`.
-pub fn check_mass(m: &Csc) -> Result<()> {
+/// `NotPositiveDefinite` with a sentence about the mass matrix, `OutOfMemory`; `StoppedByCaller`.
+pub fn check_mass(m: &Csc, interrupt: &Interrupt<'_>) -> Result<()> {
     let n = m.rows;
     let mut margin = Vec::new();
     for j in 0..n {
@@ -33,7 +34,7 @@ pub fn check_mass(m: &Csc) -> Result<()> {
         let added = if alone { 1.0 } else { MARGIN * diagonal };
         try_push(&mut margin, (j, j, added.into()), CONTEXT)?;
     }
-    first_bad_pivot(m, margin)?.map_or(Ok(()), negative)
+    first_bad_pivot(m, margin, interrupt)?.map_or(Ok(()), negative)
 }
 
 /// Whether a Hermitian stiffness matrix resists every motion.
@@ -41,23 +42,29 @@ pub fn check_mass(m: &Csc) -> Result<()> {
 /// The test is a Cholesky factorisation of K − 1e-10 diag(K).
 ///
 /// # Errors
-/// `OutOfMemory`.
-pub fn resists_all_motion(k: &Csc) -> Result<bool> {
+/// `OutOfMemory`; `StoppedByCaller`.
+pub fn resists_all_motion(k: &Csc, interrupt: &Interrupt<'_>) -> Result<bool> {
     let mut margin = Vec::new();
     for j in 0..k.rows {
         try_push(&mut margin, (j, j, (-MARGIN * k.get(j, j).re).into()), CONTEXT)?;
     }
-    Ok(first_bad_pivot(k, margin)?.is_none())
+    Ok(first_bad_pivot(k, margin, interrupt)?.is_none())
 }
 
 /// Pivot at which a Cholesky factorisation of a + margin breaks down; `None` where it succeeds.
-fn first_bad_pivot(a: &Csc, margin: Vec<(usize, usize, Complex64)>) -> Result<Option<usize>> {
+fn first_bad_pivot(
+    a: &Csc,
+    margin: Vec<(usize, usize, Complex64)>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<usize>> {
+    interrupt.check()?;
     let n = a.rows;
     let margin = Csc::from_triplets(n, n, margin)?;
     let a = Csc::sum(
         n,
         &[(Complex64::ONE, a, Form::Plain), (Complex64::ONE, &margin, Form::Plain)],
     )?;
+    interrupt.announce_factorisation()?;
     let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &a.row_idx);
     let no_memory = || Error::out_of_memory(CONTEXT);
     let symbolic = factorize_symbolic_cholesky(
@@ -111,7 +118,7 @@ mod tests {
     #[test]
     fn a_semidefinite_mass_passes_and_a_negative_direction_does_not() {
         let n = 300;
-        let check = |entries| check_mass(&Csc::from_triplets(n, n, entries).unwrap());
+        let check = |entries| check_mass(&Csc::from_triplets(n, n, entries).unwrap(), &Interrupt::none());
         check(chain(n, 0)).unwrap();
         check(chain(n, 40)).unwrap();
         // One mass on the difference of two motions: singular, not negative.

@@ -2,6 +2,7 @@
 //! matrices.
 
 use crate::error::{Error, Result, Status, fail, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 use crate::linalg::sparse::Csc;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -16,6 +17,12 @@ const DENSE_UP_TO: usize = 200;
 
 /// Share of stored entries above which a larger matrix is treated as dense.
 const DENSE_FILL: f64 = 0.1;
+
+/// Right-hand sides of a sparse matrix that are solved between two checks of the interrupt.
+const BETWEEN_CHECKS: usize = 8;
+
+/// Operations per unknown of a solution with sparse factors, roughly.
+const OF_ONE_SOLUTION: u64 = 200;
 
 /// Factors of one matrix at a time, all matrices of the same order.
 pub struct Factor {
@@ -67,27 +74,37 @@ impl Factor {
     /// Factors `a`.
     ///
     /// # Errors
-    /// `Singular`, `OutOfMemory`.
-    pub fn factor(&mut self, a: &Csc) -> Result<()> {
+    /// `Singular`, `OutOfMemory`; `StoppedByCaller`.
+    pub fn factor(&mut self, a: &Csc, interrupt: &Interrupt<'_>) -> Result<()> {
         match &mut self.kind {
             Kind::Dense(lu) => {
+                interrupt.check()?;
                 let dense = lu.matrix();
                 dense.fill(Complex64::ZERO);
                 a.add_to_dense(Complex64::ONE, dense);
-                lu.factor()
+                interrupt.check()?;
+                lu.factor(interrupt)
             }
-            Kind::Sparse(sparse) => sparse.factor(a),
+            Kind::Sparse(sparse) => {
+                interrupt.announce_factorisation()?;
+                sparse.factor(a)
+            }
         }
     }
 
     /// Solves A X = B (or Aᵀ X = B) in place for the columns of `b`.
     ///
     /// # Errors
-    /// `Singular` when the solution is not finite.
-    pub fn solve(&mut self, b: &mut [Complex64], transposed: bool) -> Result<()> {
+    /// `Singular` when the solution is not finite; `StoppedByCaller`.
+    pub fn solve(&mut self, b: &mut [Complex64], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
         match &mut self.kind {
-            Kind::Dense(lu) => lu.solve_columns(b, transposed),
-            Kind::Sparse(sparse) => sparse.solve(b, transposed)?,
+            Kind::Dense(lu) => lu.solve_columns(b, transposed, interrupt)?,
+            Kind::Sparse(sparse) => {
+                for b in b.chunks_mut(BETWEEN_CHECKS * sparse.n) {
+                    interrupt.check_before(OF_ONE_SOLUTION * b.len() as u64)?;
+                    sparse.solve(b, transposed)?;
+                }
+            }
         }
         if b.iter().any(|x| !x.is_finite()) {
             return fail!(Singular, "a linear system has no finite solution");

@@ -6,6 +6,7 @@
 //! orthogonal to the vectors found, until it finds no larger eigenvalue.
 
 use crate::error::{Result, fail, try_push, try_vec};
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::eigen::Pairs;
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
@@ -25,8 +26,9 @@ const EXTRA_STEPS: usize = 120;
 ///
 /// # Errors
 /// `Singular` when K + σM is singular, `NotPositiveDefinite` when M is negative in some direction, `NoConvergence`,
-/// `OutOfMemory`.
-pub fn lowest(k: &Csc, m: &Csc, count: usize) -> Result<Pairs> {
+/// `OutOfMemory`; `StoppedByCaller`.
+pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<Pairs> {
+    interrupt.check()?;
     let n = k.rows;
     let diagonal = |a: &Csc| (0..n).map(|i| a.get(i, i).re).sum::<f64>();
     let (stiff, heavy) = (diagonal(k), diagonal(m));
@@ -37,12 +39,14 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize) -> Result<Pairs> {
     // eigenvalues well separated from the rest.
     let shift = 1e-7 * stiff / heavy;
     let shifted = Csc::sum(n, &[(Complex64::ONE, k, Form::Plain), (shift.into(), m, Form::Plain)])?;
+    interrupt.check()?;
     let mut search = Search {
         factor: Factor::new(&shifted, 1)?,
         mass: m,
         found: Vec::new(),
+        interrupt,
     };
-    search.factor.factor(&shifted)?;
+    search.factor.factor(&shifted, interrupt)?;
     for round in 0..=count {
         let before = search.smallest(count);
         let new = search.run(count, round)?;
@@ -66,6 +70,7 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize) -> Result<Pairs> {
 struct Search<'a> {
     factor: Factor,
     mass: &'a Csc,
+    interrupt: &'a Interrupt<'a>,
     /// Eigenvalues 1/(λ + σ) of the operator, their vectors φ, and M φ.
     found: Vec<(f64, Vec<Complex64>, Vec<Complex64>)>,
 }
@@ -92,7 +97,8 @@ impl Search<'_> {
         let mut v = start(n, round)?;
         // One application moves the starting vector into the range of the operator, free of massless motion.
         self.apply(&mut v)?;
-        for _ in 0..steps {
+        for step in 0..steps {
+            self.interrupt.part(Phase::Modes, step, steps)?;
             let before = dot(&v, &self.times_mass(&v)?).re.max(0.0).sqrt();
             self.orthogonalise(&mut v, &basis, &weighted);
             let mut mv = self.times_mass(&v)?;
@@ -110,7 +116,7 @@ impl Search<'_> {
             }
             beta.push(norm);
             let mut next = mv.clone();
-            self.factor.solve(&mut next, false)?;
+            self.factor.solve(&mut next, false, self.interrupt)?;
             alpha.push(dot(&mv, &next).re);
             try_push(&mut basis, v, "the eigenvectors")?;
             try_push(&mut weighted, mv, "the eigenvectors")?;
@@ -190,6 +196,7 @@ impl Search<'_> {
         }
         let mut largest = 0.0_f64;
         for (mu, bound, s) in self.ritz(alpha, beta, v, basis, weighted)?.into_iter().take(count) {
+            self.interrupt.check()?;
             // The error of the eigenvalue is the square of the bound; vectors need a small bound too.
             if mu <= 0.0 || bound > 1e-8 * mu {
                 break;
@@ -217,7 +224,7 @@ impl Search<'_> {
     /// v ← (K + σM)⁻¹ M v
     fn apply(&mut self, v: &mut Vec<Complex64>) -> Result<()> {
         *v = self.times_mass(v)?;
-        self.factor.solve(v, false)
+        self.factor.solve(v, false, self.interrupt)
     }
 
     fn times_mass(&self, v: &[Complex64]) -> Result<Vec<Complex64>> {
@@ -287,7 +294,7 @@ mod tests {
         }
         let k = Csc::from_triplets(n, n, k).unwrap();
         let m = Csc::from_triplets(n, n, (0..n).map(|i| (i, i, Complex64::ONE)).collect()).unwrap();
-        let pairs = lowest(&k, &m, 8).unwrap();
+        let pairs = lowest(&k, &m, 8, &Interrupt::none()).unwrap();
         for (i, value) in pairs.values.iter().enumerate() {
             let exact = 2.0 - 2.0 * ((i / 3) as f64 * std::f64::consts::PI / length as f64).cos();
             assert!((value - exact).abs() < 1e-12, "{i}: {value} against {exact}");

@@ -5,6 +5,7 @@
 //! equations leave undetermined.
 
 use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
 
 /// A square system and its memory.
 pub struct LeastSquares {
@@ -39,7 +40,10 @@ impl LeastSquares {
 
     /// Solves A x ≈ b in place and returns the numerical rank: directions of A that are shorter than `threshold`
     /// times the longest do not count.
-    pub fn solve(&mut self, b: &mut [f64], threshold: f64) -> usize {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn solve(&mut self, b: &mut [f64], threshold: f64, interrupt: &Interrupt<'_>) -> Result<usize> {
         let n = self.n;
         let a = &mut self.a;
         let mut rank = 0;
@@ -48,6 +52,7 @@ impl LeastSquares {
             *p = j;
         }
         for k in 0..n {
+            interrupt.check_before((6 * (n - k) * (n - k)) as u64)?;
             // Computed again at each step: updated lengths would be dominated by rounding where the rank shows.
             for (length, column) in self.lengths.iter_mut().zip(a.chunks_exact(n)).skip(k) {
                 *length = column[k..].iter().map(|x| x * x).sum();
@@ -90,6 +95,7 @@ impl LeastSquares {
         b[rank..].fill(0.0);
         // Columns (−R₁⁻¹R₂, 1) span the null space; they are made orthonormal, and their component of b is removed.
         for k in 0..n - rank {
+            interrupt.check()?;
             let (before, this) = open.split_at_mut(k * n);
             let this = &mut this[..n];
             back(r, n, rank, this);
@@ -108,7 +114,7 @@ impl LeastSquares {
             self.solution[to] = *x;
         }
         b.copy_from_slice(&self.solution);
-        rank
+        Ok(rank)
     }
 }
 
@@ -145,7 +151,7 @@ mod tests {
         let mut system = LeastSquares::new(n).unwrap();
         system.matrix().copy_from_slice(&a);
         let mut b = times(&a, &x);
-        assert_eq!(system.solve(&mut b, 1e-12), n);
+        assert_eq!(system.solve(&mut b, 1e-12, &Interrupt::none()).unwrap(), n);
         for (b, x) in b.iter().zip(&x) {
             assert!((b - x).abs() < 1e-12);
         }
@@ -157,7 +163,7 @@ mod tests {
         let right = times(&singular, &x);
         system.matrix().copy_from_slice(&singular);
         let mut found = right.clone();
-        assert_eq!(system.solve(&mut found, 1e-12), n - 1);
+        assert_eq!(system.solve(&mut found, 1e-12, &Interrupt::none()).unwrap(), n - 1);
         // Orthogonal to the null space e₁ + e₂ − e₄.
         assert!((found[1] + found[2] - found[4]).abs() < 1e-12);
         for (a, b) in times(&singular, &found).iter().zip(&right) {

@@ -1,9 +1,12 @@
 //! LU factorisation with partial pivoting, in place and without allocation, real or complex.
 //!
 //! Small matrices use plain loops, which the compiler vectorises and which need no set-up; larger ones use the
-//! blocked kernels of faer.
+//! blocked kernels of faer, and large ones panels between which a caller may interrupt.
+
+mod panels;
 
 use crate::error::{Error, Result, fail, try_vec};
+use crate::interrupt::Interrupt;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::{factor, solve};
 use faer::perm::PermRef;
@@ -32,12 +35,21 @@ impl Scalar for Complex64 {
 /// Order above which the blocked kernels are quicker.
 const BLOCKED_ABOVE: usize = 32;
 
+/// Order above which the factorisation can be interrupted between panels of columns.
+const PANELS_ABOVE: usize = 384;
+
+/// Numbers of right-hand sides times unknowns squared between two checks of the interrupt in a solution.
+const BETWEEN_CHECKS: usize = 1 << 23;
+
 const CONTEXT: &str = "an LU factorisation";
 
 /// Memory for the blocked kernels.
 struct Blocked {
     forward: Vec<usize>,
     backward: Vec<usize>,
+    /// Permutation of one panel, and its interchanges.
+    panel: Vec<usize>,
+    swaps: Vec<usize>,
     scratch: MemBuffer,
 }
 
@@ -59,6 +71,7 @@ impl<T: Scalar> Lu<T> {
         let Some(nn) = n.checked_mul(n) else {
             return fail!(OutOfMemory, "a dense factorisation of {n} unknowns cannot be stored");
         };
+        let in_panels = if n > PANELS_ABOVE { n } else { 0 };
         let blocked = if n > BLOCKED_ABOVE {
             let need = factor::lu_in_place_scratch::<usize, T>(n, n, Par::Seq, faer::Spec::default())
                 .or(solve::solve_in_place_scratch::<usize, T>(n, columns, Par::Seq))
@@ -70,6 +83,8 @@ impl<T: Scalar> Lu<T> {
             Some(Blocked {
                 forward: try_vec(n, 0, CONTEXT)?,
                 backward: try_vec(n, 0, CONTEXT)?,
+                panel: try_vec(in_panels, 0, CONTEXT)?,
+                swaps: try_vec(in_panels, 0, CONTEXT)?,
                 scratch: MemBuffer::try_new(need).map_err(|_| Error::out_of_memory(CONTEXT))?,
             })
         } else {
@@ -102,11 +117,11 @@ impl<T: Scalar> Lu<T> {
     /// Factors the matrix that was filled in.
     ///
     /// # Errors
-    /// `Singular` naming the pivot that is exactly zero or not finite.
-    pub fn factor(&mut self) -> Result<()> {
+    /// `Singular` naming the pivot that is exactly zero or not finite; `StoppedByCaller`.
+    pub fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         if n > BLOCKED_ABOVE {
-            return self.factor_blocked();
+            return self.factor_blocked(interrupt);
         }
         for j in 0..n {
             let (left, right) = self.a.split_at_mut(j * n);
@@ -150,7 +165,7 @@ impl<T: Scalar> Lu<T> {
         Ok(())
     }
 
-    fn factor_blocked(&mut self) -> Result<()> {
+    fn factor_blocked(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         // In stretches without early exit, which the compiler vectorises.
         let broken = |part: &[T]| part.iter().fold(false, |found, x| found | !x.size().is_finite());
@@ -160,41 +175,26 @@ impl<T: Scalar> Lu<T> {
         let Some(blocked) = &mut self.blocked else {
             return Ok(());
         };
-        factor::lu_in_place::<usize, T>(
-            MatMut::from_column_major_slice_mut(&mut self.a[..n * n], n, n),
-            &mut blocked.forward[..n],
-            &mut blocked.backward[..n],
-            Par::Seq,
-            MemStack::new(&mut blocked.scratch),
-            faer::Spec::default(),
-        );
+        if n > PANELS_ABOVE {
+            panels::factor(&mut self.a[..n * n], n, blocked, interrupt)?;
+        } else {
+            interrupt.check_before((n * n * n) as u64)?;
+            factor::lu_in_place::<usize, T>(
+                MatMut::from_column_major_slice_mut(&mut self.a[..n * n], n, n),
+                &mut blocked.forward[..n],
+                &mut blocked.backward[..n],
+                Par::Seq,
+                MemStack::new(&mut blocked.scratch),
+                faer::Spec::default(),
+            );
+        }
         for j in 0..n {
             let size = self.a[j * n + j].size();
             if size == 0.0 || !size.is_finite() {
                 return singular(n, j, size);
             }
         }
-        // The permutation as interchanges: position k takes row forward[k] from its current position. `backward`
-        // serves as the map from rows to positions and is restored afterwards.
-        let (rows, position) = (&mut self.pivots[..n], &mut blocked.backward[..n]);
-        for (k, p) in position.iter_mut().enumerate() {
-            *p = k;
-        }
-        // rows[k] holds the row at position k until its interchange is known.
-        for (k, r) in rows.iter_mut().enumerate() {
-            *r = k;
-        }
-        for k in 0..n {
-            let wanted = blocked.forward[k];
-            let from = position[wanted];
-            let displaced = rows[k];
-            rows[from] = displaced;
-            position[displaced] = from;
-            rows[k] = from;
-        }
-        for (k, &row) in blocked.forward[..n].iter().enumerate() {
-            position[row] = k;
-        }
+        interchanges(&blocked.forward[..n], &mut blocked.backward[..n], &mut self.pivots[..n]);
         Ok(())
     }
 
@@ -237,28 +237,58 @@ impl<T: Scalar> Lu<T> {
     }
 
     /// Solves A X = B (or Aᵀ X = B) in place for the columns of `b`.
-    pub fn solve_columns(&mut self, b: &mut [T], transposed: bool) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn solve_columns(&mut self, b: &mut [T], transposed: bool, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
         let Some(blocked) = self.blocked.as_mut().filter(|_| n > BLOCKED_ABOVE) else {
-            for column in b.chunks_exact_mut(n) {
+            for column in b.chunks_exact_mut(n.max(1)) {
                 if transposed {
                     self.solve_transposed(column);
                 } else {
                     self.solve(column);
                 }
             }
-            return;
+            return Ok(());
         };
         let factors = MatRef::from_column_major_slice(&self.a[..n * n], n, n);
         let rows = PermRef::new_checked(&blocked.forward[..n], &blocked.backward[..n], n);
-        let columns = b.len() / n;
-        let b = MatMut::from_column_major_slice_mut(b, n, columns);
-        let scratch = MemStack::new(&mut blocked.scratch);
-        if transposed {
-            solve::solve_transpose_in_place_with_conj(factors, factors, rows, Conj::No, b, Par::Seq, scratch);
-        } else {
-            solve::solve_in_place_with_conj(factors, factors, rows, Conj::No, b, Par::Seq, scratch);
+        let at_once = (BETWEEN_CHECKS / (n * n)).max(1);
+        for b in b.chunks_mut(at_once * n) {
+            let columns = b.len() / n;
+            interrupt.check_before((2 * n * n * columns) as u64)?;
+            let b = MatMut::from_column_major_slice_mut(b, n, columns);
+            let scratch = MemStack::new(&mut blocked.scratch);
+            if transposed {
+                solve::solve_transpose_in_place_with_conj(factors, factors, rows, Conj::No, b, Par::Seq, scratch);
+            } else {
+                solve::solve_in_place_with_conj(factors, factors, rows, Conj::No, b, Par::Seq, scratch);
+            }
         }
+        Ok(())
+    }
+}
+
+/// A permutation, by which position k takes row `forward[k]`, as interchanges: position k takes the row at position
+/// `rows[k]`. `position` is memory, and holds the inverse permutation at the end.
+fn interchanges(forward: &[usize], position: &mut [usize], rows: &mut [usize]) {
+    for (k, p) in position.iter_mut().enumerate() {
+        *p = k;
+    }
+    // rows[k] holds the row at position k until its interchange is known.
+    for (k, r) in rows.iter_mut().enumerate() {
+        *r = k;
+    }
+    for (k, &wanted) in forward.iter().enumerate() {
+        let from = position[wanted];
+        let displaced = rows[k];
+        rows[from] = displaced;
+        position[displaced] = from;
+        rows[k] = from;
+    }
+    for (k, &row) in forward.iter().enumerate() {
+        position[row] = k;
     }
 }
 
@@ -289,35 +319,76 @@ mod tests {
 
     #[test]
     fn solves_a_system_and_its_transpose_by_either_kernel() {
-        for n in [1, 7, BLOCKED_ABOVE, BLOCKED_ABOVE + 9] {
-            let a: Vec<f64> = (0..n * n).map(|k| ((k * k + 3 * k + 2) as f64 * 0.37).sin()).collect();
+        for n in [1, 7, BLOCKED_ABOVE, BLOCKED_ABOVE + 9, PANELS_ABOVE + 77] {
+            let mut a: Vec<f64> = (0..n * n).map(|k| ((k * k + 3 * k + 2) as f64 * 0.37).sin()).collect();
+            if n > PANELS_ABOVE {
+                // Large matrices of this kind are ill-conditioned.
+                (0..n).for_each(|k| a[k * n + k] += 30.0);
+            }
             let mut lu = Lu::<f64>::new(n, 2).unwrap();
             lu.matrix().copy_from_slice(&a);
-            lu.factor().unwrap();
+            lu.factor(&Interrupt::none()).unwrap();
             let x: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
             let mut b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[j * n + i] * x[j]).sum()).collect();
             let mut bt: Vec<f64> = (0..n).map(|i| (0..n).map(|j| a[i * n + j] * x[j]).sum()).collect();
             let (mut both, mut both_t) = ([b.clone(), b.clone()].concat(), [bt.clone(), bt.clone()].concat());
             lu.solve(&mut b);
             lu.solve_transposed(&mut bt);
-            lu.solve_columns(&mut both, false);
-            lu.solve_columns(&mut both_t, true);
+            lu.solve_columns(&mut both, false, &Interrupt::none()).unwrap();
+            lu.solve_columns(&mut both_t, true, &Interrupt::none()).unwrap();
             for i in 0..n {
                 for found in [b[i], bt[i], both[i], both[n + i], both_t[i], both_t[n + i]] {
-                    assert!((found - x[i]).abs() < 1e-11, "n = {n}");
+                    assert!((found - x[i]).abs() < 1e-11, "n = {n}: {:e}", found - x[i]);
                 }
             }
         }
     }
 
     #[test]
+    fn panels_and_the_whole_matrix_have_the_same_determinant_and_a_stop_comes_between_panels() {
+        let n = PANELS_ABOVE + 150;
+        let checks = core::cell::Cell::new(0);
+        let stop = || {
+            checks.set(checks.get() + 1);
+            checks.get() == 5
+        };
+        let fill = |lu: &mut Lu<f64>| {
+            for (k, a) in lu.matrix().iter_mut().enumerate() {
+                *a = ((k * k + 3 * k + 2) as f64 * 0.37).sin();
+            }
+        };
+        let mut lu = Lu::<f64>::new(n, 1).unwrap();
+        fill(&mut lu);
+        let stopped = lu.factor(&Interrupt::new(Some(&stop), None));
+        assert_eq!(stopped.unwrap_err().status, crate::error::Status::StoppedByCaller);
+        fill(&mut lu);
+        lu.factor(&Interrupt::none()).unwrap();
+        let (mut whole, mut forward, mut backward) = (vec![0.0; n * n], vec![0; n], vec![0; n]);
+        for (k, a) in whole.iter_mut().enumerate() {
+            *a = ((k * k + 3 * k + 2) as f64 * 0.37).sin();
+        }
+        let need = factor::lu_in_place_scratch::<usize, f64>(n, n, Par::Seq, faer::Spec::default());
+        factor::lu_in_place::<usize, f64>(
+            MatMut::from_column_major_slice_mut(&mut whole, n, n),
+            &mut forward,
+            &mut backward,
+            Par::Seq,
+            MemStack::new(&mut MemBuffer::new(need)),
+            faer::Spec::default(),
+        );
+        let size = |a: &[f64]| (0..n).map(|k| a[k * n + k].abs().ln()).sum::<f64>();
+        assert!((size(&lu.a) - size(&whole)).abs() < 1e-8);
+        assert_eq!(lu.blocked.as_ref().unwrap().forward, forward);
+    }
+
+    #[test]
     fn a_singular_matrix_is_an_error() {
-        for n in [2, BLOCKED_ABOVE + 9] {
+        for n in [2, BLOCKED_ABOVE + 9, PANELS_ABOVE + 9] {
             let mut lu = Lu::<f64>::new(n, 1).unwrap();
             lu.matrix().fill(1.0);
-            assert!(lu.factor().is_err());
+            assert!(lu.factor(&Interrupt::none()).is_err());
             lu.matrix().fill(f64::NAN);
-            assert!(lu.factor().is_err());
+            assert!(lu.factor(&Interrupt::none()).is_err());
         }
     }
 }

@@ -5,6 +5,7 @@ pub mod definite;
 pub mod eigen;
 pub mod factor;
 pub mod gmres;
+pub mod hermitian;
 pub mod lanczos;
 pub mod least_squares;
 pub mod linear_system;

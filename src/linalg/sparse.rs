@@ -1,6 +1,6 @@
 //! Compressed sparse columns with complex values: the storage of all structural matrices.
 
-use crate::error::{Result, try_extend, try_push, try_vec};
+use crate::error::{Error, Result, try_extend, try_push, try_vec};
 use num_complex::Complex64;
 
 /// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
@@ -68,20 +68,79 @@ impl Csc {
     /// # Errors
     /// `OutOfMemory`.
     pub fn sum(n: usize, terms: &[(Complex64, &Self, Form)]) -> Result<Self> {
-        let mut entries = Vec::new();
-        for (c, a, form) in terms {
-            for j in 0..a.cols {
+        const CONTEXT: &str = "a sum of sparse matrices";
+        let mut transposed = Vec::new();
+        for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
+            try_push(&mut transposed, a.transposed()?, CONTEXT)?;
+        }
+        let mut sum = Self {
+            rows: n,
+            cols: n,
+            col_ptr: try_vec(n + 1, 0, CONTEXT)?,
+            row_idx: Vec::new(),
+            values: Vec::new(),
+        };
+        // One column after the other: its entries by their rows, and the rows that it has.
+        let mut column = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        let mut in_column = try_vec(n, 0, CONTEXT)?;
+        let mut rows = try_vec(n, 0, CONTEXT)?;
+        for j in 0..n {
+            // At most n rows, for which there is memory.
+            rows.clear();
+            let mut next = transposed.iter();
+            for (c, a, form) in terms {
+                let a = if *form == Form::Transposed {
+                    next.next().unwrap_or(a)
+                } else {
+                    a
+                };
                 for (i, v) in a.column(j) {
-                    let entry = match form {
-                        Form::Plain => (i, j, c * v),
-                        Form::Transposed => (j, i, c * v),
-                        Form::Conjugated => (i, j, c * v.conj()),
-                    };
-                    try_push(&mut entries, entry, "a sum of sparse matrices")?;
+                    if in_column[i] != j + 1 {
+                        in_column[i] = j + 1;
+                        column[i] = Complex64::ZERO;
+                        rows.push(i);
+                    }
+                    column[i] += c * if *form == Form::Conjugated { v.conj() } else { v };
                 }
             }
+            rows.sort_unstable();
+            try_extend(&mut sum.row_idx, &rows, CONTEXT)?;
+            sum.values
+                .try_reserve(rows.len())
+                .map_err(|_| Error::out_of_memory(CONTEXT))?;
+            sum.values.extend(rows.iter().map(|&i| column[i]));
+            sum.col_ptr[j + 1] = sum.row_idx.len();
         }
-        Self::from_triplets(n, n, entries)
+        Ok(sum)
+    }
+
+    /// Aᵀ of a square matrix.
+    fn transposed(&self) -> Result<Self> {
+        const CONTEXT: &str = "a sparse matrix";
+        let mut col_ptr = try_vec(self.rows + 1, 0, CONTEXT)?;
+        for &i in &self.row_idx {
+            col_ptr[i + 1] += 1;
+        }
+        for i in 0..self.rows {
+            col_ptr[i + 1] += col_ptr[i];
+        }
+        let mut next = try_vec(self.rows, 0, CONTEXT)?;
+        next.copy_from_slice(&col_ptr[..self.rows]);
+        let mut row_idx = try_vec(self.row_idx.len(), 0, CONTEXT)?;
+        let mut values = try_vec(self.values.len(), Complex64::ZERO, CONTEXT)?;
+        for j in 0..self.cols {
+            for (i, v) in self.column(j) {
+                (row_idx[next[i]], values[next[i]]) = (j, v);
+                next[i] += 1;
+            }
+        }
+        Ok(Self {
+            rows: self.cols,
+            cols: self.rows,
+            col_ptr,
+            row_idx,
+            values,
+        })
     }
 
     /// A copy, allocated fallibly.

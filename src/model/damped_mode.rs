@@ -5,6 +5,7 @@
 //! inverse iteration on a problem that is nonlinear in its eigenvalue (Neumaier 1985, doi:10.1137/0722055).
 
 use crate::error::{Result, fail, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
@@ -67,6 +68,20 @@ impl Model {
     /// artificial damping of the stiffness type does not act on the mode; `Dimension` for a shape
     /// of another length; `OutOfMemory`.
     pub fn damped_mode(&self, start: &SelectedMode, form: DampingForm) -> Result<DampedMode> {
+        self.damped_mode_with(start, form, &Interrupt::none())
+    }
+
+    /// The same as [`Self::damped_mode`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::damped_mode`]; `StoppedByCaller`.
+    pub fn damped_mode_with(
+        &self,
+        start: &SelectedMode,
+        form: DampingForm,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<DampedMode> {
+        interrupt.check()?;
         let n = self.ndof();
         if start.shape.len() != n {
             return fail!(
@@ -98,12 +113,12 @@ impl Model {
             return Ok(undamped);
         }
         if start.multiplicity > 1 {
-            let mode = problem.follow(&undamped, OFFSET_REPEATED)?;
+            let mode = problem.follow(&undamped, OFFSET_REPEATED, interrupt)?;
             if problem.residual(&mode, true)? {
                 return Ok(mode);
             }
         }
-        let mode = problem.follow(&undamped, OFFSET)?;
+        let mode = problem.follow(&undamped, OFFSET, interrupt)?;
         if problem.residual(&mode, false)? {
             return Ok(mode);
         }
@@ -180,7 +195,7 @@ impl Damped {
 
     /// Newton's method on A(ω, D) x = 0, vᴴ x = 1 with v = M φ, with the factors at a shift nearby: x changes by
     /// A⁻¹(A x + dω ∂A/∂ω x + dD ∂A/∂D x), and v is orthogonal to the change.
-    fn follow(&self, start: &DampedMode, offset: f64) -> Result<DampedMode> {
+    fn follow(&self, start: &DampedMode, offset: f64, interrupt: &Interrupt<'_>) -> Result<DampedMode> {
         let n = self.mass.rows;
         let mut mode = DampedMode {
             shape: try_copy(&start.shape, CONTEXT)?,
@@ -191,9 +206,10 @@ impl Damped {
         let mut factor = Factor::new(&self.matrix(mode.omega, 0.0)?, 3)?;
         let mut last = f64::INFINITY;
         for _ in 0..MAX_STEPS {
-            factor.factor(&self.matrix(mode.omega * (1.0 + offset), mode.damping)?)?;
+            interrupt.check()?;
+            factor.factor(&self.matrix(mode.omega * (1.0 + offset), mode.damping)?, interrupt)?;
             let mut z = self.columns(&mode)?;
-            factor.solve(&mut z, false)?;
+            factor.solve(&mut z, false, interrupt)?;
             let (y, z) = z.split_at(n);
             let (by_omega, by_damping) = z.split_at(n);
             let (r, a, b) = (project(y), project(by_omega), project(by_damping));

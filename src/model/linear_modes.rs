@@ -2,6 +2,7 @@
 
 use crate::contact::Role;
 use crate::error::{Result, Status, check_memory, fail};
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite::resists_all_motion;
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
@@ -57,10 +58,27 @@ impl Model {
     /// # Errors
     /// As [`Self::linear_modes`]; `Argument` for a count of 0.
     pub fn lowest_modes(&self, diameter: usize, contacts: ContactState, count: usize) -> Result<LinearModes> {
+        self.lowest_modes_with(diameter, contacts, count, &Interrupt::none())
+    }
+
+    /// The same as [`Self::lowest_modes`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::lowest_modes`]; `StoppedByCaller`.
+    pub fn lowest_modes_with(
+        &self,
+        diameter: usize,
+        contacts: ContactState,
+        count: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<LinearModes> {
         if count == 0 {
             return fail!(Argument, "count = 0, needs at least 1");
         }
-        self.pencil(Wave::Diameter(diameter), contacts)?.lowest(count)
+        interrupt.phase(Phase::Setup, 0.0)?;
+        let pencil = self.pencil(Wave::Diameter(diameter), contacts)?;
+        interrupt.phase(Phase::Modes, 0.0)?;
+        pencil.lowest(count, interrupt)
     }
 
     /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave whose sector
@@ -72,7 +90,7 @@ impl Model {
     /// `Argument` for a diameter out of range, `NotHermitian` when K or M is not, and those of
     /// [`eigen::generalised`].
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
-        self.pencil(Wave::Diameter(diameter), contacts)?.all()
+        self.pencil(Wave::Diameter(diameter), contacts)?.all(&Interrupt::none())
     }
 
     /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without
@@ -80,13 +98,14 @@ impl Model {
     /// stiffness is not Hermitian, where the number is not known.
     ///
     /// # Errors
-    /// `OutOfMemory`, and those of the eigensolvers.
-    pub fn rigid_modes(&self, diameter: usize) -> Result<usize> {
+    /// `OutOfMemory`, and those of the eigensolvers; `StoppedByCaller`.
+    pub fn rigid_modes(&self, diameter: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
+        interrupt.check()?;
         let pencil = match self.pencil(Wave::Diameter(diameter), ContactState::Free) {
             Err(e) if e.status == Status::NotHermitian => return Ok(0),
             pencil => pencil?,
         };
-        if resists_all_motion(&pencil.stiffness)? {
+        if resists_all_motion(&pencil.stiffness, interrupt)? {
             return Ok(0);
         }
         // The stiffest degree of freedom alone sets the scale.
@@ -94,7 +113,7 @@ impl Model {
         let own = |j| (k.get(j, j).re, m.get(j, j).re);
         let heavy = (0..k.rows).map(own).filter(|&(_, mass)| mass > 0.0);
         let stiffest = heavy.fold(0.0_f64, |most, (stiffness, mass)| most.max(stiffness / mass));
-        let modes = pencil.lowest(RIGID_MODES)?;
+        let modes = pencil.lowest(RIGID_MODES, interrupt)?;
         let small = |omega: &&f64| **omega * **omega <= RIGID * stiffest;
         Ok(modes.omega.iter().take_while(small).count())
     }
@@ -148,22 +167,23 @@ impl Pencil {
     }
 
     /// The `count` lowest modes, fewer if there are not so many.
-    pub fn lowest(&self, count: usize) -> Result<LinearModes> {
+    pub fn lowest(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
         if self.finds_all(count) {
-            let mut modes = self.all()?;
+            let mut modes = self.all(interrupt)?;
             modes.omega.truncate(count);
             modes.shapes.truncate(modes.omega.len() * self.mass.rows);
             return Ok(modes);
         }
-        let mut pairs = lanczos::lowest(&self.stiffness, &self.mass, count)?;
+        let mut pairs = lanczos::lowest(&self.stiffness, &self.mass, count, interrupt)?;
         for (value, shape) in pairs.values.iter_mut().zip(pairs.vectors.column_iter()) {
+            interrupt.check()?;
             *value = self.quotient(shape.as_slice());
         }
         Ok(LinearModes::from(pairs))
     }
 
     /// All modes, by dense algebra.
-    fn all(&self) -> Result<LinearModes> {
+    fn all(&self, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
         let n = self.mass.rows;
         // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
@@ -172,7 +192,7 @@ impl Pencil {
             a.add_to_dense(Complex64::ONE, d.as_mut_slice());
             d
         };
-        let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass))?;
+        let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass), interrupt)?;
         Ok(LinearModes::from(pairs))
     }
 

@@ -2,6 +2,7 @@
 //! model.
 
 use crate::error::{Result, Status, fail, try_copy, try_extend, try_push};
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite;
 use crate::linalg::inner;
 use crate::linalg::quadratic::quadratic;
@@ -56,9 +57,18 @@ impl Model {
     /// rigid-body or unstable mode, or a shape without mass; `NotHermitian`,
     /// `NotPositiveDefinite` for the matrices; `NoConvergence`, `Singular`, `OutOfMemory`.
     pub fn select_mode(&self, choice: ModeChoice<'_>) -> Result<SelectedMode> {
+        self.select_mode_with(choice, &Interrupt::none())
+    }
+
+    /// The same as [`Self::select_mode`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::select_mode`]; `StoppedByCaller`.
+    pub fn select_mode_with(&self, choice: ModeChoice<'_>, interrupt: &Interrupt<'_>) -> Result<SelectedMode> {
+        interrupt.phase(Phase::Modes, 0.0)?;
         choice.check(self.ndof())?;
         let pencil = self.pencil(Wave::Harmonic(1), ContactState::Stuck)?;
-        let (known, chosen) = KnownModes::find(&pencil, choice)?;
+        let (known, chosen) = KnownModes::find(&pencil, choice, interrupt)?;
         known.check_frequency(chosen.index)?;
         let n = self.ndof();
         let shapes = &known.modes.shapes[chosen.cluster.start * n..chosen.cluster.end * n];
@@ -66,7 +76,7 @@ impl Model {
             repeated_modes::resolve(&pencil, shapes, chosen.index - chosen.cluster.start, chosen.projection)?;
         let free = self
             .pencil(Wave::Harmonic(1), ContactState::Free)
-            .and_then(|free| lowest_by_quotient(&free, known.modes.omega.len()));
+            .and_then(|free| lowest_by_quotient(&free, known.modes.omega.len(), interrupt));
         Ok(SelectedMode {
             index: chosen.index,
             omega: known.modes.omega[chosen.index],
@@ -76,7 +86,7 @@ impl Model {
             stuck: known.modes.omega,
             free: match free {
                 Ok(modes) => modes.omega,
-                Err(e) if e.status == Status::OutOfMemory => return Err(e),
+                Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
                 Err(_) => Vec::new(),
             },
         })
@@ -101,7 +111,7 @@ struct KnownModes<'a> {
 
 impl<'a> KnownModes<'a> {
     /// Computes as many modes as the choice requires.
-    fn find(pencil: &'a Pencil, choice: ModeChoice<'_>) -> Result<(Self, ChosenMode)> {
+    fn find(pencil: &'a Pencil, choice: ModeChoice<'_>, interrupt: &Interrupt<'_>) -> Result<(Self, ChosenMode)> {
         let n = pencil.mass.rows;
         // The rank of a positive semidefinite matrix is at most the number of positive entries on its diagonal.
         let heavy = (0..n).filter(|&i| pencil.mass.get(i, i).re > 0.0).count();
@@ -116,11 +126,11 @@ impl<'a> KnownModes<'a> {
             ModeChoice::Shape(_) => COMPARED,
         };
         if !pencil.finds_all(count) {
-            definite::check_mass(&pencil.mass)?;
+            definite::check_mass(&pencil.mass, interrupt)?;
         }
         loop {
             let dense = pencil.finds_all(count);
-            let modes = lowest_by_quotient(pencil, if dense { n } else { count })?;
+            let modes = lowest_by_quotient(pencil, if dense { n } else { count }, interrupt)?;
             let known = Self {
                 pencil,
                 all: dense || modes.omega.len() < count,
@@ -259,11 +269,12 @@ fn no_such_mode<T>(index: usize, count: usize) -> Result<T> {
 }
 
 /// The `count` lowest modes, with frequencies from the Rayleigh quotients of their shapes.
-fn lowest_by_quotient(pencil: &Pencil, count: usize) -> Result<LinearModes> {
+fn lowest_by_quotient(pencil: &Pencil, count: usize, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
     let n = pencil.mass.rows;
-    let modes = pencil.lowest(count)?;
+    let modes = pencil.lowest(count, interrupt)?;
     let mut order = Vec::new();
     for (i, shape) in modes.shapes.chunks_exact(n).enumerate() {
+        interrupt.check()?;
         try_push(&mut order, (pencil.quotient(shape).max(0.0).sqrt(), i), CONTEXT)?;
     }
     order.sort_by(|a, b| a.0.total_cmp(&b.0));

@@ -16,6 +16,7 @@
 
 use crate::contact::Role;
 use crate::error::{Result, Status, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
@@ -68,15 +69,15 @@ impl Model {
     /// if one is found.
     ///
     /// # Errors
-    /// `OutOfMemory`, and those of [`Self::sprung_stiffness`].
-    pub fn overload(&self, omega: f64) -> Result<Option<Resonance>> {
+    /// `OutOfMemory`, and those of [`Self::sprung_stiffness`]; `StoppedByCaller`.
+    pub fn overload(&self, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
         let mut last = None;
         for force in self.excitation().forces() {
             if last == Some(force.harmonic) || force.value == Complex64::ZERO {
                 continue;
             }
             last = Some(force.harmonic);
-            let found = self.resonance(omega, force.harmonic)?;
+            let found = self.resonance(omega, force.harmonic, interrupt)?;
             if found.as_ref().is_some_and(Resonance::is_overloaded) {
                 return Ok(found);
             }
@@ -89,7 +90,8 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::overload`].
-    pub fn resonance(&self, omega: f64, harmonic: usize) -> Result<Option<Resonance>> {
+    pub fn resonance(&self, omega: f64, harmonic: usize, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
+        interrupt.check()?;
         let n = self.ndof();
         let structure = self.structure();
         let wave = Wave::Harmonic(harmonic);
@@ -112,7 +114,7 @@ impl Model {
         // most work.
         let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
         self.excitation().add_to(harmonic, 1.0, &mut forces);
-        let Some(shape) = left_null(&dynamic(-w * w - SHIFT * square)?, &mass, &forces)? else {
+        let Some(shape) = left_null(&dynamic(-w * w - SHIFT * square)?, &mass, &forces, interrupt)? else {
             return Ok(None);
         };
         let r = (0..n).map(|j| {
@@ -161,16 +163,26 @@ impl Model {
 
 /// φ with φᴴ Z = 0 up to rounding, by inverse iteration φ ← S⁻ᴴ M φ from the force, with S = Z − ε M; the limit
 /// does not depend on ε. `None` where the iteration finds none.
-fn left_null(shifted: &Csc, mass: &Csc, force: &[Complex64]) -> Result<Option<Vec<Complex64>>> {
-    match iterate(shifted, mass, force) {
+fn left_null(
+    shifted: &Csc,
+    mass: &Csc,
+    force: &[Complex64],
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Complex64>>> {
+    match iterate(shifted, mass, force, interrupt) {
         Err(e) if e.status == Status::Singular => Ok(None),
         outcome => outcome,
     }
 }
 
-fn iterate(shifted: &Csc, mass: &Csc, force: &[Complex64]) -> Result<Option<Vec<Complex64>>> {
+fn iterate(
+    shifted: &Csc,
+    mass: &Csc,
+    force: &[Complex64],
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Complex64>>> {
     let mut factor = Factor::new(shifted, 1)?;
-    factor.factor(shifted)?;
+    factor.factor(shifted, interrupt)?;
     let mut x = try_copy(force, CONTEXT)?;
     let mut load = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
     for i in 0..MAX_STEPS {
@@ -183,7 +195,7 @@ fn iterate(shifted: &Csc, mass: &Csc, force: &[Complex64]) -> Result<Option<Vec<
         for x in &mut x {
             *x = x.conj();
         }
-        factor.solve(&mut x, true)?;
+        factor.solve(&mut x, true, interrupt)?;
         let largest = x.iter().fold(0.0_f64, |m, x| m.max(x.norm()));
         if largest == 0.0 {
             return Ok(None);

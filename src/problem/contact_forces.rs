@@ -8,12 +8,14 @@ use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use crate::problem::contact_jacobian::Blocks;
 use num_complex::Complex64;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
 pub struct ContactForces<'a> {
     condensed: &'a Condensed,
+    interrupt: &'a Interrupt<'a>,
     evaluator: Evaluator,
     /// The same with other samples, if some law is sampled.
     other: Option<Evaluator>,
@@ -45,8 +47,8 @@ impl<'a> ContactForces<'a> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &'a Condensed, samples: usize) -> Result<Self> {
-        let mut forces = Self::unchecked(condensed, samples)?;
+    pub fn new(condensed: &'a Condensed, samples: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        let mut forces = Self::unchecked(condensed, samples, interrupt)?;
         let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
         if laws().any(|law| forces.evaluator.samples(law)) {
             forces.other = Some(Evaluator::otherwise(condensed.set(), samples, laws())?);
@@ -58,7 +60,7 @@ impl<'a> ContactForces<'a> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn unchecked(condensed: &'a Condensed, samples: usize) -> Result<Self> {
+    pub fn unchecked(condensed: &'a Condensed, samples: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         const CONTEXT: &str = "the contact forces";
         // A linear problem has no contact to evaluate, and its harmonics need not be equidistant.
         let linear = condensed.coordinates() == 0;
@@ -77,6 +79,7 @@ impl<'a> ContactForces<'a> {
         let evaluator = Evaluator::new(set, samples, laws())?;
         Ok(Self {
             condensed,
+            interrupt,
             evaluator,
             other: None,
             factor: 1.0,
@@ -95,6 +98,12 @@ impl<'a> ContactForces<'a> {
         })
     }
 
+    /// The interrupt of the call.
+    #[must_use]
+    pub fn interrupt(&self) -> &'a Interrupt<'a> {
+        self.interrupt
+    }
+
     /// Scales every law f to s·f(y/s), its forces at a motion `factor` = s times smaller. A large factor selects the
     /// laws near rest, linear springs (infinite: exactly those); 1 selects the laws themselves; between them runs the
     /// homotopy that finds a first point.
@@ -105,7 +114,7 @@ impl<'a> ContactForces<'a> {
     /// Evaluates all laws at packed motions, coordinate after coordinate, and an angular frequency.
     ///
     /// # Errors
-    /// Those of callbacks.
+    /// Those of callbacks; `StoppedByCaller`.
     pub fn evaluate(&mut self, motion: &[f64], omega: f64) -> Result<()> {
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -125,6 +134,7 @@ impl<'a> ContactForces<'a> {
         let mut blocks = 0;
         let mut prepared = usize::MAX;
         for (k, assembled) in self.condensed.laws().iter().enumerate() {
+            self.interrupt.check()?;
             let at = &assembled.coordinates;
             let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
@@ -135,7 +145,7 @@ impl<'a> ContactForces<'a> {
                 prepared = at[0];
             }
             self.evaluator
-                .evaluate(&*assembled.law, set, y, omega, found)
+                .evaluate(&*assembled.law, set, y, omega, found, self.interrupt)
                 .map_err(|e| e.at(format_args!("contact {}", assembled.contact)))?;
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);

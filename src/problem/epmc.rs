@@ -14,6 +14,7 @@
 use crate::condense::Condensed;
 use crate::condense::modal_flexibility::Modal;
 use crate::error::{Result, fail, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
 use crate::model::spring::{Row, along};
@@ -89,13 +90,19 @@ impl<'a> Epmc<'a> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &'a Condensed, gauge: &'a Gauge, linear: &'a LinearMode, samples: usize) -> Result<Self> {
+    pub fn new(
+        condensed: &'a Condensed,
+        gauge: &'a Gauge,
+        linear: &'a LinearMode,
+        samples: usize,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Result<Self> {
         const CONTEXT: &str = "the nonlinear mode";
         let n = condensed.ndof();
         let unknowns = condensed.coordinates().saturating_mul(condensed.set().packed_len()) + 2;
         Ok(Self {
             condensed,
-            forces: ContactForces::new(condensed, samples)?,
+            forces: ContactForces::new(condensed, samples, interrupt)?,
             modal: Modal::new(condensed)?,
             gauge,
             linear,
@@ -278,7 +285,10 @@ impl<'a> Epmc<'a> {
             for (c, w) in self.w.iter_mut().enumerate() {
                 *w = self.forces.minus_reference(motion, c, i);
             }
-            self.modal.solve(self.condensed, i, omega, damping, &self.w)?;
+            let interrupt = self.forces.interrupt();
+            interrupt.check()?;
+            self.modal
+                .solve(self.condensed, i, (omega, damping), &self.w, interrupt)?;
             self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.modal.x());
             largest = self.modal.x().iter().fold(largest, |m, z| m.max(z.norm()));
             for (r, row) in block.rows.iter().enumerate() {
@@ -318,7 +328,7 @@ impl Jacobian for Epmc<'_> {
         self.condensed.coordinates() * self.condensed.set().packed_len() + 2
     }
 
-    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         let n = active.len();
         let set = self.condensed.set();
         let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());
@@ -331,6 +341,7 @@ impl Jacobian for Epmc<'_> {
         for i in 0..self.condensed.blocks().len() {
             let flexibility = &self.flexibility[i * square..(i + 1) * square];
             for (k, column) in matrix.chunks_exact_mut(n).take(n - 2).enumerate() {
+                self.forces.interrupt().check()?;
                 let flexibility = (|_| flexibility, coordinates);
                 let column = &mut column[..n - 2];
                 self.forces
@@ -345,6 +356,7 @@ impl Jacobian for Epmc<'_> {
         }
         matrix[(n - 2) * n..(n - 1) * n].copy_from_slice(&self.by_omega);
         matrix[(n - 1) * n..].copy_from_slice(&self.by_damping);
+        Ok(())
     }
 }
 

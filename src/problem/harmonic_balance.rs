@@ -5,8 +5,9 @@
 
 use crate::condense::Condensed;
 use crate::condense::frequency_cache::FrequencyCache;
-use crate::error::{Result, try_vec};
+use crate::error::{Result, Status, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::lu::Lu;
 use crate::linalg::norm;
@@ -49,13 +50,14 @@ impl<'a> HarmonicBalance<'a> {
     /// carried harmonic above zero. `samples` = 0 locates events exactly; `given` is a packed initial guess.
     ///
     /// # Errors
-    /// `OutOfMemory`; those of callbacks, whose force at rest is evaluated.
+    /// `OutOfMemory`; those of callbacks, whose force at rest is evaluated; `StoppedByCaller`.
     pub fn new(
         condensed: &'a Condensed,
         response: usize,
         range: (f64, f64),
         samples: usize,
         given: Option<Vec<f64>>,
+        interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         const CONTEXT: &str = "the forced response";
         let set = condensed.set();
@@ -63,11 +65,12 @@ impl<'a> HarmonicBalance<'a> {
         let flexibility = coordinates
             .saturating_mul(coordinates)
             .saturating_mul(set.numbers().len());
-        let loaded_at_rest = condensed.is_preloaded() || static_force(condensed, range.0, samples)?.is_some();
+        let loaded_at_rest =
+            condensed.is_preloaded() || static_force(condensed, range.0, samples, interrupt)?.is_some();
         Ok(Self {
             condensed,
-            forces: ContactForces::new(condensed, samples)?,
-            tables: FrequencyCache::new(condensed, response, range)?,
+            forces: ContactForces::new(condensed, samples, interrupt)?,
+            tables: FrequencyCache::new(condensed, response, range, interrupt)?,
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
             loaded_at_rest,
@@ -99,7 +102,8 @@ impl<'a> HarmonicBalance<'a> {
             Some((Path::GrowingLoad, _)) | None => 1.0,
         };
         self.forces.set_scale(scale);
-        self.tables.tabulate(self.condensed, omega)?;
+        let interrupt = self.forces.interrupt();
+        self.tables.tabulate(self.condensed, omega, interrupt)?;
         self.forces.evaluate(u, omega)?;
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -109,6 +113,7 @@ impl<'a> HarmonicBalance<'a> {
         out.d_parameter.fill(0.0);
         let mut linear = 0.0_f64;
         for (i, table) in self.tables.current().iter().enumerate() {
+            interrupt.check()?;
             let at = set.offset(i);
             let mean = set.numbers()[i] == 0;
             for row in 0..coordinates {
@@ -226,7 +231,7 @@ impl Jacobian for HarmonicBalance<'_> {
     }
 
     /// ∂R/∂y = I + G (∂f/∂y − κ); a motion on which no force depends keeps the column of the identity.
-    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         let set = self.condensed.set();
         let (m, harmonics) = (set.packed_len(), set.numbers().len());
         let coordinates = self.condensed.coordinates();
@@ -248,10 +253,12 @@ impl Jacobian for HarmonicBalance<'_> {
             column.fill(0.0);
             column[k] = 1.0;
             if active[k] {
+                self.forces.interrupt().check()?;
                 self.forces
                     .couple_all((k / m, k % m), &self.flexibility, &mut self.change, column);
             }
         }
+        Ok(())
     }
 
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
@@ -294,9 +301,10 @@ impl Problem for HarmonicBalance<'_> {
                 self.evaluate_at(u, p, Some((Path::ScaledLaws, f64::INFINITY)), &mut at)?;
                 let mut lu = Lu::new(u.len(), 1)?;
                 let mut active = try_vec(u.len(), true, "the initial guess")?;
-                self.fill(lu.matrix(), &mut active);
-                if lu.factor().is_err() {
-                    return Ok(false);
+                self.fill(lu.matrix(), &mut active)?;
+                match lu.factor(self.forces.interrupt()) {
+                    Err(e) if e.status == Status::Singular => return Ok(false),
+                    factored => factored?,
                 }
                 for (u, r) in u.iter_mut().zip(&at.values) {
                     *u = -r;
@@ -305,7 +313,7 @@ impl Problem for HarmonicBalance<'_> {
                 Ok(u.iter().all(|x| x.is_finite()))
             }
             InitialGuess::Reference => {
-                self.tables.tabulate(self.condensed, p)?;
+                self.tables.tabulate(self.condensed, p, self.forces.interrupt())?;
                 let set = self.condensed.set();
                 let m = set.packed_len();
                 let coordinates = self.condensed.coordinates();

@@ -59,8 +59,8 @@ impl Jacobian for PathHomotopy<'_> {
         self.problem.size()
     }
 
-    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
-        self.problem.fill(matrix, active);
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
+        self.problem.fill(matrix, active)
     }
 
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {

@@ -33,6 +33,7 @@ impl MatrixFree for HarmonicBalance<'_> {
             if !active[k] {
                 continue;
             }
+            self.forces.interrupt().check()?;
             column.fill(0.0);
             let tables = self.tables.current();
             let flexibility = (|i: usize| &tables[i].value[..], coordinates + 1);

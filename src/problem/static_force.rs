@@ -5,13 +5,19 @@ use crate::condense::Condensed;
 use crate::contact::{Form, Law};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 
 /// The first contact with a force at rest, at the angular frequency `omega`. A law that cannot be evaluated at rest
 /// is skipped.
 ///
 /// # Errors
 /// `Argument` for a law that is declared odd and has a force at rest; those of callbacks.
-pub fn static_force(condensed: &Condensed, omega: f64, samples: usize) -> Result<Option<usize>> {
+pub fn static_force(
+    condensed: &Condensed,
+    omega: f64,
+    samples: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<usize>> {
     // `Contact::is_preloaded` decides for the other laws.
     let needs_evaluation = |law: &dyn Law| matches!(law.form(), Form::Memoryless(_) | Form::Hysteretic(_));
     let set = HarmonicSet::all(0)?;
@@ -33,7 +39,8 @@ pub fn static_force(condensed: &Condensed, omega: f64, samples: usize) -> Result
         };
         let rest = try_vec(d, 0.0, "the contact forces")?;
         let contact = assembled.contact;
-        match evaluator.evaluate(&*assembled.law, &set, &rest, omega, &mut found[at]) {
+        interrupt.check()?;
+        match evaluator.evaluate(&*assembled.law, &set, &rest, omega, &mut found[at], interrupt) {
             Err(e) if e.recoverable => continue,
             Err(e) => return Err(e.at(format_args!("contact {contact} at rest"))),
             Ok(()) => {}

@@ -1,8 +1,9 @@
 //! Storing the points of a branch.
 
-use crate::condense::Reduction;
-use crate::condense::Resolution;
+use crate::condense::{Condensed, Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_extend, try_push};
+use crate::model::Model;
+use crate::options::SolverOptions;
 use crate::results::branch::{Branch, Place, Special};
 use crate::results::mode_branch::ModeData;
 use num_complex::Complex64;
@@ -83,6 +84,29 @@ impl Branch {
             at: Vec::new(),
             mode: None,
         })
+    }
+
+    /// The branch of a run that the caller stopped before its model was condensed: it has no point, and nothing is
+    /// known of the reduction.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn stopped(model: &Model, options: &SolverOptions) -> Result<Self> {
+        let condensed = Condensed::without_harmonics(model)?;
+        let reduction = Reduction {
+            harmonics_carried: 0,
+            mean_carried: false,
+            even_removed: false,
+            ..condensed.reduction_with(model, options, 0)
+        };
+        let resolution = Resolution {
+            condensed: Arc::new(condensed),
+            samples: options.samples,
+        };
+        let harmonics = if options.tolerance > 0.0 { 0 } else { options.harmonics };
+        let mut branch = Self::new(&resolution, reduction, harmonics, options.response_dof.unwrap_or(0))?;
+        branch.status = Status::StoppedByCaller;
+        Ok(branch)
     }
 
     pub(crate) fn set_mode(&mut self, data: ModeData) {

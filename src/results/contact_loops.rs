@@ -22,6 +22,7 @@ use crate::contact::law::{Form, Law};
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{TurningPoints, jet};
+use crate::interrupt::Interrupt;
 use crate::results::contact_loops::one_motion::ScalarOrbit;
 use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, extrema, range, time};
 use crate::results::contact_loops::two_motions::CoupledOrbit;
@@ -87,7 +88,7 @@ impl<'a> Orbit<'a> {
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `NoConvergence` for a law whose states do not become periodic.
-    pub fn times(&self, n: usize) -> Result<Times> {
+    pub fn times(&self, n: usize, interrupt: &Interrupt<'_>) -> Result<Times> {
         let PeriodicMotion {
             set,
             packed,
@@ -132,7 +133,7 @@ impl<'a> Orbit<'a> {
                     *state = found.1;
                 }
             }
-            Form::Hysteretic(law) => from_samples::marched(&self.motion, law, self.samples, &mut out)?,
+            Form::Hysteretic(law) => from_samples::marched(&self.motion, law, self.samples, &mut out, interrupt)?,
             Form::Memoryless(law) => from_samples::pointwise(&self.motion, law, &mut out)?,
         }
         Ok(out)
@@ -143,7 +144,7 @@ impl<'a> Orbit<'a> {
     ///
     /// # Errors
     /// As [`Self::times`].
-    pub fn account(&self) -> Result<Account> {
+    pub fn account(&self, interrupt: &Interrupt<'_>) -> Result<Account> {
         let Maker::Law(law) = self.maker else {
             return Ok(Account::default());
         };
@@ -152,12 +153,12 @@ impl<'a> Orbit<'a> {
             Form::PiecewiseLinear(_) | Form::Spectral(_) => Ok(ScalarOrbit::new(set, packed, law)?.account()),
             // A force that follows from one motion alone has a potential.
             Form::Memoryless(law) if law.directions() == 1 && !law.uses_velocity() => Ok(Account::default()),
-            Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::Hysteretic(_) => self.evaluated(law),
+            Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::Hysteretic(_) => self.evaluated(law, interrupt),
         }
     }
 
     /// Work and shares of the law as evaluated in the solution.
-    fn evaluated(&self, law: &dyn Law) -> Result<Account> {
+    fn evaluated(&self, law: &dyn Law, interrupt: &Interrupt<'_>) -> Result<Account> {
         let PeriodicMotion {
             set,
             packed,
@@ -166,7 +167,7 @@ impl<'a> Orbit<'a> {
         } = self.motion;
         let mut found = Evaluation::new(set, directions)?;
         let mut evaluator = Evaluator::new(set, self.samples, std::iter::once(law))?;
-        evaluator.evaluate(law, set, packed, omega, &mut found)?;
+        evaluator.evaluate(law, set, packed, omega, &mut found, interrupt)?;
         let (slip, open) = (found.slip_fraction, found.open_fraction);
         let takes_nothing = match law.form() {
             // Stick stores work, and a contact that opens has slipped before, as its limit fell to zero.

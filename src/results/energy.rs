@@ -12,6 +12,7 @@ use crate::condense::Condensed;
 use crate::error::{Error, Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
+use crate::interrupt::Interrupt;
 use crate::linalg::quadratic::{ComplexSum, form, product};
 use num_complex::Complex64;
 use std::f64::consts::PI;
@@ -78,8 +79,8 @@ pub struct Peaks {
 /// all extrema of the energy's Fourier series, which ends at twice the highest harmonic of the motion.
 ///
 /// # Errors
-/// `OutOfMemory`.
-pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64]) -> Result<Peaks> {
+/// `OutOfMemory`; `StoppedByCaller`.
+pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Peaks> {
     const CONTEXT: &str = "the energies";
     let n = condensed.ndof();
     let mut moved = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
@@ -90,6 +91,7 @@ pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64]) -> Result<Peaks
     for (kinetic, largest) in [true, false].into_iter().zip(&mut largest) {
         let rows = moved.chunks_exact_mut(n).zip(conjugate.chunks_exact_mut(n));
         for ((block, x), (moved, conjugate)) in condensed.blocks().iter().zip(x.chunks_exact(n)).zip(rows) {
+            interrupt.check()?;
             let (factor, values) = if kinetic {
                 (Complex64::new(0.0, block.number as f64 * omega), &block.mass)
             } else {
@@ -104,7 +106,7 @@ pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64]) -> Result<Peaks
                 *conjugate = sum.total();
             }
         }
-        series.set_half_product(condensed.set().numbers(), &moved, &conjugate, n);
+        series.set_half_product(condensed.set().numbers(), &moved, &conjugate, n, interrupt)?;
         largest[0] = series.maximum();
         series.add_sectors(condensed.sectors(), condensed.in_step());
         largest[1] = series.maximum();
@@ -148,9 +150,17 @@ impl Series {
     }
 
     /// ½ Σ a(t) b(t) over n degrees of freedom: harmonics h of a and m of b contribute to h + m and h − m.
-    fn set_half_product(&mut self, numbers: &[usize], a: &[Complex64], b: &[Complex64], n: usize) {
+    fn set_half_product(
+        &mut self,
+        numbers: &[usize],
+        a: &[Complex64],
+        b: &[Complex64],
+        n: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         self.coefficients.fill(Complex64::ZERO);
         for (&h, a) in numbers.iter().zip(a.chunks_exact(n)) {
+            interrupt.check()?;
             for (&m, b) in numbers.iter().zip(b.chunks_exact(n)) {
                 let (mut above, mut below) = (Complex64::ZERO, Complex64::ZERO);
                 for (a, b) in a.iter().zip(b) {
@@ -161,6 +171,7 @@ impl Series {
                 self.coefficients[h.abs_diff(m)] += 0.25 * if h < m { below.conj() } else { below };
             }
         }
+        Ok(())
     }
 
     /// Turns the series of one sector into that of all sectors.

@@ -1,6 +1,7 @@
 //! Energies and losses of a stored point.
 
 use crate::error::{Result, try_vec};
+use crate::interrupt::{Interrupt, Phase};
 use crate::results::energy::{balance, peaks};
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
@@ -40,13 +41,22 @@ impl Branch {
     /// # Errors
     /// `Index` for an unknown point, `OutOfMemory`.
     pub fn energy_at(&self, point: usize) -> Result<Energy> {
+        self.energy_at_with(point, &Interrupt::none())
+    }
+
+    /// The same as [`Self::energy_at`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::energy_at`]; `StoppedByCaller`.
+    pub fn energy_at_with(&self, point: usize, interrupt: &Interrupt<'_>) -> Result<Energy> {
         const CONTEXT: &str = "the energies";
         let carried = self.carried_of(point)?.len();
         let condensed = self.condensed_at(point);
         let (n, length, omega) = (condensed.ndof(), condensed.length(), self.omega[point]);
         let mut x = try_vec(carried.saturating_mul(n), Complex64::ZERO, CONTEXT)?;
-        let mut recovery = Recovery::at(self, point)?;
+        let mut recovery = Recovery::at(self, point, interrupt)?;
         for (i, x) in x.chunks_exact_mut(n).enumerate() {
+            interrupt.part(Phase::Results, i, carried)?;
             recovery.harmonic(i, x)?;
             // In the units of the solver, whose scale is a power of two and costs no digit.
             for z in x {
@@ -54,8 +64,9 @@ impl Branch {
             }
         }
         let motion = self.motion_at(point).unwrap_or(&[]);
+        interrupt.check()?;
         let balance = balance(condensed, omega, &x, recovery.forces(), motion);
-        let peaks = peaks(condensed, omega, &x)?;
+        let peaks = peaks(condensed, omega, &x, interrupt)?;
         let unit = |energy: f64| energy * length * length;
         let full_wheel = |energy: f64| unit(energy) * condensed.sectors() as f64;
         Ok(Energy {

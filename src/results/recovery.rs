@@ -4,6 +4,7 @@ use crate::condense::Condensed;
 use crate::condense::Resolution;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
 use crate::problem::contact_forces::ContactForces;
 use crate::results::branch::Branch;
 use num_complex::Complex64;
@@ -11,6 +12,7 @@ use num_complex::Complex64;
 /// Recovers the motion of stored points, one at a time.
 pub(crate) struct Recovery<'a> {
     branch: &'a Branch,
+    interrupt: &'a Interrupt<'a>,
     resolution: usize,
     condensed: &'a Condensed,
     workspace: Workspace,
@@ -25,18 +27,20 @@ impl<'a> Recovery<'a> {
     /// Memory for the points of a branch, with a stored point selected; see [`Self::go_to`].
     ///
     /// # Errors
-    /// `Index` for an unknown point, `OutOfMemory`; those of callbacks.
-    pub fn at(branch: &'a Branch, point: usize) -> Result<Self> {
+    /// `Index` for an unknown point, `OutOfMemory`; those of callbacks; `StoppedByCaller`.
+    pub fn at(branch: &'a Branch, point: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        interrupt.check()?;
         branch.carried_of(point)?;
         let resolution = branch.places[point].resolution;
         let Resolution { condensed, samples } = &branch.resolutions[resolution];
         let mut recovery = Self {
             branch,
+            interrupt,
             resolution,
             condensed,
             workspace: Workspace::new(condensed, None)?,
             point,
-            forces: ContactForces::unchecked(condensed, *samples)?,
+            forces: ContactForces::unchecked(condensed, *samples, interrupt)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
         };
         recovery.go_to(point)?;
@@ -50,10 +54,10 @@ impl<'a> Recovery<'a> {
     /// Selects a stored point and evaluates its contact forces.
     ///
     /// # Errors
-    /// `OutOfMemory`; those of callbacks.
+    /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
     pub fn go_to(&mut self, point: usize) -> Result<()> {
         if self.branch.places[point].resolution != self.resolution {
-            *self = Self::at(self.branch, point)?;
+            *self = Self::at(self.branch, point, self.interrupt)?;
             return Ok(());
         }
         self.point = point;
@@ -79,7 +83,8 @@ impl<'a> Recovery<'a> {
             *w = self.forces.minus_reference(motion, c, i);
         }
         let omega = self.branch.omega[self.point];
-        self.workspace.recover(condensed, i, omega, &self.w, x)?;
+        self.workspace
+            .recover(condensed, i, omega, &self.w, x, self.interrupt)?;
         for z in x.iter_mut() {
             *z *= condensed.length();
             if set.numbers()[i] == 0 {

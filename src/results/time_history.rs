@@ -5,6 +5,7 @@ use crate::contact::contact_state::State;
 use crate::error::{Result, fail, try_extend, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::jet;
+use crate::interrupt::{Interrupt, Phase};
 use crate::model::spring::along;
 use crate::results::contact_loops::Orbit;
 use crate::results::{Branch, Recovery};
@@ -65,12 +66,20 @@ impl Branch {
     /// `Index` for an unknown point or degree of freedom, `Dimension` for n outside 1 ..= [`MOST_TIMES`],
     /// `OutOfMemory`; `Singular` at an undamped resonance that moves no contact.
     pub fn time_history(&self, point: usize, dof: usize, n: usize) -> Result<Vec<f64>> {
+        self.time_history_with(point, dof, n, &Interrupt::none())
+    }
+
+    /// The same as [`Self::time_history`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::time_history`]; `StoppedByCaller`.
+    pub fn time_history_with(&self, point: usize, dof: usize, n: usize, interrupt: &Interrupt<'_>) -> Result<Vec<f64>> {
         self.check_point(point)?;
         if dof >= self.ndof() {
             return fail!(Index, "dof = {dof}, needs 0 .. {}", self.ndof());
         }
         check_times(n)?;
-        let (set, packed) = self.recover(point, 1, |_, _, x| x[dof])?;
+        let (set, packed) = self.recover(point, 1, |_, _, x| x[dof], interrupt)?;
         let mut history = try_vec(n, 0.0, "a time history")?;
         for (j, x) in history.iter_mut().enumerate() {
             *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
@@ -91,10 +100,24 @@ impl Branch {
     /// As [`Self::time_history`], with `Index` for an unknown contact; `Callback` for a law of the caller that
     /// fails, `NoConvergence` where friction in a plane does not become periodic.
     pub fn contact_loop(&self, point: usize, contact: usize, n: usize) -> Result<ContactLoop> {
+        self.contact_loop_with(point, contact, n, &Interrupt::none())
+    }
+
+    /// The same as [`Self::contact_loop`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::contact_loop`]; `StoppedByCaller`.
+    pub fn contact_loop_with(
+        &self,
+        point: usize,
+        contact: usize,
+        n: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<ContactLoop> {
         self.check_contact(point, contact)?;
         check_times(n)?;
-        self.with_orbit(point, contact, |orbit, length| {
-            let mut found = orbit.times(n)?;
+        self.with_orbit(point, contact, interrupt, |orbit, length| {
+            let mut found = orbit.times(n, interrupt)?;
             for value in found.motion.iter_mut().chain(&mut found.force) {
                 *value *= length;
             }
@@ -118,9 +141,22 @@ impl Branch {
     /// # Errors
     /// As [`Self::contact_loop`].
     pub fn contact_summary(&self, point: usize, contact: usize) -> Result<ContactSummary> {
+        self.contact_summary_with(point, contact, &Interrupt::none())
+    }
+
+    /// The same as [`Self::contact_summary`], and the caller may stop it.
+    ///
+    /// # Errors
+    /// As [`Self::contact_summary`]; `StoppedByCaller`.
+    pub fn contact_summary_with(
+        &self,
+        point: usize,
+        contact: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<ContactSummary> {
         let kept = self.check_contact(point, contact)?;
-        self.with_orbit(point, contact, |orbit, length| {
-            let account = orbit.account()?;
+        self.with_orbit(point, contact, interrupt, |orbit, length| {
+            let account = orbit.account(interrupt)?;
             let ranges = orbit.ranges()?;
             let mut summary = ContactSummary {
                 directions: orbit.directions(),
@@ -169,6 +205,7 @@ impl Branch {
         &self,
         point: usize,
         contact: usize,
+        interrupt: &Interrupt<'_>,
         use_it: impl FnOnce(&Orbit<'_>, f64) -> Result<T>,
     ) -> Result<T> {
         let condensed = self.condensed_at(point);
@@ -176,7 +213,7 @@ impl Branch {
         if let Some(at) = contact_classes.linear(contact) {
             let kept = &contact_classes.contacts()[contact];
             let row = |i: usize, k: usize| &condensed.blocks()[i].linear_rows[at + k];
-            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| along(row(i, k), x))?;
+            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| along(row(i, k), x), interrupt)?;
             let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
             return use_it(&orbit, 1.0);
         }
@@ -204,6 +241,7 @@ impl Branch {
         point: usize,
         signals: usize,
         of: impl Fn(usize, usize, &[Complex64]) -> Complex64,
+        interrupt: &Interrupt<'_>,
     ) -> Result<(HarmonicSet, Vec<f64>)> {
         const CONTEXT: &str = "the harmonics";
         let carried = self.carried_of(point)?;
@@ -212,8 +250,9 @@ impl Branch {
         let m = set.packed_len();
         let mut packed = try_vec(signals.saturating_mul(m), 0.0, CONTEXT)?;
         let mut x = try_vec(self.ndof(), Complex64::ZERO, CONTEXT)?;
-        let mut recovery = Recovery::at(self, point)?;
+        let mut recovery = Recovery::at(self, point, interrupt)?;
         for (i, &h) in carried.iter().enumerate() {
+            interrupt.part(Phase::Results, i, carried.len())?;
             recovery.harmonic(i, &mut x)?;
             for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
                 set.set(signal, h, of(i, k, &x));

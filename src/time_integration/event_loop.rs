@@ -3,7 +3,7 @@
 
 use crate::contact::time_piece::{Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
-use crate::interrupt::Interrupt;
+use crate::interrupt::Phase;
 use crate::time_integration::event_law::{Element, along};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::implicit_step::Implicit;
@@ -33,7 +33,7 @@ pub(super) struct State {
 
 impl State {
     /// The state at rest.
-    pub fn rest(system: &System) -> Result<Self> {
+    pub fn rest(system: &System<'_>) -> Result<Self> {
         Ok(Self {
             x: try_vec(system.order(), 0.0, CONTEXT)?,
             v: try_vec(system.order(), 0.0, CONTEXT)?,
@@ -119,7 +119,7 @@ pub(super) struct EventLoop {
 
 impl EventLoop {
     /// Memory for `system`; `tolerance` bounds the local error where a law is smooth.
-    pub fn new(system: &System, tolerance: f64) -> Result<Self> {
+    pub fn new(system: &System<'_>, tolerance: f64) -> Result<Self> {
         let count = system.elements.len();
         let stepper = if system.is_piecewise_linear() {
             Stepper::Taylor(Box::new(Taylor::new(system)?))
@@ -146,11 +146,10 @@ impl EventLoop {
     /// Integrates a state from time 0 over one lapse, and with it the requested sensitivity and harmonic analysis.
     pub fn run(
         &mut self,
-        system: &mut System,
+        system: &mut System<'_>,
         state: &mut State,
         mut sensitivity: Option<&mut Sensitivity>,
         mut recorder: Option<&mut HarmonicAnalysis>,
-        interrupt: &Interrupt<'_>,
     ) -> Result<LapseSummary> {
         let end = system.lapse();
         let mut summary = LapseSummary::default();
@@ -158,7 +157,9 @@ impl EventLoop {
         system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.dependent);
         self.zeros.fill(Zeros::default());
         if let Some(s) = sensitivity.as_deref_mut() {
+            system.interrupt.check()?;
             self.identity(system, state, s);
+            system.interrupt.check()?;
         }
         for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
             *moved |= mode.moves_slider();
@@ -166,7 +167,10 @@ impl EventLoop {
         let mut t = 0.0;
         let (mut steps, mut at_once) = (0, 0);
         while t < end {
-            interrupt.check()?;
+            // At most ten reports of a lapse, which may be short.
+            system
+                .interrupt
+                .phase(Phase::TimeIntegration, 0.1 * (10.0 * t / end).floor())?;
             steps += 1;
             if steps > MOST_STEPS {
                 return fail!(
@@ -213,6 +217,7 @@ impl EventLoop {
                 t + theta * h
             };
         }
+        system.interrupt.check()?;
         if let Some(s) = sensitivity {
             // The place of a slider that still moves follows from the motion.
             for (i, e) in system.elements.iter().enumerate() {
@@ -223,7 +228,7 @@ impl EventLoop {
         Ok(summary)
     }
 
-    fn step(&mut self, system: &mut System, state: &State, t: f64, longest: f64) -> Result<()> {
+    fn step(&mut self, system: &mut System<'_>, state: &State, t: f64, longest: f64) -> Result<()> {
         let (pieces, polynomial) = (&self.pieces, &mut self.polynomial);
         match &mut self.stepper {
             Stepper::Taylor(s) => s.step(system, pieces, &state.x, &state.v, t, longest, polynomial),
@@ -233,7 +238,7 @@ impl EventLoop {
 
     /// The first θ at which a contact leaves its piece, 1 if none does; `falls` receives the contacts that leave
     /// theirs by then.
-    fn next_event(&mut self, system: &System, state: &State) -> f64 {
+    fn next_event(&mut self, system: &System<'_>, state: &State) -> f64 {
         let mut first = f64::INFINITY;
         for (i, e) in system.elements.iter().enumerate() {
             self.falls[i] = None;
@@ -266,7 +271,7 @@ impl EventLoop {
     }
 
     /// Switches the contacts whose piece has ended to the next one. Returns their number.
-    fn switch(&mut self, system: &System, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
+    fn switch(&mut self, system: &System<'_>, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
         let mut happened = 0;
         for (i, e) in system.elements.iter().enumerate() {
             let (Some(law), Some((_, which))) = (e.events(), self.falls[i]) else {
@@ -284,7 +289,7 @@ impl EventLoop {
         happened
     }
 
-    fn identity(&self, system: &System, state: &State, s: &mut Sensitivity) {
+    fn identity(&self, system: &System<'_>, state: &State, s: &mut Sensitivity) {
         let m = state.len();
         s.columns.fill(0.0);
         for i in 0..m {
@@ -298,7 +303,7 @@ impl EventLoop {
         }
     }
 
-    fn transfer(&mut self, system: &mut System, theta: f64, s: &mut Sensitivity) -> Result<()> {
+    fn transfer(&mut self, system: &mut System<'_>, theta: f64, s: &mut Sensitivity) -> Result<()> {
         let h = self.polynomial.length;
         let n = system.order();
         let m = 2 * n + system.elements.len();
@@ -306,6 +311,7 @@ impl EventLoop {
             stepper.prepare(system, &self.pieces, h)?;
         }
         for column in s.columns.chunks_exact_mut(m) {
+            system.interrupt.check()?;
             let (x, rest) = column.split_at_mut(n);
             let (v, u) = rest.split_at_mut(n);
             match &mut self.stepper {
@@ -332,7 +338,7 @@ fn couple_slider(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &Sta
 
 /// Exchanges the sensitivities of the stretches and of the sliders, by the same step in both directions:
 /// δu = r·δx − δe, δe = r·δx − δu.
-fn exchange(system: &System, state: &State, s: &mut Sensitivity) {
+fn exchange(system: &System<'_>, state: &State, s: &mut Sensitivity) {
     let (m, first) = (state.len(), 2 * state.x.len());
     for column in s.columns.chunks_exact_mut(m) {
         for (i, e) in system.elements.iter().enumerate() {

@@ -46,7 +46,7 @@ pub(super) struct HarmonicAnalysis {
 
 impl HarmonicAnalysis {
     /// Memory for harmonics 0 ..= `harmonics` and for `samples` times of the period.
-    pub fn new(system: &System, harmonics: usize, samples: usize) -> Result<Self> {
+    pub fn new(system: &System<'_>, harmonics: usize, samples: usize) -> Result<Self> {
         let n = system.order();
         let mut requested = Vec::new();
         for sample in 0..samples {
@@ -111,7 +111,7 @@ impl HarmonicAnalysis {
     }
 
     /// The harmonics of sector 0, harmonic by harmonic, and its samples, time by time.
-    pub fn finish(self, system: &System) -> Result<(Vec<Complex64>, Vec<f64>)> {
+    pub fn finish(self, system: &System<'_>) -> Result<(Vec<Complex64>, Vec<f64>)> {
         let n = self.ndof * self.sectors;
         let count = self.integrals.len() / n;
         let mut harmonics = try_vec(count * self.ndof, Complex64::ZERO, CONTEXT)?;
@@ -141,7 +141,7 @@ impl HarmonicAnalysis {
 }
 
 /// The sector whose present motion sector 0 repeats `parts` lapses later.
-fn before(system: &System, parts: usize) -> usize {
+fn before(system: &System<'_>, parts: usize) -> usize {
     let back = parts * system.follower % system.sectors;
     (system.sectors - back) % system.sectors
 }

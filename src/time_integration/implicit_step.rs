@@ -8,7 +8,7 @@
 //! Equations I (1993), II.7, doi:10.1007/978-3-540-78862-1.
 
 use crate::contact::time_piece::TimePiece;
-use crate::error::{Error, Result, fail, try_vec};
+use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::linalg::lu::Lu;
 use crate::time_integration::gauss::{GaussTables, STAGES};
 use crate::time_integration::smooth_laws::Smooth;
@@ -38,7 +38,7 @@ pub(super) struct Implicit {
 
 impl Implicit {
     /// Memory for steps of `system` whose local error is `tolerance` of the largest motion.
-    pub fn new(system: &System, tolerance: f64) -> Result<Self> {
+    pub fn new(system: &System<'_>, tolerance: f64) -> Result<Self> {
         const CONTEXT: &str = "an implicit time step";
         let n = system.order();
         let all = n.saturating_mul(STAGES);
@@ -61,7 +61,7 @@ impl Implicit {
     #[allow(clippy::too_many_arguments)]
     pub fn step(
         &mut self,
-        system: &System,
+        system: &System<'_>,
         pieces: &[TimePiece],
         x: &[f64],
         v: &[f64],
@@ -111,17 +111,19 @@ impl Implicit {
     }
 
     /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ, with the current tangents.
-    fn factor(&mut self, system: &System, pieces: &[TimePiece], h: f64) -> Result<()> {
+    fn factor(&mut self, system: &System<'_>, pieces: &[TimePiece], h: f64) -> Result<()> {
         let n = self.x.len();
         let all = n * STAGES;
         let tables = &self.tables;
         let matrix = self.lu.matrix();
         matrix.fill(0.0);
         for i in 0..STAGES {
+            system.interrupt.check()?;
             system
                 .inertia
                 .each(|r, c, m| matrix[(i * n + c) * all + i * n + r] += m);
             for j in 0..STAGES {
+                system.interrupt.check()?;
                 let (once, twice) = (h * tables.once[i][j], h * h * tables.twice[i][j]);
                 let mut add = |r: usize, c: usize, value: f64| matrix[(j * n + c) * all + i * n + r] += value;
                 system.damping.each(|r, c, d| add(r, c, once * d));
@@ -141,13 +143,13 @@ impl Implicit {
                     .each(system, i, |r, c, by_x, by_v| add(r, c, twice * by_x + once * by_v));
             }
         }
-        self.lu.factor()
+        self.lu.factor(system.interrupt)
     }
 
     /// Newton's method for the accelerations, with the tangents at the start of the step; `false`: it failed.
     fn collocate(
         &mut self,
-        system: &System,
+        system: &System<'_>,
         pieces: &[TimePiece],
         x: &[f64],
         v: &[f64],
@@ -157,8 +159,9 @@ impl Implicit {
         let n = x.len();
         self.smooth.evaluate(system, 0, x, v, &mut self.residual[..n])?;
         self.smooth.repeat();
-        if self.factor(system, pieces, h).is_err() {
-            return Ok(false);
+        match self.factor(system, pieces, h) {
+            Err(e) if e.status == Status::Singular => return Ok(false),
+            factored => factored?,
         }
         self.accelerations.fill(0.0);
         let mut before = f64::INFINITY;
@@ -186,7 +189,7 @@ impl Implicit {
     /// M a + C v + K x + f − F at the nodes, and the tangents there.
     fn evaluate(
         &mut self,
-        system: &System,
+        system: &System<'_>,
         pieces: &[TimePiece],
         x0: &[f64],
         v0: &[f64],
@@ -195,6 +198,7 @@ impl Implicit {
     ) -> Result<()> {
         let n = self.x.len();
         for i in 0..STAGES {
+            system.interrupt.check_before(system.operations())?;
             let c = self.tables.nodes[i];
             for d in 0..n {
                 let (mut once, mut twice) = (0.0, 0.0);
@@ -271,7 +275,7 @@ impl Implicit {
     }
 
     /// Factors the equations of sensitivities over the last step.
-    pub fn prepare(&mut self, system: &System, pieces: &[TimePiece], h: f64) -> Result<()> {
+    pub fn prepare(&mut self, system: &System<'_>, pieces: &[TimePiece], h: f64) -> Result<()> {
         self.factor(system, pieces, h)
     }
 
@@ -279,7 +283,7 @@ impl Implicit {
     #[allow(clippy::too_many_arguments)]
     pub fn transfer(
         &mut self,
-        system: &System,
+        system: &System<'_>,
         pieces: &[TimePiece],
         h: f64,
         theta: f64,

@@ -37,7 +37,7 @@ pub(super) struct Taylor {
 
 impl Taylor {
     /// Memory for steps of `system`.
-    pub fn new(system: &System) -> Result<Self> {
+    pub fn new(system: &System<'_>) -> Result<Self> {
         const CONTEXT: &str = "a time step";
         let n = system.order();
         let zeros = || try_vec(n, 0.0, CONTEXT);
@@ -53,7 +53,7 @@ impl Taylor {
     #[allow(clippy::too_many_arguments)]
     pub fn step(
         &mut self,
-        system: &mut System,
+        system: &mut System<'_>,
         pieces: &[TimePiece],
         x: &[f64],
         v: &[f64],
@@ -75,6 +75,7 @@ impl Taylor {
                 *turning = load.value * Complex64::cis(load.harmonic as f64 * system.omega * t);
             }
             for k in 0..=DEGREE - 2 {
+                system.interrupt.check_before(system.operations())?;
                 self.next_term(system, pieces, k, h, step)?;
             }
             let ratio = Self::ratio(step);
@@ -98,7 +99,7 @@ impl Taylor {
     /// x_{k+2} from x_k and x_{k+1}.
     fn next_term(
         &mut self,
-        system: &mut System,
+        system: &mut System<'_>,
         pieces: &[TimePiece],
         k: usize,
         h: f64,
@@ -167,7 +168,7 @@ impl Taylor {
     /// Integrates one sensitivity (δx, δv) with the sliders' δu over a time h within the pieces.
     pub fn transfer(
         &mut self,
-        system: &mut System,
+        system: &mut System<'_>,
         pieces: &[TimePiece],
         h: f64,
         x: &mut [f64],
@@ -183,6 +184,7 @@ impl Taylor {
         let mut largest = this.iter().chain(next.iter()).fold(0.0_f64, |m, c| m.max(c.abs()));
         let mut small = 0;
         for k in 0..MOST_TERMS {
+            system.interrupt.check_before(system.operations())?;
             new.fill(0.0);
             system.stiffness.multiply_add(-1.0, this, new);
             system.damping.multiply_add(-((k + 1) as f64) / h, next, new);

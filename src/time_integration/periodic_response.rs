@@ -10,9 +10,10 @@
 
 use crate::error::{Result, Status, try_vec};
 use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::TimeOptions;
-use crate::time_integration::event_loop::{EventLoop, LapseSummary, State};
+use crate::time_integration::event_loop::{EventLoop, State};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::shooting::Search;
 use crate::time_integration::unrolled_structure::System;
@@ -54,30 +55,65 @@ pub struct TimeResponse {
 /// `Unsupported` for degrees of freedom without mass, complex matrices and friction in a plane, `NoConvergence` if no
 /// steady state was found, `NoBoundedSolution` if the motion grows without bound, `OutOfMemory`.
 pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
-    let mut system = System::new(model, options.omega)?;
+    let interrupt = hooks.interrupt();
+    match integrate(model, options, hooks, &interrupt) {
+        Err(e) if e.status == Status::StoppedByCaller => TimeResponse::stopped(model, options),
+        outcome => outcome,
+    }
+}
+
+impl TimeResponse {
+    /// The response of a run that was stopped before a period was recorded: its harmonics and samples are NaN.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn stopped(model: &Model, options: &TimeOptions<'_>) -> Result<Self> {
+        let ndof = model.ndof();
+        let nothing = Complex64::new(f64::NAN, f64::NAN);
+        Ok(Self {
+            status: Status::StoppedByCaller,
+            period: TAU / options.omega,
+            residual: f64::INFINITY,
+            periods: 0,
+            marched: false,
+            events: 0,
+            ndof,
+            harmonics: try_vec((options.harmonics + 1).saturating_mul(ndof), nothing, "the harmonics")?,
+            samples: try_vec(options.samples.saturating_mul(ndof), f64::NAN, "the samples")?,
+        })
+    }
+}
+
+fn integrate(
+    model: &Model,
+    options: &TimeOptions<'_>,
+    hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<TimeResponse> {
+    let mut system = System::new(model, options.omega, interrupt)?;
     let mut event_loop = EventLoop::new(&system, options.tolerance)?;
     let start = match options.start {
         Some(harmonics) => state_of(model, &system, harmonics)?,
         None => State::rest(&system)?,
     };
     hooks.log(LogLevel::Info, "the structure in time is set up");
-    let interrupt = hooks.interrupt();
-    let callbacks = (hooks, &interrupt);
-    let mut steady = Search::new(&mut system, &mut event_loop, options, callbacks, start)?.run()?;
+    let mut steady = Search::new(&mut system, &mut event_loop, options, hooks, start)?.run()?;
     let mut recorder = HarmonicAnalysis::new(&system, options.harmonics, options.samples)?;
-    let recorded = event_loop.run(&mut system, &mut steady.state, None, Some(&mut recorder), &interrupt);
-    let (mut harmonics, mut samples) = recorder.finish(&system)?;
+    let recorded = event_loop.run(&mut system, &mut steady.state, None, Some(&mut recorder));
     let summary = match recorded {
         Ok(summary) => summary,
+        // A part of a period has no harmonics.
         Err(e) if e.status == Status::StoppedByCaller => {
-            // A part of a period has no harmonics.
-            harmonics.fill(Complex64::new(f64::NAN, f64::NAN));
-            samples.fill(f64::NAN);
-            steady.status = e.status;
-            LapseSummary::default()
+            return Ok(TimeResponse {
+                residual: steady.residual,
+                periods: steady.periods,
+                marched: steady.marched,
+                ..TimeResponse::stopped(model, options)?
+            });
         }
         Err(e) => return Err(e),
     };
+    let (harmonics, samples) = recorder.finish(&system)?;
     Ok(TimeResponse {
         status: steady.status,
         period: TAU / options.omega,
@@ -96,7 +132,7 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
 pub(super) const POINTS_PER_WAVE: usize = 64;
 
 /// The state at time 0 of a periodic motion; each slider has its place after two periods of the motion from rest.
-pub(super) fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) -> Result<State> {
+pub(super) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
     const CONTEXT: &str = "the start of the motion in time";
     let mut state = State::rest(system)?;
     let (ndof, n) = (system.ndof, system.order());
@@ -115,6 +151,7 @@ pub(super) fn state_of(model: &Model, system: &System, harmonics: &[Complex64]) 
     let times = POINTS_PER_WAVE * (all.len() / n);
     let mut part = try_vec(n, 0.0, CONTEXT)?;
     for i in 0..=2 * times {
+        system.interrupt.check()?;
         part.fill(0.0);
         for (h, x) in all.chunks_exact(n).enumerate() {
             let turn = Complex64::cis(TAU * ((h * i) % times) as f64 / times as f64);

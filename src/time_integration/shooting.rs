@@ -7,7 +7,6 @@
 
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, Progress};
-use crate::interrupt::Interrupt;
 use crate::linalg::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
 use crate::time_integration::event_loop::{EventLoop, LapseSummary, Sensitivity, State};
@@ -47,12 +46,11 @@ enum Outcome {
 }
 
 /// Memory of a search.
-pub(super) struct Search<'a, 'h> {
-    system: &'a mut System,
+pub(super) struct Search<'a, 'h, 's> {
+    system: &'a mut System<'s>,
     event_loop: &'a mut EventLoop,
     options: &'a TimeOptions<'a>,
     hooks: &'a mut Hooks<'h>,
-    interrupt: &'a Interrupt<'a>,
     state: State,
     /// The state after a lapse from `state`, and the same with the sectors shifted.
     image: State,
@@ -63,13 +61,13 @@ pub(super) struct Search<'a, 'h> {
     most_laps: usize,
 }
 
-impl<'a, 'h> Search<'a, 'h> {
+impl<'a, 'h, 's> Search<'a, 'h, 's> {
     /// A search from `start`.
     pub fn new(
-        system: &'a mut System,
+        system: &'a mut System<'s>,
         event_loop: &'a mut EventLoop,
         options: &'a TimeOptions<'a>,
-        (hooks, interrupt): (&'a mut Hooks<'h>, &'a Interrupt<'a>),
+        hooks: &'a mut Hooks<'h>,
         start: State,
     ) -> Result<Self> {
         Ok(Self {
@@ -81,7 +79,6 @@ impl<'a, 'h> Search<'a, 'h> {
             event_loop,
             options,
             hooks,
-            interrupt,
             scale: (0.0, 0.0),
             residual: f64::INFINITY,
             laps: 0,
@@ -141,9 +138,7 @@ impl<'a, 'h> Search<'a, 'h> {
         }
         self.laps += 1;
         self.image.set(&self.state);
-        let summary = self
-            .event_loop
-            .run(self.system, &mut self.image, sensitivity, None, self.interrupt)?;
+        let summary = self.event_loop.run(self.system, &mut self.image, sensitivity, None)?;
         self.compare(&summary);
         if self.residual.is_nan() {
             return fail!(NoBoundedSolution, "the motion in time grows beyond all bounds");
@@ -196,7 +191,10 @@ impl<'a, 'h> Search<'a, 'h> {
     /// Newton's method with halved steps where a whole one increases the error.
     fn shoot(&mut self) -> Result<Outcome> {
         let m = self.state.len();
+        let interrupt = self.system.interrupt;
+        interrupt.check()?;
         let mut sensitivity = Sensitivity::new(&self.state)?;
+        interrupt.check()?;
         let mut equations = LeastSquares::new(m)?;
         let mut step = try_vec(m, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
@@ -207,7 +205,7 @@ impl<'a, 'h> Search<'a, 'h> {
             }
             let residual = self.residual;
             let converged = residual <= self.options.tolerance;
-            if !self.correction(&sensitivity, &mut equations, &mut step) {
+            if !self.correction(&sensitivity, &mut equations, &mut step)? {
                 return Ok(if converged { Outcome::Found } else { Outcome::Failed });
             }
             base.set(&self.state);
@@ -248,7 +246,7 @@ impl<'a, 'h> Search<'a, 'h> {
     }
 
     /// Solves (I − S ∂G/∂z) step = S G(z) − z; `false`: it has no solution.
-    fn correction(&mut self, s: &Sensitivity, equations: &mut LeastSquares, step: &mut [f64]) -> bool {
+    fn correction(&mut self, s: &Sensitivity, equations: &mut LeastSquares, step: &mut [f64]) -> Result<bool> {
         let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
         // Velocities are scaled to displacements, so that pivots compare.
         let unit = |i: usize| {
@@ -277,6 +275,7 @@ impl<'a, 'h> Search<'a, 'h> {
         let matrix = equations.matrix();
         matrix.fill(0.0);
         for i in 0..m {
+            system.interrupt.check()?;
             let (void, from) = (rests(i), source(i));
             for j in 0..m {
                 let image = if void { 0.0 } else { s.columns[j * m + from] };
@@ -297,11 +296,11 @@ impl<'a, 'h> Search<'a, 'h> {
                 }
             }
         }
-        equations.solve(step, NEUTRAL);
+        equations.solve(step, NEUTRAL, system.interrupt)?;
         for (i, step) in step.iter_mut().enumerate() {
             *step *= unit(i);
         }
-        step.iter().all(|x| x.is_finite())
+        Ok(step.iter().all(|x| x.is_finite()))
     }
 
     /// state = base + share·step
@@ -322,14 +321,14 @@ impl<'a, 'h> Search<'a, 'h> {
 }
 
 /// Source of the entry `i` of a shifted vector, with `block` entries per sector.
-fn shifted_from(system: &System, block: usize, i: usize) -> usize {
+fn shifted_from(system: &System<'_>, block: usize, i: usize) -> usize {
     let (sector, within) = (i / block % system.sectors, i % block);
     let group = i - sector * block - within;
     group + system.after_lapse(sector) * block + within
 }
 
 /// Assigns to every sector the values of the one with the same motion a lapse later.
-fn shift(system: &System, block: usize, from: &[f64], to: &mut [f64]) {
+fn shift(system: &System<'_>, block: usize, from: &[f64], to: &mut [f64]) {
     for (i, to) in to.iter_mut().enumerate() {
         *to = from[shifted_from(system, block, i)];
     }

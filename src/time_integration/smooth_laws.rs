@@ -26,7 +26,7 @@ pub(super) struct Smooth {
 
 impl Smooth {
     /// Memory for `nodes` times.
-    pub fn new(system: &System, nodes: usize) -> Result<Self> {
+    pub fn new(system: &System<'_>, nodes: usize) -> Result<Self> {
         let mut starts = try_vec(system.elements.len(), 0, CONTEXT)?;
         let (mut per_node, mut most) = (0_usize, 0);
         for (start, e) in starts.iter_mut().zip(&system.elements) {
@@ -52,7 +52,7 @@ impl Smooth {
     ///
     /// # Errors
     /// Those of a callback.
-    pub fn evaluate(&mut self, system: &System, node: usize, x: &[f64], v: &[f64], r: &mut [f64]) -> Result<()> {
+    pub fn evaluate(&mut self, system: &System<'_>, node: usize, x: &[f64], v: &[f64], r: &mut [f64]) -> Result<()> {
         let tangents = &mut self.tangents[node * self.per_node..(node + 1) * self.per_node];
         tangents.fill(0.0);
         for (e, &start) in system.elements.iter().zip(&self.starts) {
@@ -93,7 +93,7 @@ impl Smooth {
 
     /// Visits the tangents of a node that are not zero: (degree of freedom of the force, that of the motion,
     /// ∂f/∂x, ∂f/∂v).
-    pub fn each(&self, system: &System, node: usize, mut visit: impl FnMut(usize, usize, f64, f64)) {
+    pub fn each(&self, system: &System<'_>, node: usize, mut visit: impl FnMut(usize, usize, f64, f64)) {
         for (e, &start) in system.elements.iter().zip(&self.starts) {
             if e.smooth().is_none() {
                 continue;

@@ -4,6 +4,7 @@
 use crate::contact::relative_motion::Direction;
 use crate::contact::time_piece::Mode;
 use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
@@ -76,7 +77,9 @@ pub(super) struct Load {
 }
 
 /// The equations of motion of all carried sectors.
-pub(super) struct System {
+pub(super) struct System<'s> {
+    /// Asked by every loop of the integration.
+    pub interrupt: &'s Interrupt<'s>,
     /// Degrees of freedom of a sector.
     pub ndof: usize,
     /// Sectors that are carried.
@@ -97,9 +100,10 @@ pub(super) struct System {
     pub elements: Vec<Element>,
 }
 
-impl System {
+impl<'s> System<'s> {
     /// The structure of a model at angular frequency `omega`.
-    pub fn new(model: &Model, omega: f64) -> Result<Self> {
+    pub fn new(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
+        interrupt.phase(Phase::Setup, 0.0)?;
         let structure = model.structure();
         let (ndof, sectors) = (model.ndof(), structure.repeating_sectors());
         let place = |dof: usize, s: usize| s * ndof + dof;
@@ -130,18 +134,26 @@ impl System {
                 try_push(&mut loads, load, CONTEXT)?;
             }
         }
+        interrupt.check()?;
         Ok(Self {
+            interrupt,
             ndof,
             sectors,
             follower: structure.sectors_per_part(),
             omega,
-            mass: Mass::new(&inertia, ndof)?,
+            mass: Mass::new(&inertia, ndof, interrupt)?,
             inertia: Sparse::new(&inertia)?,
             damping: Sparse::new(&damping)?,
             stiffness: Sparse::new(&stiffness)?,
             loads,
             elements,
         })
+    }
+
+    /// Operations of one product with the matrices, for the checks of the interrupt.
+    pub fn operations(&self) -> u64 {
+        let entries = self.stiffness.values.len() + self.damping.values.len() + self.inertia.values.len();
+        2 * entries as u64 + 1000
     }
 
     /// Degrees of freedom of all carried sectors.
@@ -176,7 +188,7 @@ impl System {
                 for (z, a) in buffer.iter_mut().zip(a.iter()) {
                     *z = (*a).into();
                 }
-                factor.solve(buffer, false)?;
+                factor.solve(buffer, false, self.interrupt)?;
                 for (a, z) in a.iter_mut().zip(buffer.iter()) {
                     *a = z.re;
                 }
@@ -224,7 +236,7 @@ fn with_springs(stiffness: &Csc, springs: &[Spring]) -> Result<Csc> {
 }
 
 impl Mass {
-    fn new(m: &Csc, ndof: usize) -> Result<Self> {
+    fn new(m: &Csc, ndof: usize, interrupt: &Interrupt<'_>) -> Result<Self> {
         if let Some(i) = (0..m.cols).find(|&i| m.get(i, i).re <= 0.0) {
             return fail!(
                 Unsupported,
@@ -240,7 +252,7 @@ impl Mass {
             return Ok(Self::Diagonal(inverse));
         }
         let mut factor = Box::new(Factor::new(m, 1)?);
-        if let Err(e) = factor.factor(m) {
+        if let Err(e) = factor.factor(m, interrupt) {
             return match e.status {
                 Status::Singular => fail!(
                     Unsupported,

@@ -1,5 +1,7 @@
 //! Friction in a plane, for its tests: random motions, one law, and comparisons of numbers.
 
+use hbvib::interrupt::Interrupt;
+
 use hbvib::aft::Evaluation;
 use hbvib::aft::hysteretic::HystereticEvaluator;
 use hbvib::contact::law::Law;
@@ -55,7 +57,7 @@ pub fn evaluate(
 ) -> (Evaluation, HystereticEvaluator) {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
     let mut way = HystereticEvaluator::new(set, law, samples).unwrap();
-    way.evaluate(law, OMEGA, motion, &mut out).unwrap();
+    way.evaluate(law, OMEGA, motion, &mut out, &Interrupt::none()).unwrap();
     (out, way)
 }
 

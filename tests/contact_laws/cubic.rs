@@ -7,6 +7,7 @@ use hbvib::contact::Contact;
 use hbvib::contact::law::Law;
 use hbvib::contact::linearisation::Range;
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -35,7 +36,9 @@ fn evaluate(law: &dyn Law, set: &HarmonicSet, samples: usize, motion: &[f64]) ->
     let mut out = Evaluation::new(set, 1).unwrap();
     let mut evaluator = Evaluator::new(set, samples, std::iter::once(law)).unwrap();
     evaluator.prepare(set, motion);
-    evaluator.evaluate(law, set, motion, 1.0, &mut out).unwrap();
+    evaluator
+        .evaluate(law, set, motion, 1.0, &mut out, &Interrupt::none())
+        .unwrap();
     out
 }
 

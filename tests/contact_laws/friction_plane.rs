@@ -7,6 +7,7 @@ use hbvib::contact::law::Law;
 use hbvib::contact::laws::friction_3d::Friction3d;
 use hbvib::contact::laws::jenkins::Jenkins;
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
@@ -138,7 +139,9 @@ fn constant_load_on_a_line_is_the_jenkins_element_its_dragged_mean_included() {
         let mut exact = Evaluation::new(&set, 1).unwrap();
         let mut evaluator = Evaluator::new(&set, 0, std::iter::once(&jenkins as &dyn Law)).unwrap();
         evaluator.prepare(&set, &x);
-        evaluator.evaluate(&jenkins, &set, &x, OMEGA, &mut exact).unwrap();
+        evaluator
+            .evaluate(&jenkins, &set, &x, OMEGA, &mut exact, &Interrupt::none())
+            .unwrap();
         let mut motion = x.clone();
         motion.resize(2 * m, 0.0);
         let (out, _) = evaluate(&law, &set, 4096, &motion);

@@ -7,6 +7,7 @@ use hbvib::contact::law::Law;
 use hbvib::contact::laws::friction_3d::Friction3d;
 use hbvib::contact::march::March;
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use std::f64::consts::PI;
 
 /// The state after one step from motion `before` to `after`.
@@ -145,7 +146,7 @@ fn the_jacobian_is_the_derivative_of_the_sampled_force() {
                 let mut at = |t: f64| {
                     let mut x = motion.clone();
                     x[c] += t * h;
-                    way.evaluate(&law, OMEGA, &x, &mut other).unwrap();
+                    way.evaluate(&law, OMEGA, &x, &mut other, &Interrupt::none()).unwrap();
                     other.force.clone()
                 };
                 let (up, down, up2, down2) = (at(1.0), at(-1.0), at(2.0), at(-2.0));
@@ -201,7 +202,7 @@ fn a_slider_dragged_across_rests_with_the_force_at_the_limit_and_its_derivative(
         let mut at = |t: f64| {
             let mut x = motion;
             x[1] += t;
-            way.evaluate(&law, OMEGA, &x, &mut other).unwrap();
+            way.evaluate(&law, OMEGA, &x, &mut other, &Interrupt::none()).unwrap();
             other.force[3]
         };
         let (central, exact) = ((at(h) - at(-h)) / (2.0 * h), out.jacobian[6 + 3]);

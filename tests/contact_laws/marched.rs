@@ -10,6 +10,7 @@ use hbvib::contact::linearisation::Range;
 use hbvib::contact::march::March;
 use hbvib::error::Result;
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -113,7 +114,8 @@ fn a_law_of_rates_has_its_complex_stiffness_and_its_derivative_by_frequency() {
         let mut way = HystereticEvaluator::new(&set, &law, 2048).unwrap();
         let mut out = Evaluation::new(&set, 1).unwrap();
         let mut force = |omega: f64| {
-            way.evaluate(&law, omega, &motion, &mut out).unwrap();
+            way.evaluate(&law, omega, &motion, &mut out, &Interrupt::none())
+                .unwrap();
             out.clone()
         };
         let out = force(OMEGA);

@@ -9,6 +9,7 @@ use hbvib::contact::law::Memoryless;
 use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::{Contact, Law};
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 
 #[test]
 fn a_cubic_polynomial_is_the_cubic_spring() {
@@ -21,7 +22,9 @@ fn a_cubic_polynomial_is_the_cubic_spring() {
             let mut expected = Evaluation::new(set, 1).unwrap();
             let mut evaluator = Evaluator::new(set, 0, std::iter::once(&*spring)).unwrap();
             evaluator.prepare(set, &x);
-            evaluator.evaluate(&*spring, set, &x, 1.3, &mut expected).unwrap();
+            evaluator
+                .evaluate(&*spring, set, &x, 1.3, &mut expected, &Interrupt::none())
+                .unwrap();
             let found = evaluate(&law, set, 1.3, &x);
             for (a, b) in [
                 (&found.force, &expected.force),

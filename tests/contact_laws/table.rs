@@ -12,6 +12,7 @@ use hbvib::contact::piece::Piece;
 use hbvib::error::Status;
 use hbvib::fourier::HarmonicSet;
 use hbvib::fourier::TurningPoints;
+use hbvib::interrupt::Interrupt;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
 
@@ -26,7 +27,7 @@ fn evaluate(law: &Table, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
     let most = law.most_pieces(set.highest_reduced());
     let mut way = Exact::new(set, most).unwrap();
     way.prepare(set, motion);
-    way.evaluate(law, set, motion, &mut out);
+    way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
     assert!(
         way.pieces().len() <= most,
         "{} pieces, bound {most}",
@@ -39,7 +40,7 @@ fn sampled(law: &Table, set: &HarmonicSet, samples: usize, motion: &[f64]) -> Ev
     let mut out = Evaluation::new(set, 1).unwrap();
     let mut way = Sampled::new(set, samples).unwrap();
     way.prepare(set, motion);
-    way.evaluate(law, set, motion, &mut out);
+    way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
     out
 }
 
@@ -95,7 +96,9 @@ fn two_lines_are_a_unilateral_spring() {
             for samples in [0, 256] {
                 let mut evaluator = Evaluator::new(&set, samples, std::iter::once(&*spring)).unwrap();
                 evaluator.prepare(&set, &x);
-                evaluator.evaluate(&*spring, &set, &x, 1.0, &mut expected).unwrap();
+                evaluator
+                    .evaluate(&*spring, &set, &x, 1.0, &mut expected, &Interrupt::none())
+                    .unwrap();
                 let found = if samples == 0 {
                     evaluate(&table, &set, &x)
                 } else {

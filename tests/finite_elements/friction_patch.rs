@@ -6,6 +6,7 @@ use crate::brick;
 use hbvib::analysis::forced_response;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::hooks::Hooks;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
@@ -170,9 +171,11 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
         tolerance: 0.0,
         ..SolverOptions::default()
     };
-    let condensed = Condensed::new(&model, &solver, omega).unwrap();
+    let condensed = Condensed::new(&model, &solver, omega, &Interrupt::none()).unwrap();
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = HarmonicBalance::new(&condensed, beam.tips()[0] + Z, (omega, omega), 0, None).unwrap();
+    let interrupt = Interrupt::none();
+    let mut problem =
+        HarmonicBalance::new(&condensed, beam.tips()[0] + Z, (omega, omega), 0, None, &interrupt).unwrap();
     let n = problem.size();
     let m = n / condensed.coordinates();
     let mut u = vec![0.0; n];
@@ -187,7 +190,7 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
     let mut at = Residual::new(n).unwrap();
     problem.evaluate(&u, omega, &mut at).unwrap();
     let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
-    problem.fill(&mut jacobian, &mut active);
+    problem.fill(&mut jacobian, &mut active).unwrap();
     let slipping = problem.slip_fractions().iter().filter(|s| **s > 0.0).count();
     let solved_for = active.iter().filter(|a| **a).count();
     println!("{slipping} of {contacts} contacts slip, {solved_for} of {n} unknowns are solved for");

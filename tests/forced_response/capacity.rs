@@ -5,6 +5,7 @@ use hbvib::analysis::forced_response;
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
@@ -79,7 +80,10 @@ fn a_chain_is_refused_above_the_capacity_of_its_mode_and_answered_below() {
             let force = share * slip_capacity / phi[0].norm();
             model.add_force(0, harmonic, Complex64::from_polar(force, 0.4)).unwrap();
             let frequency = omega / harmonic as f64;
-            let resonance = model.resonance(frequency, harmonic).unwrap().unwrap();
+            let resonance = model
+                .resonance(frequency, harmonic, &Interrupt::none())
+                .unwrap()
+                .unwrap();
             assert!((resonance.slip_capacity / slip_capacity - 1.0).abs() < 1e-9, "mode {k}");
             assert!(
                 (resonance.force / (share * slip_capacity) - 1.0).abs() < 1e-9,
@@ -137,7 +141,7 @@ fn of_repeated_resonances_the_force_picks_the_one_it_drives() {
     }
     // All of them can bear 0.9 × 4/π, but not the first alone.
     model.add_force(0, 1, 0.5.into()).unwrap();
-    let resonance = model.resonance(1.0, 1).unwrap().unwrap();
+    let resonance = model.resonance(1.0, 1, &Interrupt::none()).unwrap().unwrap();
     assert!((resonance.force - 0.5).abs() < 1e-12 && (resonance.slip_capacity - 1.2 / PI).abs() < 1e-12);
     assert!(refused(&model, 1.0, 3));
 }
@@ -182,9 +186,12 @@ fn a_free_body_is_dragged_by_a_constant_load_above_the_slip_limit() {
         model.add_force(0, 1, 0.1.into()).unwrap();
         model
     };
-    let resonance = of(0.31).resonance(0.7, 0).unwrap().unwrap();
+    let resonance = of(0.31).resonance(0.7, 0, &Interrupt::none()).unwrap().unwrap();
     assert!((resonance.force - 0.31).abs() < 1e-15 && (resonance.slip_capacity - 0.3).abs() < 1e-15);
-    assert!(of(0.31).overload(0.7).unwrap().is_some() && of(0.29).overload(0.7).unwrap().is_none());
+    assert!(
+        of(0.31).overload(0.7, &Interrupt::none()).unwrap().is_some()
+            && of(0.29).overload(0.7, &Interrupt::none()).unwrap().is_none()
+    );
     assert!(refused(&of(0.31), 0.7, 3));
     assert!(!refused(&of(0.1), 0.7, 3));
 }

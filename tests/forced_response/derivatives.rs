@@ -7,6 +7,7 @@ use crate::common::stencil::{Checked, Stencil, config, pairs, parts};
 use hbvib::analysis::harmonic_residual::forced_residual;
 use hbvib::condense::Condensed;
 use hbvib::contact::{Contact, ContactKind, Role};
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
@@ -228,7 +229,7 @@ fn check_problem(problem: &mut dyn Problem, at: &Condensation, play: f64) -> Che
     let mut out = Residual::new(n).unwrap();
     problem.evaluate(&at.u, at.p, &mut out).unwrap();
     let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
-    problem.fill(&mut jacobian, &mut active);
+    problem.fill(&mut jacobian, &mut active).unwrap();
     let d_parameter = out.d_parameter.clone();
     let (_, dz) = problem.observe(&at.u, &at.direction);
     let scale = size(&jacobian);
@@ -270,7 +271,7 @@ fn condensed_case(
         keep_even_harmonics: keep_even,
         ..common::harmonics(highest)
     };
-    let condensed = Condensed::new(model, &solver, omega).unwrap();
+    let condensed = Condensed::new(model, &solver, omega, &Interrupt::none()).unwrap();
     let play = model
         .contacts()
         .iter()
@@ -306,7 +307,8 @@ proptest! {
         let mut feed = Feed { numbers: &numbers, next: 0 };
         let model = random_model(shape, engine_order, &mut feed);
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
-        let mut problem = HarmonicBalance::new(&condensed, response, (1.0, 1.0), 0, None).unwrap();
+        let interrupt = Interrupt::none();
+        let mut problem = HarmonicBalance::new(&condensed, response, (1.0, 1.0), 0, None, &interrupt).unwrap();
         check_problem(&mut problem, &Condensation { u, p: omega, direction }, play)?;
     }
 
@@ -327,7 +329,8 @@ proptest! {
             model.add_contact(&Contact::unilateral(None, Some(1), 0.9, -0.2)).unwrap();
         }
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
-        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), 0, None).unwrap();
+        let interrupt = Interrupt::none();
+        let mut problem = HarmonicBalance::new(&condensed, 0, (1.0, 1.0), 0, None, &interrupt).unwrap();
         let mut stuck = vec![0.0; u.len()];
         prop_assert!(problem.initial_guess(InitialGuess::Stuck, omega, &mut stuck).unwrap() != preloaded);
         // The stuck motion must slip for a homotopy to exist; a larger one always does.

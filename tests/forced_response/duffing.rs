@@ -5,6 +5,7 @@ use crate::common::{self, harmonics, relative_gap, solve_at, sweep};
 use hbvib::analysis::harmonic_residual::forced_residual;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::contact::Contact;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
@@ -324,11 +325,15 @@ fn with_many_contacts_the_stuck_start_is_the_structure_on_linear_springs() {
         let model = chain(|model, i| {
             model.add_contact(&Contact::cubic(i, None, 0.5, k3)).unwrap();
         });
-        (Condensed::new(&model, &harmonics(5), 0.8).unwrap(), model)
+        (
+            Condensed::new(&model, &harmonics(5), 0.8, &Interrupt::none()).unwrap(),
+            model,
+        )
     };
     let (condensed, _) = start(0.3);
     assert_eq!(condensed.reference(), Reference::Stuck);
-    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.8), 0, None).unwrap();
+    let interrupt = Interrupt::none();
+    let mut problem = HarmonicBalance::new(&condensed, 0, (0.8, 0.8), 0, None, &interrupt).unwrap();
     let mut u = vec![0.0; problem.unknowns()];
     assert!(problem.initial_guess(InitialGuess::Stuck, 0.8, &mut u).unwrap());
     let (linear, model) = start(0.0);

@@ -27,9 +27,10 @@ impl Jacobian for Duffing {
         2
     }
 
-    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         matrix.copy_from_slice(&self.jacobian);
         active.fill(true);
+        Ok(())
     }
 }
 

@@ -6,6 +6,7 @@ use crate::common::mode_cases::{N, Skewed};
 use crate::common::stencil::{Checked, Stencil, config};
 use hbvib::condense::Condensed;
 use hbvib::contact::Contact;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
 use hbvib::model::spring::relative_row;
 use hbvib::options::{DampingForm, SolverOptions};
@@ -25,7 +26,7 @@ fn check_problem(problem: &mut dyn Problem, u: &[f64], p: f64, direction: &[f64]
     let mut out = Residual::new(n).unwrap();
     problem.evaluate(u, p, &mut out).unwrap();
     let (mut jacobian, mut active) = (vec![0.0; n * n], vec![true; n]);
-    problem.fill(&mut jacobian, &mut active);
+    problem.fill(&mut jacobian, &mut active).unwrap();
     let d_parameter = out.d_parameter.clone();
     let scale = size(&jacobian).max(size(&d_parameter)) * size(u);
     for (c, column) in jacobian.chunks_exact(n).enumerate() {
@@ -101,14 +102,16 @@ impl Case {
             keep_even_harmonics: self.keep_even,
             ..harmonics(self.highest)
         };
-        let (condensed, _) = Condensed::for_mode(&model, &solver, self.form, &linear.shape).unwrap();
+        let (condensed, _) =
+            Condensed::for_mode(&model, &solver, self.form, &linear.shape, &Interrupt::none()).unwrap();
         assert_eq!(condensed.set().has_mean(), self.keep_even);
         let play = model
             .contacts()
             .iter()
             .map(|c| c.slip_limit() / c.kt / condensed.length())
             .fold(f64::INFINITY, f64::min);
-        let mut problem = Epmc::new(&condensed, &gauge, &linear, 0).unwrap();
+        let interrupt = Interrupt::none();
+        let mut problem = Epmc::new(&condensed, &gauge, &linear, 0, &interrupt).unwrap();
         let n = problem.size();
         // Motions of a few times the least play at amplitude 10^p.
         let p = play.log10() + self.log10;

@@ -158,6 +158,11 @@ fn hooks_cancel_and_threads_share_a_model() {
 }
 
 #[test]
+fn phases_are_reported_and_long_functions_can_be_stopped() {
+    silent("phases", |_| vec![]);
+}
+
+#[test]
 fn forces_of_the_caller_may_fail_and_call_the_library() {
     silent("user_force", |_| vec![]);
 }

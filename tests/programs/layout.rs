@@ -41,7 +41,8 @@ fn in_rust() -> String {
         hbvib_jacobian_gap { struct_size, tangent, gap, sample, row, column, given, difference }
         hbvib_solver_options { struct_size, num_threads, tolerance, harmonics, max_harmonics, samples, step, step_min, step_max, tol_residual, max_newton, max_points, response_dof, keep_even_harmonics, estimate_error }
         hbvib_progress { struct_size, newton_iterations, point, parameter, amplitude, residual, step, fraction_done }
-        hbvib_hooks { struct_size, log_level, user, progress, log, cancel }
+        hbvib_phase_report { struct_size, phase, share }
+        hbvib_hooks { struct_size, log_level, user, progress, log, cancel, phase }
         hbvib_forced_options { struct_size, reserved, omega_start, omega_stop, at, at_len, guess, guess_len }
         hbvib_view { struct_size, scalar, rank, reserved, data, shape, stride }
         hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts }

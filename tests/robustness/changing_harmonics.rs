@@ -5,6 +5,7 @@ use crate::common::{harmonics, sweep};
 use crate::random_problems::random::{Random, from_environment};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::eigen;
 use hbvib::model::Model;
 use hbvib::options::SolverOptions;
@@ -94,7 +95,9 @@ fn case(number: u64) -> Case {
     model.add_force(random.below(n), 1, 0.2.into()).unwrap();
     let frequencies = |k: &[f64]| {
         let dense = |a: &[f64]| DMatrix::from_iterator(n, n, a.iter().map(|&x| Complex64::from(x)));
-        eigen::generalised(&dense(k), &dense(&mass)).unwrap().values
+        eigen::generalised(&dense(k), &dense(&mass), &Interrupt::none())
+            .unwrap()
+            .values
     };
     let mode = random.below(n);
     let range = (

@@ -7,4 +7,5 @@ mod changing_harmonics;
 mod hard_cases;
 mod hard_modes;
 mod hard_sweeps;
+mod interrupts;
 mod random_problems;

@@ -45,9 +45,15 @@ struct Solver<'a> {
 }
 
 impl<'a> Solver<'a> {
-    fn new(branch: &'a Branch, data: &'a ModeData, point: usize) -> Result<Self> {
+    fn new(branch: &'a Branch, data: &'a ModeData, point: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         let condensed = branch.condensed_at(point);
-        let problem = Epmc::new(condensed, &data.gauge, &data.linear, branch.samples_at(point))?;
+        let problem = Epmc::new(
+            condensed,
+            &data.gauge,
+            &data.linear,
+            branch.samples_at(point),
+            interrupt,
+        )?;
         let n = problem.size();
         let settings = Settings {
             start: data.range.0,
@@ -73,7 +79,7 @@ impl<'a> Refinement<'a> {
             data,
             load,
             interrupt,
-            solver: Solver::new(branch, data, 0)?,
+            solver: Solver::new(branch, data, 0, interrupt)?,
             x: try_vec(branch.ndof(), Complex64::ZERO, CONTEXT)?,
         })
     }
@@ -84,7 +90,7 @@ impl<'a> Refinement<'a> {
         let carried = |point: usize| self.branch.condensed_at(point).set().numbers().len();
         let richer = if carried(k) > carried(k + 1) { k } else { k + 1 };
         if self.branch.resolution_index(richer) != self.solver.resolution {
-            self.solver = Solver::new(self.branch, self.data, richer)?;
+            self.solver = Solver::new(self.branch, self.data, richer, self.interrupt)?;
         }
         let (Some(a), Some(b)) = (self.point(k)?, self.point(k + 1)?) else {
             return Ok(None);

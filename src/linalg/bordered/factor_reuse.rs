@@ -142,7 +142,14 @@ mod tests {
         fn factor(&self, bordered: &mut Bordered) {
             let k = self.parts();
             bordered
-                .factor(k.jacobian, k.column, k.active, k.scales, k.row)
+                .factor(
+                    k.jacobian,
+                    k.column,
+                    k.active,
+                    k.scales,
+                    k.row,
+                    &crate::interrupt::Interrupt::none(),
+                )
                 .unwrap();
         }
 

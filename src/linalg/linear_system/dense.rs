@@ -1,6 +1,7 @@
 //! The dense backend: all of J, factored by LU with the columns of the identity eliminated.
 
 use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::add_product;
 use crate::linalg::bordered::{Bordered, Parts};
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
@@ -63,10 +64,16 @@ impl DenseSystem {
     /// Factors the matrix in memory.
     ///
     /// # Errors
-    /// `Singular`.
-    pub(super) fn factor_memory(&mut self) -> Result<()> {
-        self.factors
-            .factor(&self.matrix, &self.column, &self.active, self.scales, &self.row)
+    /// `Singular`; `StoppedByCaller`.
+    pub(super) fn factor_memory(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.factors.factor(
+            &self.matrix,
+            &self.column,
+            &self.active,
+            self.scales,
+            &self.row,
+            interrupt,
+        )
     }
 
     /// Solves in place with the factors.
@@ -76,19 +83,21 @@ impl DenseSystem {
 }
 
 impl LinearSystem for DenseSystem {
-    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>) -> Result<()> {
-        jacobian.fill(&mut self.matrix, &mut self.active);
+    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+        interrupt.check()?;
+        jacobian.fill(&mut self.matrix, &mut self.active)?;
         self.column.copy_from_slice(border.column);
         self.row.copy_from_slice(border.row);
         self.scales = border.scales;
         Ok(())
     }
 
-    fn factor(&mut self) -> Result<()> {
-        self.factor_memory()
+    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.factor_memory(interrupt)
     }
 
-    fn solve(&mut self, _jacobian: &mut dyn Jacobian, b: &mut [f64]) -> Result<bool> {
+    fn solve(&mut self, _jacobian: &mut dyn Jacobian, b: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
+        interrupt.check()?;
         self.factors.solve(b);
         Ok(true)
     }

@@ -4,7 +4,8 @@
 //! GMRES iterates with K M⁻¹, where M holds the block, the pairs, and the units of the other unknowns. A block that is
 //! the whole matrix is solved directly.
 
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::gmres::gmres;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree};
@@ -70,12 +71,17 @@ impl Pairs {
         })
     }
 
-    fn factor(&mut self, lengths: Lengths, operator: &mut dyn MatrixFree) {
+    fn factor(&mut self, lengths: Lengths, operator: &mut dyn MatrixFree, interrupt: &Interrupt<'_>) -> Result<()> {
         let factors = self.factors.iter_mut().zip(&mut self.regular);
         for (at, (lu, regular)) in lengths.pairs().zip(factors) {
+            interrupt.check()?;
             operator.fill_pair(at, lu.matrix());
-            *regular = lu.factor().is_ok();
+            *regular = match lu.factor(interrupt) {
+                Err(e) if e.status == Status::Singular => false,
+                factored => factored.map(|()| true)?,
+            };
         }
+        Ok(())
     }
 
     fn solve(&mut self, lengths: Lengths, u: &mut [f64]) {
@@ -188,7 +194,7 @@ fn product(
 }
 
 impl LinearSystem for KrylovSystem {
-    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>) -> Result<()> {
+    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
         self.column.copy_from_slice(border.column);
         self.row.copy_from_slice(border.row);
         self.scales = border.scales;
@@ -198,7 +204,7 @@ impl LinearSystem for KrylovSystem {
         operator.fill_block(self.lengths.part, matrix, active)?;
         if !is_direct {
             operator.keep()?;
-            self.pairs.factor(self.lengths, operator);
+            self.pairs.factor(self.lengths, operator, interrupt)?;
         }
         let lengths = self.lengths;
         let groups = border.column.chunks_exact(lengths.group.max(1));
@@ -208,11 +214,12 @@ impl LinearSystem for KrylovSystem {
         Ok(())
     }
 
-    fn factor(&mut self) -> Result<()> {
-        self.block.factor_memory()
+    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.block.factor_memory(interrupt)
     }
 
-    fn solve(&mut self, jacobian: &mut dyn Jacobian, b: &mut [f64]) -> Result<bool> {
+    fn solve(&mut self, jacobian: &mut dyn Jacobian, b: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
+        interrupt.check()?;
         let lengths = self.lengths;
         self.products = 0;
         let is_direct = self.is_direct();
@@ -222,6 +229,7 @@ impl LinearSystem for KrylovSystem {
             let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
             let products = &mut self.products;
             let solved = gmres(b, self.tolerance, self.most_products, |v, out| {
+                interrupt.check()?;
                 *products += 1;
                 preconditioned.copy_from_slice(v);
                 Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, preconditioned);

@@ -13,6 +13,7 @@ pub mod dense;
 pub mod krylov;
 
 use crate::error::Result;
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 
 /// The Jacobian J of a problem at the point evaluated last.
@@ -21,7 +22,10 @@ pub trait Jacobian {
     fn size(&self) -> usize;
 
     /// Fills J, column-major, and tells of each column whether it differs from that of the identity.
-    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]);
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
 
     /// The same Jacobian by products, where the problem has them.
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
@@ -38,7 +42,7 @@ pub trait MatrixFree {
     /// columns whether it differs from that of the identity.
     ///
     /// # Errors
-    /// `OutOfMemory`.
+    /// `OutOfMemory`; `StoppedByCaller`.
     fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
 
     /// Fills the complex matrix, column-major, by which J acts on average on one pair of numbers of each group, taken as
@@ -55,7 +59,7 @@ pub trait MatrixFree {
     /// out = J d with the J that was kept last.
     ///
     /// # Errors
-    /// `OutOfMemory`.
+    /// `OutOfMemory`; `StoppedByCaller`.
     fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()>;
 }
 
@@ -75,21 +79,21 @@ pub trait LinearSystem {
     /// Takes over the matrix of the point that the problem was evaluated at last; factors made before stay.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>) -> Result<()>;
+    /// `OutOfMemory`; `StoppedByCaller`.
+    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()>;
 
     /// Factors the matrix that was taken over last.
     ///
     /// # Errors
-    /// `Singular`.
-    fn factor(&mut self) -> Result<()>;
+    /// `Singular`; `StoppedByCaller`.
+    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()>;
 
     /// Solves in place for n + 1 numbers with the matrix that was factored last; `false` where an iteration did not
     /// converge. `jacobian` is that of the problem of [`Self::update`], which may have been evaluated elsewhere since.
     ///
     /// # Errors
-    /// `OutOfMemory`, and those of products.
-    fn solve(&mut self, jacobian: &mut dyn Jacobian, b: &mut [f64]) -> Result<bool>;
+    /// `OutOfMemory`, and those of products; `StoppedByCaller`.
+    fn solve(&mut self, jacobian: &mut dyn Jacobian, b: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool>;
 
     /// out = K x with the matrix that was taken over last.
     ///
@@ -125,6 +129,7 @@ mod tests {
     use super::krylov::KrylovSystem;
     use super::{Border, Jacobian, LinearSystem, MatrixFree};
     use crate::error::{Result, Status};
+    use crate::interrupt::Interrupt;
     use num_complex::Complex64;
 
     /// A matrix whose unknowns are groups of `group` numbers, of which the later ones couple weakly.
@@ -158,9 +163,10 @@ mod tests {
             self.n
         }
 
-        fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) {
+        fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
             matrix.copy_from_slice(&self.matrix);
             active.fill(true);
+            Ok(())
         }
 
         fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
@@ -220,10 +226,10 @@ mod tests {
             scales,
             row: &row,
         };
-        system.update(toy, border).unwrap();
-        system.factor().unwrap();
+        system.update(toy, border, &Interrupt::none()).unwrap();
+        system.factor(&Interrupt::none()).unwrap();
         let (mut x, mut product) = (b.clone(), vec![0.0; n + 1]);
-        assert!(system.solve(toy, &mut x).unwrap());
+        assert!(system.solve(toy, &mut x, &Interrupt::none()).unwrap());
         system.apply(toy, &x, &mut product).unwrap();
         let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let difference: Vec<f64> = product.iter().zip(&b).map(|(p, b)| p - b).collect();
@@ -262,7 +268,7 @@ mod tests {
             row: &[0.0; 7],
         };
         let mut system = DenseSystem::new(6).unwrap();
-        system.update(&mut toy, border).unwrap();
-        assert_eq!(system.factor().unwrap_err().status, Status::Singular);
+        system.update(&mut toy, border, &Interrupt::none()).unwrap();
+        assert_eq!(system.factor(&Interrupt::none()).unwrap_err().status, Status::Singular);
     }
 }

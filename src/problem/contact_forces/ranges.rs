@@ -29,6 +29,7 @@ impl ContactForces<'_> {
             if !self.evaluator.samples(law) {
                 continue;
             }
+            self.interrupt.check()?;
             let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
@@ -38,10 +39,12 @@ impl ContactForces<'_> {
                 other.prepare(set, y);
             }
             let reported = |e: Error| e.at(format_args!("contact {}", assembled.contact));
-            self.evaluator.evaluate(law, set, y, omega, found).map_err(reported)?;
+            let interrupt = self.interrupt;
+            let evaluated = self.evaluator.evaluate(law, set, y, omega, found, interrupt);
+            evaluated.map_err(reported)?;
             let checked = &mut self.checked[..found.force.len()];
             checked.copy_from_slice(&found.force);
-            other.evaluate(law, set, y, omega, found).map_err(reported)?;
+            other.evaluate(law, set, y, omega, found, interrupt).map_err(reported)?;
             for (a, b) in checked.iter().zip(&found.force) {
                 difference += (a - b) * (a - b);
                 size += a * a;

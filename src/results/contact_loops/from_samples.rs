@@ -6,6 +6,7 @@ use crate::contact::law::{Hysteretic, Memoryless};
 use crate::contact::samples::Samples;
 use crate::error::{Result, try_vec};
 use crate::fourier::jet;
+use crate::interrupt::Interrupt;
 use crate::results::contact_loops::period::{CONTEXT, PeriodicMotion, Times, sample, time};
 
 /// Forces of a law without memory at the motions in `out`, in one call.
@@ -45,13 +46,14 @@ pub(super) fn marched(
     law: &dyn Hysteretic,
     requested: usize,
     out: &mut Times,
+    interrupt: &Interrupt<'_>,
 ) -> Result<()> {
     let (n, d) = (out.state.len(), motion.directions);
     let highest = motion.set.highest_reduced();
     let least = law.samples(highest, requested).max(2 * highest + 1).max(2);
     let stride = least.div_ceil(n.max(1));
     let mut way = HystereticEvaluator::new(motion.set, law, stride.saturating_mul(n))?;
-    way.find_periodic_states(law, motion.omega, motion.packed)?;
+    way.find_periodic_states(law, motion.omega, motion.packed, interrupt)?;
     let march = way.march();
     for (j, (force, state)) in out.force.chunks_exact_mut(d.max(1)).zip(&mut out.state).enumerate() {
         let at = stride * sample(motion.set, j, n);

@@ -13,6 +13,7 @@ program layout
    call jacobian_gap()
    call solver_options()
    call progress()
+   call phase_report()
    call hooks()
    call forced_options()
    call view()
@@ -168,6 +169,14 @@ contains
       call field('fraction_done', c_loc(s), c_loc(s%fraction_done), c_sizeof(s%fraction_done))
    end subroutine progress
 
+   subroutine phase_report()
+      type(hbvib_phase_report), target :: s
+      call whole('hbvib_phase_report', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('phase', c_loc(s), c_loc(s%phase), c_sizeof(s%phase))
+      call field('share', c_loc(s), c_loc(s%share), c_sizeof(s%share))
+   end subroutine phase_report
+
    subroutine hooks()
       type(hbvib_hooks), target :: s
       call whole('hbvib_hooks', c_sizeof(s))
@@ -177,6 +186,7 @@ contains
       call field('progress', c_loc(s), c_loc(s%progress), c_sizeof(s%progress))
       call field('log', c_loc(s), c_loc(s%log), c_sizeof(s%log))
       call field('cancel', c_loc(s), c_loc(s%cancel), c_sizeof(s%cancel))
+      call field('phase', c_loc(s), c_loc(s%phase), c_sizeof(s%phase))
    end subroutine hooks
 
    subroutine forced_options()

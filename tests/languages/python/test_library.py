@@ -43,11 +43,12 @@ PREFIXES = dict(
     ModeMultiple="MODE_",
     SynthesisFlag="SYNTHESIS_",
     LogLevel="LOG_",
+    Phase="PHASE_",
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
     "Status Storage Scalar Part MatrixKind ContactKind ContactState State Tangent Field DampingForm "
-    "ModeMultiple SynthesisFlag LogLevel SteadyMethod"
+    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)

@@ -3,6 +3,7 @@
 use super::Case;
 use super::one_mass::{answer, rubbing};
 use hbvib::error::Status;
+use hbvib::interrupt::Interrupt;
 use hbvib::options::SolverOptions;
 use std::f64::consts::PI;
 
@@ -12,7 +13,7 @@ pub fn beyond_capacity(case: &Case) {
     case.meets("the stored limit of the parameters", 0, case.number("F_limit"), limit);
     let forced = |force: f64| rubbing(case, case.number("fc"), &[(1, force)]);
     let model = forced(case.number("F"));
-    let resonance = model.resonance(w, 1).unwrap().unwrap();
+    let resonance = model.resonance(w, 1, &Interrupt::none()).unwrap().unwrap();
     case.meets("what the contact can take, 4 fc/pi", 1, resonance.slip_capacity, limit);
     case.meets("the force on the motion", 1, resonance.force, case.number("F"));
     let of = |force: f64, solver: &SolverOptions| match answer(&forced(force), w, solver) {

@@ -1,0 +1,320 @@
+//! Eigenvalues and eigenvectors of a large dense Hermitian matrix, column by column, so that the caller may interrupt.
+//!
+//! Householder's reflections make the matrix real and tridiagonal, A = Q T Qᴴ; implicit QL iteration diagonalises T
+//! (Bowdler, Martin, Reinsch & Wilkinson 1968, doi:10.1007/BF02219771); the reflections turn its vectors into those
+//! of A (Golub & Van Loan, Matrix Computations, 2013, §8.3).
+
+use crate::error::{Result, fail, try_vec};
+use crate::interrupt::{Interrupt, Phase};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the eigenvalues of a matrix";
+
+/// Iterations for one eigenvalue; two or three suffice.
+const MOST_ITERATIONS: usize = 60;
+
+/// Shares of the work in the reduction, the iteration and the vectors, for the progress.
+const REDUCED: f64 = 0.4;
+const ITERATED: f64 = 0.8;
+
+/// Eigenvalues in ascending order and orthonormal eigenvectors, column after column, of the Hermitian column-major
+/// matrix `a` of order n, which is overwritten.
+///
+/// # Errors
+/// `NoConvergence`, `OutOfMemory`; `StoppedByCaller`.
+pub fn eigen(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, Vec<Complex64>)> {
+    let mut values = try_vec(n, 0.0, CONTEXT)?;
+    let mut beside = try_vec(n, 0.0, CONTEXT)?;
+    let mut factors = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    tridiagonalise(a, n, (&mut values, &mut beside), &mut factors, interrupt)?;
+    let mut z = try_vec(n * n, 0.0, CONTEXT)?;
+    for i in 0..n {
+        z[i * n + i] = 1.0;
+    }
+    diagonalise((&mut values, &mut beside), &mut z, interrupt)?;
+    let mut order = try_vec(n, 0, CONTEXT)?;
+    for (i, o) in order.iter_mut().enumerate() {
+        *o = i;
+    }
+    order.sort_unstable_by(|&i, &j| values[i].total_cmp(&values[j]));
+    let mut vectors = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    let mut sorted = try_vec(n, 0.0, CONTEXT)?;
+    for (k, &i) in order.iter().enumerate() {
+        interrupt.phase(Phase::Modes, ITERATED + (1.0 - ITERATED) * k as f64 / n as f64)?;
+        interrupt.check_before((8 * n * n) as u64)?;
+        sorted[k] = values[i];
+        let x = &mut vectors[k * n..(k + 1) * n];
+        for (x, z) in x.iter_mut().zip(&z[i * n..(i + 1) * n]) {
+            *x = (*z).into();
+        }
+        for j in (0..n.saturating_sub(1)).rev() {
+            let v = &a[j * n + j + 1..(j + 1) * n];
+            reflect(v, factors[j], &mut x[j + 1..]);
+        }
+    }
+    Ok((sorted, vectors))
+}
+
+/// x ← (I − τ v vᴴ) x
+fn reflect(v: &[Complex64], factor: Complex64, x: &mut [Complex64]) {
+    let along: Complex64 = v.iter().zip(&*x).map(|(v, x)| v.conj() * x).sum();
+    let along = factor * along;
+    for (x, v) in x.iter_mut().zip(v) {
+        *x -= v * along;
+    }
+}
+
+/// Reduces A to T: its diagonal and the entries beside it. The vectors v of the reflections I − τ v vᴴ remain below
+/// the diagonal of A, their τ in `factors`.
+fn tridiagonalise(
+    a: &mut [Complex64],
+    n: usize,
+    (diagonal, beside): (&mut [f64], &mut [f64]),
+    factors: &mut [Complex64],
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let mut w = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    for k in 0..n.saturating_sub(1) {
+        let left = (n - k) as f64 / n as f64;
+        interrupt.phase(Phase::Modes, REDUCED * (1.0 - left * left * left))?;
+        interrupt.check_before((16 * (n - k) * (n - k)) as u64)?;
+        let (done, rest) = a.split_at_mut((k + 1) * n);
+        let v = &mut done[k * n + k + 1..];
+        let (head, below) = (v[0], v[1..].iter().fold(0.0, |s, z| f64::hypot(s, z.norm())));
+        let tau = if below == 0.0 && head.im == 0.0 {
+            beside[k] = head.re;
+            Complex64::ZERO
+        } else {
+            let beta = -head.norm().hypot(below).copysign(head.re);
+            let scale = (head - beta).inv();
+            for z in &mut v[1..] {
+                *z *= scale;
+            }
+            beside[k] = beta;
+            Complex64::new((beta - head.re) / beta, -head.im / beta)
+        };
+        v[0] = Complex64::ONE;
+        factors[k] = tau;
+        if tau == Complex64::ZERO {
+            continue;
+        }
+        // w = τ A v − ½ τ (wᴴ v) v,  A ← A − v wᴴ − w vᴴ
+        let w = &mut w[..v.len()];
+        w.fill(Complex64::ZERO);
+        for (column, v) in rest.chunks_exact(n).zip(&*v) {
+            let factor = tau * v;
+            for (w, a) in w.iter_mut().zip(&column[k + 1..]) {
+                *w += a * factor;
+            }
+        }
+        let along: Complex64 = w.iter().zip(&*v).map(|(w, v)| w.conj() * v).sum();
+        let half = -0.5 * tau * along;
+        for (w, v) in w.iter_mut().zip(&*v) {
+            *w += half * v;
+        }
+        for (j, column) in rest.chunks_exact_mut(n).enumerate() {
+            let (by_w, by_v) = (w[j].conj(), v[j].conj());
+            for ((a, v), w) in column[k + 1..].iter_mut().zip(&*v).zip(&*w) {
+                *a -= v * by_w + w * by_v;
+            }
+        }
+    }
+    for (k, d) in diagonal.iter_mut().enumerate() {
+        *d = a[k * n + k].re;
+    }
+    Ok(())
+}
+
+/// Eigenvalues of T in place of its diagonal; the rotations are applied to the columns of z.
+fn diagonalise((d, e): (&mut [f64], &mut [f64]), z: &mut [f64], interrupt: &Interrupt<'_>) -> Result<()> {
+    let n = d.len();
+    for l in 0..n {
+        for iteration in 0.. {
+            interrupt.phase(Phase::Modes, REDUCED + (ITERATED - REDUCED) * l as f64 / n as f64)?;
+            interrupt.check_before((6 * n * (n - l)) as u64)?;
+            let negligible = |m: &usize| e[*m].abs() <= f64::EPSILON * (d[*m].abs() + d[*m + 1].abs());
+            let m = (l..n - 1).find(negligible).unwrap_or(n - 1);
+            if m == l {
+                break;
+            }
+            if iteration == MOST_ITERATIONS || !e[l].is_finite() {
+                return fail!(NoConvergence, "the eigenvalues of a matrix of order {n} were not found");
+            }
+            let g = (d[l + 1] - d[l]) / (2.0 * e[l]);
+            let r = g.hypot(1.0);
+            let mut g = d[m] - d[l] + e[l] / (g + r.copysign(g));
+            let (mut s, mut c, mut p) = (1.0, 1.0, 0.0);
+            let mut early = false;
+            for i in (l..m).rev() {
+                let (f, b) = (s * e[i], c * e[i]);
+                let r = f.hypot(g);
+                e[i + 1] = r;
+                if r == 0.0 {
+                    // The matrix has split.
+                    d[i + 1] -= p;
+                    e[m] = 0.0;
+                    early = true;
+                    break;
+                }
+                (s, c) = (f / r, g / r);
+                g = d[i + 1] - p;
+                let r = (d[i] - g) * s + 2.0 * c * b;
+                p = s * r;
+                d[i + 1] = g + p;
+                g = c * r - b;
+                let (first, second) = z[i * n..(i + 2) * n].split_at_mut(n);
+                for (x, y) in first.iter_mut().zip(second) {
+                    let f = *y;
+                    *y = s * *x + c * f;
+                    *x = c * *x - s * f;
+                }
+            }
+            if !early {
+                d[l] -= p;
+                e[l] = g;
+                e[m] = 0.0;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// L of A = L Lᴴ in place of the lower triangle of the Hermitian column-major A; `false` where A is not positive
+/// definite.
+///
+/// # Errors
+/// `StoppedByCaller`.
+pub fn cholesky(a: &mut [Complex64], n: usize, interrupt: &Interrupt<'_>) -> Result<bool> {
+    for j in 0..n {
+        interrupt.check_before((8 * j * (n - j)) as u64)?;
+        let (left, right) = a.split_at_mut(j * n);
+        let column = &mut right[j..n];
+        for l in left.chunks_exact(n) {
+            let factor = l[j].conj();
+            for (c, l) in column.iter_mut().zip(&l[j..]) {
+                *c -= l * factor;
+            }
+        }
+        let pivot = column[0].re;
+        if pivot.is_nan() || pivot <= 0.0 {
+            return Ok(false);
+        }
+        let root = pivot.sqrt();
+        column[0] = root.into();
+        for c in &mut column[1..] {
+            *c /= root;
+        }
+    }
+    Ok(true)
+}
+
+/// B ← L⁻¹ B, or L⁻ᴴ B, column by column.
+///
+/// # Errors
+/// `StoppedByCaller`.
+pub fn solve_triangular(
+    l: &[Complex64],
+    n: usize,
+    adjoint: bool,
+    b: &mut [Complex64],
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    for x in b.chunks_exact_mut(n.max(1)) {
+        interrupt.check_before((4 * n * n) as u64)?;
+        if adjoint {
+            for k in (0..n).rev() {
+                let column = &l[k * n + k + 1..(k + 1) * n];
+                let known: Complex64 = column.iter().zip(&x[k + 1..]).map(|(l, x)| l.conj() * x).sum();
+                x[k] = (x[k] - known) / l[k * n + k].re;
+            }
+        } else {
+            for k in 0..n {
+                let (head, rest) = x[k..].split_at_mut(1);
+                head[0] /= l[k * n + k].re;
+                for (x, l) in rest.iter_mut().zip(&l[k * n + k + 1..(k + 1) * n]) {
+                    *x -= head[0] * l;
+                }
+            }
+        }
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrix(n: usize, seed: f64) -> Vec<Complex64> {
+        let mut a = vec![Complex64::ZERO; n * n];
+        for j in 0..n {
+            for i in j..n {
+                let k = (i * n + j) as f64;
+                let z = Complex64::new((k * 0.37 + seed).sin(), if i == j { 0.0 } else { (k * 0.71).cos() });
+                a[j * n + i] = z;
+                a[i * n + j] = z.conj();
+            }
+        }
+        a
+    }
+
+    #[test]
+    fn vectors_diagonalise_the_matrix_and_are_orthonormal() {
+        for n in [1, 2, 3, 17, 60] {
+            let a = matrix(n, 0.2);
+            let (values, x) = eigen(&mut a.clone(), n, &Interrupt::none()).unwrap();
+            assert!(values.is_sorted());
+            let column = |k: usize| &x[k * n..(k + 1) * n];
+            for (k, value) in values.iter().enumerate() {
+                for l in 0..n {
+                    let product: Complex64 = column(k).iter().zip(column(l)).map(|(x, y)| x.conj() * y).sum();
+                    assert!((product - f64::from(u8::from(k == l))).norm() < 1e-13);
+                }
+                for i in 0..n {
+                    let ax: Complex64 = (0..n).map(|j| a[j * n + i] * column(k)[j]).sum();
+                    assert!((ax - value * column(k)[i]).norm() < 1e-12 * n as f64);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_chain_has_its_frequencies_in_closed_form_and_repeated_ones_keep_their_vectors() {
+        // Two equal chains of 40 masses with fixed ends: λ = 2 − 2 cos(kπ/41), each twice.
+        let (length, n) = (40, 80);
+        let mut a = vec![Complex64::ZERO; n * n];
+        for i in 0..n {
+            a[i * n + i] = 2.0.into();
+            if i % length > 0 {
+                a[i * n + i - 1] = -Complex64::I;
+                a[(i - 1) * n + i] = Complex64::I;
+            }
+        }
+        let (values, x) = eigen(&mut a, n, &Interrupt::none()).unwrap();
+        for (k, value) in values.iter().enumerate() {
+            let exact = 2.0 - 2.0 * ((k / 2 + 1) as f64 * std::f64::consts::PI / (length + 1) as f64).cos();
+            assert!((value - exact).abs() < 1e-13, "{k}: {value} {exact}");
+        }
+        let product: Complex64 = x[..n].iter().zip(&x[n..2 * n]).map(|(x, y)| x.conj() * y).sum();
+        assert!(product.norm() < 1e-13);
+    }
+
+    #[test]
+    fn a_positive_definite_matrix_has_a_triangular_root() {
+        let n = 30;
+        let mut a = matrix(n, 0.4);
+        for i in 0..n {
+            a[i * n + i] += 20.0;
+        }
+        let mut l = a.clone();
+        assert!(cholesky(&mut l, n, &Interrupt::none()).unwrap());
+        let mut x: Vec<Complex64> = (0..n).map(|k| Complex64::cis(k as f64)).collect();
+        let mut b: Vec<Complex64> = (0..n).map(|i| (0..n).map(|j| a[j * n + i] * x[j]).sum()).collect();
+        solve_triangular(&l, n, false, &mut b, &Interrupt::none()).unwrap();
+        solve_triangular(&l, n, true, &mut b, &Interrupt::none()).unwrap();
+        for (x, b) in x.iter_mut().zip(b) {
+            assert!((*x - b).norm() < 1e-13);
+        }
+        a[0] = (-1.0).into();
+        assert!(!cholesky(&mut a, n, &Interrupt::none()).unwrap());
+    }
+}

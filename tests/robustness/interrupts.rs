@@ -1,0 +1,497 @@
+//! A caller may stop every analysis at any moment: it returns at once, with what it has found, and says so.
+//!
+//! Tests of the suite count the checks of the interrupt, which no busy machine changes; timings are printed. The test
+//! with limits on them is run by tests/deep.sh.
+
+use hbvib::contact::Contact;
+use hbvib::error::{Result, Status};
+use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{
+    ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions, TimeOptions, VerifyOptions,
+};
+use hbvib::results::Branch;
+use hbvib::{
+    ContactState, Interrupt, Phase, PhaseReport, Progress, contact_evaluate_with, estimate_at_with,
+    forced_residual_with, forced_response, nonlinear_mode, synthesise_with, time_response, verify,
+};
+use num_complex::Complex64;
+use std::cell::{Cell, RefCell};
+use std::time::{Duration, Instant};
+
+/// A structure for all analyses: a chain with friction at its first masses, whose matrices are full or sparse.
+struct Case {
+    name: &'static str,
+    model: Model,
+    contacts: usize,
+    /// First natural frequency, roughly.
+    omega: f64,
+}
+
+impl Case {
+    /// Unit masses and springs of `k`, fixed at one end and forced at the other.
+    fn chain(name: &'static str, n: usize, contacts: usize, full: bool) -> Self {
+        let k = 0.25 * (n * n) as f64;
+        let mut stiffness = vec![0.0; n * n];
+        let mut mass = vec![0.0; n * n];
+        for i in 0..n {
+            stiffness[i * n + i] = if i + 1 < n { 2.0 * k } else { k };
+            mass[i * n + i] = 1.0;
+            if i > 0 {
+                stiffness[i * n + i - 1] = -k;
+                stiffness[(i - 1) * n + i] = -k;
+            }
+        }
+        if full {
+            // A full matrix of rank one hardly changes the modes.
+            for (at, m) in mass.iter_mut().enumerate() {
+                let wave = |i: usize| (i as f64 * 0.7).sin();
+                *m += 1e-3 / n as f64 * wave(at / n) * wave(at % n);
+            }
+        }
+        let mut model = Model::new(n).unwrap();
+        model
+            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
+            .unwrap();
+        model
+            .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
+            .unwrap();
+        model.set_rayleigh(0.01, 1e-5).unwrap();
+        for i in 0..contacts {
+            let at = 1 + i * (n - 2) / contacts;
+            model.add_contact(&Contact::jenkins(at, None, 0.5, 1.0, 0.02)).unwrap();
+        }
+        model.add_force(n - 1, 1, 1.0.into()).unwrap();
+        // ω = 2 √k sin(π/(4 n + 2)) with k = n²/4.
+        let omega = n as f64 * (std::f64::consts::PI / (4 * n + 2) as f64).sin();
+        Self {
+            name,
+            model,
+            contacts,
+            omega,
+        }
+    }
+
+    fn fixed(&self) -> SolverOptions {
+        SolverOptions {
+            harmonics: 5,
+            tolerance: 0.0,
+            response_dof: Some(self.model.ndof() - 1),
+            ..SolverOptions::default()
+        }
+    }
+
+    fn forced(&self, solver: &SolverOptions, ends: (f64, f64), hooks: &mut Hooks<'_>) -> Result<Branch> {
+        let range = ForcedOptions {
+            omega_start: ends.0 * self.omega,
+            omega_stop: ends.1 * self.omega,
+            ..ForcedOptions::default()
+        };
+        forced_response(&self.model, solver, &range, hooks)
+    }
+
+    fn mode(&self, hooks: &mut Hooks<'_>) -> Result<Branch> {
+        let range = ModeOptions {
+            choice: ModeChoice::Index(0),
+            log10_start: -2.0,
+            log10_stop: 1.0,
+            ..ModeOptions::default()
+        };
+        nonlinear_mode(&self.model, &self.fixed(), &range, hooks)
+    }
+}
+
+/// Status of a branch whose arrays agree with its points.
+fn of_branch(branch: Result<Branch>) -> Result<Status> {
+    let branch = branch?;
+    let points = branch.points();
+    assert_eq!(
+        (branch.omega().len(), branch.amplitude().len(), branch.residual().len()),
+        (points, points, points)
+    );
+    assert!(branch.omega().iter().chain(branch.amplitude()).all(|x| x.is_finite()));
+    assert!(
+        branch
+            .peaks()
+            .iter()
+            .all(|p| p.point >= points && p.point < branch.stored())
+    );
+    Ok(branch.status())
+}
+
+/// Status of a call that has nothing to keep.
+fn of_call<T>(outcome: Result<T>) -> Result<Status> {
+    match outcome {
+        Ok(_) => Ok(Status::Ok),
+        Err(e) if e.status == Status::StoppedByCaller => Ok(e.status),
+        Err(e) => Err(e),
+    }
+}
+
+type Analysis<'a> = (&'static str, Box<dyn Fn(&mut Hooks<'_>) -> Result<Status> + 'a>);
+
+/// Every analysis of a case; `solved` is a branch with the first harmonics at one frequency, `mode` a short mode.
+fn analyses<'a>(case: &'a Case, solved: &'a Branch, mode: &'a Branch) -> Vec<Analysis<'a>> {
+    let n = case.model.ndof();
+    let automatic = SolverOptions {
+        tolerance: 1e-3,
+        ..case.fixed()
+    };
+    let motion: Vec<Complex64> = (0..4 * n)
+        .map(|k| Complex64::cis(k as f64) / (1 + k / n) as f64)
+        .collect();
+    let signal: Vec<Complex64> = (0..=400)
+        .map(|h| Complex64::cis(h as f64) / (1 + h * h) as f64)
+        .collect();
+    let time = TimeOptions {
+        omega: case.omega,
+        samples: 64,
+        method: SteadyMethod::Shooting,
+        max_periods: 1_000_000,
+        ..TimeOptions::default()
+    };
+    vec![
+        (
+            "forced, fixed H",
+            Box::new(|hooks| of_branch(case.forced(&case.fixed(), (0.8, 1.2), hooks))),
+        ),
+        (
+            "forced, tolerance",
+            Box::new(move |hooks| of_branch(case.forced(&automatic, (0.8, 1.2), hooks))),
+        ),
+        ("nonlinear mode", Box::new(|hooks| of_branch(case.mode(hooks)))),
+        (
+            "time response",
+            Box::new(move |hooks| Ok(time_response(&case.model, &time, hooks)?.status)),
+        ),
+        (
+            "verify",
+            Box::new(|hooks| Ok(verify(&case.model, solved, 0, &VerifyOptions::default(), hooks)?.status)),
+        ),
+        (
+            "linear modes, some",
+            Box::new(|hooks| {
+                let interrupt = hooks.interrupt();
+                of_call(case.model.lowest_modes_with(0, ContactState::Stuck, 12, &interrupt))
+            }),
+        ),
+        (
+            "linear modes, half",
+            Box::new(move |hooks| {
+                let interrupt = hooks.interrupt();
+                let half = (n / 2).min(300);
+                of_call(case.model.lowest_modes_with(0, ContactState::Stuck, half, &interrupt))
+            }),
+        ),
+        (
+            "contact evaluate",
+            Box::new(move |hooks| {
+                let interrupt = hooks.interrupt();
+                let law = Contact::jenkins(0, None, 1.0, 1.0, 0.3);
+                let mut force = vec![Complex64::ZERO; signal.len()];
+                let mut jacobian = vec![0.0; 4 * signal.len() * signal.len()];
+                let at = (signal.len() - 1, 0, 1.0);
+                let outcome = contact_evaluate_with(&law, at, &signal, &mut force, Some(&mut jacobian), &interrupt);
+                let untouched = force.iter().all(|f| *f == Complex64::ZERO);
+                assert_eq!(outcome.is_err(), untouched);
+                of_call(outcome)
+            }),
+        ),
+        (
+            "forced residual",
+            Box::new(move |hooks| {
+                let interrupt = hooks.interrupt();
+                let solver = SolverOptions {
+                    harmonics: 3,
+                    ..case.fixed()
+                };
+                let mut r = vec![Complex64::ONE; motion.len()];
+                let receivers = (&mut r[..], None, None);
+                let outcome = forced_residual_with(&case.model, &solver, case.omega, &motion, receivers, &interrupt);
+                let untouched = r.iter().all(|r| *r == Complex64::ONE);
+                assert_eq!(outcome.is_err(), untouched || r.iter().all(|r| r.is_nan()));
+                of_call(outcome)
+            }),
+        ),
+        (
+            "error of a point",
+            Box::new(|hooks| {
+                let interrupt = hooks.interrupt();
+                of_call(estimate_at_with(&case.model, &case.fixed(), solved, 0, &interrupt))
+            }),
+        ),
+        (
+            "results of a point",
+            Box::new(|hooks| {
+                let interrupt = hooks.interrupt();
+                let mut x = vec![Complex64::ZERO; (solved.harmonics() + 1) * solved.ndof()];
+                of_call((|| {
+                    solved.harmonics_at_with(0, &mut x, &interrupt)?;
+                    solved.energy_at_with(0, &interrupt)?;
+                    solved.contact_loop_with(0, case.contacts / 2, 256, &interrupt)?;
+                    solved.contact_summary_with(0, case.contacts / 2, &interrupt)
+                })())
+            }),
+        ),
+        (
+            "synthesis",
+            Box::new(|hooks| {
+                let interrupt = hooks.interrupt();
+                let options = SynthesisOptions::default();
+                of_call(synthesise_with(mode, &case.model, &options, &interrupt))
+            }),
+        ),
+    ]
+}
+
+/// A run that is stopped: the checks until then, the time from the stop to the return, the widest gap between checks,
+/// and the phase at the end.
+struct Stopped {
+    status: Status,
+    checks: u64,
+    late: Option<Duration>,
+    widest: Duration,
+    phase: Option<Phase>,
+}
+
+/// Runs an analysis and stops it at the first check at which `now(checks, elapsed)` says so.
+fn stop_when(analysis: &Analysis<'_>, now: impl Fn(u64, Duration) -> bool) -> Stopped {
+    let start = Instant::now();
+    let begin = spent(start);
+    let (checks, last, widest) = (Cell::new(0), Cell::new(begin), Cell::new(Duration::ZERO));
+    let stopped: Cell<Option<Duration>> = Cell::new(None);
+    let phase = Cell::new(None);
+    let cancelled = || {
+        assert!(stopped.get().is_none(), "{}: asked again after the stop", analysis.0);
+        let time = spent(start);
+        if phase.get() != Some(Phase::Factorisation) {
+            widest.set(widest.get().max(time - last.get()));
+        }
+        last.set(time);
+        checks.set(checks.get() + 1);
+        let stop = now(checks.get(), time - begin);
+        stopped.set(stop.then_some(time));
+        stop
+    };
+    let sink = |report: &PhaseReport| {
+        assert!(stopped.get().is_none(), "{}: reported after the stop", analysis.0);
+        assert!(report.share >= 0.0 && report.share <= 1.0 + 1e-12, "{report:?}");
+        phase.set(Some(report.phase));
+        false
+    };
+    let mut hooks = Hooks {
+        cancelled: Some(&cancelled),
+        phase: Some(&sink),
+        ..Hooks::default()
+    };
+    let status = (analysis.1)(&mut hooks).unwrap();
+    let end = spent(start);
+    let late = stopped.get().map(|at| end - at);
+    assert_eq!(
+        status == Status::StoppedByCaller,
+        late.is_some(),
+        "{}: {status:?}",
+        analysis.0
+    );
+    Stopped {
+        status,
+        checks: checks.get(),
+        late,
+        widest: widest.get(),
+        phase: phase.get(),
+    }
+}
+
+/// Processor time of this thread where the system reports it (Linux), else the time of a clock: a busy machine then
+/// counts as a slow one.
+fn spent(begin: Instant) -> Duration {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let busy = stat.and_then(|text| text.split_whitespace().next()?.parse().ok());
+    busy.map_or_else(|| begin.elapsed(), Duration::from_nanos)
+}
+
+/// Numbers in 0 .. 1 (Marsaglia's xorshift, doi:10.18637/jss.v008.i14).
+fn random(state: &mut u64) -> f64 {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    (*state >> 11) as f64 / (1_u64 << 53) as f64
+}
+
+/// A branch of one point, and a mode of a few, of a case.
+fn solved(case: &Case) -> (Branch, Branch) {
+    let branch = case.forced(&case.fixed(), (0.9, 0.9), &mut Hooks::default()).unwrap();
+    let mut points = 0;
+    let mut few = |_: &Progress| {
+        points += 1;
+        points == 4
+    };
+    let mut hooks = Hooks {
+        progress: Some(&mut few),
+        ..Hooks::default()
+    };
+    (branch, case.mode(&mut hooks).unwrap())
+}
+
+/// Checks to which a run of the suite is followed.
+const FOLLOWED: u64 = 2_500;
+
+#[test]
+fn every_analysis_returns_from_any_check_with_what_it_has() {
+    let mut state = 0x5eed;
+    for case in [Case::chain("full", 120, 6, true), Case::chain("sparse", 300, 6, false)] {
+        let (branch, mode) = solved(&case);
+        for analysis in analyses(&case, &branch, &mode) {
+            let whole = stop_when(&analysis, |checks, _| checks > FOLLOWED);
+            let least = if analysis.0 == "contact evaluate" { 3 } else { 10 };
+            assert!(whole.checks > least, "{}: {} checks", analysis.0, whole.checks);
+            let mut latest = Duration::ZERO;
+            for k in 0..3 {
+                // At the first check too.
+                let at = if k == 0 {
+                    1
+                } else {
+                    1 + (random(&mut state) * (whole.checks - 1) as f64) as u64
+                };
+                let run = stop_when(&analysis, |checks, _| checks == at);
+                assert_eq!((run.status, run.checks), (Status::StoppedByCaller, at));
+                latest = latest.max(run.late.unwrap());
+            }
+            println!(
+                "{:7} {:19} {:6} checks, widest gap {:8.2?}, back after {:8.2?} at most",
+                case.name, analysis.0, whole.checks, whole.widest, latest
+            );
+        }
+    }
+}
+
+/// Operations between two checks: some ten milliseconds.
+const MOST_OPERATIONS: u64 = 200_000_000;
+
+#[test]
+fn no_step_of_a_large_structure_is_long() {
+    let case = Case::chain("full", 450, 8, true);
+    let condensed = |interrupt: &Interrupt<'_>| {
+        hbvib::condense::Condensed::new(&case.model, &case.fixed(), case.omega, interrupt).map(|_| ())
+    };
+    let modes = |interrupt: &Interrupt<'_>| {
+        case.model
+            .lowest_modes_with(0, ContactState::Stuck, 20, interrupt)
+            .map(|_| ())
+    };
+    for (name, run) in [
+        ("condensation", &condensed as &dyn Fn(&Interrupt<'_>) -> Result<()>),
+        ("linear modes", &modes),
+    ] {
+        let interrupt = Interrupt::none();
+        run(&interrupt).unwrap();
+        println!(
+            "{name}: {} checks, at most {} operations between them",
+            interrupt.checks(),
+            interrupt.largest()
+        );
+        assert!(
+            interrupt.largest() <= MOST_OPERATIONS && interrupt.checks() > 50,
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn phases_are_reported_apart_from_points_and_may_stop_a_run() {
+    let case = Case::chain("sparse", 300, 4, false);
+    let solver = SolverOptions {
+        tolerance: 1e-2,
+        ..case.fixed()
+    };
+    let reports = RefCell::new(Vec::new());
+    let sink = |report: &PhaseReport| {
+        reports.borrow_mut().push(*report);
+        false
+    };
+    let mut points = 0;
+    let mut count = |_: &Progress| {
+        points += 1;
+        false
+    };
+    let mut hooks = Hooks {
+        progress: Some(&mut count),
+        phase: Some(&sink),
+        ..Hooks::default()
+    };
+    let branch = case.forced(&solver, (0.9, 1.1), &mut hooks).unwrap();
+    assert_eq!(points, branch.points());
+    let reports = reports.into_inner();
+    let phases = [
+        Phase::Setup,
+        Phase::Condensation,
+        Phase::FirstPoint,
+        Phase::Continuation,
+        Phase::Estimate,
+        Phase::Factorisation,
+    ];
+    for phase in phases {
+        assert!(reports.iter().any(|r| r.phase == phase), "{phase:?}");
+    }
+    assert_eq!(reports[0].phase, Phase::Setup);
+    // Reports are limited by work: a sparse factorisation each, and a few for each point.
+    let others = reports.iter().filter(|r| r.phase != Phase::Factorisation).count();
+    println!(
+        "{} points, {} reports, {others} of them no factorisation",
+        points,
+        reports.len()
+    );
+    assert!(others < 200 + 60 * points, "{others} reports for {points} points");
+    for phase in phases {
+        let stop = |report: &PhaseReport| report.phase == phase;
+        let mut hooks = Hooks {
+            phase: Some(&stop),
+            ..Hooks::default()
+        };
+        let branch = case.forced(&solver, (0.9, 1.1), &mut hooks).unwrap();
+        assert_eq!(branch.status(), Status::StoppedByCaller, "{phase:?}");
+    }
+}
+
+#[test]
+#[ignore = "minutes: limits on times, for tests/deep.sh"]
+fn every_analysis_of_the_largest_models_returns_within_a_tenth_of_a_second() {
+    const LIMIT: Duration = Duration::from_millis(100);
+    const LONGEST: f64 = 10.0;
+    let mut state = 0xd1ce;
+    let (mut all, mut slow) = (0, 0);
+    for case in [
+        Case::chain("full", 600, 40, true),
+        Case::chain("sparse", 2000, 20, false),
+    ] {
+        let (branch, mode) = solved(&case);
+        for analysis in analyses(&case, &branch, &mode) {
+            let begin = Instant::now();
+            stop_when(&analysis, |_, elapsed| elapsed.as_secs_f64() > LONGEST);
+            let whole = begin.elapsed().as_secs_f64();
+            for _ in 0..4 {
+                let at = Duration::from_secs_f64(whole.min(LONGEST) * random(&mut state));
+                let run = stop_when(&analysis, |_, elapsed| elapsed >= at);
+                // The check itself comes late by the gap since the last one.
+                let late = run.late.unwrap_or_default() + run.widest;
+                println!(
+                    "{:7} {:19} stopped at {:7.2?} in {:?}: back after {:7.2?}, widest gap {:7.2?}",
+                    case.name,
+                    analysis.0,
+                    at,
+                    run.phase,
+                    run.late.unwrap_or_default(),
+                    run.widest
+                );
+                let announced = run.phase == Some(Phase::Factorisation);
+                assert!(announced || late < Duration::from_secs(1), "{}", analysis.0);
+                all += 1;
+                slow += usize::from(!announced && late > LIMIT);
+            }
+        }
+    }
+    println!("{slow} of {all} later than {LIMIT:?}");
+    assert!(20 * slow <= all);
+}
