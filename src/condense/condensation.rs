@@ -13,9 +13,8 @@ use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
 use crate::condense::harmonic_block::{Artificial, harmonic_block};
-use crate::condense::relative_coordinates::{
-    AssembledDirection, assign_coordinates, raise_for_springs, relative_share,
-};
+use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
+use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::contact::Contact;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
@@ -130,14 +129,16 @@ impl Condensed {
             stiffness[at.coordinate] += contact.stiffness(at.direction);
             can_stick[at.coordinate] &= contact.may_stick();
         }
-        raise_for_springs(
+        let structural = structural_stiffness(
             model,
             omega,
             &set,
             &contact_classes.never_slipping,
             &assembled,
-            &mut stiffness,
+            representatives.len(),
         )?;
+        raise_for_springs(model, &assembled, &structural, &mut stiffness);
+        let reference_stiffness = reference_stiffness(&stiffness, &structural)?;
         let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
@@ -153,7 +154,8 @@ impl Condensed {
         }
         let mut blocks = Vec::new();
         for &number in set.numbers() {
-            let kappa = |c: usize| reference.kappa(stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
+            let kappa =
+                |c: usize| reference.kappa(reference_stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
             let mut block = harmonic_block(model, number, &contact_classes, &representatives, kappa)?;
             block.artificial = match mode {
                 None => Artificial::None,
@@ -172,6 +174,7 @@ impl Condensed {
             blocks,
             laws: Vec::new(),
             stiffness,
+            reference_stiffness,
             can_stick,
             preloaded: model.contacts().iter().any(Contact::is_preloaded),
             reference,

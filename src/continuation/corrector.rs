@@ -142,7 +142,9 @@ impl Corrector {
             let size = norm(&self.step);
             let round_off = self.is_round_off(v, metric);
             let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
-            if (residual <= self.tolerance && near) || round_off {
+            // A step that is round-off of all unknowns may still matter to the small motion of a stiff contact.
+            let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
+            if (residual <= self.attainable() && near) || (round_off && !shrinks) {
                 let found = self.finish(problem, v, metric, iteration, residual)?;
                 return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
             }
@@ -186,6 +188,15 @@ impl Corrector {
     fn relative_residual(&self) -> f64 {
         let r = norm(&self.at.values);
         if r == 0.0 { 0.0 } else { r / self.at.scale }
+    }
+
+    /// The tolerance, or the residual that rounding leaves where that is larger.
+    fn attainable(&self) -> f64 {
+        if self.at.rounding > 0.0 {
+            self.tolerance.max(self.at.rounding / self.at.scale)
+        } else {
+            self.tolerance
+        }
     }
 
     /// Whether the current Newton step is round-off of `v`. The metric does not measure that: its unit may be far
@@ -261,7 +272,7 @@ impl Corrector {
                 self.next[n] = 0.0;
                 let solved = self.system.solve(problem, &mut self.next)?;
                 let shrunk = solved && norm(&self.next) <= (1.0 - 0.25 * damping) * size;
-                if shrunk || self.relative_residual() <= self.tolerance {
+                if shrunk || self.relative_residual() <= self.attainable() {
                     v.copy_from_slice(&self.trial);
                     return Ok(Some(damping));
                 }
@@ -284,8 +295,12 @@ impl Corrector {
         let n = v.len() - 1;
         let mut tangent = try_copy(&self.step, "Newton's method")?;
         metric.unscale(&mut tangent);
-        let (at_residual, correction) = problem.observe(&v[..n], &tangent);
-        metric.add(v, 1.0, &self.step);
+        let (at_residual, mut correction) = problem.observe(&v[..n], &tangent);
+        if residual <= self.tolerance {
+            metric.add(v, 1.0, &self.step);
+        } else {
+            correction = Complex64::ZERO;
+        }
         if !self.tangent(problem, metric, &mut tangent)? {
             return Ok(None);
         }
@@ -293,7 +308,7 @@ impl Corrector {
         Ok(Some(Corrected {
             iterations,
             residual,
-            stalled: residual > self.tolerance,
+            stalled: residual > self.attainable(),
             amplitude: at_residual + correction,
             slope,
             tangent,
