@@ -13,10 +13,14 @@ use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
+use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
+
+/// Size of a first motion, over that under linear contacts, above which its bound is checked.
+const LARGE: f64 = 1e6;
 
 /// Follows the periodic response of `model` to its forces from `range.omega_start` to `range.omega_stop` by harmonic
 /// balance and arc-length continuation.
@@ -44,6 +48,7 @@ pub fn forced_response(
     })?;
     let level = levels.first(solver.harmonics);
     let resolution = levels.at(level)?;
+    let length = resolution.condensed.length();
     let response_dof = match solver.response_dof {
         Some(dof) => dof,
         // The lower end is used, so that both directions follow the same degree of freedom.
@@ -65,7 +70,15 @@ pub fn forced_response(
     let mut response = ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof)?;
     let held = response.branch().reduction().held_by_contacts;
     let first = match first_point(&mut response, &settings, hooks) {
-        Ok(First::Found(point, way)) => Some((point, way)),
+        Ok(First::Found(point, way)) => {
+            // Round-off may hide the imbalance of a large motion, but not that forces exceed what contacts take.
+            if norm(point.unknowns()) > LARGE
+                && let Some(reason) = unbounded_response::reason(model, range.omega_start)
+            {
+                return Err(reason);
+            }
+            Some((point, way))
+        }
         Ok(First::Cancelled) => None,
         Err(e) => return Err(with_reason(e, model, range.omega_start, &resolution.condensed, held)),
     };
@@ -90,7 +103,16 @@ pub fn forced_response(
         let last = response.branch().omega().last();
         ending.reason = last.and_then(|&omega| unbounded_response::reason(model, omega));
     }
-    response.finish(model, solver, &ending, tracer.estimates())
+    if ending.status == Status::Ok && forced_harmonics(model)?.is_empty() {
+        ending.status = Status::StoppedNoForce;
+    }
+    let mut branch = response.finish(model, solver, &ending, tracer.estimates())?;
+    if branch.status() == Status::Ok
+        && let Some(reason) = unbounded_response::in_branch(&branch, length)
+    {
+        branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
+    }
+    Ok(branch)
 }
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest.

@@ -108,6 +108,7 @@ impl Condensed {
         omega: f64,
         mode: Option<(DampingForm, &[Complex64])>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {
+        model.check_matrices(mode.is_some())?;
         let contact_classes = ContactClasses::new(model)?;
         let active = &contact_classes.active;
         let mut odd = true;
@@ -148,8 +149,10 @@ impl Condensed {
         };
         let mut share = try_vec(representatives.len(), 1.0, "the contacts")?;
         if let Some((_, shape)) = mode {
-            for (share, &contact) in share.iter_mut().zip(&representatives) {
-                *share = relative_share(model, contact, shape);
+            for (c, share) in share.iter_mut().enumerate() {
+                let of_contact = relative_share(model, representatives[c], shape);
+                // A reference below the stiffness of the contact is a share of it already.
+                *share = (of_contact * (stiffness[c] / reference_stiffness[c].max(f64::MIN_POSITIVE))).min(1.0);
             }
         }
         let mut blocks = Vec::new();

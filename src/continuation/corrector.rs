@@ -140,6 +140,9 @@ impl Corrector {
                 return Ok(Outcome::Failed);
             }
             let size = norm(&self.step);
+            if !size.is_finite() {
+                return Ok(Outcome::Failed);
+            }
             let round_off = self.is_round_off(v, metric);
             let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
             // A step that is round-off of all unknowns may still matter to the small motion of a stiff contact.
@@ -179,6 +182,9 @@ impl Corrector {
     /// Evaluates the problem at `v`; `false` where that failed and may succeed elsewhere.
     fn evaluates(&mut self, problem: &mut dyn Problem, v: &[f64]) -> Result<bool> {
         let n = v.len() - 1;
+        if !v.iter().all(|x| x.is_finite()) {
+            return Ok(false);
+        }
         let outcome = problem.evaluate(&v[..n], v[n], &mut self.at);
         self.failure = outcome.err().filter(|e| e.recoverable);
         tolerate(outcome)
@@ -263,9 +269,15 @@ impl Corrector {
         while damping >= SMALLEST_DAMPING {
             self.trial.copy_from_slice(v);
             metric.add(&mut self.trial, damping, &self.step);
-            let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
-            self.failure = outcome.err().filter(|e| e.recoverable);
-            if tolerate(outcome)? {
+            let finite = self.trial.iter().all(|x| x.is_finite());
+            let evaluated = if finite {
+                let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
+                self.failure = outcome.err().filter(|e| e.recoverable);
+                tolerate(outcome)?
+            } else {
+                false
+            };
+            if evaluated {
                 for (s, r) in self.next.iter_mut().zip(&self.at.values) {
                     *s = -r;
                 }
@@ -305,6 +317,11 @@ impl Corrector {
             return Ok(None);
         }
         let (_, slope) = problem.observe(&v[..n], &tangent);
+        // A point with a number that is not finite is no solution, however it came about.
+        let numbers = v.iter().chain(&tangent).all(|x| x.is_finite());
+        if !(numbers && (at_residual + correction).is_finite() && slope.is_finite()) {
+            return Ok(None);
+        }
         Ok(Some(Corrected {
             iterations,
             residual,

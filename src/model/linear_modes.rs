@@ -57,6 +57,7 @@ impl Model {
     /// # Errors
     /// As [`Self::linear_modes`]; `Argument` for a count of 0.
     pub fn lowest_modes(&self, diameter: usize, contacts: ContactState, count: usize) -> Result<LinearModes> {
+        self.check_matrices(true)?;
         if count == 0 {
             return fail!(Argument, "count = 0, needs at least 1");
         }
@@ -72,6 +73,7 @@ impl Model {
     /// `Argument` for a diameter out of range, `NotHermitian` when K or M is not, and those of
     /// [`eigen::generalised`].
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
+        self.check_matrices(true)?;
         self.pencil(Wave::Diameter(diameter), contacts)?.all()
     }
 

@@ -3,7 +3,9 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod finite_fields;
 mod hard_cases;
 mod hard_modes;
 mod hard_sweeps;
+mod near_rigid;
 mod random_problems;

@@ -8,7 +8,7 @@
 mod absurd;
 mod law;
 mod problem;
-mod random;
+pub mod random;
 mod residual;
 
 use crate::common::{all_harmonics, harmonics, relative_gap};
