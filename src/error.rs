@@ -206,7 +206,7 @@ impl fmt::Write for Text {
 /// A failure: its kind, its place and its remedy.
 #[derive(Clone, Copy)]
 pub struct Error {
-    /// The kind of failure; always negative.
+    /// The kind of failure: negative, or `StoppedByCaller` on its way to the analysis that ends with it.
     pub status: Status,
     /// Number of the offending argument of the C function, counted from 1; 0 if none.
     pub argument: i32,

@@ -1,5 +1,7 @@
 //! Callbacks that a caller attaches to a running solve: progress, cancellation, log.
 
+use crate::interrupt::{Interrupt, PhaseSink};
+
 /// State of a solve, reported at each accepted point.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Progress {
@@ -39,13 +41,21 @@ pub type LogSink<'a> = dyn FnMut(LogLevel, &str) + 'a;
 pub struct Hooks<'a> {
     /// Called at each accepted point; `true` stops the solve and keeps the points so far.
     pub progress: Option<&'a mut dyn FnMut(&Progress) -> bool>,
-    /// Called at each Newton iteration; `true` stops the solve and keeps the points so far.
+    /// Called often, in every long loop; `true` stops the call and keeps the points so far.
     pub cancelled: Option<&'a dyn Fn() -> bool>,
+    /// Called at the begin of each phase and each hundredth of it, set-up included; `true` stops the call.
+    pub phase: Option<&'a PhaseSink<'a>>,
     /// Receives log lines.
     pub log: Option<&'a mut LogSink<'a>>,
 }
 
-impl Hooks<'_> {
+impl<'a> Hooks<'a> {
+    /// The interrupt of one call.
+    #[must_use]
+    pub fn interrupt(&self) -> Interrupt<'a> {
+        Interrupt::new(self.cancelled, self.phase)
+    }
+
     /// Reports a point; `true` when the caller requests a stop.
     pub fn report(&mut self, progress: &Progress) -> bool {
         self.progress.as_mut().is_some_and(|f| f(progress))

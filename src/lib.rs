@@ -53,6 +53,8 @@ pub mod fourier;
 #[doc(hidden)]
 pub mod hooks;
 #[doc(hidden)]
+pub mod interrupt;
+#[doc(hidden)]
 pub mod linalg;
 #[doc(hidden)]
 pub mod model;
@@ -85,10 +87,11 @@ pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{contact_evaluate, forced_residual};
 pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::point_error::estimate_at;
-pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise};
+pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};
 pub use hooks::{Hooks, LogLevel, Progress};
+pub use interrupt::{Interrupt, Phase, PhaseReport};
 pub use options::{
     Amplitude, DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions,
     TimeOptions, VerifyOptions,

@@ -21,6 +21,7 @@ use hbvib::continuation::corrector::{Corrector, Outcome};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Metric, Settings};
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::linalg::norm;
@@ -238,7 +239,7 @@ fn many_contacts_along_a_sweep_allocate_only_where_a_panel_is_laid() {
         v[size] = omega;
         let (count, outcome) = allocations(|| {
             corrector
-                .correct(&mut problem, &mut v, &row, metric, true, None)
+                .correct(&mut problem, &mut v, &row, metric, true, &Interrupt::none())
                 .unwrap()
         });
         let Outcome::Converged(corrected) = outcome else {
@@ -285,7 +286,7 @@ fn newton_iterations_allocate_nothing_but_the_tangent_that_a_point_keeps() {
             v[n] = factor * omega;
             let (count, outcome) = allocations(|| {
                 corrector
-                    .correct(&mut problem, &mut v, &row, metric, damped, None)
+                    .correct(&mut problem, &mut v, &row, metric, damped, &Interrupt::none())
                     .unwrap()
             });
             let Outcome::Converged(corrected) = outcome else {
@@ -466,7 +467,7 @@ fn newton_iterations_with_contacts_of_several_directions_allocate_nothing() {
         v[size] = factor * omega;
         let (count, outcome) = allocations(|| {
             corrector
-                .correct(&mut problem, &mut v, &row, metric, true, None)
+                .correct(&mut problem, &mut v, &row, metric, true, &Interrupt::none())
                 .unwrap()
         });
         let Outcome::Converged(corrected) = outcome else {

@@ -17,10 +17,15 @@ pub(crate) struct Ending {
 }
 
 impl Ending {
-    /// The end of a run that has recorded `branch` so far: a failed law ends it and keeps the points.
+    /// The end of a run that has recorded `branch` so far: a stop by the caller, or a failed law, ends it and keeps the
+    /// points.
     pub fn of(outcome: Result<Status>, branch: &Branch) -> Result<Self> {
         match outcome {
             Ok(status) => Ok(Self { status, reason: None }),
+            Err(e) if e.status == Status::StoppedByCaller => Ok(Self {
+                status: e.status,
+                reason: None,
+            }),
             Err(e) if e.status == Status::Callback && branch.points() > 0 => Ok(Self {
                 status: Status::StoppedCallback,
                 reason: Some(e),

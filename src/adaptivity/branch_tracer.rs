@@ -7,6 +7,7 @@ use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status};
 use crate::hooks::{Hooks, LogLevel, Progress};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 use crate::results::SpecialKind;
@@ -31,21 +32,22 @@ pub(crate) struct Course<'a> {
 pub(crate) struct BranchTracer<'a> {
     course: Course<'a>,
     controller: AdaptivityController,
+    interrupt: &'a Interrupt<'a>,
 }
 
 /// Outcome for a branch that left its range at the start.
 enum Outside {
     Back(Point),
     Gone,
-    Cancelled,
 }
 
 impl<'a> BranchTracer<'a> {
     /// A tracer that selects harmonics by a tolerance, if one is given.
-    pub fn new(course: Course<'a>, tolerance: f64) -> Self {
+    pub fn new(course: Course<'a>, tolerance: f64, interrupt: &'a Interrupt<'a>) -> Self {
         Self {
             course,
             controller: AdaptivityController::new(tolerance),
+            interrupt,
         }
     }
 
@@ -61,7 +63,7 @@ impl<'a> BranchTracer<'a> {
 
     /// Records the first point of the curve, or the only one, and follows the branch from there.
     pub fn trace(&mut self, analysis: &mut dyn Traceable, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
-        let first = self.controller.refine(analysis, first, true, hooks.cancelled)?.point;
+        let first = self.controller.refine(analysis, first, true, self.interrupt)?.point;
         analysis.record(&first)?;
         if self.report(analysis, hooks, &first) {
             return Ok(Status::StoppedByCaller);
@@ -88,14 +90,14 @@ impl<'a> BranchTracer<'a> {
 
             // Predict and correct.
             let before = analysis.resolution();
-            let (point, end) = match continuation.advance(analysis.problem(), hooks.cancelled)? {
+            let (point, end) = match continuation.advance(analysis.problem(), self.interrupt)? {
                 Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
                 Advance::Stopped(status) => return Ok(status),
             };
 
             // Refine until the error meets the tolerance.
-            let refined = self.controller.refine(analysis, point, end.is_some(), hooks.cancelled);
+            let refined = self.controller.refine(analysis, point, end.is_some(), self.interrupt);
             let Some(Refined { point, stuck }) = some_unless_lost(refined)? else {
                 return Ok(Status::StoppedStepTooSmall);
             };
@@ -104,7 +106,7 @@ impl<'a> BranchTracer<'a> {
             if (stuck || reversed)
                 && backtracks < MOST_BACKTRACKS
                 && let Some(previous) = continuation.previous()
-                && let Some(point) = AdaptivityController::backtrack(analysis, (previous, before), hooks.cancelled)?
+                && let Some(point) = AdaptivityController::backtrack(analysis, (previous, before), self.interrupt)?
             {
                 backtracks += 1;
                 continuation.go_on_from(None, point)?;
@@ -128,7 +130,7 @@ impl<'a> BranchTracer<'a> {
             // Select the harmonics of the next step, or end.
             match end {
                 None => {
-                    let current = self.controller.adjust(analysis, point, hooks.cancelled)?;
+                    let current = self.controller.adjust(analysis, point, self.interrupt)?;
                     if resolution != before || analysis.resolution() != before {
                         let previous = match continuation.previous() {
                             Some(previous) => Some(analysis.transfer(previous, before)?),
@@ -138,13 +140,12 @@ impl<'a> BranchTracer<'a> {
                     }
                 }
                 Some(Status::StoppedLeftRange) => {
-                    let back = match self.follow_outside(analysis, point, (&begin, began), hooks)? {
+                    let back = match self.follow_outside(analysis, point, (&begin, began))? {
                         Outside::Back(back) => back,
                         Outside::Gone => return Ok(Status::StoppedLeftRange),
-                        Outside::Cancelled => return Ok(Status::StoppedByCaller),
                     };
                     hooks.log(LogLevel::Info, "the branch left at its start and came back");
-                    let refined = self.controller.refine(analysis, back, true, hooks.cancelled);
+                    let refined = self.controller.refine(analysis, back, true, self.interrupt);
                     let Some(Refined { point: back, .. }) = some_unless_lost(refined)? else {
                         return Ok(Status::StoppedStepTooSmall);
                     };
@@ -233,7 +234,8 @@ impl<'a> BranchTracer<'a> {
         let settings = &self.course.settings;
         let previous = analysis.transfer(previous, resolution)?;
         let metric = Metric::along(norm(point.unknowns()), settings);
-        let forward = metric.dot(&point.v, &point.tangent) > metric.dot(&previous.v, &point.tangent);
+        let forward = metric.dot(&point.v, &point.tangent) > metric.dot(&previous.v, &point.tangent)
+            && !point.skips_folds_from(&previous);
         let (low, high) = (settings.start.min(settings.end), settings.start.max(settings.end));
         Ok(!forward || point.parameter() < low || point.parameter() > high)
     }
@@ -245,7 +247,6 @@ impl<'a> BranchTracer<'a> {
         analysis: &mut dyn Traceable,
         exit: Point,
         (begin, began): PointAt<'_>,
-        hooks: &mut Hooks<'_>,
     ) -> Result<Outside> {
         let Some(before) = self.course.before else {
             return Ok(Outside::Gone);
@@ -257,14 +258,13 @@ impl<'a> BranchTracer<'a> {
         };
         let mut continuation = Continuation::new(settings, exit)?;
         for _ in analysis.branch().points()..self.course.max_points {
-            match continuation.advance(analysis.problem(), hooks.cancelled) {
+            match continuation.advance(analysis.problem(), self.interrupt) {
                 Ok(Advance::Accepted { last: false, .. }) => {}
                 // A closed curve would be followed forever.
                 Ok(Advance::LeftAtStart { point }) if !same(point.unknowns(), begin.unknowns()) => {
                     return Ok(Outside::Back(point));
                 }
-                Ok(Advance::Stopped(Status::StoppedByCaller)) => return Ok(Outside::Cancelled),
-                Err(e) if e.status == Status::Callback => return Err(e),
+                Err(e) if matches!(e.status, Status::Callback | Status::StoppedByCaller) => return Err(e),
                 // A failure outside the range costs no point inside.
                 Ok(_) | Err(_) => break,
             }
@@ -281,14 +281,15 @@ impl<'a> BranchTracer<'a> {
         last: bool,
     ) -> Result<()> {
         analysis.select(a.1.max(b.1))?;
+        let interrupt = self.interrupt;
         if SpecialPoint::Peak.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Peak, a, b)
+                locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
             })?;
         }
         let fold = if SpecialPoint::Fold.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Fold, a, b, |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Fold, a, b)
+                locator.locate(problem, SpecialPoint::Fold, a, b, interrupt)
             })?
         } else {
             None
@@ -310,14 +311,14 @@ impl<'a> BranchTracer<'a> {
         b: PointAt<'_>,
         last: bool,
     ) -> Result<()> {
-        let at = self.course.at;
+        let (at, interrupt) = (self.course.at, self.interrupt);
         for (i, &p) in at.iter().enumerate() {
             let (pa, pb) = (a.0.parameter(), b.0.parameter());
             let inside = (pa <= p && p < pb) || (pb < p && p <= pa);
             let inside = inside || (last && p.to_bits() == pb.to_bits());
             if inside {
                 self.find(analysis, SpecialKind::At(i), a, b, |locator, problem, a, b| {
-                    locator.at_parameter(problem, a, b, p)
+                    locator.at_parameter(problem, a, b, p, interrupt)
                 })?;
             }
         }

@@ -9,9 +9,11 @@
 //! where the error is far below the tolerance, so that they do not alternate.
 
 use crate::adaptivity::discretised::{Assessment, Discretised};
+use crate::adaptivity::estimate_spacing::EstimateSpacing;
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::results::SpecialKind;
 
@@ -30,6 +32,10 @@ const DROP: f64 = 0.08;
 /// Number of points for which a branch is not coarsened to a level at which one missed the tolerance.
 const PATIENCE: usize = 10;
 
+/// Lowest level along a branch where something is nonlinear: with the forced harmonics alone nothing would show how the
+/// error changes from point to point.
+const FEW: usize = 1;
+
 /// Relative size of a harmonic that is round-off.
 const ROUND_OFF: f64 = 1e-13;
 
@@ -38,9 +44,6 @@ const BACKTRACK: usize = 3;
 
 /// Most refinements of one point.
 const MOST_REFINEMENTS: usize = 12;
-
-/// Cancel flag of a caller.
-type Cancelled<'c> = Option<&'c dyn Fn() -> bool>;
 
 /// A point with its resolution.
 pub(crate) type PointAt<'p> = (&'p Point, usize);
@@ -67,6 +70,9 @@ pub(crate) struct AdaptivityController {
     /// Whether the branch had a fold. If so, it is not coarsened at all where something is nonlinear: with fewer
     /// harmonics it may fold elsewhere and reverse.
     folded: bool,
+    /// Whether a nonlinear point was estimated.
+    begun: bool,
+    spacing: EstimateSpacing,
 }
 
 impl AdaptivityController {
@@ -79,6 +85,8 @@ impl AdaptivityController {
             floor: (0, 0),
             highest: 0,
             folded: false,
+            begun: false,
+            spacing: EstimateSpacing::default(),
         }
     }
 
@@ -108,40 +116,41 @@ impl AdaptivityController {
         equations: &mut dyn Discretised,
         mut point: Point,
         keep_parameter: bool,
-        cancelled: Cancelled<'_>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Refined> {
         let done = |point| Ok(Refined { point, stuck: false });
-        if !equations.levels().is_automatic() {
+        if !equations.levels().is_automatic() || self.is_predicted(equations, &point)? {
             return done(point);
         }
+        // Whether the errors before the last refinement were unknown, and the refinement changed nothing.
+        let mut settled = false;
         for refinements in 0..=MOST_REFINEMENTS {
             let level = equations.resolution();
-            let Some(found) = equations.estimate(&point)? else {
+            let Some(found) = self.estimate(equations, &point)? else {
                 return done(point);
             };
-            self.count(&found);
             let accepted = self.accepts(found.error);
             let required = self.required_harmonics(&found);
             self.last = accepted.then_some((found.error, required));
             if !accepted {
                 self.floor = (level + 1, PATIENCE);
             }
-            let next = if accepted {
-                // Harmonics without content are dropped at once.
-                if found.error > 0.0 {
-                    return done(point);
-                }
-                equations.levels().level_with(required)
+            if found.error.is_nan() && settled {
+                return done(point);
+            }
+            let drops = accepted && self.may_drop(found.error);
+            let next = if found.error.is_nan() {
+                equations.levels().level_of_double(level)
             } else {
-                equations.levels().level_with(required).max(level + 1)
+                equations.levels().level_with(required)
             };
-            let last = equations.levels().last();
-            let next = next.min(last);
+            let next = if accepted { next } else { next.max(level + 1) };
+            let next = next.min(equations.levels().last());
             let may_refine = !accepted && next > level && !found.estimate.too_large && refinements < MOST_REFINEMENTS;
-            let better = if accepted && next < level {
-                resolve_at(equations, (&point, level), next, keep_parameter, cancelled)?
+            let better = if drops && next < level {
+                resolve_at(equations, (&point, level), next, keep_parameter, interrupt)?
             } else if may_refine {
-                refine_to(equations, &point, &found.estimate, next, keep_parameter, cancelled)?
+                refine_to(equations, &point, &found.estimate, next, keep_parameter, interrupt)?
             } else {
                 None
             };
@@ -151,19 +160,65 @@ impl AdaptivityController {
                     stuck: may_refine,
                 });
             };
+            let before = equations.transfer(&point, level)?;
+            settled = found.error.is_nan() && self.is_same(&before, &better);
             point = better;
         }
         done(point)
+    }
+
+    /// Estimates the error of a point, and notes it for the spacing of the estimates.
+    fn estimate(&mut self, equations: &mut dyn Discretised, point: &Point) -> Result<Option<Assessment>> {
+        let found = equations.estimate(point)?;
+        if let Some(found) = &found {
+            self.count(found);
+            let share = equations.share_of_highest(point);
+            self.spacing.note(equations.resolution(), share, found.error);
+        }
+        Ok(found)
+    }
+
+    /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
+    fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point) -> Result<bool> {
+        let share = equations.share_of_highest(point);
+        let largest = self.tolerance / MARGIN;
+        let Some(factor) = self.spacing.factor(equations.resolution(), share, largest) else {
+            return Ok(false);
+        };
+        if !equations.take_over_estimate(point, factor)? {
+            self.spacing.forget();
+            return Ok(false);
+        }
+        if let Some((error, _)) = &mut self.last {
+            *error *= factor;
+        }
+        Ok(true)
+    }
+
+    /// Whether harmonics may be dropped at once: those without content, and at the first point that is nonlinear those
+    /// that it does not require, since the branch began with a number of harmonics that nothing has justified.
+    fn may_drop(&mut self, error: f64) -> bool {
+        if error == 0.0 {
+            return true;
+        }
+        let first = !core::mem::replace(&mut self.begun, true);
+        first && MARGIN * error <= DROP * self.tolerance
+    }
+
+    /// Whether two solutions have one response within the tolerance.
+    fn is_same(&self, before: &Point, after: &Point) -> bool {
+        let change = (after.amplitude - before.amplitude).norm();
+        MARGIN * change <= self.tolerance * after.amplitude.norm()
     }
 
     /// The point from which the next one was not found, with more harmonics; `None` if that is not found either.
     pub fn backtrack(
         equations: &mut dyn Discretised,
         (point, level): PointAt<'_>,
-        cancelled: Cancelled<'_>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let to = (level.max(equations.resolution()) + BACKTRACK).min(equations.levels().last());
-        resolve_at(equations, (point, level), to, true, cancelled)
+        resolve_at(equations, (point, level), to, true, interrupt)
     }
 
     /// Whether a point beside the curve meets the tolerance; if not, the resolution has been raised, and the point is
@@ -196,7 +251,12 @@ impl AdaptivityController {
     }
 
     /// The point recorded last with the harmonics with which the branch continues: resolved if they change.
-    pub fn adjust(&mut self, equations: &mut dyn Discretised, point: Point, cancelled: Cancelled<'_>) -> Result<Point> {
+    pub fn adjust(
+        &mut self,
+        equations: &mut dyn Discretised,
+        point: Point,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Point> {
         let level = equations.resolution();
         let Some((error, required)) = self.last else {
             return Ok(point);
@@ -207,12 +267,13 @@ impl AdaptivityController {
         let floor = self.lowest_level(equations, error, level);
         let last = equations.levels().last();
         let next = equations.levels().level_with(required).max(floor).min(last);
-        if !((share > RAISE && next > level) || (share < DROP && next < level)) {
+        let too_few = level < floor.min(FEW);
+        if !((share > RAISE && next > level) || (share < DROP && next < level) || too_few) {
             return Ok(point);
         }
         // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch
         // continues.
-        let Some(found) = resolve_at(equations, (&point, level), next, true, cancelled)? else {
+        let Some(found) = resolve_at(equations, (&point, level), next, true, interrupt)? else {
             return Ok(point);
         };
         let before = equations.transfer(&point, level)?;
@@ -232,7 +293,7 @@ impl AdaptivityController {
         if self.folded {
             return level;
         }
-        let half = equations.levels().level_of_half(self.highest);
+        let half = equations.levels().level_of_half(self.highest).max(FEW);
         if self.floor.1 > 0 { half.max(self.floor.0) } else { half }
     }
 
@@ -273,12 +334,12 @@ fn resolve_at(
     (point, level): PointAt<'_>,
     to: usize,
     keep_parameter: bool,
-    cancelled: Cancelled<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Point>> {
     let from = equations.resolution();
     equations.select(to)?;
     let start = equations.transfer(point, level)?;
-    let found = equations.resolve(&start, keep_parameter, cancelled)?;
+    let found = equations.resolve(&start, keep_parameter, interrupt)?;
     if found.is_none() {
         equations.select(from)?;
     }
@@ -293,7 +354,7 @@ fn refine_to(
     estimate: &Estimate,
     to: usize,
     keep_parameter: bool,
-    cancelled: Cancelled<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Point>> {
     let from = equations.resolution();
     equations.select(to)?;
@@ -301,7 +362,7 @@ fn refine_to(
         // Where the plane across the branch has no solution near, a fixed parameter may have one.
         for fixed in [keep_parameter, true] {
             let start = equations.transfer_corrected(point, from, estimate)?;
-            if let Some(found) = equations.resolve(&start, fixed, cancelled)? {
+            if let Some(found) = equations.resolve(&start, fixed, interrupt)? {
                 return Ok(Some(found));
             }
         }
@@ -310,7 +371,7 @@ fn refine_to(
     for level in from + 1..=to {
         equations.select(level)?;
         let start = equations.transfer(&reached, level - 1)?;
-        match equations.resolve(&start, keep_parameter, cancelled)? {
+        match equations.resolve(&start, keep_parameter, interrupt)? {
             Some(found) => reached = found,
             None if level == from + 1 => {
                 equations.select(from)?;

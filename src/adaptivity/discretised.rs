@@ -4,6 +4,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
+use crate::interrupt::Interrupt;
 use crate::problem::Problem;
 use crate::results::{Branch, SpecialKind};
 
@@ -34,15 +35,18 @@ pub(crate) trait Discretised {
     fn transfer_corrected(&self, point: &Point, from: usize, estimate: &Estimate) -> Result<Point>;
 
     /// Solves near a point with the current harmonics, see [`crate::continuation::resolve`].
-    fn resolve(
-        &mut self,
-        near: &Point,
-        keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
-    ) -> Result<Option<Point>>;
+    fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>>;
 
     /// Estimates the error of a solved point of the current resolution; `None` unless requested.
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>>;
+
+    /// The share of the harmonics above half of the carried ones in the motion of a point, see
+    /// [`crate::adaptivity::estimate_spacing`].
+    fn share_of_highest(&self, point: &Point) -> f64;
+
+    /// Takes the estimate made last over to another point of the current resolution, its errors times a factor. `false`
+    /// where the point is to be estimated: where the caller asks for every estimate, or nothing is nonlinear.
+    fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool>;
 }
 
 /// Storage of the points of an analysis.

@@ -88,6 +88,11 @@ impl<'m> HarmonicLevels<'m> {
         self.models.slot_with(self.models.highest(level).div_ceil(2))
     }
 
+    /// The lowest level with at least twice as many harmonics as one.
+    pub fn level_of_double(&self, level: usize) -> usize {
+        self.level_with(2 * self.models.highest(level))
+    }
+
     /// The highest affordable level.
     pub fn last(&self) -> usize {
         let most = self

@@ -11,6 +11,7 @@ pub(crate) mod branch_recorder;
 pub(crate) mod branch_tracer;
 pub(crate) mod controller;
 pub(crate) mod discretised;
+pub(crate) mod estimate_spacing;
 pub(crate) mod harmonic_levels;
 pub(crate) mod resolutions;
 pub(crate) mod transfer;

@@ -191,6 +191,18 @@ impl Evaluator {
         }
     }
 
+    /// Samples per period at which `law` is evaluated on harmonics up to the reduced number `highest`, of `requested`
+    /// ones; 0 where it is exact.
+    #[must_use]
+    pub fn samples_of(law: &dyn Law, highest: usize, requested: usize) -> usize {
+        match law.form() {
+            Form::PiecewiseLinear(_) => requested,
+            Form::Spectral(_) | Form::VaryingNormalLoad(_) => 0,
+            Form::Hysteretic(law) => law.samples(highest, requested),
+            Form::Memoryless(law) => law.samples(highest, requested),
+        }
+    }
+
     /// Half the range (max − min)/2 of the prepared motion.
     #[must_use]
     pub fn half_range(&self, set: &HarmonicSet) -> f64 {

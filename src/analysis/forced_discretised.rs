@@ -2,6 +2,7 @@
 
 use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
+use crate::adaptivity::estimate_spacing::share_of_highest;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::analysis::point_error::observed;
@@ -12,6 +13,7 @@ use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Estimate, Solved};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::spring::along;
 use crate::options::SolverOptions;
@@ -64,6 +66,7 @@ impl<'a> Equations<'a> {
 /// A forced response in the form that the tracer follows.
 pub(super) struct ForcedDiscretised<'a> {
     settings: Settings,
+    interrupt: &'a Interrupt<'a>,
     resolutions: Resolutions<'a, Equations<'a>>,
     recorder: BranchRecorder<'a>,
     estimator: Option<ForcedEstimator<'a>>,
@@ -71,6 +74,12 @@ pub(super) struct ForcedDiscretised<'a> {
     stale: bool,
     /// Error of the point estimated last, until it is recorded.
     estimated: Option<f64>,
+    /// Error of the point estimated last.
+    last_error: f64,
+    /// Whether the caller requests the estimate of every point.
+    estimates_each: bool,
+    /// Newton iterations of the first point.
+    first_iterations: usize,
 }
 
 impl<'a> ForcedDiscretised<'a> {
@@ -82,6 +91,7 @@ impl<'a> ForcedDiscretised<'a> {
         (levels, extended): (&'a HarmonicLevels<'a>, &'a ModelCache),
         (level, guess): (usize, Option<Vec<f64>>),
         response: usize,
+        interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
         let resolution = levels.at(level)?;
         let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
@@ -93,10 +103,19 @@ impl<'a> ForcedDiscretised<'a> {
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
             settings,
+            interrupt,
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended)),
             stale: false,
             estimated: None,
+            last_error: f64::NAN,
+            estimates_each: solver.estimate_error,
+            first_iterations: 0,
         })
+    }
+
+    /// Notes the first point: its iterations bound the work of an estimate.
+    pub fn note_first(&mut self, first: &Point) {
+        self.first_iterations = first.iterations;
     }
 
     /// The complete branch.
@@ -134,6 +153,7 @@ impl<'a> ForcedDiscretised<'a> {
             omega: point.parameter(),
             response: response[observed(condensed)] * condensed.length(),
             sticks: Some(problem.forces().all_stuck()),
+            iterations: self.first_iterations,
         };
         estimator.at(&solved).map(Some)
     }
@@ -181,14 +201,9 @@ impl Discretised for ForcedDiscretised<'_> {
         Ok(start)
     }
 
-    fn resolve(
-        &mut self,
-        near: &Point,
-        keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
-    ) -> Result<Option<Point>> {
+    fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
         let Equations { problem, corrector, .. } = &mut self.resolutions.current;
-        let found = resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)?;
+        let found = resolve(problem, corrector, &self.settings, near, keep_parameter, interrupt)?;
         self.stale = found.is_none();
         Ok(found)
     }
@@ -200,10 +215,24 @@ impl Discretised for ForcedDiscretised<'_> {
             return Ok(None);
         };
         self.estimated = Some(estimate.response);
+        self.last_error = estimate.response;
         Ok(Some(Assessment {
             error: estimate.response,
             estimate,
         }))
+    }
+
+    fn share_of_highest(&self, point: &Point) -> f64 {
+        share_of_highest(self.resolutions.current.resolution.condensed.set(), point.unknowns())
+    }
+
+    fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool> {
+        self.refresh(point)?;
+        if self.estimates_each || self.resolutions.current.problem.forces().all_stuck() {
+            return Ok(false);
+        }
+        self.estimated = Some(self.last_error * factor);
+        Ok(true)
     }
 }
 
@@ -226,7 +255,7 @@ impl Recorder for ForcedDiscretised<'_> {
         let mut found = None;
         if !kind.is_fold() {
             problem.set_pointwise(true);
-            let resolved = resolve(problem, corrector, &self.settings, point, true, None);
+            let resolved = resolve(problem, corrector, &self.settings, point, true, self.interrupt);
             problem.set_pointwise(false);
             found = resolved?;
         }

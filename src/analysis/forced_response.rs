@@ -13,6 +13,7 @@ use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
@@ -42,11 +43,17 @@ pub fn forced_response(
     if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
+    let interrupt = hooks.interrupt();
     let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::new(model, &options, range.omega_start)
     })?;
-    let level = levels.first(solver.harmonics);
+    // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
+    let level = if levels.is_automatic() && range.guess.is_none() {
+        0
+    } else {
+        levels.first(solver.harmonics)
+    };
     let resolution = levels.at(level)?;
     let length = resolution.condensed.length();
     let response_dof = match solver.response_dof {
@@ -67,21 +74,16 @@ pub fn forced_response(
     };
     let extended = ModelCache::for_estimates()?;
     let models = (&levels, &extended);
-    let mut response = ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof)?;
+    let mut response = ForcedDiscretised::new(
+        model,
+        solver,
+        settings,
+        models,
+        (level, given),
+        response_dof,
+        &interrupt,
+    )?;
     let held = response.branch().reduction().held_by_contacts;
-    let first = match first_point(&mut response, &settings, hooks) {
-        Ok(First::Found(point, way)) => {
-            // Round-off may hide the imbalance of a large motion, but not that forces exceed what contacts take.
-            if norm(point.unknowns()) > LARGE
-                && let Some(reason) = unbounded_response::reason(model, range.omega_start)
-            {
-                return Err(reason);
-            }
-            Some((point, way))
-        }
-        Ok(First::Cancelled) => None,
-        Err(e) => return Err(with_reason(e, model, range.omega_start, &resolution.condensed, held)),
-    };
     let course = Course {
         settings,
         range: (range.omega_start, range.omega_stop),
@@ -90,13 +92,21 @@ pub fn forced_response(
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
-    let mut tracer = BranchTracer::new(course, solver.tolerance);
-    let outcome = match first {
-        Some((first, way)) => {
+    let mut tracer = BranchTracer::new(course, solver.tolerance, &interrupt);
+    let outcome = match first_point(&mut response, &settings, solver.harmonics, &interrupt) {
+        Ok(First { point, way }) => {
+            // Round-off may hide the imbalance of a large motion, but not that forces exceed what contacts take.
+            if norm(point.unknowns()) > LARGE
+                && let Some(reason) = unbounded_response::reason(model, range.omega_start)
+            {
+                return Err(reason);
+            }
             hooks.log(LogLevel::Info, way.sentence());
-            tracer.trace(&mut response, first, hooks)
+            response.note_first(&point);
+            tracer.trace(&mut response, point, hooks)
         }
-        None => Ok(Status::StoppedByCaller),
+        Err(e) if e.status == Status::StoppedByCaller => Err(e),
+        Err(e) => return Err(with_reason(e, model, range.omega_start, &resolution.condensed, held)),
     };
     let mut ending = Ending::of(outcome, response.branch())?;
     if ending.status == Status::StoppedStepTooSmall && ending.reason.is_none() {
@@ -115,16 +125,29 @@ pub fn forced_response(
     Ok(branch)
 }
 
-/// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest.
-fn first_point(response: &mut ForcedDiscretised<'_>, settings: &Settings, hooks: &Hooks<'_>) -> Result<First> {
-    let found = initial_point::solve(response.problem(), settings, hooks.cancelled);
-    match found {
-        Err(e) if e.status == Status::NoConvergence && response.resolution() > 0 => {
-            response.select(0)?;
-            initial_point::solve(response.problem(), settings, hooks.cancelled).map_err(|_| e)
+/// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and
+/// with those of the options.
+fn first_point(
+    response: &mut ForcedDiscretised<'_>,
+    settings: &Settings,
+    harmonics: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<First> {
+    let mut failure = match initial_point::solve(response.problem(), settings, interrupt) {
+        Err(e) if e.status == Status::NoConvergence && response.levels().is_automatic() => e,
+        found => return found,
+    };
+    for level in [0, response.levels().first(harmonics)] {
+        if level == response.resolution() {
+            continue;
         }
-        found => found,
+        response.select(level)?;
+        match initial_point::solve(response.problem(), settings, interrupt) {
+            Err(e) if e.status == Status::NoConvergence => failure = e,
+            found => return found,
+        }
     }
+    Err(failure)
 }
 
 /// The harmonics in which forces act.

@@ -2,6 +2,7 @@
 
 use crate::adaptivity::branch_recorder::{BranchRecorder, Ending};
 use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
+use crate::adaptivity::estimate_spacing::share_of_highest;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::analysis::mode_equations::{Equations, LinearStart};
@@ -10,6 +11,7 @@ use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy};
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::error_estimate::{Estimate, Solved};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
@@ -17,6 +19,9 @@ use crate::problem::epmc::Epmc;
 use crate::results::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Record, SpecialKind};
 use num_complex::Complex64;
+
+/// Damping ratio below which errors of it no longer count as relative ones.
+const NO_DAMPING: f64 = 1e-8;
 
 /// A nonlinear mode in the form that the tracer follows.
 pub(super) struct ModeDiscretised<'a> {
@@ -27,6 +32,10 @@ pub(super) struct ModeDiscretised<'a> {
     estimator: Option<ModeEstimator<'a>>,
     /// Errors of the point estimated last, until it is recorded.
     estimated: Option<(f64, f64)>,
+    /// Errors of the point estimated last.
+    last_errors: (f64, f64),
+    /// Whether the caller requests the estimate of every point.
+    estimates_each: bool,
     /// Largest magnitude of the damping ratio so far.
     damping: f64,
     /// Fundamental of the previous point of the curve.
@@ -60,6 +69,8 @@ impl<'a> ModeDiscretised<'a> {
             settings,
             estimator,
             estimated: None,
+            last_errors: (f64::NAN, f64::NAN),
+            estimates_each: solver.estimate_error,
             damping: start.linear.damping.abs(),
             before: Vec::new(),
         })
@@ -106,6 +117,7 @@ impl<'a> ModeDiscretised<'a> {
             omega,
             response: equations.response[condensed.set().fundamental()] * condensed.length(),
             sticks: Some(equations.problem.forces().all_stuck()),
+            iterations: 0,
         };
         estimator.at(&solved, point.parameter(), damping).map(Some)
     }
@@ -138,12 +150,12 @@ impl<'a> ModeDiscretised<'a> {
     }
 
     /// The error that the tolerance bounds: that of the frequency, relative, or of the damping ratio, over the
-    /// largest one so far. NaN if either is unknown.
+    /// largest one so far. NaN if either is unknown. A mode without damping has the round-off of one.
     fn bounded_error(&self, (of_frequency, of_damping): (f64, f64), damping: f64) -> f64 {
         let of_damping = if of_damping == 0.0 {
             0.0
         } else {
-            of_damping / self.damping.max(damping.abs())
+            of_damping / self.damping.max(damping.abs()).max(NO_DAMPING)
         };
         if of_frequency.is_nan() || of_damping.is_nan() {
             return f64::NAN;
@@ -188,14 +200,9 @@ impl Discretised for ModeDiscretised<'_> {
         Ok(start)
     }
 
-    fn resolve(
-        &mut self,
-        near: &Point,
-        keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
-    ) -> Result<Option<Point>> {
+    fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
         let Equations { problem, corrector, .. } = &mut self.resolutions.current;
-        resolve(problem, corrector, &self.settings, near, keep_parameter, cancelled)
+        resolve(problem, corrector, &self.settings, near, keep_parameter, interrupt)
     }
 
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {
@@ -206,11 +213,27 @@ impl Discretised for ModeDiscretised<'_> {
         };
         let errors = (estimate.frequency, estimate.damping);
         self.estimated = Some(errors);
+        self.last_errors = errors;
         let damping = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).1;
         Ok(Some(Assessment {
             error: self.bounded_error(errors, damping),
             estimate,
         }))
+    }
+
+    fn share_of_highest(&self, point: &Point) -> f64 {
+        let condensed = &self.resolutions.current.resolution.condensed;
+        share_of_highest(condensed.set(), &point.unknowns()[..condensed.unknowns()])
+    }
+
+    fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool> {
+        self.evaluate(point)?;
+        if self.estimates_each || self.resolutions.current.problem.forces().all_stuck() {
+            return Ok(false);
+        }
+        let (of_frequency, of_damping) = self.last_errors;
+        self.estimated = Some((of_frequency * factor, of_damping * factor));
+        Ok(true)
     }
 }
 

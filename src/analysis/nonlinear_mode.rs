@@ -15,6 +15,7 @@ use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail};
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::spring::{along, relative_row};
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
@@ -89,6 +90,7 @@ pub fn nonlinear_mode(
 
 /// The mode on the wave of the model's engine order.
 fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<Branch> {
+    let interrupt = hooks.interrupt();
     let chosen = model.select_mode(range.choice)?;
     let damped = model.damped_mode(&chosen, range.damping_form)?;
     let mut linear = LinearMode {
@@ -163,8 +165,8 @@ fn on_wave(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, hooks
     ));
     let onset = Onset { linear_up_to, nearly };
     let (course, settings) = course(solver, range, settings, onset);
-    let mut tracer = BranchTracer::new(course, solver.tolerance);
-    let outcome = trace(&mut mode, &mut tracer, settings, onset, hooks);
+    let mut tracer = BranchTracer::new(course, solver.tolerance, &interrupt);
+    let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, &interrupt);
     let ending = Ending::of(outcome, mode.branch())?;
     mode.finish(model, solver, &ending, tracer.estimates())
 }
@@ -258,9 +260,9 @@ fn course<'a>(
 fn trace(
     mode: &mut ModeDiscretised<'_>,
     tracer: &mut BranchTracer<'_>,
-    settings: Settings,
-    onset: Onset,
+    (settings, onset): (Settings, Onset),
     hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Status> {
     let (start, end) = tracer.course().range;
     let max_points = tracer.course().max_points;
@@ -271,12 +273,10 @@ fn trace(
         if mode.levels().is_automatic() {
             mode.select(0)?;
         }
-        if let Some(status) = linear_range(mode, tracer, linear_up_to.min(end), hooks)? {
+        if let Some(status) = linear_range(mode, tracer, linear_up_to.min(end), hooks, interrupt)? {
             return Ok(status);
         }
-        if let Some(status) = requested_below(mode, tracer, (settings, level), linear_up_to, hooks)? {
-            return Ok(status);
-        }
+        requested_below(mode, tracer, (settings, level), linear_up_to, interrupt)?;
         if end <= linear_up_to {
             return Ok(Status::Ok);
         }
@@ -291,12 +291,11 @@ fn trace(
         None
     };
     let near = if corner.is_some() { onset.beyond() } else { onset.nearly };
-    match first_nonlinear(mode.problem(), &settings, near, corner.as_ref(), max_points, hooks) {
-        Ok(First::Found(first, _)) => {
+    match first_nonlinear(mode.problem(), &settings, near, corner.as_ref(), max_points, interrupt) {
+        Ok(first) => {
             hooks.log(LogLevel::Info, "first point with slip or a nonlinear force solved");
-            tracer.trace(mode, first, hooks)
+            tracer.trace(mode, first.point, hooks)
         }
-        Ok(First::Cancelled) => Ok(Status::StoppedByCaller),
         Err(e) => match corner {
             // The amplitude turns as soon as contacts slip: the path leads around the corner.
             Some(corner) if e.status == Status::NoConvergence && start <= linear_up_to => {
@@ -314,8 +313,8 @@ fn requested_below(
     tracer: &mut BranchTracer<'_>,
     (settings, level): (Settings, usize),
     linear_up_to: f64,
-    hooks: &mut Hooks<'_>,
-) -> Result<Option<Status>> {
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
     let requested = tracer.course().at;
     for (i, &p) in requested.iter().enumerate() {
         if p <= linear_up_to {
@@ -324,20 +323,16 @@ fn requested_below(
         } else if p < settings.start {
             mode.select(level)?;
             let at_it = Settings { start: p, ..settings };
+            // The loop ends when the point requires no more harmonics.
             loop {
-                match initial_point::solve(mode.problem(), &at_it, hooks.cancelled)? {
-                    // The loop ends when the point requires no more harmonics.
-                    First::Found(point, _) => {
-                        if tracer.record_special(mode, SpecialKind::At(i), &point)? {
-                            break;
-                        }
-                    }
-                    First::Cancelled => return Ok(Some(Status::StoppedByCaller)),
+                let first = initial_point::solve(mode.problem(), &at_it, interrupt)?;
+                if tracer.record_special(mode, SpecialKind::At(i), &first.point)? {
+                    break;
                 }
             }
         }
     }
-    Ok(None)
+    Ok(())
 }
 
 /// The point at `settings.start`, beyond the linear range. Newton's method from a linear mode far below may find
@@ -349,19 +344,18 @@ fn first_nonlinear(
     near: f64,
     onset: Option<&Point>,
     max_points: usize,
-    hooks: &Hooks<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<First> {
     if settings.start <= near || !near.is_finite() {
-        return initial_point::solve(problem, settings, hooks.cancelled);
+        return initial_point::solve(problem, settings, interrupt);
     }
     let at_near = Settings {
         start: near,
         end: settings.start,
         ..*settings
     };
-    let first = match initial_point::solve(problem, &at_near, hooks.cancelled) {
-        Ok(First::Found(point, _)) => point,
-        Ok(First::Cancelled) => return Ok(First::Cancelled),
+    let first = match initial_point::solve(problem, &at_near, interrupt) {
+        Ok(first) => first.point,
         // The amplitude turns as soon as contacts slip: the path leads around the corner.
         Err(e) => match onset {
             Some(onset) if e.status == Status::NoConvergence => onset.try_clone()?,
@@ -375,10 +369,14 @@ fn first_nonlinear(
     };
     let mut continuation = Continuation::new(path, first)?;
     for _ in 0..max_points {
-        match continuation.advance(problem, hooks.cancelled)? {
-            Advance::Accepted { point, last: true } => return Ok(First::Found(point, Way::Branch)),
+        match continuation.advance(problem, interrupt)? {
+            Advance::Accepted { point, last: true } => {
+                return Ok(First {
+                    point,
+                    way: Way::Branch,
+                });
+            }
             Advance::Accepted { .. } => {}
-            Advance::Stopped(Status::StoppedByCaller) => return Ok(First::Cancelled),
             Advance::LeftAtStart { .. } | Advance::Stopped(_) => break,
         }
     }
@@ -396,6 +394,7 @@ fn linear_range(
     tracer: &BranchTracer<'_>,
     end: f64,
     hooks: &mut Hooks<'_>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Status>> {
     let course = tracer.course();
     let (start, stop) = course.range;
@@ -413,9 +412,10 @@ fn linear_range(
         };
         let point = mode.linear_point(p)?;
         mode.record(&point)?;
-        if tracer.report(mode, hooks, &point) || hooks.cancelled.is_some_and(|f| f()) {
+        if tracer.report(mode, hooks, &point) {
             return Ok(Some(Status::StoppedByCaller));
         }
+        interrupt.check()?;
     }
     Ok(None)
 }

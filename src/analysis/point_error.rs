@@ -10,6 +10,9 @@ use crate::options::{DampingForm, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
 
+/// Newton iterations by which the work is bounded: those of a point that is solved by homotopy.
+const ITERATIONS: usize = 200;
+
 /// Estimates the error of a stored point of a branch by the harmonics that it neglects. `model` and `solver` are
 /// those of the computation of the branch.
 ///
@@ -61,6 +64,7 @@ pub fn estimate_at(model: &Model, solver: &SolverOptions, branch: &Branch, point
             .copied()
             .unwrap_or(Complex64::ZERO),
         sticks: None,
+        iterations: ITERATIONS,
     };
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
         let models = ModelCache::for_estimates()?;

@@ -16,6 +16,7 @@ pub use crate::analysis::synthesis::oscillator::SynthesisPoint;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
+use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SynthesisOptions;
@@ -93,6 +94,19 @@ const CONTEXT: &str = "the synthesised response";
 /// `Unsupported` for a branch that is no mode; `Dimension` or `Argument` for a model of a different size or wave,
 /// without forces in the fundamental, or options out of range.
 pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) -> Result<Synthesis> {
+    synthesise_with(branch, model, options, &Interrupt::none())
+}
+
+/// The same as [`synthesise`], and the caller may stop it.
+///
+/// # Errors
+/// As [`synthesise`]; `StoppedByCaller`.
+pub fn synthesise_with(
+    branch: &Branch,
+    model: &Model,
+    options: &SynthesisOptions,
+    interrupt: &Interrupt<'_>,
+) -> Result<Synthesis> {
     options.check()?;
     let Some(data) = branch.mode_data() else {
         return fail!(
@@ -121,6 +135,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
     let mut recovery = Recovery::at(branch, 0)?;
     let mut x = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
     for point in 0..branch.points() {
+        interrupt.part(Phase::Results, point, branch.points())?;
         recovery.go_to(point)?;
         recovery.harmonic(branch.condensed_at(point).set().fundamental(), &mut x)?;
         let Some(numbers) = data.point(point) else {
@@ -133,7 +148,7 @@ pub fn synthesise(branch: &Branch, model: &Model, options: &SynthesisOptions) ->
         points: flanks(&states)?,
         peaks: Vec::new(),
     };
-    let mut refinement = Refinement::new(branch, data, &load)?;
+    let mut refinement = Refinement::new(branch, data, &load, interrupt)?;
     for k in 1..states.len() {
         let (a, b) = (states[k - 1].excess(), states[k].excess());
         if (a < 0.0) == (b < 0.0) {

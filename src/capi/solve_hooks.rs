@@ -142,6 +142,7 @@ pub(super) unsafe fn with_hooks<T>(h: &hbvib_hooks, then: impl FnOnce(&mut Hooks
     let mut hooks = Hooks {
         progress: progress.as_mut().map(|f| f as &mut dyn FnMut(&Progress) -> bool),
         cancelled: (!flag.is_null()).then_some(&cancelled as &dyn Fn() -> bool),
+        phase: None,
         log: log.as_mut().map(|f| f as &mut dyn FnMut(LogLevel, &str)),
     };
     then(&mut hooks)

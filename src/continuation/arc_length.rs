@@ -12,6 +12,7 @@ use crate::continuation::predictor::Cubic;
 use crate::continuation::settings::Settings;
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 use num_complex::Complex64;
@@ -70,7 +71,6 @@ enum Attempt {
     Good { point: Point, error: f64 },
     Poor { error: f64 },
     Failed,
-    Cancelled,
 }
 
 impl Continuation {
@@ -120,6 +120,12 @@ impl Continuation {
         &self.current
     }
 
+    /// Newton steps of all points so far, of those that failed too.
+    #[must_use]
+    pub fn steps_taken(&self) -> usize {
+        self.corrector.steps_taken()
+    }
+
     /// The point before it.
     #[must_use]
     pub fn previous(&self) -> Option<&Point> {
@@ -129,8 +135,9 @@ impl Continuation {
     /// Finds the next point. It must not be called again once the end of the range was reported.
     ///
     /// # Errors
-    /// Those of the problem; `Callback` if a callback of the caller failed down to the smallest step.
-    pub fn advance(&mut self, problem: &mut dyn Problem, cancelled: Option<&dyn Fn() -> bool>) -> Result<Advance> {
+    /// Those of the problem; `Callback` if a callback of the caller failed down to the smallest step;
+    /// `StoppedByCaller`.
+    pub fn advance(&mut self, problem: &mut dyn Problem, interrupt: &Interrupt<'_>) -> Result<Advance> {
         let metric = self.metric();
         let n = self.row.len() - 1;
         let order = if self.previous.is_some() { 4.0 } else { 2.0 };
@@ -145,12 +152,11 @@ impl Continuation {
                 // The range ends here: predict exactly to its end, and solve there at the fixed parameter.
                 let (mut v, amplitude) = self.predict(metric, length)?;
                 v[n] = bound;
-                self.try_point(problem, metric, v, amplitude, length, true, cancelled)?
+                self.try_point(problem, metric, v, amplitude, length, true, interrupt)?
             } else {
-                self.try_point(problem, metric, v, amplitude, step, false, cancelled)?
+                self.try_point(problem, metric, v, amplitude, step, false, interrupt)?
             };
             match attempt {
-                Attempt::Cancelled => return Ok(Advance::Stopped(Status::StoppedByCaller)),
                 Attempt::Good { point, error } => {
                     if fixed.is_none() && self.overshoot(point.parameter()).is_some() {
                         // The correction ran past the end: repeat with a shorter step.
@@ -171,12 +177,12 @@ impl Continuation {
                     // The code below uses the corrector again.
                     let failure = self.corrector.failure();
                     if length <= CORNER_STEP
-                        && let Some(point) = self.turn_corner(problem, metric, length, cancelled)?
+                        && let Some(point) = self.turn_corner(problem, metric, length, interrupt)?
                     {
                         return self.accept(point, None);
                     }
                     if !self.steps.failed() {
-                        return match self.leave_corner(problem, metric, cancelled)? {
+                        return match self.leave_corner(problem, metric, interrupt)? {
                             Some(point) => self.accept(point, None),
                             None => too_small(failure),
                         };
@@ -197,7 +203,7 @@ impl Continuation {
         problem: &mut dyn Problem,
         metric: Metric,
         step: f64,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let n = self.row.len() - 1;
         let mut v = try_copy(&self.current.v, CONTEXT)?;
@@ -219,7 +225,7 @@ impl Continuation {
             metric.add(&mut v, length, &self.row);
             let outcome = self
                 .corrector
-                .correct(problem, &mut v, &self.row, metric, false, cancelled)?;
+                .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
             let Outcome::Converged(corrected) = outcome else {
                 continue;
             };
@@ -243,10 +249,10 @@ impl Continuation {
         &mut self,
         problem: &mut dyn Problem,
         metric: Metric,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         for length in WIDE_CORNERS {
-            if let Some(point) = self.turn_corner(problem, metric, length, cancelled)? {
+            if let Some(point) = self.turn_corner(problem, metric, length, interrupt)? {
                 self.steps.restart(length);
                 return Ok(Some(point));
             }
@@ -323,7 +329,7 @@ impl Continuation {
         amplitude: Complex64,
         step: f64,
         keep_parameter: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Attempt> {
         let n = v.len() - 1;
         let predicted = try_copy(&v, CONTEXT)?;
@@ -333,11 +339,10 @@ impl Continuation {
         }
         let corrected = match self
             .corrector
-            .correct(problem, &mut v, &self.row, metric, false, cancelled)?
+            .correct(problem, &mut v, &self.row, metric, false, interrupt)?
         {
             Outcome::Converged(corrected) => corrected,
             Outcome::Failed => return Ok(Attempt::Failed),
-            Outcome::Cancelled => return Ok(Attempt::Cancelled),
         };
         if keep_parameter {
             v[n] = predicted[n];
@@ -363,7 +368,7 @@ impl Continuation {
         let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
         let far = chord > 3.0 * step;
         let error = self.prediction_error(&predicted, &point, amplitude);
-        if turned || jumped || back || far {
+        if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
         }
         if !self.steps.accepts(error) {

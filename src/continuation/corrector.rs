@@ -3,6 +3,7 @@
 
 use crate::continuation::Metric;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
@@ -35,8 +36,6 @@ pub enum Outcome {
     Converged(Corrected),
     /// It found no solution.
     Failed,
-    /// The caller cancelled it.
-    Cancelled,
 }
 
 /// Origin of the stored factors.
@@ -60,6 +59,8 @@ pub struct Corrector {
     next: Vec<f64>,
     tolerance: f64,
     max_iterations: usize,
+    /// Newton steps taken so far, over all corrections.
+    steps_taken: usize,
     failure: Option<Error>,
 }
 
@@ -94,8 +95,20 @@ impl Corrector {
             next: try_vec(n + 1, 0.0, "Newton's method")?,
             tolerance,
             max_iterations,
+            steps_taken: 0,
             failure: None,
         })
+    }
+
+    /// Newton steps of all corrections so far.
+    #[must_use]
+    pub fn steps_taken(&self) -> usize {
+        self.steps_taken
+    }
+
+    /// Counts the steps of another corrector, which prepared a correction of this one.
+    pub fn count_steps(&mut self, of_other: usize) {
+        self.steps_taken += of_other;
     }
 
     /// The failure of the last correction, if a law could not evaluate its force at some motion.
@@ -112,7 +125,7 @@ impl Corrector {
     ///
     /// # Errors
     /// Those of the problem, except for singular matrices and laws that another motion may not fail: those end as
-    /// [`Outcome::Failed`].
+    /// [`Outcome::Failed`]. `StoppedByCaller`.
     pub fn correct(
         &mut self,
         problem: &mut dyn Problem,
@@ -120,7 +133,7 @@ impl Corrector {
         row: &[f64],
         metric: Metric,
         damped: bool,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Outcome> {
         self.failure = None;
         if !self.evaluates(problem, v)? {
@@ -130,9 +143,7 @@ impl Corrector {
         let mut last_size = f64::INFINITY;
         let n = v.len() - 1;
         for iteration in 0..=self.max_iterations {
-            if cancelled.is_some_and(|f| f()) {
-                return Ok(Outcome::Cancelled);
-            }
+            interrupt.check()?;
             let residual = self.relative_residual();
             // The damping test compares steps by one matrix, that of the iteration.
             let reuse = iteration > 0 && !damped;
@@ -155,6 +166,7 @@ impl Corrector {
                 break;
             }
             last_size = size;
+            self.steps_taken += 1;
             if damped {
                 match self.damped_step(problem, v, metric, size, damping)? {
                     Some(used) => damping = used,

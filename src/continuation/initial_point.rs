@@ -9,17 +9,18 @@ use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::newton_homotopy::NewtonHomotopy;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
-use crate::error::{Error, Result, fail, try_copy, try_push, try_vec};
+use crate::error::{Error, Result, Status, fail, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::{InitialGuess, Problem};
 
-/// Outcome of the search for the first point.
+/// A first point.
 #[derive(Debug)]
-pub enum First {
-    /// A point, and the method that found it.
-    Found(Point, Way),
-    /// The caller cancelled the search.
-    Cancelled,
+pub struct First {
+    /// The point.
+    pub point: Point,
+    /// The method that found it.
+    pub way: Way,
 }
 
 /// Method that found a first point.
@@ -66,15 +67,26 @@ const FAR: f64 = 1e12;
 /// against a large motion.
 const UNBALANCED: f64 = 1e-2;
 
-/// Solves for the first point at `settings.start`.
+/// Solves for the first point at `settings.start`. Its iterations are those of all attempts, homotopies included.
 ///
 /// # Errors
 /// `NoConvergence` if every method failed, or the failure of a law if that was the cause; `Singular` if the linear
-/// structure has no solution; those of the problem.
-pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&dyn Fn() -> bool>) -> Result<First> {
+/// structure has no solution; those of the problem; `StoppedByCaller`.
+pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interrupt<'_>) -> Result<First> {
+    let mut corrector = Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?;
+    let mut first = try_each_way(problem, settings, &mut corrector, interrupt)?;
+    first.point.iterations = corrector.steps_taken();
+    Ok(first)
+}
+
+fn try_each_way(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    corrector: &mut Corrector,
+    interrupt: &Interrupt<'_>,
+) -> Result<First> {
     let n = problem.size();
     let p = settings.start;
-    let mut corrector = Corrector::new(n, settings.tolerance, settings.max_iterations)?;
     let mut v = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut failure = None;
     for kind in [InitialGuess::Given, InitialGuess::Stuck, InitialGuess::Reference] {
@@ -88,18 +100,20 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
         }
         if exists {
             v[n] = p;
-            match at_fixed(problem, settings, &mut corrector, &mut v, cancelled)? {
+            match at_fixed(problem, settings, corrector, &mut v, interrupt)? {
                 Outcome::Converged(corrected) if !is_far(problem, &v[..n], p, corrected.residual)? => {
                     v[n] = p;
-                    return Ok(First::Found(Point::new(v, corrected, 0.0), Way::Newton(kind)));
+                    return Ok(First {
+                        point: Point::new(v, corrected, 0.0),
+                        way: Way::Newton(kind),
+                    });
                 }
-                Outcome::Cancelled => return Ok(First::Cancelled),
                 Outcome::Converged(_) | Outcome::Failed => failure = corrector.failure().or(failure),
             }
         }
         // The homotopy is more reliable than a poorer initial guess.
         if let Some(u) = &homotopy_guess {
-            let reached = homotopy(problem, settings, u, &mut corrector, cancelled);
+            let reached = homotopy(problem, settings, u, corrector, interrupt);
             if let Some(first) = attempt(reached, None, &mut failure)? {
                 return Ok(first);
             }
@@ -107,7 +121,7 @@ pub fn solve(problem: &mut dyn Problem, settings: &Settings, cancelled: Option<&
         }
     }
     if problem.is_bounded() {
-        let reached = try_anchors(problem, settings, &mut corrector, cancelled);
+        let reached = try_anchors(problem, settings, corrector, interrupt);
         if let Some(first) = attempt(reached, None, &mut failure)? {
             return Ok(first);
         }
@@ -138,13 +152,13 @@ fn at_fixed(
     settings: &Settings,
     corrector: &mut Corrector,
     v: &mut [f64],
-    cancelled: Option<&dyn Fn() -> bool>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Outcome> {
     let n = v.len() - 1;
     let mut row = try_vec(n + 1, 0.0, CONTEXT)?;
     row[n] = 1.0;
     let metric = Metric::along(norm(&v[..n]), settings);
-    corrector.correct(problem, v, &row, metric, true, cancelled)
+    corrector.correct(problem, v, &row, metric, true, interrupt)
 }
 
 /// Follows the problem's homotopy, from near `u` to the given problem.
@@ -153,7 +167,7 @@ fn homotopy(
     settings: &Settings,
     u: &[f64],
     corrector: &mut Corrector,
-    cancelled: Option<&dyn Fn() -> bool>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<First>> {
     let Some(mut homotopy) = problem.homotopy(settings.start, u)? else {
         return Ok(None);
@@ -164,10 +178,10 @@ fn homotopy(
         steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
-    let reached = follow(&mut *homotopy.problem, &path, u, corrector, cancelled);
+    let reached = follow(&mut *homotopy.problem, &path, u, corrector, interrupt);
     drop(homotopy);
     let Reached::End(v) = reached? else { return Ok(None) };
-    finish(problem, settings, v, Way::Homotopy, corrector, cancelled)
+    finish(problem, settings, v, Way::Homotopy, corrector, interrupt)
 }
 
 /// Newton's method on the problem itself from the end of a homotopy.
@@ -177,16 +191,18 @@ fn finish(
     mut v: Vec<f64>,
     way: Way,
     corrector: &mut Corrector,
-    cancelled: Option<&dyn Fn() -> bool>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<First>> {
     let n = v.len() - 1;
     v[n] = settings.start;
-    Ok(match at_fixed(problem, settings, corrector, &mut v, cancelled)? {
+    Ok(match at_fixed(problem, settings, corrector, &mut v, interrupt)? {
         Outcome::Converged(corrected) if !is_far(problem, &v[..n], settings.start, corrected.residual)? => {
             v[n] = settings.start;
-            Some(First::Found(Point::new(v, corrected, 0.0), way))
+            Some(First {
+                point: Point::new(v, corrected, 0.0),
+                way,
+            })
         }
-        Outcome::Cancelled => Some(First::Cancelled),
         Outcome::Converged(_) | Outcome::Failed => None,
     })
 }
@@ -203,7 +219,7 @@ fn try_anchors(
     problem: &mut dyn Problem,
     settings: &Settings,
     corrector: &mut Corrector,
-    cancelled: Option<&dyn Fn() -> bool>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<First>> {
     let p = settings.start;
     let mut anchor = try_vec(problem.size(), 0.0, CONTEXT)?;
@@ -221,13 +237,13 @@ fn try_anchors(
             *a *= factor;
         }
         let mut homotopy = NewtonHomotopy::new(problem, p, &anchor)?;
-        let reached = match follow(&mut homotopy, &path, &anchor, corrector, cancelled) {
+        let reached = match follow(&mut homotopy, &path, &anchor, corrector, interrupt) {
             Err(e) if e.recoverable => Reached::Nothing,
             reached => reached?,
         };
         // Newton's method may converge even from where a path ended early.
         if let Reached::End(v) | Reached::Part(v) = reached
-            && let Some(first) = finish(problem, settings, v, Way::Anchor, corrector, cancelled)?
+            && let Some(first) = finish(problem, settings, v, Way::Anchor, corrector, interrupt)?
         {
             return Ok(Some(first));
         }
@@ -242,7 +258,10 @@ fn is_far(problem: &mut dyn Problem, u: &[f64], p: f64, residual: f64) -> Result
         return Ok(false);
     }
     let mut linear = try_vec(u.len(), 0.0, CONTEXT)?;
-    let known = matches!(problem.initial_guess(InitialGuess::Reference, p, &mut linear), Ok(true));
+    let known = match problem.initial_guess(InitialGuess::Reference, p, &mut linear) {
+        Err(e) if e.status == Status::StoppedByCaller => return Err(e),
+        guess => matches!(guess, Ok(true)),
+    };
     let (far, scale) = (norm(u), norm(&linear));
     Ok(known && scale > 0.0 && (far > FAR * scale || residual * far > UNBALANCED * scale))
 }
@@ -262,19 +281,22 @@ fn follow(
     settings: &Settings,
     u: &[f64],
     corrector: &mut Corrector,
-    cancelled: Option<&dyn Fn() -> bool>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Reached> {
     let mut v = try_copy(u, CONTEXT)?;
     try_push(&mut v, settings.start, CONTEXT)?;
-    let Outcome::Converged(corrected) = at_fixed(problem, settings, corrector, &mut v, cancelled)? else {
+    let Outcome::Converged(corrected) = at_fixed(problem, settings, corrector, &mut v, interrupt)? else {
         return Ok(Reached::Nothing);
     };
     let left = |v: &[f64]| (settings.end - v[v.len() - 1]).abs();
     let mut nearest = try_copy(&v, CONTEXT)?;
     let mut continuation = Continuation::new(*settings, Point::new(v, corrected, 0.0))?;
     for _ in 0..MAX_HOMOTOPY_POINTS {
-        match continuation.advance(problem, cancelled)? {
-            Advance::Accepted { point, last: true } => return Ok(Reached::End(point.v)),
+        match continuation.advance(problem, interrupt)? {
+            Advance::Accepted { point, last: true } => {
+                corrector.count_steps(continuation.steps_taken());
+                return Ok(Reached::End(point.v));
+            }
             Advance::Accepted { point, .. } => {
                 if left(&point.v) < left(&nearest) {
                     nearest = point.v;
@@ -283,5 +305,6 @@ fn follow(
             Advance::LeftAtStart { .. } | Advance::Stopped(_) => break,
         }
     }
+    corrector.count_steps(continuation.steps_taken());
     Ok(Reached::Part(nearest))
 }

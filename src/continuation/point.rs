@@ -4,6 +4,9 @@ use crate::continuation::corrector::Corrected;
 use crate::error::{Result, try_copy};
 use num_complex::Complex64;
 
+/// Relative change of a parameter that may be round-off of the correction.
+const ROUND_OFF: f64 = 1e-10;
+
 /// A point of a branch.
 #[derive(Clone, Debug)]
 pub struct Point {
@@ -66,6 +69,15 @@ impl Point {
     #[must_use]
     pub fn unknowns(&self) -> &[f64] {
         &self.v[..self.v.len() - 1]
+    }
+
+    /// Whether the parameter decreases from `before` although it increases at both ends, or the other way round: at
+    /// least two folds lie between them.
+    #[must_use]
+    pub fn skips_folds_from(&self, before: &Self) -> bool {
+        let (p, from) = (self.parameter(), before.parameter());
+        let against = |tangent: &[f64]| (p - from) * tangent[tangent.len() - 1] < 0.0;
+        (p - from).abs() > ROUND_OFF * p.abs().max(from.abs()) && against(&self.tangent) && against(&before.tangent)
     }
 
     /// The same point, followed in the other sense.

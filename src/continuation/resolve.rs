@@ -3,24 +3,25 @@
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// Distance, relative to the unknowns, beyond which a solution is another one than requested.
 const NEAR: f64 = 0.3;
 
-/// Solves from `near`, at its parameter or in the plane across its tangent, along which the found point's own tangent
-/// points. `None` where Newton's method fails, converges to another solution or is cancelled.
+/// Solves from `near`, at its parameter or in the plane across its tangent. The found point is followed in the sense of
+/// `near`, see [`in_sense_of`]. `None` where Newton's method fails or converges to another solution.
 ///
 /// # Errors
-/// Those of the problem.
+/// Those of the problem; `StoppedByCaller`.
 pub fn resolve(
     problem: &mut dyn Problem,
     corrector: &mut Corrector,
     settings: &Settings,
     near: &Point,
     keep_parameter: bool,
-    cancelled: Option<&dyn Fn() -> bool>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<Option<Point>> {
     let n = near.unknowns().len();
     let metric = Metric::along(norm(near.unknowns()), settings);
@@ -31,7 +32,7 @@ pub fn resolve(
         metric.unit(&near.tangent, &mut row);
     }
     let mut v = try_copy(&near.v, "a point of the branch")?;
-    let outcome = corrector.correct(problem, &mut v, &row, metric, true, cancelled)?;
+    let outcome = corrector.correct(problem, &mut v, &row, metric, true, interrupt)?;
     let Outcome::Converged(corrected) = outcome else {
         return Ok(None);
     };
@@ -43,8 +44,20 @@ pub fn resolve(
         return Ok(None);
     }
     let mut point = Point::new(v, corrected, near.step);
-    if metric.dot(&point.tangent, &near.tangent) < 0.0 {
+    in_sense_of(near, &mut point);
+    Ok(Some(point))
+}
+
+/// Orients the tangent of a point like the branch through `near`, which may have other harmonics.
+///
+/// The sense is the sign of det [J r; tangentᵀ], not the angle between the tangents: those may differ in harmonics that
+/// only one of them has, as where such a harmonic resonates. With R = y − y_lin + G(f(y) − κy), a factor s on the rows
+/// of G of the added harmonics leads from the equations without them (s = 0, where their block of J is the identity, and
+/// the determinant is that of the others) to those with them (s = 1). The sign of the bordered determinant is constant
+/// along regular solution curves and under such a change of the equations, so that both branches run from the same end
+/// to the same end.
+fn in_sense_of(near: &Point, point: &mut Point) {
+    if point.positive != near.positive {
         point.reverse();
     }
-    Ok(Some(point))
 }

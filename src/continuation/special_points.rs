@@ -5,6 +5,7 @@ use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::predictor::Cubic;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
 
@@ -85,13 +86,14 @@ impl Locator {
     /// The special point between `a` and `b`, by the Illinois variant of regula falsi on the arc.
     ///
     /// # Errors
-    /// Those of the problem.
+    /// Those of the problem; `StoppedByCaller`.
     pub fn locate(
         &mut self,
         problem: &mut dyn Problem,
         kind: SpecialPoint,
         a: &Point,
         b: &Point,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let metric = self.metric(a, b);
         let value = |point: &Point| kind.function(point, metric.norm(&point.tangent));
@@ -108,7 +110,7 @@ impl Locator {
             } else {
                 0.5 * (low.0 + high.0)
             };
-            let Some(point) = self.solve_between(problem, metric, a, b, s, None)? else {
+            let Some(point) = self.solve_between(problem, metric, (a, b), s, None, interrupt)? else {
                 return Ok(best);
             };
             let f = value(&point);
@@ -142,8 +144,15 @@ impl Locator {
     /// The solution at parameter `p` between `a` and `b`, whose parameters enclose it without a fold in between.
     ///
     /// # Errors
-    /// Those of the problem.
-    pub fn at_parameter(&mut self, problem: &mut dyn Problem, a: &Point, b: &Point, p: f64) -> Result<Option<Point>> {
+    /// Those of the problem; `StoppedByCaller`.
+    pub fn at_parameter(
+        &mut self,
+        problem: &mut dyn Problem,
+        a: &Point,
+        b: &Point,
+        p: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
         for end in [a, b] {
             if end.parameter().to_bits() == p.to_bits() {
                 return Ok(Some(end.try_clone()?));
@@ -155,10 +164,10 @@ impl Locator {
             let (a, b) = (&arc.0, &arc.1);
             let metric = self.metric(a, b);
             let s = self.where_at(a, b, metric, p)?;
-            if let Some(found) = self.solve_between(problem, metric, a, b, s, Some(p))? {
+            if let Some(found) = self.solve_between(problem, metric, (a, b), s, Some(p), interrupt)? {
                 return Ok(Some(found));
             }
-            let Some(middle) = self.solve_between(problem, metric, a, b, s.clamp(0.1, 0.9), None)? else {
+            let Some(middle) = self.solve_between(problem, metric, (a, b), s.clamp(0.1, 0.9), None, interrupt)? else {
                 return Ok(None);
             };
             let before = (middle.parameter() < p) == (b.parameter() > a.parameter());
@@ -191,10 +200,10 @@ impl Locator {
         &mut self,
         problem: &mut dyn Problem,
         metric: Metric,
-        a: &Point,
-        b: &Point,
+        (a, b): (&Point, &Point),
         s: f64,
         fixed: Option<f64>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let n = a.v.len() - 1;
         let cubic = Cubic::new(a, b, metric);
@@ -208,7 +217,9 @@ impl Locator {
             metric.unit(&self.derivative, &mut self.row);
         }
         let guess = try_copy(&v, CONTEXT)?;
-        let outcome = self.corrector.correct(problem, &mut v, &self.row, metric, true, None)?;
+        let outcome = self
+            .corrector
+            .correct(problem, &mut v, &self.row, metric, true, interrupt)?;
         let Outcome::Converged(corrected) = outcome else {
             return Ok(None);
         };

@@ -28,9 +28,6 @@ pub(super) const CONTEXT: &str = "the error estimate";
 /// Largest size of the next step relative to the change: 0.1 costs about one step more than 0.3.
 pub(super) const SHARE: f64 = 0.1;
 
-/// Unknowns above which no dense matrix is formed.
-pub(super) const MOST_UNKNOWNS: usize = 3000;
-
 /// Unknowns of an extended problem above which no estimate is made.
 pub(super) const MOST_EXTENDED: usize = 30_000;
 
@@ -97,6 +94,8 @@ pub struct Solved<'a> {
     pub response: Complex64,
     /// Whether all contacts stick, if that is known.
     pub sticks: Option<bool>,
+    /// Newton iterations of a solution without a neighbour, by which the work of an estimate is bounded.
+    pub iterations: usize,
 }
 
 impl Solved<'_> {

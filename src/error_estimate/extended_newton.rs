@@ -1,6 +1,6 @@
 //! The damped Newton method on the extended problem; the size of its next step stops it.
 
-use crate::error::{Result, try_copy, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::estimate::{CONTEXT, SHARE};
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::linalg::norm;
@@ -19,7 +19,7 @@ const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 pub(super) struct ExtendedSolution {
     /// Z, at which the problem was evaluated last.
     pub at: Vec<f64>,
-    /// δ, the simplified Newton step from there.
+    /// δ, the simplified Newton step from there, and 0 for the parameter.
     pub next: Vec<f64>,
     /// Whether δ is small enough.
     pub certified: bool,
@@ -36,6 +36,11 @@ impl ExtendedSolution {
     }
 }
 
+fn with_parameter(mut step: Vec<f64>) -> Result<Vec<f64>> {
+    try_push(&mut step, 0.0, CONTEXT)?;
+    Ok(step)
+}
+
 fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
     let mut sum = try_copy(a, CONTEXT)?;
     for (s, b) in sum.iter_mut().zip(b) {
@@ -44,8 +49,8 @@ fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
     Ok(sum)
 }
 
-/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough(change, δ)` accepts δ as small
-/// against the change Z + δ − start. `None` where some evaluation or matrix fails.
+/// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough(problem, Z, change, δ)` accepts δ as
+/// small against the change Z + δ − start; δ has a last number 0, that of the parameter. `None` where some evaluation or matrix fails.
 ///
 /// Where the extended harmonics are known to be `weak`, kt|G_h| < ½, and the first step is short, that step is
 /// returned as δ: the next one would be far shorter.
@@ -55,13 +60,13 @@ fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
 pub(super) fn extend<P: Problem>(
     system: &mut ExtendedSystem<P>,
     start: &[f64],
-    enough: impl Fn(&[f64], &[f64]) -> bool,
+    enough: impl Fn(&P, &[f64], &[f64], &[f64]) -> bool,
     weak: bool,
 ) -> Result<Option<ExtendedSolution>> {
     let n = start.len();
     let mut z = try_copy(start, CONTEXT)?;
     let mut step = try_vec(n, 0.0, CONTEXT)?;
-    let mut next = try_vec(n, 0.0, CONTEXT)?;
+    let mut next = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut change = try_vec(n, 0.0, CONTEXT)?;
     let mut trial = try_vec(n, 0.0, CONTEXT)?;
     let mut damping = 1.0_f64;
@@ -73,7 +78,7 @@ pub(super) fn extend<P: Problem>(
         if weak && steps == 1 && size <= SHORT * norm(start) {
             return Ok(Some(ExtendedSolution {
                 at: z,
-                next: step,
+                next: with_parameter(step)?,
                 certified: true,
                 steps,
                 missing: SHARE,
@@ -86,7 +91,7 @@ pub(super) fn extend<P: Problem>(
             }
             let last = damping <= SMALLEST_DAMPING;
             if system.evaluate(&trial)? {
-                if !system.step(&mut next)? {
+                if !system.step(&mut next[..n])? {
                     return Ok(None);
                 }
                 if last || norm(&next) <= (1.0 - 0.25 * damping) * size {
@@ -104,7 +109,7 @@ pub(super) fn extend<P: Problem>(
         if !change.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }
-        let certified = enough(&change, &next);
+        let certified = enough(&system.problem, &z, &change, &next);
         if certified || steps == MOST_STEPS {
             return Ok(Some(ExtendedSolution {
                 at: z,

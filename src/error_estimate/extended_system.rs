@@ -2,6 +2,7 @@
 
 use crate::error::{Result, Status, try_vec};
 use crate::error_estimate::estimate::CONTEXT;
+use crate::error_estimate::work::{Sizes, Work};
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::krylov::KrylovSystem;
 use crate::linalg::linear_system::{Border, LinearSystem};
@@ -18,14 +19,25 @@ const DENSE_UP_TO: usize = 100;
 /// Most products of an iteration.
 const MOST_PRODUCTS: usize = 80;
 
+/// The carried harmonics that an iterative linear system factors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Factored {
+    /// The first of them, factored as one block.
+    pub block: usize,
+    /// Those up to which the others are factored each by itself, with the mean stiffness of the contacts.
+    pub each: usize,
+}
+
 /// A problem R(Z) = 0 at a fixed parameter, with the backend that solves its linear equations.
 pub(super) struct ExtendedSystem<P> {
     pub problem: P,
     parameter: f64,
     pub at: Residual,
     system: Box<dyn LinearSystem>,
-    /// Carried harmonics in the block that is factored; 0 if the whole matrix is.
-    harmonics: usize,
+    /// Harmonics that the linear system factors.
+    factored: Factored,
+    sizes: Sizes,
+    work: Work,
     /// Border of a fixed parameter: no column, and the row (0, …, 0, 1).
     column: Vec<f64>,
     row: Vec<f64>,
@@ -33,13 +45,23 @@ pub(super) struct ExtendedSystem<P> {
 }
 
 impl<P: Problem> ExtendedSystem<P> {
-    /// A problem at a parameter value with the dense backend.
-    pub fn dense(problem: P, parameter: f64) -> Result<Self> {
+    /// A problem of these sizes at a parameter value with the dense backend, and the work that it may take.
+    pub fn dense(problem: P, parameter: f64, sizes: Sizes, work: Work) -> Result<Self> {
         let system = Box::new(DenseSystem::new(problem.size())?);
-        Self::new(problem, parameter, system)
+        let harmonics = usize::MAX;
+        let factored = Factored {
+            block: harmonics,
+            each: harmonics,
+        };
+        Self::new(problem, parameter, (system, factored), (sizes, work))
     }
 
-    fn new(problem: P, parameter: f64, system: Box<dyn LinearSystem>) -> Result<Self> {
+    fn new(
+        problem: P,
+        parameter: f64,
+        (system, factored): (Box<dyn LinearSystem>, Factored),
+        (sizes, work): (Sizes, Work),
+    ) -> Result<Self> {
         let n = problem.size();
         let mut row = try_vec(n + 1, 0.0, CONTEXT)?;
         row[n] = 1.0;
@@ -48,23 +70,33 @@ impl<P: Problem> ExtendedSystem<P> {
             parameter,
             at: Residual::new(n)?,
             system,
-            harmonics: 0,
+            factored,
+            sizes,
+            work,
             column: try_vec(n, 0.0, CONTEXT)?,
             row,
             b: try_vec(n + 1, 0.0, CONTEXT)?,
         })
     }
 
-    /// Evaluates R; `false` where that failed and may succeed elsewhere.
+    /// Evaluates R; `false` where that failed and may succeed elsewhere, or the work does not suffice.
     pub fn evaluate(&mut self, z: &[f64]) -> Result<bool> {
+        if !self.work.spend(self.sizes.evaluation()) {
+            return Ok(false);
+        }
         match self.problem.evaluate(z, self.parameter, &mut self.at) {
             Err(e) if e.recoverable || e.status == Status::Singular => Ok(false),
             evaluated => evaluated.map(|()| self.at.values.iter().all(|r| r.is_finite())),
         }
     }
 
-    /// Factors Newton's matrix at the point evaluated last; `false` where it is singular.
+    /// Factors Newton's matrix at the point evaluated last; `false` where it is singular, or the work does not
+    /// suffice.
     pub fn factor(&mut self) -> Result<bool> {
+        let (packed, pairs) = self.factored_numbers();
+        if !self.work.spend(self.sizes.factors(packed, pairs)) {
+            return Ok(false);
+        }
         let border = Border {
             column: &self.column,
             scales: (1.0, 1.0),
@@ -77,54 +109,77 @@ impl<P: Problem> ExtendedSystem<P> {
         }
     }
 
-    /// −J⁻¹R with the matrix factored last and R as evaluated last; `false` where the iteration did not converge.
+    /// −J⁻¹R with the matrix factored last and R as evaluated last; `false` where the iteration did not converge with
+    /// the work that is left.
     pub fn step(&mut self, step: &mut [f64]) -> Result<bool> {
         let n = step.len();
+        let (packed, pairs) = self.factored_numbers();
+        let each = self.sizes.product(packed, pairs);
+        let most = (self.work.left() / each) as usize;
+        self.system.limit_products(most.min(MOST_PRODUCTS));
         for (b, r) in self.b.iter_mut().zip(&self.at.values) {
             *b = -r;
         }
         self.b[n] = 0.0;
         let solved = self.system.solve(&mut self.problem, &mut self.b)?;
         step.copy_from_slice(&self.b[..n]);
-        Ok(solved)
+        Ok(self.work.spend(each * self.system.products() as f64) && solved)
+    }
+
+    /// The work that is left.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// Numbers of a packed signal in the block, and pairs factored each by itself.
+    fn factored_numbers(&self) -> (f64, f64) {
+        let pairs = self.factored.each.saturating_sub(self.factored.block);
+        (self.sizes.packed().min(2.0 * self.factored.block as f64), pairs as f64)
     }
 }
 
 impl<'a> ExtendedSystem<HarmonicBalance<'a>> {
-    /// A forced response at an angular frequency. The first `harmonics` carried ones, in which the structure is
-    /// compliant, form the block that is factored; the others are found by iteration.
-    pub fn iterative(problem: HarmonicBalance<'a>, omega: f64, harmonics: usize) -> Result<Self> {
-        let harmonics = block_of(&problem, harmonics);
-        let system = krylov(&problem, harmonics)?;
-        let mut extended = Self::new(problem, omega, Box::new(system))?;
-        extended.harmonics = harmonics;
-        Ok(extended)
+    /// A forced response of these sizes at an angular frequency, with the work that it may take.
+    pub fn iterative(
+        problem: HarmonicBalance<'a>,
+        omega: f64,
+        factored: Factored,
+        (sizes, work): (Sizes, Work),
+    ) -> Result<Self> {
+        let factored = factored_of(&problem, factored);
+        let system = krylov(&problem, factored)?;
+        Self::new(problem, omega, (Box::new(system), factored), (sizes, work))
     }
 
-    /// Selects another frequency, and the number of carried harmonics in the block.
-    pub fn set_point(&mut self, omega: f64, harmonics: usize) -> Result<()> {
+    /// Selects another frequency, the harmonics that are factored, and the work for this point.
+    pub fn set_point(&mut self, omega: f64, factored: Factored, work: Work) -> Result<()> {
         self.parameter = omega;
-        let harmonics = block_of(&self.problem, harmonics);
-        if harmonics != self.harmonics {
-            self.system = Box::new(krylov(&self.problem, harmonics)?);
-            self.harmonics = harmonics;
+        self.work = work;
+        let factored = factored_of(&self.problem, factored);
+        if factored != self.factored {
+            self.system = Box::new(krylov(&self.problem, factored)?);
+            self.factored = factored;
         }
         Ok(())
     }
 }
 
-/// Carried harmonics in the block; all of them for a small problem.
-fn block_of(problem: &HarmonicBalance<'_>, harmonics: usize) -> usize {
+/// All harmonics in one block for a small problem.
+fn factored_of(problem: &HarmonicBalance<'_>, factored: Factored) -> Factored {
     let whole = problem.set().numbers().len();
     if problem.unknowns() <= DENSE_UP_TO {
-        whole
+        Factored {
+            block: whole,
+            each: whole,
+        }
     } else {
-        harmonics
+        factored
     }
 }
 
-fn krylov(problem: &HarmonicBalance<'_>, harmonics: usize) -> Result<KrylovSystem> {
+fn krylov(problem: &HarmonicBalance<'_>, factored: Factored) -> Result<KrylovSystem> {
     let set = problem.set();
-    let lengths = (set.packed_len(), packed_up_to(set, harmonics));
+    let part = packed_up_to(set, factored.block);
+    let lengths = (set.packed_len(), part, packed_up_to(set, factored.each).max(part));
     KrylovSystem::new(problem.unknowns(), lengths, TOLERANCE, MOST_PRODUCTS)
 }

@@ -1,13 +1,14 @@
 //! The error of a point of a forced response.
 
 use crate::condense::{Condensed, ModelCache, Resolution};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::estimate::{
-    CONTEXT, MOST_EXTENDED, MOST_UNKNOWNS, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
+    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
 };
 use crate::error_estimate::extended_newton::extend;
-use crate::error_estimate::extended_system::ExtendedSystem;
+use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
+use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
 use crate::linalg::norm;
@@ -18,6 +19,18 @@ use crate::problem::harmonic_balance::HarmonicBalance;
 use num_complex::Complex64;
 use std::sync::Arc;
 
+/// Evaluations, each with a product, for which the work must suffice.
+const EVALUATIONS: f64 = 6.0;
+
+/// Factorisations of the block for which the work must suffice.
+const FACTORISATIONS: f64 = 5.0;
+
+/// Last change of the response, relative to the whole, at which it has settled.
+const SETTLED: f64 = 0.3;
+
+/// Extended problems that are kept for the next point.
+const MOST_KEPT: usize = 3;
+
 /// Estimates the errors of points of one model, one after the other.
 pub struct ForcedEstimator<'a> {
     model: &'a Model,
@@ -25,8 +38,8 @@ pub struct ForcedEstimator<'a> {
     response: usize,
     cutoff: Option<CutoffHarmonic>,
     models: &'a ModelCache,
-    /// The problem extended last, with its slot in the cache.
-    extended: Option<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
+    /// The problems extended last, with their slots in the cache.
+    extended: Vec<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -39,7 +52,7 @@ impl<'a> ForcedEstimator<'a> {
             response,
             cutoff: None,
             models,
-            extended: None,
+            extended: Vec::new(),
         }
     }
 
@@ -55,13 +68,13 @@ impl<'a> ForcedEstimator<'a> {
         or_unknown(found, solved, 0.0)
     }
 
-    /// The harmonics to which a point is extended; `None` where the problem would be too large.
-    fn extent(&mut self, solved: &Solved<'_>) -> Result<Option<Extent>> {
+    /// The harmonics to which a point is extended; `None` where the work does not suffice.
+    fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let most = cutoff_harmonic::affordable(solved.condensed, MOST_UNKNOWNS);
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
-        if own > most || least > cutoff_harmonic::affordable(solved.condensed, MOST_EXTENDED) {
+        let most = self.affordable(solved, work);
+        if least > most {
             return Ok(None);
         }
         if self.cutoff.is_none() {
@@ -77,18 +90,85 @@ impl<'a> ForcedEstimator<'a> {
         Ok(Some(Extent {
             core,
             highest: core.max(least),
+            least,
             weak: core <= own,
             short: core >= most,
+            by_doubling: false,
         }))
     }
 
+    /// The highest harmonic to which the work suffices to extend a point.
+    fn affordable(&self, solved: &Solved<'_>, work: &Work) -> usize {
+        work.highest(solved.condensed, &self.options, EVALUATIONS, |sizes| {
+            sizes.evaluation() + sizes.product(0.0, sizes.packed())
+        })
+    }
+
     fn extend(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
-        let Some(extent) = self.extent(solved)? else {
+        let work = Work::of_point(&Sizes::new(solved.condensed, self.options.samples), solved.iterations);
+        let Some(extent) = self.extent(solved, &work)? else {
             return solved.unknown(0.0, true).map(Some);
         };
+        let samples = extended_options(&self.options, extent.core).samples;
+        let core = Sizes::extended(solved.condensed, extent.core, samples);
+        if extent.core > extent.least && !core.is_cheap() {
+            return self.extend_by_doubling(solved, extent, work);
+        }
+        Ok(self.extend_to(solved, None, extent, work)?.0)
+    }
+
+    /// Extends to twice the harmonics, to four times, and on: up to the core, or until the response has settled, so that
+    /// the last change is a small share of the whole. Where the structure is compliant in many harmonics the full core
+    /// costs far more than the point, and the response needs few of them.
+    fn extend_by_doubling(&mut self, solved: &Solved<'_>, extent: Extent, mut work: Work) -> Result<Option<Estimate>> {
+        let mut highest = extent.least;
+        let mut last: Option<Estimate> = None;
+        loop {
+            let stage = Extent {
+                core: extent.core.min(highest),
+                highest,
+                weak: false,
+                short: false,
+                by_doubling: true,
+                ..extent
+            };
+            let from = last.as_ref().map(|estimate| &estimate.corrected);
+            let (found, left) = self.extend_to(solved, from, stage, work)?;
+            work = left;
+            let Some(mut found) = found.filter(|found| found.certified) else {
+                return Ok(None);
+            };
+            let settled = last.as_ref().is_some_and(|last| {
+                let change = (found.corrected.response - last.corrected.response).norm();
+                change <= SETTLED * (found.corrected.response - solved.response).norm()
+            });
+            found.steps += last.as_ref().map_or(0, |last| last.steps);
+            if settled || (highest >= extent.core && !extent.short) {
+                return Ok(Some(found));
+            }
+            highest = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
+            if !extent.short {
+                highest = highest.min(extent.highest);
+            }
+            if highest > self.affordable(solved, &work) {
+                return solved.unknown(0.0, false).map(Some);
+            }
+            last = Some(found);
+        }
+    }
+
+    /// Extends a point to the highest harmonic of an extent, from a solution with fewer of them or from the point itself.
+    /// Returns the work that is left.
+    fn extend_to(
+        &mut self,
+        solved: &Solved<'_>,
+        from: Option<&Corrected>,
+        extent: Extent,
+        work: Work,
+    ) -> Result<(Option<Estimate>, Work)> {
         let slot = self.models.slot_with(extent.highest);
         if slot == self.models.slots() {
-            return solved.unknown(0.0, true).map(Some);
+            return Ok((Some(solved.unknown(0.0, true)?), work));
         }
         let omega = solved.omega;
         let resolution = self.models.model(slot, |highest| {
@@ -102,28 +182,57 @@ impl<'a> ForcedEstimator<'a> {
         })?;
         let condensed = &*resolution.condensed;
         let set = condensed.set();
-        let core = set.numbers().partition_point(|&h| h <= extent.core);
-        let mut system = match self.extended.take() {
-            Some((kept, mut system)) if kept == slot => {
-                system.set_point(omega, core)?;
-                system
-            }
-            _ => {
-                let range = (omega, omega);
-                let problem = HarmonicBalance::new(condensed, self.response, range, resolution.samples, None)?;
-                ExtendedSystem::iterative(problem, omega, core)?
-            }
+        let sizes = Sizes::new(condensed, resolution.samples);
+        let mut work = work;
+        if !work.spend(sizes.flexibility()) {
+            return Ok((None, work));
+        }
+        let compliant = set.numbers().partition_point(|&h| h <= extent.core);
+        let factored = factored(&sizes, compliant, &work);
+        let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
+        let mut system = if let Some(kept) = kept {
+            let (_, mut system) = self.extended.swap_remove(kept);
+            system.set_point(omega, factored, work)?;
+            system
+        } else {
+            let range = (omega, omega);
+            let problem = HarmonicBalance::new(condensed, self.response, range, resolution.samples, None)?;
+            ExtendedSystem::iterative(problem, omega, factored, (sizes, work))?
         };
-        let found = on(&mut system, condensed, solved, extent, self.options.tol_residual);
-        self.extended = Some((slot, system));
-        found
+        let found = on(
+            &mut system,
+            condensed,
+            (solved, from),
+            extent,
+            self.options.tol_residual,
+        );
+        let left = system.work();
+        if self.extended.len() == MOST_KEPT {
+            self.extended.remove(0);
+        }
+        try_push(&mut self.extended, (slot, system), CONTEXT)?;
+        Ok((found?, left))
     }
+}
+
+/// The compliant harmonics in one block as far as the work allows to factor it, and the others each by itself.
+fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
+    let fits = |block: usize| {
+        let packed = sizes.packed().min(2.0 * block as f64);
+        let pairs = (compliant - block) as f64;
+        FACTORISATIONS * sizes.factors(packed, pairs) <= work.left() && work.fits(sizes.bytes(packed, pairs))
+    };
+    let block = (1..=compliant)
+        .rev()
+        .find(|&block| fits(block))
+        .unwrap_or(compliant.min(1));
+    Factored { block, each: compliant }
 }
 
 fn on(
     system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     condensed: &Condensed,
-    solved: &Solved<'_>,
+    (solved, from): (&Solved<'_>, Option<&Corrected>),
     extent: Extent,
     tolerance: f64,
 ) -> Result<Option<Estimate>> {
@@ -133,7 +242,11 @@ fn on(
         return solved.exact(0.0).map(Some);
     }
     let n = system.problem.unknowns();
-    let start = solved.extended(condensed, n, 1.0)?;
+    let point = solved.extended(condensed, n, 1.0)?;
+    let mut start = try_copy(&point, CONTEXT)?;
+    if let Some(from) = from {
+        set.transfer(&from.set, &from.motion, 1.0 / condensed.length(), &mut start);
+    }
     if !system.evaluate(&start)? {
         return Ok(None);
     }
@@ -141,9 +254,14 @@ fn on(
     if omits_nothing(residual, set, solved.condensed.set(), tolerance) {
         return solved.exact(0.0).map(Some);
     }
-    let enough = |change: &[f64], next: &[f64]| {
-        let next = norm(next);
-        next <= SHARE * norm(change) || next <= ROUNDING * norm(&start)
+    let length = condensed.length();
+    let enough = |problem: &HarmonicBalance<'_>, at: &[f64], change: &[f64], next: &[f64]| {
+        if !extent.by_doubling {
+            let next = norm(&next[..n]);
+            return next <= SHARE * norm(change) || next <= ROUNDING * norm(&start);
+        }
+        let (x, dx) = problem.observe(at, next);
+        dx.norm() <= SHARE * (x + dx - solved.response / length).norm() || dx.norm() <= ROUNDING * x.norm()
     };
     let Some(extended) = extend(system, &start, enough, extent.weak)? else {
         return Ok(None);
@@ -151,14 +269,11 @@ fn on(
     let mut z = extended.corrected()?;
     let size = norm(&z);
     let mut change = try_vec(n, 0.0, CONTEXT)?;
-    for ((c, z), s) in change.iter_mut().zip(&z).zip(&start) {
+    for ((c, z), s) in change.iter_mut().zip(&z).zip(&point) {
         *c = z - s;
     }
     let change = norm(&change) / size;
-    let mut direction = try_vec(n + 1, 0.0, CONTEXT)?;
-    direction[..n].copy_from_slice(&extended.next);
-    let (x, dx) = system.problem.observe(&extended.at, &direction);
-    let length = condensed.length();
+    let (x, dx) = system.problem.observe(&extended.at, &extended.next);
     let (response, next) = ((x + dx) * length, extended.missing * dx.norm() * length);
     let tail = tail(set, solved.condensed.set(), &z)?;
     let certified = extended.certified && (!extent.short || has_converged_tail(&tail, change));
@@ -169,7 +284,7 @@ fn on(
     Ok(Some(Estimate {
         certified,
         too_large: !certified && extent.short,
-        motion: known(change + extended.missing * norm(&extended.next) / size),
+        motion: known(change + extended.missing * norm(&extended.next[..n]) / size),
         response: known(relative((response - solved.response).norm() + next, response)),
         frequency: known(0.0),
         damping: known(0.0),
@@ -194,10 +309,14 @@ struct Extent {
     core: usize,
     /// Highest harmonic of all.
     highest: usize,
+    /// The least one to which a point may be extended.
+    least: usize,
     /// Whether the structure is compliant in none of the harmonics that the point omits.
     weak: bool,
     /// Whether the structure may be compliant beyond the core, where the problem would be too large.
     short: bool,
+    /// Whether this is one of several extensions, each of which ends as soon as the response has converged.
+    by_doubling: bool,
 }
 
 /// A difference relative to a number; 0 if the difference is 0.

@@ -6,6 +6,7 @@ mod extended_newton;
 mod extended_system;
 pub mod forced_response_error;
 pub mod mode_error;
+mod work;
 
 pub(crate) use cutoff_harmonic::affordable;
 pub use estimate::{Corrected, Estimate, Solved};

@@ -4,11 +4,12 @@ use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::estimate::{
-    CONTEXT, MOST_UNKNOWNS, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
+    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::ExtendedSystem;
 use crate::error_estimate::forced_response_error::{omits_nothing, relative};
+use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::norm;
@@ -18,6 +19,9 @@ use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 
 /// Ratio of the harmonics of an extended model to those needed up to which the model is used again.
 const SPARE: f64 = 1.25;
+
+/// Newton iterations with the whole extended matrix for which the work must suffice.
+const ITERATIONS: f64 = 3.0;
 
 /// Relative error of the damping ratio below which its last change need not be small against its whole change: along
 /// a backbone the latter passes through zero.
@@ -80,7 +84,10 @@ impl<'a> ModeEstimator<'a> {
     fn extend(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Option<Estimate>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let most = cutoff_harmonic::affordable(solved.condensed, MOST_UNKNOWNS);
+        let work = Work::of_point(&Sizes::new(solved.condensed, self.options.samples), solved.iterations);
+        let most = work.highest(solved.condensed, &self.options, ITERATIONS, |sizes| {
+            sizes.evaluation() + sizes.factors(sizes.packed(), 0.0)
+        });
         let least = cutoff_harmonic::carried_from(set, 2 * own + 1);
         if least > most {
             return solved.unknown(damping, true).map(Some);
@@ -102,7 +109,7 @@ impl<'a> ModeEstimator<'a> {
             Some(condensed) => condensed,
             None => self.condensed(highest)?,
         };
-        let found = self.on(&condensed, solved, (log10_amplitude, damping), highest >= most);
+        let found = self.on(&condensed, solved, (log10_amplitude, damping), (highest >= most, work));
         self.extended = Some(condensed);
         found
     }
@@ -112,14 +119,14 @@ impl<'a> ModeEstimator<'a> {
         condensed: &Condensed,
         solved: &Solved<'_>,
         (p, damping): (f64, f64),
-        short: bool,
+        (short, work): (bool, Work),
     ) -> Result<Option<Estimate>> {
         let set = condensed.set();
         let highest = set.numbers().last().copied().unwrap_or(0);
         let samples = extended_options(&self.options, highest).samples;
         let problem = Epmc::new(condensed, self.gauge, self.linear, samples)?;
         let n = problem.size();
-        let mut system = ExtendedSystem::dense(problem, p)?;
+        let mut system = ExtendedSystem::dense(problem, p, Sizes::new(condensed, samples), work)?;
         let a = 10f64.powf(p);
         let mut start = solved.extended(condensed, n, 1.0 / a)?;
         Epmc::set_frequency_and_damping(self.linear, (solved.omega, damping), &mut start);
@@ -131,9 +138,9 @@ impl<'a> ModeEstimator<'a> {
             return solved.exact(damping).map(Some);
         }
         let of_damping = |u: &[f64]| Epmc::damping_of_change(u).abs();
-        let enough = |change: &[f64], next: &[f64]| {
+        let enough = |_: &Epmc<'_>, _: &[f64], change: &[f64], next: &[f64]| {
             let (moved, last) = (norm(&change[..n - 2]), norm(&next[..n - 2]));
-            let (changed, left) = (of_damping(change), of_damping(next));
+            let (changed, left) = (of_damping(change), of_damping(&next[..n]));
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs())
         };

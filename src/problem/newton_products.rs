@@ -6,6 +6,7 @@ use crate::fourier::HarmonicSet;
 use crate::linalg::linear_system::MatrixFree;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::parametric_problem::put;
+use num_complex::Complex64;
 
 const CONTEXT: &str = "the products of the forced response";
 
@@ -44,6 +45,21 @@ impl MatrixFree for HarmonicBalance<'_> {
             }
         }
         Ok(())
+    }
+
+    fn fill_pair(&mut self, at: usize, matrix: &mut [Complex64]) {
+        let set = self.condensed.set();
+        let coordinates = self.condensed.coordinates();
+        let Some(i) = (0..set.numbers().len()).find(|&i| set.offset(i) == at) else {
+            return;
+        };
+        let table = &self.tables.current()[i].value;
+        matrix.fill(Complex64::ZERO);
+        for (motion, column) in matrix.chunks_exact_mut(coordinates.max(1)).enumerate() {
+            column[motion] = Complex64::ONE;
+            self.forces
+                .add_mean_coupling((motion, i), (table, coordinates + 1), column);
+        }
     }
 
     fn keep(&mut self) -> Result<()> {

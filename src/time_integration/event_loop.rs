@@ -3,6 +3,7 @@
 
 use crate::contact::time_piece::{Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::time_integration::event_law::{Element, along};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::implicit_step::Implicit;
@@ -21,9 +22,6 @@ const MOST_AT_ONCE: usize = 50;
 
 /// Share of a step within which events count as simultaneous.
 const SIMULTANEOUS: f64 = 1e-13;
-
-/// Steps between two checks of the cancel flag.
-const STEPS_BETWEEN_CHECKS: usize = 256;
 
 /// Displacements, velocities and the stretches of the sliders' springs.
 #[derive(Clone, Debug)]
@@ -88,8 +86,6 @@ pub(super) struct LapseSummary {
     pub events: usize,
     /// Largest displacement and velocity at the ends of the steps.
     pub largest: (f64, f64),
-    /// Whether the caller stopped the integration before the end.
-    pub cancelled: bool,
 }
 
 impl LapseSummary {
@@ -154,7 +150,7 @@ impl EventLoop {
         state: &mut State,
         mut sensitivity: Option<&mut Sensitivity>,
         mut recorder: Option<&mut HarmonicAnalysis>,
-        cancelled: Option<&dyn Fn() -> bool>,
+        interrupt: &Interrupt<'_>,
     ) -> Result<LapseSummary> {
         let end = system.lapse();
         let mut summary = LapseSummary::default();
@@ -170,10 +166,7 @@ impl EventLoop {
         let mut t = 0.0;
         let (mut steps, mut at_once) = (0, 0);
         while t < end {
-            if steps % STEPS_BETWEEN_CHECKS == 0 && cancelled.is_some_and(|f| f()) {
-                summary.cancelled = true;
-                return Ok(summary);
-            }
+            interrupt.check()?;
             steps += 1;
             if steps > MOST_STEPS {
                 return fail!(

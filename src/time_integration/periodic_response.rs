@@ -12,7 +12,7 @@ use crate::error::{Result, Status, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::model::Model;
 use crate::options::TimeOptions;
-use crate::time_integration::event_loop::{EventLoop, State};
+use crate::time_integration::event_loop::{EventLoop, LapseSummary, State};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::shooting::Search;
 use crate::time_integration::unrolled_structure::System;
@@ -22,7 +22,8 @@ use std::f64::consts::TAU;
 /// A periodic response found by integration in time.
 #[derive(Clone, Debug)]
 pub struct TimeResponse {
-    /// `Ok`, or `StoppedByCaller`: then the harmonics are those of the last period, which is not steady.
+    /// `Ok`, or `StoppedByCaller`: then the harmonics and samples are those of a period that is not steady, or NaN if
+    /// the stop came from the cancel flag, after which no period is integrated.
     pub status: Status,
     /// T = 2π/ω
     pub period: f64,
@@ -60,10 +61,23 @@ pub fn solve(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) ->
         None => State::rest(&system)?,
     };
     hooks.log(LogLevel::Info, "the structure in time is set up");
-    let mut steady = Search::new(&mut system, &mut event_loop, options, hooks, start)?.run()?;
+    let interrupt = hooks.interrupt();
+    let callbacks = (hooks, &interrupt);
+    let mut steady = Search::new(&mut system, &mut event_loop, options, callbacks, start)?.run()?;
     let mut recorder = HarmonicAnalysis::new(&system, options.harmonics, options.samples)?;
-    let summary = event_loop.run(&mut system, &mut steady.state, None, Some(&mut recorder), None)?;
-    let (harmonics, samples) = recorder.finish(&system)?;
+    let recorded = event_loop.run(&mut system, &mut steady.state, None, Some(&mut recorder), &interrupt);
+    let (mut harmonics, mut samples) = recorder.finish(&system)?;
+    let summary = match recorded {
+        Ok(summary) => summary,
+        Err(e) if e.status == Status::StoppedByCaller => {
+            // A part of a period has no harmonics.
+            harmonics.fill(Complex64::new(f64::NAN, f64::NAN));
+            samples.fill(f64::NAN);
+            steady.status = e.status;
+            LapseSummary::default()
+        }
+        Err(e) => return Err(e),
+    };
     Ok(TimeResponse {
         status: steady.status,
         period: TAU / options.omega,

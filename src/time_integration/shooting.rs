@@ -7,6 +7,7 @@
 
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, Progress};
+use crate::interrupt::Interrupt;
 use crate::linalg::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
 use crate::time_integration::event_loop::{EventLoop, LapseSummary, Sensitivity, State};
@@ -51,6 +52,7 @@ pub(super) struct Search<'a, 'h> {
     event_loop: &'a mut EventLoop,
     options: &'a TimeOptions<'a>,
     hooks: &'a mut Hooks<'h>,
+    interrupt: &'a Interrupt<'a>,
     state: State,
     /// The state after a lapse from `state`, and the same with the sectors shifted.
     image: State,
@@ -67,7 +69,7 @@ impl<'a, 'h> Search<'a, 'h> {
         system: &'a mut System,
         event_loop: &'a mut EventLoop,
         options: &'a TimeOptions<'a>,
-        hooks: &'a mut Hooks<'h>,
+        (hooks, interrupt): (&'a mut Hooks<'h>, &'a Interrupt<'a>),
         start: State,
     ) -> Result<Self> {
         Ok(Self {
@@ -79,6 +81,7 @@ impl<'a, 'h> Search<'a, 'h> {
             event_loop,
             options,
             hooks,
+            interrupt,
             scale: (0.0, 0.0),
             residual: f64::INFINITY,
             laps: 0,
@@ -87,8 +90,23 @@ impl<'a, 'h> Search<'a, 'h> {
 
     /// Searches for the steady state.
     pub fn run(mut self) -> Result<Steady> {
-        let mut march = FIRST_MARCH;
         let mut marched = false;
+        let status = match self.search(&mut marched) {
+            Ok(status) => status,
+            Err(e) if e.status == Status::StoppedByCaller => e.status,
+            Err(e) => return Err(e),
+        };
+        Ok(Steady {
+            periods: self.laps.div_ceil(self.system.sectors),
+            state: self.state,
+            residual: self.residual,
+            status,
+            marched,
+        })
+    }
+
+    fn search(&mut self, marched: &mut bool) -> Result<Status> {
+        let mut march = FIRST_MARCH;
         loop {
             let mut outcome = Outcome::Failed;
             if self.options.method == SteadyMethod::Shooting {
@@ -99,22 +117,15 @@ impl<'a, 'h> Search<'a, 'h> {
                 }
             }
             if matches!(outcome, Outcome::Failed) {
-                marched = true;
+                *marched = true;
                 outcome = self.march(march.saturating_mul(self.system.sectors))?;
                 march *= 2;
             }
-            let status = match outcome {
-                Outcome::Found => Status::Ok,
-                Outcome::Stopped => Status::StoppedByCaller,
-                Outcome::Failed => continue,
-            };
-            return Ok(Steady {
-                periods: self.laps.div_ceil(self.system.sectors),
-                state: self.state,
-                residual: self.residual,
-                status,
-                marched,
-            });
+            match outcome {
+                Outcome::Found => return Ok(Status::Ok),
+                Outcome::Stopped => return Ok(Status::StoppedByCaller),
+                Outcome::Failed => {}
+            }
         }
     }
 
@@ -132,10 +143,7 @@ impl<'a, 'h> Search<'a, 'h> {
         self.image.set(&self.state);
         let summary = self
             .event_loop
-            .run(self.system, &mut self.image, sensitivity, None, self.hooks.cancelled)?;
-        if summary.cancelled {
-            return Ok(true);
-        }
+            .run(self.system, &mut self.image, sensitivity, None, self.interrupt)?;
         self.compare(&summary);
         if self.residual.is_nan() {
             return fail!(NoBoundedSolution, "the motion in time grows beyond all bounds");

@@ -7,6 +7,7 @@ use hbvib::continuation::special_points::{Locator, SpecialPoint};
 use hbvib::continuation::step_control::StepControl;
 use hbvib::continuation::{Advance, Continuation, Metric, Point, Settings};
 use hbvib::error::Result;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
 use hbvib::problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
@@ -106,7 +107,14 @@ fn follow(from: f64, to: f64) -> (Vec<Point>, Settings) {
     let mut v = vec![0.0, 0.0, from];
     let metric = Metric::along(1.0, &settings);
     let mut corrector = Corrector::new(2, settings.tolerance, settings.max_iterations).unwrap();
-    let outcome = corrector.correct(&mut Duffing::default(), &mut v, &[0.0, 0.0, 1.0], metric, true, None);
+    let outcome = corrector.correct(
+        &mut Duffing::default(),
+        &mut v,
+        &[0.0, 0.0, 1.0],
+        metric,
+        true,
+        &Interrupt::none(),
+    );
     let Outcome::Converged(corrected) = outcome.unwrap() else {
         panic!("no first point");
     };
@@ -114,7 +122,10 @@ fn follow(from: f64, to: f64) -> (Vec<Point>, Settings) {
     // As the continuation has turned it, into the range.
     let mut points = vec![continuation.current().clone()];
     while points.len() < 1000 {
-        match continuation.advance(&mut Duffing::default(), None).unwrap() {
+        match continuation
+            .advance(&mut Duffing::default(), &Interrupt::none())
+            .unwrap()
+        {
             Advance::Accepted { point, last } => {
                 points.push(point);
                 if last {
@@ -141,7 +152,7 @@ fn folds_pass_without_help_and_are_found_where_the_closed_form_has_them() {
             for (event, list) in [(SpecialPoint::Fold, &mut folds), (SpecialPoint::Peak, &mut peaks)] {
                 if event.between(&pair[0], &pair[1]) {
                     let found = locator
-                        .locate(&mut Duffing::default(), event, &pair[0], &pair[1])
+                        .locate(&mut Duffing::default(), event, &pair[0], &pair[1], &Interrupt::none())
                         .unwrap();
                     list.push(found.unwrap());
                 }
@@ -177,7 +188,7 @@ fn between_the_folds_every_one_of_three_solutions_is_found() {
         let (a, b) = (pair[0].parameter(), pair[1].parameter());
         if (a - wanted) * (b - wanted) < 0.0 {
             let point = locator
-                .at_parameter(&mut Duffing::default(), &pair[0], &pair[1], wanted)
+                .at_parameter(&mut Duffing::default(), &pair[0], &pair[1], wanted, &Interrupt::none())
                 .unwrap()
                 .unwrap();
             assert_eq!(point.parameter().to_bits(), f64::to_bits(wanted));

@@ -6,9 +6,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 18] = [
+const LAYERS: [(&str, u8); 19] = [
     ("error", 0),
     ("options", 0),
+    ("interrupt", 0),
     ("hooks", 0),
     ("linalg", 1),
     ("fourier", 1),
@@ -27,17 +28,32 @@ const LAYERS: [(&str, u8); 18] = [
     ("lib", 10),
 ];
 
-/// Imports inside one layer, (from, to): options and hooks report errors, and a model has contacts.
-const SAME_LAYER: [(&str, &str); 3] = [("options", "error"), ("hooks", "error"), ("model", "contact")];
+/// Imports inside one layer, (from, to): options and interrupts report errors, hooks hold an interrupt, and a model has
+/// contacts.
+const SAME_LAYER: [(&str, &str); 5] = [
+    ("options", "error"),
+    ("interrupt", "error"),
+    ("hooks", "error"),
+    ("hooks", "interrupt"),
+    ("model", "contact"),
+];
 
 /// Rooms that may import nothing but these, whatever their layer: the continuation never sees a model or a contact, and
 /// the C boundary holds no numerics.
 const ONLY: [(&str, &[&str]); 2] = [
-    ("continuation", &["problem", "linalg", "error", "hooks"]),
+    ("continuation", &["problem", "linalg", "error", "interrupt"]),
     (
         "capi",
         &[
-            "analysis", "model", "results", "contact", "options", "hooks", "error", "linalg",
+            "analysis",
+            "model",
+            "results",
+            "contact",
+            "options",
+            "hooks",
+            "interrupt",
+            "error",
+            "linalg",
         ],
     ),
 ];

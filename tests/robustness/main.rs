@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod changing_harmonics;
 mod finite_fields;
 mod hard_cases;
 mod hard_modes;

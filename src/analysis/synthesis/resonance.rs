@@ -7,6 +7,7 @@ use crate::continuation::special_points::Locator;
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
+use crate::interrupt::Interrupt;
 use crate::linalg::inner;
 use crate::linalg::linear_system::Jacobian;
 use crate::problem::epmc::Epmc;
@@ -29,6 +30,7 @@ pub(super) struct Refinement<'a> {
     branch: &'a Branch,
     data: &'a ModeData,
     load: &'a Load,
+    interrupt: &'a Interrupt<'a>,
     solver: Solver<'a>,
     x: Vec<Complex64>,
 }
@@ -65,11 +67,12 @@ impl<'a> Solver<'a> {
 }
 
 impl<'a> Refinement<'a> {
-    pub fn new(branch: &'a Branch, data: &'a ModeData, load: &'a Load) -> Result<Self> {
+    pub fn new(branch: &'a Branch, data: &'a ModeData, load: &'a Load, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         Ok(Self {
             branch,
             data,
             load,
+            interrupt,
             solver: Solver::new(branch, data, 0)?,
             x: try_vec(branch.ndof(), Complex64::ZERO, CONTEXT)?,
         })
@@ -148,7 +151,7 @@ impl<'a> Refinement<'a> {
         let mut v = try_copy(&a.v, CONTEXT)?;
         if p <= self.data.info.linear_up_to {
             v[n] = p;
-        } else if let Some(point) = locator.at_parameter(problem, a, b, p)? {
+        } else if let Some(point) = locator.at_parameter(problem, a, b, p, self.interrupt)? {
             v = point.v;
         } else {
             return Ok(None);

@@ -1,24 +1,27 @@
 //! The iterative backend: products with J, preconditioned by the factors of the block between the unknowns that couple
-//! strongly, and by the identity beyond it.
+//! strongly, then by those of the mean coupling of each pair of numbers by itself, and by the identity beyond.
 //!
-//! GMRES iterates with K M⁻¹, where M holds the block and the units of the other unknowns. A block that is the whole
-//! matrix is solved directly.
+//! GMRES iterates with K M⁻¹, where M holds the block, the pairs, and the units of the other unknowns. A block that is
+//! the whole matrix is solved directly.
 
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::gmres::gmres;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree};
+use crate::linalg::lu::Lu;
+use num_complex::Complex64;
 
 const CONTEXT: &str = "the linear system";
 
 /// A bordered system that is solved by iteration.
 pub struct KrylovSystem {
     block: DenseSystem,
-    /// Length of a group of unknowns, and how many of its numbers are in the block.
-    group: usize,
-    part: usize,
+    lengths: Lengths,
+    pairs: Pairs,
     tolerance: f64,
     most_products: usize,
+    /// Products of the last solution.
+    products: usize,
     column: Vec<f64>,
     scales: (f64, f64),
     row: Vec<f64>,
@@ -28,20 +31,86 @@ pub struct KrylovSystem {
     scaled: Vec<f64>,
 }
 
+/// Lengths within the groups of unknowns.
+#[derive(Clone, Copy)]
+struct Lengths {
+    /// Length of a group.
+    group: usize,
+    /// Numbers of each group that are in the block.
+    part: usize,
+    /// End of the pairs behind the block whose mean coupling is factored.
+    middle: usize,
+}
+
+impl Lengths {
+    /// Positions of these pairs in a group.
+    fn pairs(self) -> impl Iterator<Item = usize> {
+        (self.part..self.middle.saturating_sub(1)).step_by(2)
+    }
+}
+
+/// Factors of the mean coupling of each pair, with memory for one of them.
+struct Pairs {
+    factors: Vec<Lu<Complex64>>,
+    /// Whether the factors of each pair exist; a singular matrix has none, and the identity serves.
+    regular: Vec<bool>,
+    b: Vec<Complex64>,
+}
+
+impl Pairs {
+    fn new(groups: usize, lengths: Lengths) -> Result<Self> {
+        let mut factors = Vec::new();
+        for _ in lengths.pairs() {
+            try_push(&mut factors, Lu::new(groups, 1)?, CONTEXT)?;
+        }
+        Ok(Self {
+            regular: try_vec(factors.len(), false, CONTEXT)?,
+            factors,
+            b: try_vec(groups, Complex64::ZERO, CONTEXT)?,
+        })
+    }
+
+    fn factor(&mut self, lengths: Lengths, operator: &mut dyn MatrixFree) {
+        let factors = self.factors.iter_mut().zip(&mut self.regular);
+        for (at, (lu, regular)) in lengths.pairs().zip(factors) {
+            operator.fill_pair(at, lu.matrix());
+            *regular = lu.factor().is_ok();
+        }
+    }
+
+    fn solve(&mut self, lengths: Lengths, u: &mut [f64]) {
+        let factors = self.factors.iter().zip(&self.regular);
+        for (at, (lu, _)) in lengths.pairs().zip(factors).filter(|(_, (_, regular))| **regular) {
+            for (b, x) in self.b.iter_mut().zip(u.chunks_exact(lengths.group)) {
+                *b = Complex64::new(x[at], x[at + 1]);
+            }
+            lu.solve(&mut self.b);
+            for (b, x) in self.b.iter().zip(u.chunks_exact_mut(lengths.group)) {
+                (x[at], x[at + 1]) = (b.re, b.im);
+            }
+        }
+    }
+}
+
 impl KrylovSystem {
-    /// Memory for `n` unknowns in groups, of each of which the first `part` numbers are in the block. A solution has
-    /// this relative residual, or takes more products than `most_products` and fails.
+    /// Memory for `n` unknowns in groups of equal length. `lengths`: that length; how many of its first numbers are in
+    /// the block; and the end of the pairs behind them whose mean coupling is factored. A solution has this relative
+    /// residual, or takes more products than `most_products` and fails.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(n: usize, (group, part): (usize, usize), tolerance: f64, most_products: usize) -> Result<Self> {
-        let order = n / group.max(1) * part;
+    pub fn new(n: usize, lengths: (usize, usize, usize), tolerance: f64, most_products: usize) -> Result<Self> {
+        let (group, part, middle) = lengths;
+        let lengths = Lengths { group, part, middle };
+        let groups = n / group.max(1);
+        let order = groups * part;
         Ok(Self {
             block: DenseSystem::new(order)?,
-            group,
-            part,
+            pairs: Pairs::new(groups, lengths)?,
+            lengths,
             tolerance,
             most_products,
+            products: 0,
             column: try_vec(n, 0.0, CONTEXT)?,
             scales: (1.0, 1.0),
             row: try_vec(n + 1, 0.0, CONTEXT)?,
@@ -52,24 +121,29 @@ impl KrylovSystem {
     }
 
     /// Numbers of the block among those of all groups, the last one, of the parameter, included.
-    fn of_block(v: &[f64], (group, part): (usize, usize)) -> impl Iterator<Item = f64> {
+    fn of_block(v: &[f64], lengths: Lengths) -> impl Iterator<Item = f64> {
         let (u, p) = v.split_at(v.len() - 1);
         let inner = u
-            .chunks_exact(group.max(1))
-            .flat_map(move |y| y[..part].iter().copied());
+            .chunks_exact(lengths.group.max(1))
+            .flat_map(move |y| y[..lengths.part].iter().copied());
         inner.chain(p.iter().copied())
     }
 
     /// v ← M⁻¹ v
-    fn precondition(block: &mut DenseSystem, lengths: (usize, usize), reduced: &mut [f64], v: &mut [f64]) {
+    fn precondition(
+        (block, pairs): (&mut DenseSystem, &mut Pairs),
+        lengths: Lengths,
+        reduced: &mut [f64],
+        v: &mut [f64],
+    ) {
         for (to, from) in reduced.iter_mut().zip(Self::of_block(v, lengths)) {
             *to = from;
         }
         block.solve_by_factors(reduced);
-        let (group, part) = lengths;
-        let (n, unit) = (v.len() - 1, block.unit());
+        let (n, unit, part) = (v.len() - 1, block.unit(), lengths.part);
+        pairs.solve(lengths, &mut v[..n]);
         let solved = reduced.chunks_exact(part.max(1));
-        for (to, from) in v[..n].chunks_exact_mut(group.max(1)).zip(solved) {
+        for (to, from) in v[..n].chunks_exact_mut(lengths.group.max(1)).zip(solved) {
             to[..part].copy_from_slice(&from[..part]);
             for weak in &mut to[part..] {
                 *weak /= unit;
@@ -80,7 +154,7 @@ impl KrylovSystem {
 
     /// Whether the block is the whole matrix.
     fn is_direct(&self) -> bool {
-        self.group == self.part
+        self.lengths.group == self.lengths.part
     }
 }
 
@@ -121,13 +195,14 @@ impl LinearSystem for KrylovSystem {
         let is_direct = self.is_direct();
         let operator = operator(jacobian)?;
         let (matrix, active) = self.block.memory();
-        operator.fill_block(self.part, matrix, active)?;
+        operator.fill_block(self.lengths.part, matrix, active)?;
         if !is_direct {
             operator.keep()?;
+            self.pairs.factor(self.lengths, operator);
         }
-        let lengths = (self.group, self.part);
-        let groups = border.column.chunks_exact(self.group.max(1));
-        let column = groups.flat_map(|y| y[..lengths.1].iter().copied());
+        let lengths = self.lengths;
+        let groups = border.column.chunks_exact(lengths.group.max(1));
+        let column = groups.flat_map(|y| y[..lengths.part].iter().copied());
         self.block
             .set_border(column, border.scales, Self::of_block(border.row, lengths));
         Ok(())
@@ -138,21 +213,25 @@ impl LinearSystem for KrylovSystem {
     }
 
     fn solve(&mut self, jacobian: &mut dyn Jacobian, b: &mut [f64]) -> Result<bool> {
-        let lengths = (self.group, self.part);
-        let (block, reduced) = (&mut self.block, &mut self.reduced);
-        if lengths.0 != lengths.1 {
+        let lengths = self.lengths;
+        self.products = 0;
+        let is_direct = self.is_direct();
+        let (factors, reduced) = ((&mut self.block, &mut self.pairs), &mut self.reduced);
+        if !is_direct {
             let border = (&self.column[..], self.scales, &self.row[..]);
             let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
+            let products = &mut self.products;
             let solved = gmres(b, self.tolerance, self.most_products, |v, out| {
+                *products += 1;
                 preconditioned.copy_from_slice(v);
-                Self::precondition(block, lengths, reduced, preconditioned);
+                Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, preconditioned);
                 product(jacobian, border, scaled, preconditioned, out)
             })?;
             if !solved {
                 return Ok(false);
             }
         }
-        Self::precondition(block, lengths, reduced, b);
+        Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, b);
         Ok(true)
     }
 
@@ -162,6 +241,14 @@ impl LinearSystem for KrylovSystem {
         }
         let border = (&self.column[..], self.scales, &self.row[..]);
         product(jacobian, border, &mut self.scaled, x, out)
+    }
+
+    fn limit_products(&mut self, most: usize) {
+        self.most_products = most;
+    }
+
+    fn products(&self) -> usize {
+        self.products
     }
 
     fn is_positive(&self) -> bool {

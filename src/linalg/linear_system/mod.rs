@@ -6,12 +6,14 @@
 //!
 //! where J = ∂R/∂u belongs to a problem, r = ∂R/∂p is its derivative by the parameter, s_u and s_p are the units of
 //! unknowns and parameter, and t is the row of one further condition. One file a backend: [`dense`] factors the whole
-//! matrix, [`krylov`] iterates with products and factors the block of the strongly coupled unknowns.
+//! matrix, [`krylov`] iterates with products, and factors the block of the strongly coupled unknowns and the mean
+//! coupling of those beyond it.
 
 pub mod dense;
 pub mod krylov;
 
 use crate::error::Result;
+use num_complex::Complex64;
 
 /// The Jacobian J of a problem at the point evaluated last.
 pub trait Jacobian {
@@ -38,6 +40,10 @@ pub trait MatrixFree {
     /// # Errors
     /// `OutOfMemory`.
     fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
+
+    /// Fills the complex matrix, column-major, by which J acts on average on one pair of numbers of each group, taken as
+    /// x[at] + i·x[at + 1]: the part of its 2 × 2 blocks that commutes with i.
+    fn fill_pair(&mut self, at: usize, matrix: &mut [Complex64]);
 
     /// Keeps J as it is at the point evaluated last, for [`Self::multiply`]; the problem may then be evaluated
     /// elsewhere.
@@ -98,6 +104,16 @@ pub trait LinearSystem {
         false
     }
 
+    /// Allows an iteration at most this many products in each solution from now on.
+    fn limit_products(&mut self, most: usize) {
+        let _ = most;
+    }
+
+    /// Number of products that the last solution took.
+    fn products(&self) -> usize {
+        0
+    }
+
     /// Whether the determinant of the factored matrix is positive: that of K for a dense backend, that of its block for
     /// an iteration.
     fn is_positive(&self) -> bool;
@@ -109,6 +125,7 @@ mod tests {
     use super::krylov::KrylovSystem;
     use super::{Border, Jacobian, LinearSystem, MatrixFree};
     use crate::error::{Result, Status};
+    use num_complex::Complex64;
 
     /// A matrix whose unknowns are groups of `group` numbers, of which the later ones couple weakly.
     struct Toy {
@@ -167,6 +184,15 @@ mod tests {
             Ok(())
         }
 
+        fn fill_pair(&mut self, at: usize, matrix: &mut [Complex64]) {
+            let groups = self.n / self.group;
+            for (k, to) in matrix.iter_mut().enumerate() {
+                let (row, column) = (k % groups * self.group + at, k / groups * self.group + at);
+                let a = |i: usize, j: usize| self.matrix[(column + j) * self.n + row + i];
+                *to = 0.5 * Complex64::new(a(0, 0) + a(1, 1), a(1, 0) - a(0, 1));
+            }
+        }
+
         fn keep(&mut self) -> Result<()> {
             self.kept.clone_from(&self.matrix);
             Ok(())
@@ -212,8 +238,9 @@ mod tests {
                 let mut toy = Toy::new(n, group, 0.3);
                 let (gap, dense) = solved(&mut DenseSystem::new(n).unwrap(), &mut toy, scales);
                 assert!(gap < 1e-12, "{gap:e}");
-                for part in [2, group] {
-                    let mut krylov = KrylovSystem::new(n, (group, part), 1e-12, 100).unwrap();
+                for (part, middle) in [(2, 2), (1, 3), (3, 7), (group, group)] {
+                    let lengths = (group, part.min(group), middle.min(group));
+                    let mut krylov = KrylovSystem::new(n, lengths, 1e-12, 200).unwrap();
                     let (gap, x) = solved(&mut krylov, &mut toy, scales);
                     assert!(gap < 1e-11, "{gap:e}");
                     let largest = dense.iter().fold(0.0_f64, |m, x| m.max(x.abs()));

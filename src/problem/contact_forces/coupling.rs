@@ -205,6 +205,30 @@ impl ContactForces<'_> {
         }
     }
 
+    /// Adds G (∂f/∂y − κ), on average over the phase of the motion, to a column of complex numbers: that of a motion in
+    /// harmonic i alone. `flexibility` holds the columns of G, one after each `stride` numbers.
+    pub fn add_mean_coupling(
+        &self,
+        (motion, i): (usize, usize),
+        (flexibility, stride): (&[Complex64], usize),
+        column: &mut [Complex64],
+    ) {
+        let set = self.condensed.set();
+        let (m, at) = (set.packed_len(), set.offset(i));
+        let counts = |(force, _): &(usize, &[f64])| !self.is_eliminated(*force);
+        for (force, block) in self.jacobians.of_motion(motion).filter(counts) {
+            let (by_re, by_im) = (&block[at * m + at..], &block[(at + 1) * m + at..]);
+            let mut change = 0.5 * Complex64::new(by_re[0] + by_im[1], by_re[1] - by_im[0]);
+            if force == motion {
+                change -= self.condensed.kappa(force, i);
+            }
+            let g = &flexibility[force * stride..];
+            for (x, g) in column.iter_mut().zip(g) {
+                *x += g * change;
+            }
+        }
+    }
+
     /// Adds Re(g·∂w/∂y) of the force of coordinate `force` in harmonic i to one row of a Jacobian with `n` rows.
     pub fn couple_scalar(&self, i: usize, (row, force): (usize, usize), g: Complex64, jacobian: &mut [f64], n: usize) {
         let set = self.condensed.set();

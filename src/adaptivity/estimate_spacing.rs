@@ -1,0 +1,150 @@
+//! Spacing of the error estimates along a branch that keeps its harmonics.
+//!
+//! Between two estimates the error follows the share of the highest carried harmonics in the motion,
+//!
+//! > η ≈ η₀ t/t₀,  t = ‖Y_{>H/2}‖/‖Y‖,
+//!
+//! with η₀ and t₀ at the point estimated last. Each estimate checks this rule. While it holds within a factor of two, the
+//! spacing doubles; where it does not, the next point is estimated again. A point whose error would come near the
+//! tolerance, or whose share changes much, is estimated in any case.
+
+use crate::fourier::HarmonicSet;
+use crate::linalg::norm;
+
+/// Largest ratio of an error to its prediction, either way, for which the spacing grows.
+const HOLDS: f64 = 2.0;
+
+/// Largest spacing, where errors are known and where they are not.
+const MOST: usize = 8;
+const MOST_UNKNOWN: usize = 32;
+
+/// Factor between a predicted error and the largest for which no estimate is made.
+const SAFETY: f64 = 1.5;
+
+/// Ratio of the shares of two points beyond which nothing is predicted.
+const ALIKE: f64 = 5.0;
+
+/// Share of the harmonics above half of the carried ones in packed motions; 0 where none is below.
+pub(crate) fn share_of_highest(set: &HarmonicSet, motion: &[f64]) -> f64 {
+    let numbers = set.numbers();
+    let highest = numbers.last().copied().unwrap_or(0);
+    let first = numbers.partition_point(|&h| 2 * h <= highest);
+    if !numbers[..first].iter().any(|&h| h > 0) || first == numbers.len() {
+        return 0.0;
+    }
+    let from = set.offset(first);
+    let signals = motion.chunks_exact(set.packed_len());
+    let above = signals.map(|y| norm(&y[from..])).fold(0.0, f64::hypot);
+    above / norm(motion)
+}
+
+/// Estimate made last.
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    error: f64,
+    share: f64,
+    level: usize,
+}
+
+/// Decides which points are estimated.
+#[derive(Debug, Default)]
+pub(crate) struct EstimateSpacing {
+    known: Option<Known>,
+    spacing: usize,
+    /// Points since that estimate.
+    since: usize,
+}
+
+impl EstimateSpacing {
+    /// The factor from the error estimated last to that of a point with this share of the highest harmonics; `None`
+    /// where the point is to be estimated. Errors up to `largest` need no estimate.
+    pub fn factor(&mut self, level: usize, share: f64, largest: f64) -> Option<f64> {
+        let known = self.known.filter(|known| known.level == level)?;
+        if self.since + 1 >= self.spacing {
+            return None;
+        }
+        let factor = if known.error.is_nan() { 1.0 } else { share / known.share };
+        let alike = (1.0 / ALIKE..=ALIKE).contains(&factor);
+        if !alike || SAFETY * factor * known.error > largest {
+            return None;
+        }
+        self.since += 1;
+        Some(factor)
+    }
+
+    /// Notes an estimate: its error, NaN where it is unknown.
+    pub fn note(&mut self, level: usize, share: f64, error: f64) {
+        let before = self.known.filter(|known| known.level == level);
+        let (holds, most) = match before {
+            None => (false, MOST),
+            Some(known) if error.is_nan() || known.error.is_nan() => {
+                (error.is_nan() && known.error.is_nan(), MOST_UNKNOWN)
+            }
+            Some(known) => {
+                let ratio = error * known.share / (known.error * share);
+                ((1.0 / HOLDS..=HOLDS).contains(&ratio), MOST)
+            }
+        };
+        self.spacing = if holds { (2 * self.spacing).min(most) } else { 1 };
+        if error.is_nan() {
+            self.spacing = self.spacing.max(2);
+        }
+        self.since = 0;
+        self.known = (error.is_nan() || (error > 0.0 && share > 0.0)).then_some(Known { error, share, level });
+    }
+
+    /// Forgets the estimate made last: the next point is estimated.
+    pub fn forget(&mut self) {
+        self.known = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::EstimateSpacing;
+
+    /// Estimated points among `count` ones whose error follows `error`.
+    fn estimated(count: usize, error: impl Fn(usize) -> f64) -> Vec<usize> {
+        let mut spacing = EstimateSpacing::default();
+        let mut made = Vec::new();
+        for i in 0..count {
+            if spacing.factor(3, 1e-3, 1e-3).is_none() {
+                made.push(i);
+                spacing.note(3, 1e-3, error(i));
+            }
+        }
+        made
+    }
+
+    #[test]
+    fn estimates_become_rare_while_they_are_predicted() {
+        assert_eq!(estimated(20, |_| 1e-4), [0, 1, 3, 7, 15]);
+    }
+
+    #[test]
+    fn a_prediction_that_failed_is_checked_at_the_next_point() {
+        let made = estimated(20, |i| if i < 5 { 1e-4 } else { 5e-4 });
+        assert_eq!(made, [0, 1, 3, 7, 8, 10, 14]);
+    }
+
+    #[test]
+    fn points_near_the_tolerance_are_estimated_each() {
+        assert_eq!(estimated(5, |_| 8e-4), [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn an_unknown_error_is_not_asked_for_at_each_point() {
+        assert!(estimated(100, |_| f64::NAN).len() < 10);
+    }
+
+    #[test]
+    fn other_harmonics_are_estimated_anew() {
+        let mut spacing = EstimateSpacing::default();
+        for _ in 0..3 {
+            spacing.note(3, 1e-3, 1e-4);
+        }
+        assert!(spacing.factor(4, 1e-3, 1e-3).is_none());
+        assert!(spacing.factor(3, 1e-2, 1e-3).is_none());
+        assert!(spacing.factor(3, 1e-3, 1e-3).is_some());
+    }
+}

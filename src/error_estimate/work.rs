@@ -1,0 +1,218 @@
+//! Work of an estimate in operations and bytes, counted before it is spent, and the most that an estimate may take: a
+//! multiple of the solution of the point itself.
+//!
+//! Only the leading terms count. An operation is one of a simple loop; those of a factorisation in blocks are five
+//! times as fast, and an event of a contact law takes hundreds.
+
+use crate::aft::Evaluator;
+use crate::condense::Condensed;
+use crate::error_estimate::cutoff_harmonic::affordable;
+use crate::error_estimate::estimate::{MOST_EXTENDED, extended_options};
+use crate::options::SolverOptions;
+
+/// Least number of Newton iterations of a point that is solved without a neighbour.
+const ITERATIONS: usize = 12;
+
+/// Work of an estimate as a multiple of that of such a point.
+const MULTIPLE: f64 = 4.0;
+
+/// Operations that every estimate may take: about as many as the set-up of a small model.
+const LEAST: f64 = 3e6;
+
+/// Bytes that every estimate may take, and as a multiple of those of the point.
+const BYTES: (f64, f64) = (100e6, 4.0);
+
+/// Tables of the flexibility, per harmonic, whose time the preparation and the solution of such a point take.
+const TABLES: f64 = 6.0;
+
+/// Unknowns of a structure that one of them couples with in the factors.
+const WIDTH: f64 = 300.0;
+
+/// Operations of a law for each direction, for each number of its motion, and for each number of its Jacobian.
+const OF_LAW: (f64, f64, f64) = (8e3, 3e2, 12.0);
+
+/// Operations of a simple loop that take the time of one of a factorisation.
+const OF_FACTORS: f64 = 0.2;
+
+/// Sizes of a problem from which its work follows.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sizes {
+    /// Relative coordinates.
+    coordinates: f64,
+    /// Carried harmonics.
+    harmonics: f64,
+    /// Length of a packed signal.
+    packed: f64,
+    /// Blocks ∂f/∂y of all laws, and directions.
+    blocks: f64,
+    directions: f64,
+    /// Operations of sampled laws in one evaluation.
+    sampling: f64,
+    /// Numbers in the tables of a sampled law.
+    tables: f64,
+    /// Operations of the flexibility of the structure in one harmonic at one frequency.
+    flexibility: f64,
+}
+
+impl Sizes {
+    /// The sizes of a condensed model whose laws are sampled `samples` times, 0: evaluated exactly.
+    pub fn new(condensed: &Condensed, samples: usize) -> Self {
+        let highest = condensed.set().numbers().last().copied().unwrap_or(0);
+        Self::extended(condensed, highest, samples)
+    }
+
+    /// The sizes of the same model with the harmonics up to another one.
+    pub fn extended(condensed: &Condensed, highest: usize, samples: usize) -> Self {
+        let set = condensed.set();
+        let (base, step) = (set.base(), set.base() * set.stride());
+        let mean = usize::from(set.has_mean());
+        let pairs = if highest < base { 0 } else { (highest - base) / step + 1 };
+        let packed = (2 * pairs + mean) as f64;
+        let (mut blocks, mut directions, mut sampled, mut tables) = (0.0, 0.0, 0.0, 0.0_f64);
+        for assembled in condensed.laws() {
+            let d = assembled.coordinates.len() as f64;
+            let count = Evaluator::samples_of(&*assembled.law, highest / base, samples) as f64;
+            blocks += d * d;
+            directions += d;
+            sampled += d * d * count;
+            tables = tables.max(d * count);
+        }
+        let (ndof, coordinates) = (condensed.ndof() as f64, condensed.coordinates() as f64);
+        let width = ndof.min(WIDTH);
+        Self {
+            coordinates,
+            harmonics: (pairs + mean) as f64,
+            packed,
+            blocks,
+            directions,
+            sampling: OF_SAMPLE * sampled * packed,
+            tables: tables * packed,
+            flexibility: OF_FACTORS * ndof * width * (8.0 / 3.0 * width + 8.0 * coordinates),
+        }
+    }
+
+    /// Length of a packed signal.
+    pub fn packed(&self) -> f64 {
+        self.packed
+    }
+
+    /// Unknowns.
+    pub fn unknowns(&self) -> f64 {
+        self.coordinates * self.packed
+    }
+
+    /// Operations of one evaluation of the residual with the contact Jacobians.
+    pub fn evaluation(&self) -> f64 {
+        let (direction, number, of_jacobian) = OF_LAW;
+        self.directions * (direction + number * self.packed)
+            + of_jacobian * self.blocks * self.packed * self.packed
+            + self.sampling
+            + 8.0 * self.coordinates * self.coordinates * self.harmonics
+    }
+
+    /// Operations of the factors of the block between the first `packed` numbers of each coordinate, and of those of
+    /// `pairs` numbers by themselves.
+    pub fn factors(&self, packed: f64, pairs: f64) -> f64 {
+        let order = self.coordinates * packed;
+        let fill = 8.0 * self.blocks * self.coordinates * packed * packed;
+        fill + OF_FACTORS * 2.0 / 3.0 * order.powi(3) + 8.0 / 3.0 * pairs * self.coordinates.powi(3)
+    }
+
+    /// Operations of one product of an iteration with such a preconditioner, `before` products made before.
+    pub fn product(&self, packed: f64, pairs: f64) -> f64 {
+        let order = self.coordinates * packed;
+        let couple = 8.0 * self.coordinates * self.coordinates * (self.harmonics + pairs);
+        2.0 * self.blocks * self.packed * self.packed + couple + 2.0 * order * order + BASIS * self.unknowns()
+    }
+
+    /// Operations of the flexibility in all harmonics at a frequency.
+    pub fn flexibility(&self) -> f64 {
+        self.harmonics * self.flexibility
+    }
+
+    /// Operations of one Newton iteration with the whole matrix.
+    fn iteration(&self) -> f64 {
+        self.evaluation() + self.factors(self.packed, 0.0)
+    }
+
+    /// Whether several Newton iterations with the whole matrix cost no more than any estimate may.
+    pub fn is_cheap(&self) -> bool {
+        ITERATIONS as f64 * self.iteration() <= LEAST
+    }
+
+    /// Bytes of the contact Jacobians, with their copies, of the tables of samples, and of the factors.
+    pub fn bytes(&self, packed: f64, pairs: f64) -> f64 {
+        let order = self.coordinates * packed;
+        let jacobians = 3.0 * self.blocks * self.packed * self.packed;
+        8.0 * (jacobians + 2.0 * self.tables + 2.0 * order * order + 2.0 * pairs * self.coordinates * self.coordinates)
+    }
+}
+
+/// Operations for each sample and number of a packed signal.
+const OF_SAMPLE: f64 = 4.0;
+
+/// Operations for each unknown by which a vector is made orthogonal to those before.
+const BASIS: f64 = 100.0;
+
+/// The work that an estimate has left.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Work {
+    operations: f64,
+    bytes: f64,
+}
+
+impl Work {
+    /// The work for a point of these sizes, whose solution without a neighbour takes so many Newton iterations.
+    pub fn of_point(point: &Sizes, iterations: usize) -> Self {
+        Self {
+            operations: LEAST
+                + MULTIPLE * (iterations.max(ITERATIONS) as f64 * point.iteration() + TABLES * point.flexibility()),
+            bytes: BYTES.0 + BYTES.1 * point.bytes(point.packed, 0.0),
+        }
+    }
+
+    /// Whether a problem of these bytes fits.
+    pub fn fits(&self, bytes: f64) -> bool {
+        bytes <= self.bytes
+    }
+
+    /// The highest harmonic to which a point can be extended such that the work suffices for `times` the operations.
+    pub fn highest(
+        &self,
+        point: &Condensed,
+        options: &SolverOptions,
+        times: f64,
+        operations: impl Fn(&Sizes) -> f64,
+    ) -> usize {
+        let base = point.set().base();
+        let fits = |highest: usize| {
+            let sizes = Sizes::extended(point, highest, extended_options(options, highest).samples);
+            self.fits(2.0 * sizes.bytes(0.0, 0.0))
+                && sizes.flexibility() + times * operations(&sizes) <= self.operations
+        };
+        let (mut low, mut high) = (0, affordable(point, MOST_EXTENDED) / base);
+        while high > low {
+            let middle = low + (high - low).div_ceil(2);
+            if fits(middle * base) {
+                low = middle;
+            } else {
+                high = middle - 1;
+            }
+        }
+        low * base
+    }
+
+    /// Takes operations; `false`, and nothing taken, where fewer are left.
+    pub fn spend(&mut self, operations: f64) -> bool {
+        let affordable = operations <= self.operations;
+        if affordable {
+            self.operations -= operations;
+        }
+        affordable
+    }
+
+    /// The operations left.
+    pub fn left(&self) -> f64 {
+        self.operations
+    }
+}
