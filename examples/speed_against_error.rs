@@ -68,14 +68,12 @@ fn selected(systems: &[System], arguments: impl IntoIterator<Item = OsString>) -
     let mut letters = String::new();
     for argument in arguments {
         let known = |text: &str| text.chars().all(|c| systems.iter().any(|system| system.key == c));
-        match argument.to_str().filter(|text| !text.is_empty() && known(text)) {
-            Some(text) => letters.push_str(text),
-            None => {
-                let keys: String = systems.iter().map(|system| system.key).collect();
-                let argument = argument.display();
-                return Err(format!("unknown argument {argument}; letters of {keys} select systems"));
-            }
-        }
+        let Some(text) = argument.to_str().filter(|text| !text.is_empty() && known(text)) else {
+            let keys: String = systems.iter().map(|system| system.key).collect();
+            let argument = argument.display();
+            return Err(format!("unknown argument {argument}; letters of {keys} select systems"));
+        };
+        letters.push_str(text);
     }
     Ok(letters)
 }
