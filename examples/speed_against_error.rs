@@ -9,8 +9,10 @@
 //!
 //! `cargo run --release --example speed_against_error` computes all systems, letters after `--` select some of
 //! them. Tables go to the screen, CSV, SVG and PNG to target/speed_against_error/. Exit status: 0 done, 1 a
-//! computation or a file failed.
+//! computation or a file failed, 2 an argument is unknown; nothing is computed then.
 
+use std::ffi::OsString;
+use std::fmt::Display;
 use std::io::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -57,16 +59,34 @@ fn ways(system: &System) -> Vec<Way> {
     fixed.chain(sampled).chain(automatic).collect()
 }
 
-fn run() -> Done {
+/// The letters of the arguments, each that of a system.
+///
+/// # Errors
+///
+/// A sentence naming the argument that is none.
+fn selected(systems: &[System], arguments: impl IntoIterator<Item = OsString>) -> Result<String, String> {
+    let mut letters = String::new();
+    for argument in arguments {
+        let known = |text: &str| text.chars().all(|c| systems.iter().any(|system| system.key == c));
+        let Some(text) = argument.to_str().filter(|text| !text.is_empty() && known(text)) else {
+            let keys: String = systems.iter().map(|system| system.key).collect();
+            let argument = argument.display();
+            return Err(format!("unknown argument {argument}; letters of {keys} select systems"));
+        };
+        letters.push_str(text);
+    }
+    Ok(letters)
+}
+
+fn run(systems: Vec<System>, selected: &str) -> Done {
     // Cargo sets this variable for a program that it runs; without it the current folder serves.
     let root = std::env::var_os("CARGO_MANIFEST_DIR")
         .map(PathBuf::from)
         .unwrap_or_default();
     let folder = root.join("target/speed_against_error");
-    let selected: String = std::env::args().skip(1).collect();
     let mut screen = std::io::stdout().lock();
     let mut all = Vec::new();
-    for system in systems::all()? {
+    for system in systems {
         if !selected.is_empty() && !selected.contains(system.key) {
             continue;
         }
@@ -88,10 +108,25 @@ fn run() -> Done {
 }
 
 fn main() -> ExitCode {
-    match run() {
+    let failed = |error: &dyn Display| eprintln!("speed_against_error: {error}");
+    let systems = match systems::all() {
+        Ok(systems) => systems,
+        Err(error) => {
+            failed(&error);
+            return ExitCode::FAILURE;
+        }
+    };
+    let selected = match selected(&systems, std::env::args_os().skip(1)) {
+        Ok(selected) => selected,
+        Err(message) => {
+            failed(&message);
+            return ExitCode::from(2);
+        }
+    };
+    match run(systems, &selected) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("speed_against_error: {error}");
+            failed(&error);
             ExitCode::FAILURE
         }
     }

@@ -132,6 +132,11 @@ typedef enum {
   HBVIB_STOPPED_LEFT_RANGE = 6,
   /// A force callback failed; hbvib_last_error has the code that it returned.
   HBVIB_STOPPED_CALLBACK = 7,
+  /// An undamped resonance lies in the range, where the response has no bound; the amplitude there
+  /// is what round-off makes of it. hbvib_last_error names the frequency.
+  HBVIB_STOPPED_UNBOUNDED = 8,
+  /// No force acts on the model: its response is zero, or the static motion under preloads.
+  HBVIB_STOPPED_NO_FORCE = 9,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.

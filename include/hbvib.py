@@ -58,6 +58,10 @@ class Status(enum.IntEnum):
     STOPPED_STALLED = 5  #: Round-off kept the residual above tol_residual.
     STOPPED_LEFT_RANGE = 6  #: The branch turned back, left the range where it began and did not come back.
     STOPPED_CALLBACK = 7  #: A force callback failed; hbvib_last_error has the code that it returned.
+    #: An undamped resonance lies in the range, where the response has no bound; the amplitude there is what round-off
+    #: makes of it.
+    STOPPED_UNBOUNDED = 8
+    STOPPED_NO_FORCE = 9  #: No force acts on the model: its response is zero, or the static motion under preloads.
     E_NULL = -1  #: A required pointer is NULL.
     E_ARGUMENT = -2  #: A value lies outside its range.
     E_DIMENSION = -3  #: A count or length does not fit.

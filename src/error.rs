@@ -27,6 +27,11 @@ pub enum Status {
     StoppedLeftRange = 6,
     /// A callback of the caller failed; the points found so far are kept.
     StoppedCallback = 7,
+    /// The whole range was covered, but an undamped resonance lies in it, at which the response has no bound; all points
+    /// are kept, and the amplitude there is what round-off makes of it.
+    StoppedUnbounded = 8,
+    /// The whole range was covered, but no force acts on the model, so that it does not vibrate; all points are kept.
+    StoppedNoForce = 9,
     /// A required pointer is NULL.
     Null = -1,
     /// An argument has a value outside its range.
@@ -76,6 +81,8 @@ impl Status {
             Self::StoppedStalled => c"HBVIB_STOPPED_STALLED",
             Self::StoppedLeftRange => c"HBVIB_STOPPED_LEFT_RANGE",
             Self::StoppedCallback => c"HBVIB_STOPPED_CALLBACK",
+            Self::StoppedUnbounded => c"HBVIB_STOPPED_UNBOUNDED",
+            Self::StoppedNoForce => c"HBVIB_STOPPED_NO_FORCE",
             Self::Null => c"HBVIB_E_NULL",
             Self::Argument => c"HBVIB_E_ARGUMENT",
             Self::Dimension => c"HBVIB_E_DIMENSION",
@@ -109,7 +116,7 @@ impl Status {
             }
             Self::StoppedMaxPoints => "max_points was reached; the points found so far are kept; raise max_points",
             Self::StoppedMaxHarmonics => {
-                "some points miss the tolerance with max_harmonics, or their error is unknown; all points are kept; raise max_harmonics"
+                "some points miss the tolerance with max_harmonics, or their error is unknown; all points are kept; raise max_harmonics, or samples for sampled laws"
             }
             Self::StoppedStalled => {
                 "round-off stopped the residual above tol_residual; all points are kept; raise tol_residual"
@@ -118,12 +125,18 @@ impl Status {
                 "the branch turned back and left the range where it began for good; all points are kept; start elsewhere or from the other end"
             }
             Self::StoppedCallback => "a callback of the caller failed; the points found so far are kept",
+            Self::StoppedUnbounded => {
+                "the response has no bound at an undamped resonance within the range; all points are kept; add damping"
+            }
+            Self::StoppedNoForce => {
+                "no force acts on the model: its response is zero, or the static motion under preloads; all points are kept; add a force"
+            }
             _ => "",
         }
     }
 
     /// All values, for tables and for the conversion of an integer into a status.
-    pub const ALL: [Self; 25] = [
+    pub const ALL: [Self; 27] = [
         Self::Ok,
         Self::StoppedByCaller,
         Self::StoppedStepTooSmall,
@@ -132,6 +145,8 @@ impl Status {
         Self::StoppedStalled,
         Self::StoppedLeftRange,
         Self::StoppedCallback,
+        Self::StoppedUnbounded,
+        Self::StoppedNoForce,
         Self::Null,
         Self::Argument,
         Self::Dimension,

@@ -67,6 +67,9 @@ pub(crate) struct BranchRecorder<'a> {
     stalled: bool,
 }
 
+/// Change of forces with half the samples over their error: samples are of second order.
+const SAMPLING: f64 = 3.0;
+
 impl<'a> BranchRecorder<'a> {
     /// An empty branch whose points may miss a tolerance.
     pub fn new(branch: Branch, tolerance: f64) -> Self {
@@ -101,6 +104,7 @@ impl<'a> BranchRecorder<'a> {
     /// Stores a point of the curve.
     pub fn record(&mut self, record: &Record<'_>, stalled: bool) -> Result<()> {
         self.stalled |= stalled;
+        self.missed |= self.tolerance > 0.0 && record.sampling_error > SAMPLING * self.tolerance;
         self.branch.push_curve(record)
     }
 

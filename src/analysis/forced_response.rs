@@ -14,10 +14,14 @@ use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
+use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
+
+/// Size of a first motion, over that under linear contacts, above which its bound is checked.
+const LARGE: f64 = 1e6;
 
 /// Follows the periodic response of `model` to its forces from `range.omega_start` to `range.omega_stop` by harmonic
 /// balance and arc-length continuation.
@@ -66,6 +70,7 @@ fn follow(
         levels.first(solver.harmonics)
     };
     let resolution = levels.at(level)?;
+    let length = resolution.condensed.length();
     let response_dof = if let Some(dof) = solver.response_dof {
         dof
     } else {
@@ -100,6 +105,12 @@ fn follow(
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {
         Ok(First { point, way }) => {
+            // Round-off may hide the imbalance of a large motion, but not that forces exceed what contacts take.
+            if norm(point.unknowns()) > LARGE
+                && let Some(reason) = unbounded_response::reason(model, range.omega_start, interrupt)?
+            {
+                return Err(reason);
+            }
             hooks.log(LogLevel::Info, way.sentence());
             response.note_first(&point);
             tracer.trace(&mut response, point, hooks)
@@ -120,7 +131,16 @@ fn follow(
             Err(e) => ending.status = e.status,
         }
     }
-    response.finish(model, solver, &ending, tracer.estimates())
+    if ending.status == Status::Ok && forced_harmonics(model)?.is_empty() {
+        ending.status = Status::StoppedNoForce;
+    }
+    let mut branch = response.finish(model, solver, &ending, tracer.estimates())?;
+    if branch.status() == Status::Ok
+        && let Some(reason) = unbounded_response::in_branch(&branch, length)
+    {
+        branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
+    }
+    Ok(branch)
 }
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and

@@ -57,6 +57,7 @@ pub fn nonlinear_mode(
     solver.check()?;
     let sectors = model.structure().sectors();
     range.check(model.ndof(), model.contacts().len(), sectors)?;
+    model.check_matrices(true)?;
     if solver.harmonics == 0 {
         return fail!(Argument, "harmonics = 0, a nonlinear mode needs at least 1");
     }

@@ -27,5 +27,6 @@ pub use crate::time_integration::TimeResponse;
 /// `OutOfMemory`.
 pub fn time_response(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
     options.check(model.ndof())?;
+    model.check_matrices(false)?;
     solve(model, options, hooks)
 }

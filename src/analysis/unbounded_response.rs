@@ -5,6 +5,29 @@
 use crate::error::{Error, Result, Status};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::results::Branch;
+
+/// Amplitude, over the size of the linear motion at the start of the range, above which it is the round-off of an
+/// undamped resonance: a damping ratio of 1e-12 reaches half of this.
+const UNBOUNDED: f64 = 1e12;
+
+/// Reason why the response on a branch has no bound: its highest point is an undamped resonance. `length` is the size
+/// of the linear motion at the start of the range.
+pub(super) fn in_branch(branch: &Branch, length: f64) -> Option<Error> {
+    let peaks = branch.peaks();
+    let highest = peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))?;
+    let (omega, amplitude) = (highest.omega, highest.amplitude);
+    if amplitude / length <= UNBOUNDED {
+        return None;
+    }
+    Some(Error::new(
+        Status::NoBoundedSolution,
+        format_args!(
+            "the response has no bound at {omega}: an undamped resonance, whose amplitude {amplitude:.6e} is what \
+             round-off makes of it; all points are kept; add damping"
+        ),
+    ))
+}
 
 /// Reason why there is no solution at an angular frequency, if it is known. An error in the search for it is
 /// ignored.

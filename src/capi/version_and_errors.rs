@@ -59,6 +59,11 @@ pub enum hbvib_status_code {
     HBVIB_STOPPED_LEFT_RANGE = 6,
     /// A force callback failed; hbvib_last_error has the code that it returned.
     HBVIB_STOPPED_CALLBACK = 7,
+    /// An undamped resonance lies in the range, where the response has no bound; the amplitude there
+    /// is what round-off makes of it. hbvib_last_error names the frequency.
+    HBVIB_STOPPED_UNBOUNDED = 8,
+    /// No force acts on the model: its response is zero, or the static motion under preloads.
+    HBVIB_STOPPED_NO_FORCE = 9,
     /// A required pointer is NULL.
     HBVIB_E_NULL = -1,
     /// A value lies outside its range.
@@ -111,6 +116,8 @@ same!(
     HBVIB_STOPPED_STALLED = StoppedStalled,
     HBVIB_STOPPED_LEFT_RANGE = StoppedLeftRange,
     HBVIB_STOPPED_CALLBACK = StoppedCallback,
+    HBVIB_STOPPED_UNBOUNDED = StoppedUnbounded,
+    HBVIB_STOPPED_NO_FORCE = StoppedNoForce,
     HBVIB_E_NULL = Null,
     HBVIB_E_ARGUMENT = Argument,
     HBVIB_E_DIMENSION = Dimension,

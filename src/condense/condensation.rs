@@ -13,9 +13,8 @@ use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
 use crate::condense::harmonic_block::{Artificial, harmonic_block};
-use crate::condense::relative_coordinates::{
-    AssembledDirection, assign_coordinates, raise_for_springs, relative_share,
-};
+use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
+use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::contact::Contact;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
@@ -115,6 +114,7 @@ impl Condensed {
             blocks: Vec::new(),
             laws: Vec::new(),
             stiffness: Vec::new(),
+            reference_stiffness: Vec::new(),
             can_stick: Vec::new(),
             preloaded: false,
             reference: Reference::Complex,
@@ -134,6 +134,7 @@ impl Condensed {
         mode: Option<(DampingForm, &[Complex64])>,
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {
+        model.check_matrices(mode.is_some())?;
         let contact_classes = ContactClasses::new(model)?;
         let active = &contact_classes.active;
         let mut odd = true;
@@ -155,14 +156,16 @@ impl Condensed {
             stiffness[at.coordinate] += contact.stiffness(at.direction);
             can_stick[at.coordinate] &= contact.may_stick();
         }
-        raise_for_springs(
+        let structural = structural_stiffness(
             model,
             omega,
             &set,
             &contact_classes.never_slipping,
             &assembled,
-            &mut stiffness,
+            representatives.len(),
         )?;
+        raise_for_springs(model, &assembled, &structural, &mut stiffness);
+        let reference_stiffness = reference_stiffness(&stiffness, &structural)?;
         let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
         let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
@@ -172,14 +175,17 @@ impl Condensed {
         };
         let mut share = try_vec(representatives.len(), 1.0, "the contacts")?;
         if let Some((_, shape)) = mode {
-            for (share, &contact) in share.iter_mut().zip(&representatives) {
-                *share = relative_share(model, contact, shape);
+            for (c, share) in share.iter_mut().enumerate() {
+                let of_contact = relative_share(model, representatives[c], shape);
+                // A reference below the stiffness of the contact is a share of it already.
+                *share = (of_contact * (stiffness[c] / reference_stiffness[c].max(f64::MIN_POSITIVE))).min(1.0);
             }
         }
         let mut blocks = Vec::new();
         for (i, &number) in set.numbers().iter().enumerate() {
             interrupt.part(Phase::Condensation, i, set.numbers().len())?;
-            let kappa = |c: usize| reference.kappa(stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
+            let kappa =
+                |c: usize| reference.kappa(reference_stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
             let mut block = harmonic_block(model, number, (&contact_classes, &representatives), kappa, interrupt)?;
             block.artificial = match mode {
                 None => Artificial::None,
@@ -198,6 +204,7 @@ impl Condensed {
             blocks,
             laws: Vec::new(),
             stiffness,
+            reference_stiffness,
             can_stick,
             preloaded: model.contacts().iter().any(Contact::is_preloaded),
             reference,

@@ -49,9 +49,10 @@ pub struct Condensed {
     pub(super) length: f64,
     pub(super) blocks: Vec<HarmonicBlock>,
     pub(super) laws: Vec<AssembledLaw>,
-    /// Stiffness per coordinate that defines κ: the sum of kt of its contacts, or more if one is a spring with
-    /// growing stiffness.
+    /// Stiffness per coordinate: the sum of kt of its contacts, or more if one is a spring with growing stiffness.
     pub(super) stiffness: Vec<f64>,
+    /// Stiffness per coordinate that defines κ: the same, or less where contacts are near-rigid.
+    pub(super) reference_stiffness: Vec<f64>,
     /// All laws of a coordinate can stick, as friction does.
     pub(super) can_stick: Vec<bool>,
     pub(super) preloaded: bool,
@@ -135,13 +136,19 @@ impl Condensed {
     pub fn kappa(&self, coordinate: usize, i: usize) -> Complex64 {
         let number = self.blocks[i].number;
         let share = if number == 1 { self.share[coordinate] } else { 1.0 };
-        self.reference.kappa(self.stiffness[coordinate], number) * share
+        self.reference.kappa(self.reference_stiffness[coordinate], number) * share
     }
 
-    /// Stiffness of a coordinate that defines κ.
+    /// Stiffness of the contacts of a coordinate.
     #[must_use]
     pub fn stiffness(&self, coordinate: usize) -> f64 {
         self.stiffness[coordinate]
+    }
+
+    /// Whether the contacts of a coordinate are so stiff that κ is below their stiffness.
+    #[must_use]
+    pub fn is_near_rigid(&self, coordinate: usize) -> bool {
+        self.reference_stiffness[coordinate] < self.stiffness[coordinate]
     }
 
     /// Whether a coordinate is eliminated from Newton's equations in its stuck or closed state.
@@ -149,7 +156,7 @@ impl Condensed {
     /// Its reference stiffness is then that of the contact.
     #[must_use]
     pub fn may_be_eliminated(&self, coordinate: usize) -> bool {
-        self.can_stick[coordinate] && self.reference == Reference::Stuck
+        self.can_stick[coordinate] && self.reference == Reference::Stuck && !self.is_near_rigid(coordinate)
     }
 
     /// Whether a contact has a static force, so that the static solution is not zero.

@@ -11,6 +11,7 @@ pub mod harmonic_block;
 pub mod modal_flexibility;
 mod model_cache;
 mod reduction;
+mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;

@@ -1,11 +1,8 @@
 //! The relative coordinates: contacts between the same two degrees of freedom share one.
 
 use crate::error::{Result, try_push, try_vec};
-use crate::fourier::HarmonicSet;
 use crate::model::Model;
 use crate::model::spring::{along, relative_row};
-use crate::model::spring_stiffness::Wave;
-use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
 /// A direction of an active contact, and its relative coordinate.
@@ -60,35 +57,6 @@ pub(super) fn assign_coordinates(
         assembled[i].coordinate = representatives.len() - 1;
     }
     Ok((assembled, representatives))
-}
-
-/// Raises the stiffness of coordinates with springs whose stiffness grows and may be zero at zero motion, to that
-/// of the structure at their degrees of freedom, so that κ moves the poles whatever kt is. For a structure without
-/// stiffness of its own the inertia at `omega` sets the size.
-pub(super) fn raise_for_springs(
-    model: &Model,
-    omega: f64,
-    set: &HarmonicSet,
-    never_slipping: &[usize],
-    assembled: &[AssembledDirection],
-    stiffness: &mut [f64],
-) -> Result<()> {
-    let is_spring = |p: &&AssembledDirection| model.contacts()[p.contact].is_spring();
-    if !assembled.iter().any(|p| is_spring(&p)) {
-        return Ok(());
-    }
-    let lowest = set.numbers().first().copied().unwrap_or(0);
-    let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
-    let k = model.sprung_stiffness(Wave::Harmonic(lowest), stuck)?;
-    let m = model.structure().wave_matrix(MatrixKind::Mass, lowest)?;
-    for at in assembled.iter().filter(is_spring) {
-        let direction = model.contacts()[at.contact].direction(at.direction);
-        for &(p, _) in direction.a.iter().chain(&direction.b).flatten() {
-            let size = k.get(p, p).norm().max(omega * omega * m.get(p, p).norm());
-            stiffness[at.coordinate] = stiffness[at.coordinate].max(size);
-        }
-    }
-    Ok(())
 }
 
 /// Relative motion at a contact over the motions of its sides, 0 .. 1.

@@ -1,5 +1,7 @@
 //! Constants of a contact in the caller's units, as its law reads them.
 
+use crate::error::{Result, fail};
+
 /// Constants of a contact; see [`Contact`](crate::contact::Contact) for their meaning.
 #[derive(Clone, Copy, Debug)]
 pub struct Constants {
@@ -44,6 +46,20 @@ impl Constants {
     pub fn load(&self) -> f64 {
         self.preload - self.kn * self.gap
     }
+}
+
+/// Refuses a contact without the stiffness that its force needs.
+///
+/// # Errors
+/// `Argument`, naming the constant.
+pub fn needs_stiffness(name: &str, value: f64) -> Result<()> {
+    if value == 0.0 {
+        return fail!(
+            Argument,
+            "contact: {name} = 0, needs a number > 0: without it the contact has no force"
+        );
+    }
+    Ok(())
 }
 
 /// The role of a contact in the equations of a solver.

@@ -24,6 +24,13 @@ impl Contact {
             if value.is_nan() || (value.is_infinite() && !may_be_infinite) {
                 return fail!(NotFinite, "contact: {name} = {value}, needs a finite number >= 0");
             }
+            if value < 0.0 && name == "preload" && self.kn > 0.0 && self.ask(|law| law.constants().contains(&"gap")) {
+                return fail!(
+                    Argument,
+                    "contact: preload = {value}, needs a number >= 0; gap = {} instead opens the contact as far",
+                    self.gap - value / self.kn
+                );
+            }
             if value < 0.0 {
                 return fail!(Argument, "contact: {name} = {value}, needs a number >= 0");
             }
@@ -58,6 +65,15 @@ impl Contact {
             );
         }
         self.check_places(kind)
+    }
+
+    /// Refuses a contact that has no force at any motion for want of a stiffness. A slip limit of zero is none of
+    /// this: a preload may be changed later.
+    ///
+    /// # Errors
+    /// `Argument`, naming the constant.
+    pub fn check_stiffness(&self) -> Result<()> {
+        self.ask(|law| law.check_stiffness())
     }
 
     /// Refuses degrees of freedom along directions in which the law does not act.

@@ -38,6 +38,14 @@ pub trait ContactLaw {
         Ok(())
     }
 
+    /// Checks that the law has a force at some motion, if its stiffness is the reason why not.
+    ///
+    /// # Errors
+    /// `Argument`, naming the constant.
+    fn check_stiffness(&self) -> Result<()> {
+        Ok(())
+    }
+
     /// Directions (t1, t2, n as 0, 1, 2) in which the law acts, in the order of its motions.
     fn places(&self) -> &'static [usize] {
         &[0]

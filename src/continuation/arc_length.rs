@@ -57,6 +57,9 @@ const STRAIGHT: f64 = 0.5;
 /// Step below which a failure counts as a corner of the branch.
 const CORNER_STEP: f64 = 1e-6;
 
+/// Lengths of the steps that leave a wider corner.
+const WIDE_CORNERS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
 /// Least cosine between the branch beyond a corner and its direction as predicted there.
 const ALONG: f64 = 0.9;
 
@@ -179,7 +182,10 @@ impl Continuation {
                         return self.accept(point, None);
                     }
                     if !self.steps.failed() {
-                        return too_small(failure);
+                        return match self.leave_corner(problem, metric, interrupt)? {
+                            Some(point) => self.accept(point, None),
+                            None => too_small(failure),
+                        };
                     }
                 }
             }
@@ -231,6 +237,23 @@ impl Continuation {
             let along: f64 = self.scratch.iter().zip(&self.row).map(|(a, b)| a * b).sum();
             let near = metric.distance(&point.v, &self.current.v) <= 3.0 * length;
             if along >= ALONG && near && self.overshoot(point.v[n]).is_none() {
+                return Ok(Some(point));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The next point beyond a corner that is wider than [`CORNER_STEP`], or within which rounding hides the direction
+    /// of the branch: that of contacts which are nearly rigid.
+    fn leave_corner(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        for length in WIDE_CORNERS {
+            if let Some(point) = self.turn_corner(problem, metric, length, interrupt)? {
+                self.steps.restart(length);
                 return Ok(Some(point));
             }
         }

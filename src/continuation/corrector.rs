@@ -151,9 +151,14 @@ impl Corrector {
                 return Ok(Outcome::Failed);
             }
             let size = norm(&self.step);
+            if !size.is_finite() {
+                return Ok(Outcome::Failed);
+            }
             let round_off = self.is_round_off(v, metric);
             let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
-            if (residual <= self.tolerance && near) || round_off {
+            // A step that is round-off of all unknowns may still matter to the small motion of a stiff contact.
+            let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
+            if (residual <= self.attainable() && near) || (round_off && !shrinks) {
                 let found = self.finish(problem, v, metric, (iteration, residual), interrupt)?;
                 return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
             }
@@ -189,6 +194,9 @@ impl Corrector {
     /// Evaluates the problem at `v`; `false` where that failed and may succeed elsewhere.
     fn evaluates(&mut self, problem: &mut dyn Problem, v: &[f64]) -> Result<bool> {
         let n = v.len() - 1;
+        if !v.iter().all(|x| x.is_finite()) {
+            return Ok(false);
+        }
         let outcome = problem.evaluate(&v[..n], v[n], &mut self.at);
         self.failure = outcome.err().filter(|e| e.recoverable);
         tolerate(outcome)
@@ -198,6 +206,15 @@ impl Corrector {
     fn relative_residual(&self) -> f64 {
         let r = norm(&self.at.values);
         if r == 0.0 { 0.0 } else { r / self.at.scale }
+    }
+
+    /// The tolerance, or the residual that rounding leaves where that is larger.
+    fn attainable(&self) -> f64 {
+        if self.at.rounding > 0.0 {
+            self.tolerance.max(self.at.rounding / self.at.scale)
+        } else {
+            self.tolerance
+        }
     }
 
     /// Whether the current Newton step is round-off of `v`. The metric does not measure that: its unit may be far
@@ -278,16 +295,22 @@ impl Corrector {
             interrupt.check()?;
             self.trial.copy_from_slice(v);
             metric.add(&mut self.trial, damping, &self.step);
-            let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
-            self.failure = outcome.err().filter(|e| e.recoverable);
-            if tolerate(outcome)? {
+            let finite = self.trial.iter().all(|x| x.is_finite());
+            let evaluated = if finite {
+                let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
+                self.failure = outcome.err().filter(|e| e.recoverable);
+                tolerate(outcome)?
+            } else {
+                false
+            };
+            if evaluated {
                 for (s, r) in self.next.iter_mut().zip(&self.at.values) {
                     *s = -r;
                 }
                 self.next[n] = 0.0;
                 let solved = self.system.solve(problem, &mut self.next, interrupt)?;
                 let shrunk = solved && norm(&self.next) <= (1.0 - 0.25 * damping) * size;
-                if shrunk || self.relative_residual() <= self.tolerance {
+                if shrunk || self.relative_residual() <= self.attainable() {
                     v.copy_from_slice(&self.trial);
                     return Ok(Some(damping));
                 }
@@ -310,16 +333,25 @@ impl Corrector {
         let n = v.len() - 1;
         let mut tangent = try_copy(&self.step, "Newton's method")?;
         metric.unscale(&mut tangent);
-        let (at_residual, correction) = problem.observe(&v[..n], &tangent);
-        metric.add(v, 1.0, &self.step);
+        let (at_residual, mut correction) = problem.observe(&v[..n], &tangent);
+        if residual <= self.tolerance {
+            metric.add(v, 1.0, &self.step);
+        } else {
+            correction = Complex64::ZERO;
+        }
         if !self.tangent(problem, metric, &mut tangent, interrupt)? {
             return Ok(None);
         }
         let (_, slope) = problem.observe(&v[..n], &tangent);
+        // A point with a number that is not finite is no solution, however it came about.
+        let numbers = v.iter().chain(&tangent).all(|x| x.is_finite());
+        if !(numbers && (at_residual + correction).is_finite() && slope.is_finite()) {
+            return Ok(None);
+        }
         Ok(Some(Corrected {
             iterations,
             residual,
-            stalled: residual > self.tolerance,
+            stalled: residual > self.attainable(),
             amplitude: at_residual + correction,
             slope,
             tangent,

@@ -60,6 +60,11 @@ impl StepControl {
         self.step = (used * factor).clamp(self.min, self.max);
     }
 
+    /// Continues with a step of another length.
+    pub fn restart(&mut self, step: f64) {
+        self.step = step.clamp(self.min, self.max);
+    }
+
     /// Shortens the step after a prediction that was too poor; `false` at the smallest step.
     pub fn rejected(&mut self, error: f64, order: f64) -> bool {
         let factor = (0.8 * (TARGET / error.max(TARGET)).powf(1.0 / order)).clamp(0.1, 0.6);

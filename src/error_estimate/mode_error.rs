@@ -28,6 +28,9 @@ const ITERATIONS: f64 = 3.0;
 /// a backbone the latter passes through zero.
 const NEGLIGIBLE: f64 = 1e-3;
 
+/// Damping ratio below which a mode has none but round-off.
+const NO_DAMPING: f64 = 1e-8;
+
 /// Estimates the errors of points of one nonlinear mode, one after the other.
 pub struct ModeEstimator<'a> {
     model: &'a Model,
@@ -147,7 +150,7 @@ impl<'a> ModeEstimator<'a> {
             let (moved, last) = (norm(&change[..n - 2]), norm(&next[..n - 2]));
             let (changed, left) = (of_damping(change), of_damping(&next[..n]));
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
-                && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs())
+                && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs().max(NO_DAMPING))
         };
         let Some(extended) = extend(&mut system, &start, enough, false, self.interrupt)? else {
             return Ok(None);

@@ -72,6 +72,7 @@ impl Model {
         count: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<LinearModes> {
+        self.check_matrices(true)?;
         if count == 0 {
             return fail!(Argument, "count = 0, needs at least 1");
         }
@@ -90,6 +91,7 @@ impl Model {
     /// `Argument` for a diameter out of range, `NotHermitian` when K or M is not, and those of
     /// [`eigen::generalised`].
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
+        self.check_matrices(true)?;
         self.pencil(Wave::Diameter(diameter), contacts)?.all(&Interrupt::none())
     }
 

@@ -135,6 +135,7 @@ impl Model {
     /// freedom with itself or one that a list names twice, and those of [`Contact::check_constants`].
     pub fn add_contact(&mut self, contact: &Contact) -> Result<usize> {
         self.check_contact(contact)?;
+        contact.check_stiffness()?;
         try_push(&mut self.contacts, copy(contact)?, CONTACTS)?;
         Ok(self.contacts.len() - 1)
     }
@@ -147,6 +148,7 @@ impl Model {
     pub fn add_contacts(&mut self, contacts: &[Contact]) -> Result<usize> {
         for (i, contact) in contacts.iter().enumerate() {
             self.check_contact(contact)
+                .and_then(|()| contact.check_stiffness())
                 .map_err(|e| e.at(format_args!("entry {i}")))?;
         }
         let mut copies = Vec::new();

@@ -5,6 +5,7 @@ use crate::contact::Contact;
 use crate::contact::relative_motion::Direction;
 use crate::error::{Result, fail, try_push};
 use crate::model::Model;
+use crate::model::structure::MatrixKind;
 
 impl Model {
     pub(super) fn check_contact(&self, contact: &Contact) -> Result<()> {
@@ -21,6 +22,26 @@ impl Model {
         self.check_list("dofs", &contact.dofs)?;
         for k in 0..contact.directions() {
             self.check_sides("contact", &contact.direction(k), contact.sector_offset)?;
+        }
+        Ok(())
+    }
+
+    /// Refuses a model without any matrix or spring, and one without mass for an analysis that needs it.
+    ///
+    /// # Errors
+    /// `Argument`.
+    pub fn check_matrices(&self, needs_mass: bool) -> Result<()> {
+        let structure = self.structure();
+        let has_mass = structure.has(MatrixKind::Mass);
+        let has_others = structure.has(MatrixKind::Stiffness) || structure.has(MatrixKind::Damping);
+        if !has_mass && !has_others && self.springs().is_empty() {
+            return fail!(
+                Argument,
+                "no matrices were set: the model needs a mass matrix, and a stiffness matrix or springs"
+            );
+        }
+        if !has_mass && needs_mass {
+            return fail!(Argument, "no mass matrix was set: a mode needs one");
         }
         Ok(())
     }

@@ -91,9 +91,19 @@ impl Structure {
     /// Whether any damping was given.
     #[must_use]
     pub fn is_damped(&self) -> bool {
-        let b = &self.blocks[MatrixKind::Damping as usize];
-        let given = [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters);
-        self.rayleigh != (0.0, 0.0) || given.flatten().any(|a| !a.is_empty())
+        self.rayleigh != (0.0, 0.0) || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
+    }
+
+    /// Whether a matrix was given in any form.
+    #[must_use]
+    pub fn has(&self, kind: MatrixKind) -> bool {
+        self.parts(kind).next().is_some()
+    }
+
+    /// The blocks of a matrix that were given.
+    fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &Csc> {
+        let b = &self.blocks[kind as usize];
+        [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters).flatten()
     }
 
     /// A copy, allocated fallibly.

@@ -9,8 +9,12 @@ use crate::condense::Condensed;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
+use crate::linalg::norm;
 use crate::problem::contact_jacobian::Blocks;
 use num_complex::Complex64;
+
+/// Rounding of a motion relative to its size.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
 pub struct ContactForces<'a> {
@@ -40,6 +44,8 @@ pub struct ContactForces<'a> {
     /// Per coordinate, whether all its laws stick and none acts along its normal, where a load acts at rest.
     inactive: Vec<bool>,
     slip_fractions: Vec<f64>,
+    /// Per coordinate, the largest share of the period in which one of its laws neither slips nor is open.
+    share_stuck: Vec<f64>,
 }
 
 impl<'a> ContactForces<'a> {
@@ -95,6 +101,7 @@ impl<'a> ContactForces<'a> {
             linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
             inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
             slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
+            share_stuck: try_vec(condensed.coordinates(), 0.0, CONTEXT)?,
         })
     }
 
@@ -125,6 +132,7 @@ impl<'a> ContactForces<'a> {
         self.all_stuck = true;
         self.linear.fill(true);
         self.inactive.fill(true);
+        self.share_stuck.fill(0.0);
         let s = self.factor;
         // Forces that scale with the motion; at rest they follow from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
@@ -150,7 +158,9 @@ impl<'a> ContactForces<'a> {
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
+            let stuck = (1.0 - found.slip_fraction - found.open_fraction).max(0.0);
             for (i, &c) in at.iter().enumerate() {
+                self.share_stuck[c] = self.share_stuck[c].max(stuck);
                 let normal = assembled.normal == Some(i);
                 self.linear[c] &= if normal {
                     found.open_fraction == 0.0
@@ -204,6 +214,18 @@ impl<'a> ContactForces<'a> {
         let m = set.packed_len();
         let y = set.get(&motion[coordinate * m..(coordinate + 1) * m], i);
         self.part(&self.force, coordinate, i) - self.condensed.kappa(coordinate, i) * y
+    }
+
+    /// Rounding of the force of a coordinate if its contacts are near-rigid, otherwise 0. In a stick phase the force
+    /// is kt times a difference of motions that are known to their own rounding.
+    #[must_use]
+    pub fn rounding(&self, motion: &[f64], coordinate: usize) -> f64 {
+        if !self.condensed.is_near_rigid(coordinate) {
+            return 0.0;
+        }
+        let m = self.condensed.set().packed_len();
+        let size = norm(&motion[coordinate * m..(coordinate + 1) * m]);
+        ROUNDING * self.condensed.stiffness(coordinate) * self.share_stuck[coordinate] * size
     }
 
     /// Packed forces, coordinate after coordinate.

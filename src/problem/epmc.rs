@@ -278,7 +278,7 @@ impl<'a> Epmc<'a> {
         self.by_omega.fill(0.0);
         self.by_damping.fill(0.0);
         let dofs = self.condensed.ndof();
-        let mut largest = 0.0_f64;
+        let (mut largest, mut rounding) = (0.0_f64, 0.0_f64);
         for (i, block) in self.condensed.blocks().iter().enumerate() {
             let mean = block.number == 0;
             let at = set.offset(i);
@@ -302,6 +302,8 @@ impl<'a> Epmc<'a> {
                 }
                 for c in 0..coordinates {
                     let g = along(row, self.modal.column(c));
+                    let lost = self.forces.rounding(motion, c);
+                    rounding += lost * lost * g.norm_sqr();
                     self.flexibility[(i * coordinates + c) * coordinates + r] = g;
                     let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
                     put(&mut out.d_parameter, position, mean, g * d_scale);
@@ -319,6 +321,7 @@ impl<'a> Epmc<'a> {
         }
         // Each coordinate adds its round-off.
         out.scale = 1.0 + norm(motion) + OF_MOTION * largest * (coordinates as f64).sqrt();
+        out.rounding = rounding.sqrt();
         Ok(())
     }
 }

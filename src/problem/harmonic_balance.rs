@@ -111,7 +111,7 @@ impl<'a> HarmonicBalance<'a> {
         let outputs = coordinates + 1;
         out.values.copy_from_slice(u);
         out.d_parameter.fill(0.0);
-        let mut linear = 0.0_f64;
+        let (mut linear, mut rounding) = (0.0_f64, 0.0_f64);
         for (i, table) in self.tables.current().iter().enumerate() {
             interrupt.check()?;
             let at = set.offset(i);
@@ -137,10 +137,12 @@ impl<'a> HarmonicBalance<'a> {
                     continue;
                 }
                 let w = self.forces.minus_reference(u, column, i);
+                let lost = self.forces.rounding(u, column);
                 let (by_scale, by_omega) = (self.forces.d_ln_scale(column, i), self.forces.by_omega(column, i));
                 for row in 0..coordinates {
                     let r = row * m + at;
                     let g = table.value[column * outputs + row];
+                    rounding += lost * lost * g.norm_sqr();
                     put(&mut out.values, r, mean, g * w);
                     match path {
                         None => {
@@ -154,6 +156,7 @@ impl<'a> HarmonicBalance<'a> {
             }
         }
         out.scale = norm(u) + linear.sqrt();
+        out.rounding = rounding.sqrt();
         Ok(())
     }
 

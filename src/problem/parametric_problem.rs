@@ -14,6 +14,8 @@ pub struct Residual {
     pub d_parameter: Vec<f64>,
     /// Size to which the residual is relative.
     pub scale: f64,
+    /// Size that rounding alone may leave of the residual, where stiff contacts make it large; otherwise 0.
+    pub rounding: f64,
 }
 
 impl Residual {
@@ -26,6 +28,7 @@ impl Residual {
             values: try_vec(n, 0.0, "the residual")?,
             d_parameter: try_vec(n, 0.0, "the residual")?,
             scale: 0.0,
+            rounding: 0.0,
         })
     }
 }

@@ -268,6 +268,7 @@ static void contacts(hbvib_model *model)
         c.kt = 0;
         WORKS("43", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, jac, 16));
         EXPECT("43", f[2] == 0 && f[3] == 0);
+        REFUSED("43", hbvib_model_add_contact(model, &c, &id), HBVIB_E_ARGUMENT, 2, "kt = 0, needs a number > 0");
         c = ring_contact();
         c.preload = 0;
         WORKS("44", hbvib_contact_evaluate(&c, 1, 0, 1, y, 2, f, 2, NULL, 0));

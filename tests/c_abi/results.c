@@ -9,7 +9,7 @@ static void names(void)
     EXPECT("names", strcmp(hbvib_version_string(), version) == 0);
     EXPECT("names", strcmp(hbvib_status_name(HBVIB_OK), "HBVIB_OK") == 0);
     EXPECT("names", strcmp(hbvib_status_name(HBVIB_E_SINGULAR), "HBVIB_E_SINGULAR") == 0);
-    for (status = HBVIB_E_NOT_POSITIVE_DEFINITE; status <= HBVIB_STOPPED_CALLBACK; status++)
+    for (status = HBVIB_E_NOT_POSITIVE_DEFINITE; status <= HBVIB_STOPPED_NO_FORCE; status++)
         EXPECT("names", strncmp(hbvib_status_name(status), "HBVIB_", 6) == 0 &&
                             strstr(hbvib_status_name(status), "UNKNOWN") == NULL);
     EXPECT("names", strcmp(hbvib_status_name(12345), "HBVIB_UNKNOWN_STATUS") == 0);

@@ -57,9 +57,11 @@ impl Oscillator {
         model
             .set_matrix(MatrixKind::Damping, &MatrixView::dense(1, &[self.c]))
             .unwrap();
-        model
-            .add_contact(&Contact::jenkins(0, None, self.kt, 1.0, self.limit))
-            .unwrap();
+        if self.kt > 0.0 {
+            model
+                .add_contact(&Contact::jenkins(0, None, self.kt, 1.0, self.limit))
+                .unwrap();
+        }
         for &(harmonic, force) in forces {
             model.add_force(0, harmonic, force.into()).unwrap();
         }

@@ -116,14 +116,6 @@ fn limits_of_the_law_are_linear_systems() {
             0.0,
         ),
         (
-            "no stiffness",
-            Contact {
-                kt: 0.0,
-                ..contact.clone()
-            },
-            0.0,
-        ),
-        (
             "infinite load",
             Contact {
                 preload: f64::INFINITY,

@@ -4,5 +4,6 @@
 mod common;
 
 mod bad_input;
+mod explained;
 mod mode_bad_input;
 mod options;

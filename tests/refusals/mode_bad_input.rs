@@ -157,10 +157,6 @@ fn a_mode_that_moves_no_contact_is_refused() {
             mu: 0.0,
             ..middle.clone()
         },
-        Contact {
-            kt: 0.0,
-            ..middle.clone()
-        },
     ] {
         refused(
             follow(&row(Some(contact)), &RANGE),

@@ -1,11 +1,1 @@
-//! Cases on which programs for harmonic balance fail, and thousands of random ones.
 
-#[path = "../common/mod.rs"]
-mod common;
-
-mod changing_harmonics;
-mod hard_cases;
-mod hard_modes;
-mod hard_sweeps;
-mod interrupts;
-mod random_problems;

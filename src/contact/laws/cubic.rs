@@ -12,7 +12,7 @@ use crate::contact::constants::{Constants, Role};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Spectral};
 use crate::contact::laws::polynomial::Polynomial;
 use crate::contact::linearisation::{Range, SMALL};
-use crate::error::Result;
+use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -40,6 +40,16 @@ impl ContactLaw for CubicContact {
 
     fn constants(&self) -> &'static [&'static str] {
         &["kt", "cubic"]
+    }
+
+    fn check_stiffness(&self) -> Result<()> {
+        if self.kt == 0.0 && self.cubic == 0.0 {
+            return fail!(
+                Argument,
+                "contact: kt = 0 and cubic = 0, needs another number in one of them"
+            );
+        }
+        Ok(())
     }
 
     fn role(&self) -> Role {

@@ -20,7 +20,7 @@
 //! opens is loaded slowly from s = 0 and dragged along just so far as its bounds need. See Petrov & Ewins,
 //! J. Turbomach. 125 (2003) 364–371, doi:10.1115/1.1539868, for the friction element whose harmonics these are.
 
-use crate::contact::constants::{Constants, Role};
+use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::coupled_search::{Bound, CoupledSearch, find};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear, VaryingNormalLoad};
 use crate::contact::laws::friction_2d_events::Slider;
@@ -85,6 +85,10 @@ impl ContactLaw for Friction2dContact {
 
     fn places(&self) -> &'static [usize] {
         &[0, 2]
+    }
+
+    fn check_stiffness(&self) -> Result<()> {
+        needs_stiffness("kn", self.kn)
     }
 
     fn role(&self) -> Role {

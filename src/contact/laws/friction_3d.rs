@@ -12,7 +12,7 @@
 //! derivative is that of the discrete force. The place of a slider that sticks through the period is in
 //! friction_3d_stuck.rs. The normal force, which has no memory, has exact harmonics.
 
-use crate::contact::constants::{Constants, Role};
+use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::contact_state::State;
 use crate::contact::coupled_search::CoupledSearch;
 use crate::contact::law::{ContactLaw, Form, Hysteretic, Law, LawInTime, VaryingNormalLoad};
@@ -72,6 +72,15 @@ impl ContactLaw for Friction3dContact {
 
     fn places(&self) -> &'static [usize] {
         if self.constants.has_normal { &[0, 1, 2] } else { &[0, 1] }
+    }
+
+    fn check_stiffness(&self) -> Result<()> {
+        let c = &self.constants;
+        if c.has_normal {
+            needs_stiffness("kn", c.kn)
+        } else {
+            needs_stiffness("kt", c.kt)
+        }
     }
 
     fn role(&self) -> Role {

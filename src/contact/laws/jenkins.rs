@@ -7,7 +7,7 @@
 //! exact multi-harmonic friction element of Petrov & Ewins, J. Turbomach. 125 (2003) 364–371,
 //! doi:10.1115/1.1539868.
 
-use crate::contact::constants::{Constants, Role};
+use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::laws::friction_2d_events::Slider;
@@ -44,6 +44,10 @@ impl ContactLaw for JenkinsContact {
 
     fn constants(&self) -> &'static [&'static str] {
         &["kt", "mu", "preload"]
+    }
+
+    fn check_stiffness(&self) -> Result<()> {
+        needs_stiffness("kt", self.kt)
     }
 
     fn role(&self) -> Role {
@@ -177,7 +181,8 @@ impl PiecewiseLinear for Jenkins {
         let play = self.limit / self.stiffness;
         let mean = if set.has_mean() { motion[0] } else { 0.0 };
         let (lowest, highest) = range(set, turning_points).unwrap_or(((0.0, mean), (0.0, mean)));
-        if highest.1 - lowest.1 <= 2.0 * play {
+        // A motion without turning points does not move, or is not finite.
+        if turning_points.is_empty() || highest.1 - lowest.1 <= 2.0 * play {
             self.stuck(turn, lowest, highest, pieces);
             return;
         }

@@ -6,7 +6,7 @@
 //! stiffness spectrum, F = k·T(S)·X + k·g·ĝ (Petrov & Ewins 2004, doi:10.1115/1.1644557, treat it
 //! as the normal part of a friction contact).
 
-use crate::contact::constants::{Constants, Role};
+use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::linearisation::Range;
@@ -47,6 +47,10 @@ impl ContactLaw for UnilateralContact {
 
     fn places(&self) -> &'static [usize] {
         &[2]
+    }
+
+    fn check_stiffness(&self) -> Result<()> {
+        needs_stiffness("kn", self.kn)
     }
 
     fn role(&self) -> Role {

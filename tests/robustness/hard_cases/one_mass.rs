@@ -84,7 +84,10 @@ fn linear(case: &Case, kt: f64) -> Complex64 {
 
 /// A case that is linear, at every H, with all harmonics but the first zero.
 fn is_linear(case: &Case, limit: f64, kt: f64) {
-    let model = rubbing(case, limit, &[(1, case.number("F"))]);
+    is_linear_model(case, &rubbing(case, limit, &[(1, case.number("F"))]), kt);
+}
+
+fn is_linear_model(case: &Case, model: &Model, kt: f64) {
     let wanted = case.wanted("absx1");
     let truth = linear(case, kt);
     case.within(
@@ -96,12 +99,12 @@ fn is_linear(case: &Case, limit: f64, kt: f64) {
     );
     let others = |x: &[Complex64]| x.iter().enumerate().all(|(h, x)| h == 1 || *x == Complex64::ZERO);
     for h in EVERY_H {
-        let x = at(&model, case.number("w"), h);
+        let x = at(model, case.number("w"), h);
         case.meets("|X_1|", h, x[1].norm(), wanted);
         case.meets("phase of X_1", h, (x[1] / truth).arg(), 0.0);
         case.holds("the other harmonics are exactly zero", others(&x));
     }
-    let x = by_default(&model, case.number("w"));
+    let x = by_default(model, case.number("w"));
     case.near("|X_1|", x[1].norm(), wanted);
 }
 
@@ -119,7 +122,14 @@ pub fn endless_friction(case: &Case) {
 }
 
 pub fn no_stiffness(case: &Case) {
-    is_linear(case, case.number("fc"), 0.0);
+    // The contact is refused by the name of its constant; the answer is that of the structure alone.
+    let contact = Contact::jenkins(0, None, case.number("kt"), 1.0, case.number("fc"));
+    let refused = Model::new(1).unwrap().add_contact(&contact).unwrap_err();
+    assert_eq!(refused.status, Status::Argument);
+    assert!(refused.to_string().contains("kt = 0"), "{refused}");
+    let mut model = structure(case);
+    model.add_force(0, 1, case.number("F").into()).unwrap();
+    is_linear_model(case, &model, 0.0);
 }
 
 pub fn force_scaling(case: &Case) {
