@@ -8,4 +8,5 @@ mod hard_cases;
 mod hard_modes;
 mod hard_sweeps;
 mod interrupts;
+mod linear_stretches;
 mod random_problems;
