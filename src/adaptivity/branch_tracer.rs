@@ -3,6 +3,7 @@
 
 use crate::adaptivity::controller::{AdaptivityController, PointAt, Refined};
 use crate::adaptivity::discretised::Traceable;
+use crate::adaptivity::resonance_grid::LinearGrid;
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status};
@@ -14,6 +15,13 @@ use crate::results::SpecialKind;
 
 /// Largest number of successive refinements of the last point, made if the next one is not found.
 const MOST_BACKTRACKS: usize = 2;
+
+/// Number of points with linear contacts after an onset, beyond which the response is followed as a linear one again.
+const PATIENCE: usize = 3;
+
+/// First step after an onset, as a share of the distance to a value at which a contact is known to have left its linear
+/// state.
+const ONSET_SHARE: f64 = 0.25;
 
 /// The range to follow, and the solutions requested in it.
 pub(crate) struct Course<'a> {
@@ -30,15 +38,36 @@ pub(crate) struct Course<'a> {
 
 /// Traces one branch.
 pub(crate) struct BranchTracer<'a> {
-    course: Course<'a>,
+    pub(super) course: Course<'a>,
     controller: AdaptivityController,
-    interrupt: &'a Interrupt<'a>,
+    pub(super) interrupt: &'a Interrupt<'a>,
+    /// Values of linear stretches, where they can be had, and whether they were requested.
+    pub(super) linear_grid: Option<LinearGrid>,
+    pub(super) grid_requested: bool,
+}
+
+/// The end of a linear stretch.
+pub(super) enum Stretch {
+    /// A contact leaves its linear state just beyond the point, which was recorded last, and has left it at `distance`
+    /// from there.
+    Onset { point: Point, distance: f64 },
+    /// The end of the range, or its start, was reached at the point recorded last.
+    End(Point, Status),
+    /// The run ends.
+    Stopped(Status),
 }
 
 /// Outcome for a branch that left its range at the start.
 enum Outside {
     Back(Point),
     Gone,
+}
+
+/// Outcome for such a branch as far as it is recorded.
+enum Return {
+    /// It came back, and the point was recorded.
+    Recorded(Point),
+    Ended(Status),
 }
 
 impl<'a> BranchTracer<'a> {
@@ -48,6 +77,8 @@ impl<'a> BranchTracer<'a> {
             course,
             controller: AdaptivityController::new(tolerance),
             interrupt,
+            linear_grid: None,
+            grid_requested: false,
         }
     }
 
@@ -83,9 +114,34 @@ impl<'a> BranchTracer<'a> {
         // located between recorded points, so that none is omitted or found twice.
         let mut recorded = (continuation.current().try_clone()?, began);
         let mut backtracks = 0;
+        // Number of points with linear contacts for which the continuation goes on all the same, after an onset.
+        let mut patience = 0_usize;
         loop {
             if analysis.branch().points() >= self.course.max_points {
                 return Ok(Status::StoppedMaxPoints);
+            }
+
+            // Where every contact is linear, follow the linear response to the onset of slip or to the end.
+            if patience == 0 && analysis.is_linear() {
+                match self.follow_linear(analysis, (&recorded.0, recorded.1), hooks)? {
+                    None => {}
+                    Some(Stretch::Onset { point, distance }) => {
+                        recorded = (point.try_clone()?, analysis.resolution());
+                        continuation.start_at(point, ONSET_SHARE * distance)?;
+                        patience = PATIENCE;
+                    }
+                    Some(Stretch::End(point, Status::StoppedLeftRange)) => {
+                        match self.come_back(analysis, point, (&begin, began), hooks)? {
+                            Return::Ended(status) => return Ok(status),
+                            Return::Recorded(back) => {
+                                continuation = Continuation::new(settings, back)?;
+                                recorded = (continuation.current().try_clone()?, analysis.resolution());
+                                continue;
+                            }
+                        }
+                    }
+                    Some(Stretch::End(_, status) | Stretch::Stopped(status)) => return Ok(status),
+                }
             }
 
             // Predict and correct.
@@ -126,6 +182,11 @@ impl<'a> BranchTracer<'a> {
             self.locate_special(analysis, (&recorded.0, recorded.1), (&point, resolution), end.is_some())?;
             analysis.select(resolution)?;
             recorded = (point.try_clone()?, resolution);
+            patience = if analysis.is_linear() {
+                patience.saturating_sub(1)
+            } else {
+                0
+            };
             if stop {
                 return Ok(Status::StoppedByCaller);
             }
@@ -143,27 +204,42 @@ impl<'a> BranchTracer<'a> {
                     }
                 }
                 Some(Status::StoppedLeftRange) => {
-                    let back = match self.follow_outside(analysis, point, (&begin, began))? {
-                        Outside::Back(back) => back,
-                        Outside::Gone => return Ok(Status::StoppedLeftRange),
+                    let back = match self.come_back(analysis, point, (&begin, began), hooks)? {
+                        Return::Recorded(back) => back,
+                        Return::Ended(status) => return Ok(status),
                     };
-                    hooks.log(LogLevel::Info, "the branch left at its start and came back");
-                    let refined = self.controller.refine(analysis, back, true, self.interrupt);
-                    let Some(Refined { point: back, .. }) = some_unless_lost(refined)? else {
-                        return Ok(Status::StoppedStepTooSmall);
-                    };
-                    if some_unless_lost(analysis.record(&back))?.is_none() {
-                        return Ok(Status::StoppedStepTooSmall);
-                    }
-                    if self.report(analysis, hooks, &back) {
-                        return Ok(Status::StoppedByCaller);
-                    }
                     continuation = Continuation::new(settings, back)?;
                     recorded = (continuation.current().try_clone()?, analysis.resolution());
                 }
                 Some(status) => return Ok(status),
             }
         }
+    }
+
+    /// Follows a branch that left its range at the start, and records the point where it comes back.
+    fn come_back(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        exit: Point,
+        begin: PointAt<'_>,
+        hooks: &mut Hooks<'_>,
+    ) -> Result<Return> {
+        let back = match self.follow_outside(analysis, exit, begin)? {
+            Outside::Back(back) => back,
+            Outside::Gone => return Ok(Return::Ended(Status::StoppedLeftRange)),
+        };
+        hooks.log(LogLevel::Info, "the branch left at its start and came back");
+        let refined = self.controller.refine(analysis, back, true, self.interrupt);
+        let Some(Refined { point: back, .. }) = some_unless_lost(refined)? else {
+            return Ok(Return::Ended(Status::StoppedStepTooSmall));
+        };
+        if some_unless_lost(analysis.record(&back))?.is_none() {
+            return Ok(Return::Ended(Status::StoppedStepTooSmall));
+        }
+        if self.report(analysis, hooks, &back) {
+            return Ok(Return::Ended(Status::StoppedByCaller));
+        }
+        Ok(Return::Recorded(back))
     }
 
     /// Sharpens and records a special point; `false` if it requires more harmonics, which are then selected.
@@ -364,7 +440,7 @@ impl<'a> BranchTracer<'a> {
 
 /// An outcome; `None` if Newton's last correction, which is not evaluated, led to a motion that a law cannot
 /// evaluate.
-fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
+pub(super) fn some_unless_lost<T>(outcome: Result<T>) -> Result<Option<T>> {
     match outcome {
         Err(e) if e.status == Status::Singular || (e.recoverable && e.status != Status::Callback) => Ok(None),
         outcome => outcome.map(Some),

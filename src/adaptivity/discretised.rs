@@ -5,6 +5,7 @@ use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
 use crate::interrupt::Interrupt;
+use crate::model::resonances::Resonance;
 use crate::problem::Problem;
 use crate::results::{Branch, SpecialKind};
 
@@ -47,6 +48,26 @@ pub(crate) trait Discretised {
     /// Takes the estimate made last over to another point of the current resolution, its errors times a factor. `false`
     /// where the point is to be estimated: where the caller asks for every estimate, or nothing is nonlinear.
     fn take_over_estimate(&mut self, point: &Point, factor: f64) -> Result<bool>;
+
+    /// The resonances between two parameter values with the contacts in their linear state; `None` where the response
+    /// with linear contacts is not a rational function of the parameter, or they cannot be had.
+    fn resonances(&mut self, _range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+        Ok(None)
+    }
+
+    /// The solution at a parameter value with every contact in the linear state that it has at `near`, followed in the
+    /// sense of the parameter; `None` if a contact leaves that state.
+    fn linear_at(&mut self, _near: &Point, _parameter: f64, _interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
+        Ok(None)
+    }
+
+    /// Selects the most accurate evaluation for [`Self::linear_at`].
+    fn set_accurate(&mut self, _accurate: bool) {}
+
+    /// Largest share of its linear range that a contact uses at a point.
+    fn linear_share(&mut self, _point: &Point) -> Result<f64> {
+        Ok(f64::NAN)
+    }
 }
 
 /// Storage of the points of an analysis.
@@ -59,6 +80,12 @@ pub(crate) trait Recorder {
 
     /// Records a sharpened point beside the curve.
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()>;
+
+    /// Whether every contact was linear at the point of the curve recorded last, and the analysis follows that as a
+    /// linear response.
+    fn is_linear(&self) -> bool {
+        false
+    }
 
     /// The points that were recorded.
     fn branch(&self) -> &Branch;

@@ -3,7 +3,8 @@
 //! [`branch_tracer`] follows the branch: the continuation predicts and corrects a point; [`controller`] estimates its
 //! error and refines it until it meets the tolerance, by the harmonics of [`harmonic_levels`]; the analysis records
 //! it; peaks, folds and requested solutions between it and the point before are located; the controller selects the
-//! harmonics of the next step. An analysis implements the two traits of [`discretised`]. [`resolutions`] stores the
+//! harmonics of the next step. Where every contact is linear, [`linear_stretch`] takes the place of the continuation, at the
+//! values of [`resonance_grid`]. An analysis implements the two traits of [`discretised`]. [`resolutions`] stores the
 //! equations at the resolutions of a run, [`transfer`] converts points from one resolution to another, and
 //! [`branch_recorder`] stores points.
 
@@ -13,5 +14,7 @@ pub(crate) mod controller;
 pub(crate) mod discretised;
 pub(crate) mod estimate_spacing;
 pub(crate) mod harmonic_levels;
+mod linear_stretch;
 pub(crate) mod resolutions;
+pub(crate) mod resonance_grid;
 pub(crate) mod transfer;

@@ -24,6 +24,9 @@ pub struct Evaluation {
     /// Whether the contact sticks through the period: one piece without anchor, F = kt·X (and closed throughout,
     /// where the normal load varies). Always `false` for a smooth law.
     pub stuck: bool,
+    /// Whether the force is an affine function of the motion near it: the contact sticks, is open or is closed through
+    /// the period. Always `false` for a smooth law.
+    pub linear: bool,
 }
 
 impl Evaluation {
@@ -42,6 +45,7 @@ impl Evaluation {
             slip_fraction: 0.0,
             open_fraction: 0.0,
             stuck: false,
+            linear: false,
         })
     }
 
@@ -67,6 +71,7 @@ impl Evaluation {
         self.slip_fraction = 0.0;
         self.open_fraction = 0.0;
         self.stuck = false;
+        self.linear = false;
     }
 }
 

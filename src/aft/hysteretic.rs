@@ -146,6 +146,7 @@ impl HystereticEvaluator {
         out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
         out.open_fraction = self.march.open.iter().sum::<f64>() / n;
         out.stuck = law.sticks() && virgin && out.slip_fraction == 0.0 && out.open_fraction == 0.0;
+        out.linear = out.stuck;
         Ok(())
     }
 

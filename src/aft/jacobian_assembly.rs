@@ -63,6 +63,7 @@ impl Assembly {
     ) {
         out.count(state, transform[0].re);
         add_stiffness(&mut self.spectrum, piece.slope, transform);
+        out.linear = anchor.is_none() && is_whole(transform[0].re);
         if piece.offset == 0.0 && anchor.is_none() {
             out.stuck = is_whole(transform[0].re);
             return;

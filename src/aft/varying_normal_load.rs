@@ -114,6 +114,7 @@ impl VaryingNormalLoadEvaluator {
             let share = self.transform[0].re;
             out.count(piece.state, share);
             out.stuck = piece.state == State::Stick && piece.anchor.is_none() && is_whole(share);
+            out.linear = out.stuck;
             let [by_x, by_y, _] = &mut self.spectra;
             add_stiffness(by_x, piece.of_x, &self.transform);
             add_stiffness(by_y, piece.of_y, &self.transform);

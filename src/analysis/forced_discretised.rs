@@ -5,16 +5,19 @@ use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
 use crate::adaptivity::estimate_spacing::share_of_highest;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
+use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::point_error::observed;
-use crate::condense::ModelCache;
+use crate::condense::{ModelCache, Reference};
 use crate::continuation::corrector::Corrector;
-use crate::continuation::resolve::resolve;
+use crate::continuation::resolve::{resolve, solve_linear};
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
+use crate::model::linear_modes::ContactState;
+use crate::model::resonances::Resonance;
 use crate::model::spring::along;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
@@ -31,6 +34,21 @@ struct Equations<'a> {
 }
 
 impl<'a> Equations<'a> {
+    /// The solution with linear contacts at a frequency, see [`Discretised::linear_at`].
+    fn linear_at(
+        &mut self,
+        settings: &Settings,
+        (near, omega): (&Point, f64),
+        factorised: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        let Self { problem, corrector, .. } = self;
+        problem.set_factorised(factorised);
+        let found = solve_linear(problem, corrector, settings, near, omega, interrupt);
+        problem.set_factorised(false);
+        Ok(found?.filter(|_| problem.forces().all_linear()))
+    }
+
     fn new(
         resolution: &'a Resolution,
         settings: &Settings,
@@ -69,11 +87,57 @@ impl<'a> Equations<'a> {
     }
 }
 
+/// Degrees of freedom up to which a linear response is not interpolated: its points are few.
+const FACTORISE_UP_TO: usize = 1000;
+
+/// The equations of a linear response: those with the stuck structure as their reference, where the others have another
+/// one, and a damping that bounds the response of the stuck structure.
+struct LinearResponse<'a> {
+    levels: &'a HarmonicLevels<'a>,
+    equations: Option<(usize, Equations<'a>)>,
+    /// Frequency of the point solved last.
+    solved: Option<f64>,
+    /// Whether interpolation is not accurate enough.
+    accurate: bool,
+}
+
+impl<'a> LinearResponse<'a> {
+    fn new(levels: &'a HarmonicLevels<'a>) -> Self {
+        Self {
+            levels,
+            equations: None,
+            solved: None,
+            accurate: false,
+        }
+    }
+
+    /// The equations at a resolution; `None` where the ordinary ones are as accurate.
+    fn equations(
+        &mut self,
+        needed: bool,
+        index: usize,
+        make: impl FnOnce(&'a Resolution) -> Result<Equations<'a>>,
+    ) -> Result<Option<&mut Equations<'a>>> {
+        if !needed {
+            return Ok(None);
+        }
+        let stored = self.equations.take().filter(|(at, _)| *at == index);
+        let equations = match stored {
+            Some((_, equations)) => equations,
+            None => make(self.levels.at(index)?)?,
+        };
+        let (_, equations) = self.equations.insert((index, equations));
+        Ok(Some(equations))
+    }
+}
+
 /// A forced response in the form that the tracer follows.
 pub(super) struct ForcedDiscretised<'a> {
+    model: &'a Model,
     settings: Settings,
     interrupt: &'a Interrupt<'a>,
     resolutions: Resolutions<'a, Equations<'a>>,
+    linear_response: LinearResponse<'a>,
     recorder: BranchRecorder<'a>,
     estimator: Option<ForcedEstimator<'a>>,
     /// Whether the current problem may have been evaluated at another point than the current one.
@@ -86,6 +150,8 @@ pub(super) struct ForcedDiscretised<'a> {
     estimates_each: bool,
     /// Newton iterations of the first point.
     first_iterations: usize,
+    /// Whether every contact was linear at the point of the curve recorded last.
+    linear: bool,
 }
 
 impl<'a> ForcedDiscretised<'a> {
@@ -94,7 +160,7 @@ impl<'a> ForcedDiscretised<'a> {
         model: &'a Model,
         solver: &SolverOptions,
         settings: Settings,
-        (levels, extended): (&'a HarmonicLevels<'a>, &'a ModelCache),
+        (levels, stuck, extended): (&'a HarmonicLevels<'a>, &'a HarmonicLevels<'a>, &'a ModelCache),
         (level, guess): (usize, Option<Vec<f64>>),
         response: usize,
         interrupt: &'a Interrupt<'a>,
@@ -108,6 +174,8 @@ impl<'a> ForcedDiscretised<'a> {
         Ok(Self {
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
+            linear_response: LinearResponse::new(stuck),
+            model,
             settings,
             interrupt,
             estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended, interrupt)),
@@ -116,6 +184,7 @@ impl<'a> ForcedDiscretised<'a> {
             last_error: f64::NAN,
             estimates_each: solver.estimate_error,
             first_iterations: 0,
+            linear: false,
         })
     }
 
@@ -244,6 +313,48 @@ impl Discretised for ForcedDiscretised<'_> {
         self.estimated = Some(self.last_error * factor);
         Ok(true)
     }
+
+    fn resonances(&mut self, range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+        self.model.forced_resonances(range, ContactState::Stuck, self.interrupt)
+    }
+
+    fn linear_at(&mut self, near: &Point, parameter: f64, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
+        let index = self.resolutions.index();
+        let response = self.recorder.branch().response_dof();
+        let condensed = &self.resolutions.current.resolution.condensed;
+        let needed = condensed.coordinates() > 0
+            && condensed.reference() == Reference::Complex
+            && self.model.structure().is_damped();
+        let factorised = self.linear_response.accurate || self.model.ndof() <= FACTORISE_UP_TO;
+        let own = self.linear_response.equations(needed, index, |resolution| {
+            Equations::new(resolution, &self.settings, response, None, self.interrupt)
+        });
+        let settings = &self.settings;
+        let current = &mut self.resolutions.current;
+        self.stale = true;
+        let Some(own) = own? else {
+            let found = current.linear_at(settings, (near, parameter), factorised, interrupt)?;
+            self.stale = found.is_none();
+            return Ok(found);
+        };
+        let (to, from) = (&current.resolution.condensed, &own.resolution.condensed);
+        let start = transferred_point(near, to, from, 1, true)?;
+        let found = own.linear_at(settings, (&start, parameter), factorised, interrupt)?;
+        self.linear_response.solved = found.is_some().then_some(parameter);
+        match found {
+            Some(point) => transferred_point(&point, from, to, 1, true).map(Some),
+            None => Ok(None),
+        }
+    }
+
+    fn set_accurate(&mut self, accurate: bool) {
+        self.linear_response.accurate = accurate;
+    }
+
+    fn linear_share(&mut self, point: &Point) -> Result<f64> {
+        let problem = &mut self.resolutions.current.problem;
+        problem.linear_share(point.unknowns(), point.parameter())
+    }
 }
 
 impl Recorder for ForcedDiscretised<'_> {
@@ -253,8 +364,13 @@ impl Recorder for ForcedDiscretised<'_> {
         self.recorder.note_error(error);
         let record = self.resolutions.current.record(point, error)?;
         self.recorder.record(&record, point.stalled)?;
+        self.linear = self.resolutions.current.problem.forces().all_linear();
         self.resolutions.note_recorded();
         Ok(())
+    }
+
+    fn is_linear(&self) -> bool {
+        self.linear
     }
 
     /// The point is solved once more at its frequency with the flexibility factorised there: along the sweep it may
@@ -263,7 +379,8 @@ impl Recorder for ForcedDiscretised<'_> {
         self.stale = false;
         let Equations { problem, corrector, .. } = &mut self.resolutions.current;
         let mut found = None;
-        if !kind.is_fold() {
+        let accurate = self.linear_response.solved == Some(point.parameter());
+        if !kind.is_fold() && !accurate {
             problem.set_pointwise(true);
             let resolved = resolve(problem, corrector, &self.settings, point, true, self.interrupt);
             problem.set_pointwise(false);

@@ -7,7 +7,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
-use crate::condense::{Condensed, ModelCache};
+use crate::condense::{Condensed, ModelCache, Reference};
 use crate::continuation::Settings;
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
@@ -63,6 +63,10 @@ fn follow(
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::new(model, &options, range.omega_start, interrupt)
     })?;
+    let stuck = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
+        let options = SolverOptions { harmonics, ..*solver };
+        Condensed::with_reference(model, &options, range.omega_start, Some(Reference::Stuck), interrupt)
+    })?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
     let level = if levels.is_automatic() && range.guess.is_none() {
         0
@@ -90,7 +94,7 @@ fn follow(
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
     let extended = ModelCache::for_estimates()?;
-    let models = (&levels, &extended);
+    let models = (&levels, &stuck, &extended);
     let mut response =
         ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt)?;
     let held = response.branch().reduction().held_by_contacts;

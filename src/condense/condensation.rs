@@ -37,6 +37,21 @@ impl Condensed {
     /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`;
     /// `StoppedByCaller`.
     pub fn new(model: &Model, options: &SolverOptions, omega: f64, interrupt: &Interrupt<'_>) -> Result<Self> {
+        Self::with_reference(model, options, omega, None, interrupt)
+    }
+
+    /// The same with a given reference stiffness, if any. With [`Reference::Stuck`] the response with stuck contacts is
+    /// as accurate as without contacts, however small the damping.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn with_reference(
+        model: &Model,
+        options: &SolverOptions,
+        omega: f64,
+        reference: Option<Reference>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Self> {
         let mut forced = Vec::new();
         for force in model
             .excitation()
@@ -52,7 +67,8 @@ impl Condensed {
             // Without forces the solution is zero, and the fundamental carries it.
             forced.push(usize::from(options.harmonics > 0));
         }
-        let (mut condensed, assembled) = Self::unscaled(model, options, (&forced, omega), None, interrupt)?;
+        let (mut condensed, assembled) =
+            Self::unscaled(model, options, (&forced, omega), (None, reference), interrupt)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
         // underflows whatever the units.
         let largest = model
@@ -94,7 +110,8 @@ impl Condensed {
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, f64)> {
         // A mode has a linear frequency, so that the stiffness of the structure alone sets the scale.
-        let (mut condensed, assembled) = Self::unscaled(model, options, (&[1], 0.0), Some((form, shape)), interrupt)?;
+        let (mut condensed, assembled) =
+            Self::unscaled(model, options, (&[1], 0.0), (Some((form, shape)), None), interrupt)?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
         let motion = rows.iter().fold(0.0_f64, |m, row| m.max(along(row, shape).norm()));
@@ -131,7 +148,7 @@ impl Condensed {
         model: &Model,
         options: &SolverOptions,
         (forced, omega): (&[usize], f64),
-        mode: Option<(DampingForm, &[Complex64])>,
+        (mode, reference): (Option<(DampingForm, &[Complex64])>, Option<Reference>),
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {
         model.check_matrices(mode.is_some())?;
@@ -168,11 +185,12 @@ impl Condensed {
         let reference_stiffness = reference_stiffness(&stiffness, &structural)?;
         let unknowns = representatives.len() * set.packed_len();
         // A mode is a resonance of the stuck structure while its contacts stick.
-        let reference = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
+        let quicker = if unknowns > STUCK_ABOVE && model.structure().is_damped() && mode.is_none() {
             Reference::Stuck
         } else {
             Reference::Complex
         };
+        let reference = reference.unwrap_or(quicker);
         let mut share = try_vec(representatives.len(), 1.0, "the contacts")?;
         if let Some((_, shape)) = mode {
             for (c, share) in share.iter_mut().enumerate() {

@@ -22,6 +22,8 @@ pub struct FrequencyCache {
     /// Frequency of the current tables; `true` if they were made pointwise.
     tabulated: Option<(f64, bool)>,
     pointwise: bool,
+    /// Whether interpolation is not used, and slopes are.
+    factorised: bool,
 }
 
 impl FrequencyCache {
@@ -54,6 +56,7 @@ impl FrequencyCache {
             tabulated: None,
             // Without a sweep no slope is used.
             pointwise: !sweep && condensed.ndof() > INTERPOLATE_ABOVE,
+            factorised: false,
         })
     }
 
@@ -61,6 +64,14 @@ impl FrequencyCache {
     pub fn set_pointwise(&mut self, pointwise: bool) {
         if !self.interpolations.is_empty() {
             self.pointwise = pointwise;
+        }
+    }
+
+    /// Selects tables with slopes by factorisation from now on.
+    pub fn set_factorised(&mut self, factorised: bool) {
+        if self.factorised != factorised && !self.interpolations.is_empty() {
+            self.factorised = factorised;
+            self.tabulated = None;
         }
     }
 
@@ -83,10 +94,12 @@ impl FrequencyCache {
         for (i, table) in self.current.iter_mut().enumerate() {
             interrupt.check()?;
             let done = match self.interpolations.get_mut(i) {
-                Some(interpolation) if !self.pointwise => interpolation.evaluate(omega, table, |w, values| {
-                    values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
-                    Ok(())
-                })?,
+                Some(interpolation) if !self.pointwise && !self.factorised => {
+                    interpolation.evaluate(omega, table, |w, values| {
+                        values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
+                        Ok(())
+                    })?
+                }
                 _ => false,
             };
             if !done {

@@ -114,6 +114,21 @@ impl Continuation {
         Ok(())
     }
 
+    /// Continues from a point, of which the branch before is not used, by a first step that changes the parameter by
+    /// about `change` at most.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn start_at(&mut self, point: Point, change: f64) -> Result<()> {
+        self.go_on_from(None, point)?;
+        let metric = self.metric();
+        let tangent = &self.current.tangent;
+        let share = tangent[tangent.len() - 1].abs() / metric.p / metric.norm(tangent);
+        self.steps = self.settings.steps;
+        self.steps.at_most(change / metric.p / share);
+        Ok(())
+    }
+
     /// The point that was accepted last.
     #[must_use]
     pub fn current(&self) -> &Point {

@@ -58,6 +58,7 @@ pub struct Corrector {
     trial: Vec<f64>,
     next: Vec<f64>,
     tolerance: f64,
+    min_iterations: usize,
     max_iterations: usize,
     /// Newton steps taken so far, over all corrections.
     steps_taken: usize,
@@ -94,6 +95,7 @@ impl Corrector {
             trial: try_vec(n + 1, 0.0, "Newton's method")?,
             next: try_vec(n + 1, 0.0, "Newton's method")?,
             tolerance,
+            min_iterations: 0,
             max_iterations,
             steps_taken: 0,
             failure: None,
@@ -109,6 +111,13 @@ impl Corrector {
     /// Counts the steps of another corrector, which prepared a correction of this one.
     pub fn count_steps(&mut self, of_other: usize) {
         self.steps_taken += of_other;
+    }
+
+    /// Sets the bounds of the number of Newton iterations, and returns those before.
+    pub fn limit(&mut self, iterations: (usize, usize)) -> (usize, usize) {
+        let before = (self.min_iterations, self.max_iterations);
+        (self.min_iterations, self.max_iterations) = iterations;
+        before
     }
 
     /// The failure of the last correction, if a law could not evaluate its force at some motion.
@@ -158,7 +167,8 @@ impl Corrector {
             let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
             // A step that is round-off of all unknowns may still matter to the small motion of a stiff contact.
             let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
-            if (residual <= self.attainable() && near) || (round_off && !shrinks) {
+            let converged = (residual <= self.attainable() && near) || (round_off && !shrinks);
+            if converged && iteration >= self.min_iterations {
                 let found = self.finish(problem, v, metric, (iteration, residual), interrupt)?;
                 return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
             }

@@ -48,6 +48,44 @@ pub fn resolve(
     Ok(Some(point))
 }
 
+/// Bounds of the Newton iterations of a linear problem. One solves it, however small the residual before it: near a
+/// resonance a residual within the tolerance may leave an error of the motion, and with it of the tangent, that is far
+/// above rounding. The others remove rounding.
+const LINEAR_ITERATIONS: (usize, usize) = (1, 4);
+
+/// Solves a problem that is linear around `near` at a parameter value. The found point is followed in the same sense of
+/// the parameter. `None` where the problem turns out to be nonlinear, or has no solution.
+///
+/// # Errors
+/// Those of the problem; `StoppedByCaller`.
+pub fn solve_linear(
+    problem: &mut dyn Problem,
+    corrector: &mut Corrector,
+    settings: &Settings,
+    near: &Point,
+    parameter: f64,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Point>> {
+    let n = near.unknowns().len();
+    let metric = Metric::along(norm(near.unknowns()), settings);
+    let mut row = try_vec(n + 1, 0.0, "a point of the branch")?;
+    row[n] = 1.0;
+    let mut v = try_copy(&near.v, "a point of the branch")?;
+    v[n] = parameter;
+    let most = corrector.limit(LINEAR_ITERATIONS);
+    let outcome = corrector.correct(problem, &mut v, &row, metric, false, interrupt);
+    corrector.limit(most);
+    let Outcome::Converged(corrected) = outcome? else {
+        return Ok(None);
+    };
+    v[n] = parameter;
+    let mut point = Point::new(v, corrected, 0.0);
+    if point.tangent[n] * near.tangent[n] < 0.0 {
+        point.reverse();
+    }
+    Ok(Some(point))
+}
+
 /// Orients the tangent of a point like the branch through `near`, which may have other harmonics.
 ///
 /// The sense is the sign of det [J r; tangentᵀ], not the angle between the tangents: those may differ in harmonics that

@@ -44,6 +44,13 @@ impl StepControl {
         self.max
     }
 
+    /// Shortens the step to try, down to the smallest one.
+    pub fn at_most(&mut self, step: f64) {
+        if step < self.step {
+            self.step = step.max(self.min);
+        }
+    }
+
     /// Whether a predictor error can be accepted.
     #[must_use]
     pub fn accepts(&self, error: f64) -> bool {

@@ -3,8 +3,7 @@
 //! With X₀ the response of the point, Xₖ that of the k-th extension and dₖ = |Xₖ − Xₖ₋₁| the next change is about
 //! dₖ q, q = dₖ/dₖ₋₁, and the whole one about |Xₖ − X₀| + dₖ q.
 
-use crate::error_estimate::Estimate;
-use crate::error_estimate::forced_response_error::relative;
+use crate::error_estimate::estimate::{Estimate, relative};
 use num_complex::Complex64;
 
 /// The next change, relative to the whole, at which the response has settled, and at which it will do where no further

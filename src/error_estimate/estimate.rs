@@ -170,6 +170,15 @@ impl Solved<'_> {
     }
 }
 
+/// A difference relative to a number; 0 if the difference is 0.
+pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
+    if difference == 0.0 {
+        0.0
+    } else {
+        difference / number.norm()
+    }
+}
+
 /// Sizes of the harmonics above those of `below`, relative to the norm of all.
 pub(super) fn tail(set: &HarmonicSet, below: &HarmonicSet, motion: &[f64]) -> Result<Vec<(usize, f64)>> {
     let size = norm(motion);

@@ -5,7 +5,7 @@ use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
 use crate::error_estimate::estimate::{
-    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, tail,
+    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, relative, tail,
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
@@ -363,15 +363,6 @@ struct Extent {
     short: bool,
     /// Whether this is one of several extensions, each of which ends as soon as the response has converged.
     by_doubling: bool,
-}
-
-/// A difference relative to a number; 0 if the difference is 0.
-pub(super) fn relative(difference: f64, number: Complex64) -> f64 {
-    if difference == 0.0 {
-        0.0
-    } else {
-        difference / number.norm()
-    }
 }
 
 /// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem

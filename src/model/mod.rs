@@ -9,6 +9,7 @@ mod mechanical_model;
 pub mod mode_selection;
 mod model_checks;
 pub mod repeated_modes;
+pub mod resonances;
 pub mod slip_capacity;
 pub mod spring;
 pub mod spring_stiffness;

@@ -39,6 +39,8 @@ pub struct ContactForces<'a> {
     jacobians: Blocks,
     /// Whether all laws stick.
     all_stuck: bool,
+    /// Whether the forces of all laws are affine functions of the motion.
+    all_linear: bool,
     /// Per coordinate, whether all its laws stick, or along their normal are closed, so that ∂f/∂y is theirs.
     linear: Vec<bool>,
     /// Per coordinate, whether all its laws stick and none acts along its normal, where a load acts at rest.
@@ -98,6 +100,7 @@ impl<'a> ContactForces<'a> {
             by_omega: try_vec(size, 0.0, CONTEXT)?,
             jacobians: Blocks::new(condensed, m)?,
             all_stuck: false,
+            all_linear: false,
             linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
             inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
             slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
@@ -130,6 +133,7 @@ impl<'a> ContactForces<'a> {
         }
         self.jacobians.clear();
         self.all_stuck = true;
+        self.all_linear = true;
         self.linear.fill(true);
         self.inactive.fill(true);
         self.share_stuck.fill(0.0);
@@ -159,6 +163,7 @@ impl<'a> ContactForces<'a> {
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
             let stuck = (1.0 - found.slip_fraction - found.open_fraction).max(0.0);
+            self.all_linear &= found.linear;
             for (i, &c) in at.iter().enumerate() {
                 self.share_stuck[c] = self.share_stuck[c].max(stuck);
                 let normal = assembled.normal == Some(i);
@@ -201,10 +206,16 @@ impl<'a> ContactForces<'a> {
         &self.slip_fractions
     }
 
-    /// Whether every law is linear at the motion evaluated last.
+    /// Whether every law sticks, or is open, at the motion evaluated last.
     #[must_use]
     pub fn all_stuck(&self) -> bool {
         self.all_stuck
+    }
+
+    /// Whether the force of every law is an affine function of the motion near the one evaluated last.
+    #[must_use]
+    pub fn all_linear(&self) -> bool {
+        self.all_linear
     }
 
     /// w = f − κ y of a coordinate in the i-th carried harmonic.

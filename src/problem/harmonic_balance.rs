@@ -95,6 +95,14 @@ impl<'a> HarmonicBalance<'a> {
         self.forces.sampling_error(u, omega)
     }
 
+    /// Largest share of its linear range that a contact uses, see [`ContactForces::linearisation_scale`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn linear_share(&mut self, u: &[f64], omega: f64) -> Result<f64> {
+        self.forces.linearisation_scale(u, omega)
+    }
+
     /// Residual at the frequency `omega` and its derivative by ω, or by the parameter `p` of a path.
     fn evaluate_at(&mut self, u: &[f64], omega: f64, path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
         let scale = match path {
@@ -349,5 +357,9 @@ impl Problem for HarmonicBalance<'_> {
 
     fn set_pointwise(&mut self, pointwise: bool) {
         self.tables.set_pointwise(pointwise);
+    }
+
+    fn set_factorised(&mut self, factorised: bool) {
+        self.tables.set_factorised(factorised);
     }
 }

@@ -89,6 +89,9 @@ pub trait Problem: Jacobian {
     /// Selects the most accurate evaluation at the following parameter values, instead of the fast one along a
     /// branch. Derivatives by the parameter may then be zero.
     fn set_pointwise(&mut self, _pointwise: bool) {}
+
+    /// Selects an evaluation as accurate as that, with accurate derivatives by the parameter as well.
+    fn set_factorised(&mut self, _factorised: bool) {}
 }
 
 /// Adds a complex number (the real part alone for the mean) at position `r` of a packed vector.

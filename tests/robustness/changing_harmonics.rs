@@ -41,8 +41,7 @@ fn a_third_harmonic_that_appears_at_its_resonance_does_not_turn_the_branch() {
                 .iter()
                 .max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))
                 .unwrap();
-            let near =
-                top.amplitude.mul_add(1e4, 0.5).floor() == 8492.0 && top.omega.mul_add(1e4, 0.5).floor() == 6581.0;
+            let near = (top.amplitude - 0.8492).abs() < 5e-5 && (top.omega - 0.6581).abs() < 5e-5;
             assert!(near, "from {from}: {top:?}");
         }
     }
@@ -78,7 +77,7 @@ fn case(number: u64) -> Case {
     );
     let scale = 0.5 * springs.iter().sum::<f64>() / springs.len() as f64;
     let mut stuck = stiffness.clone();
-    for _ in 0..1 + random.below(4) {
+    for _ in 0..=random.below(4) {
         let a = random.below(n);
         let b = Some(random.below(n)).filter(|&b| b != a && random.happens(0.7));
         let kt = scale * random.decade(-1.0, 0.5);

@@ -1,1 +1,14 @@
+//! Cases on which programs for harmonic balance fail, and thousands of random ones.
 
+#[path = "../common/mod.rs"]
+mod common;
+
+mod changing_harmonics;
+mod finite_fields;
+mod hard_cases;
+mod hard_modes;
+mod hard_sweeps;
+mod interrupts;
+mod linear_stretches;
+mod near_rigid;
+mod random_problems;

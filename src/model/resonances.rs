@@ -1,0 +1,282 @@
+//! Resonances of the structure with its contacts in their linear state: frequencies and half widths, where the response
+//! of a harmonic has its poles.
+
+use crate::error::{Error, Result, Status, check_memory, try_copy, try_extend, try_push};
+use crate::interrupt::Interrupt;
+use crate::linalg::eigen;
+use crate::linalg::lanczos;
+use crate::linalg::quadratic::quadratic;
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::linear_modes::ContactState;
+use crate::model::spring_stiffness::Wave;
+use crate::model::structure::MatrixKind;
+use nalgebra::{DMatrix, Schur};
+use num_complex::Complex64;
+
+/// A pole p = ω + iσ of the response.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resonance {
+    /// Angular frequency.
+    pub omega: f64,
+    /// Half width: the response is 1/√2 of its peak at ω ± σ. Zero without damping.
+    pub half_width: f64,
+}
+
+/// Half width relative to the frequency below which a resonance is undamped up to rounding.
+const UNDAMPED: f64 = 1e-13;
+
+impl Resonance {
+    /// Whether nothing but rounding damps it.
+    #[must_use]
+    pub fn is_undamped(&self) -> bool {
+        self.half_width <= UNDAMPED * self.omega
+    }
+}
+
+/// Degrees of freedom up to which all modes are found by dense algebra.
+const DENSE_UP_TO: usize = 100;
+
+/// Number of modes of a first search in a large structure; it doubles until the range is covered.
+const FIRST_MODES: usize = 24;
+
+/// Largest number of modes of a search.
+const MOST_MODES: usize = 1000;
+
+/// Largest number of square matrices that the dense eigensolver holds at a time.
+const EIGEN_COPIES: usize = 8;
+
+/// Coupling of two modes by damping, relative to the distance of their frequencies, up to which each has its own
+/// half width.
+const COUPLED: f64 = 0.1;
+
+/// Most iterations of the eigenvalues of coupled modes.
+const MAX_ITERATIONS: usize = 10_000;
+
+const CONTEXT: &str = "the resonances";
+
+impl Model {
+    /// The resonances of all harmonics in which forces vibrate, see [`Self::resonances`].
+    ///
+    /// # Errors
+    /// As [`Self::resonances`].
+    pub fn forced_resonances(
+        &self,
+        range: (f64, f64),
+        contacts: ContactState,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Vec<Resonance>>> {
+        let mut found = Vec::new();
+        let mut forced = Vec::new();
+        for force in self.excitation().forces() {
+            let h = force.harmonic;
+            if h == 0 || force.value == Complex64::ZERO || forced.contains(&h) {
+                continue;
+            }
+            try_push(&mut forced, h, CONTEXT)?;
+            let Some(own) = self.resonances(h, range, contacts, interrupt)? else {
+                return Ok(None);
+            };
+            try_extend(&mut found, &own, CONTEXT)?;
+        }
+        found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        Ok(Some(found))
+    }
+
+    /// The resonances of harmonic `h` between two excitation frequencies, ascending: natural frequencies over h, with
+    /// the contacts in `contacts` and half widths from the damping. `None` where they cannot be had, as when there are
+    /// too many of them.
+    ///
+    /// Modes are those of the Hermitian part of K; its skew part adds to the damping. With mass-normalised shapes Φ,
+    /// poles are the eigenvalues of diag(ω) + ½i Φᴴ(C + Im K/ω)Φ, exact to first order in the damping.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, `StoppedByCaller`.
+    pub fn resonances(
+        &self,
+        h: usize,
+        (low, high): (f64, f64),
+        contacts: ContactState,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Vec<Resonance>>> {
+        match self.damped_frequencies(h, (low, high), contacts, interrupt) {
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
+            found => Ok(found.ok().flatten()),
+        }
+    }
+
+    fn damped_frequencies(
+        &self,
+        h: usize,
+        (low, high): (f64, f64),
+        contacts: ContactState,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Vec<Resonance>>> {
+        let structure = self.structure();
+        let stiffness = self.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
+        let mass = structure.wave_matrix(MatrixKind::Mass, h)?;
+        let (hermitian, skew) = parts(&stiffness)?;
+        let number = h as f64;
+        let Some(modes) = modes_up_to(&hermitian, &mass, high * number, interrupt)? else {
+            return Ok(None);
+        };
+        let mut frequencies = Vec::new();
+        let mut shapes = Vec::new();
+        for (value, shape) in modes.values.iter().zip(modes.vectors.column_iter()) {
+            let omega = value.max(0.0).sqrt();
+            if omega >= low * number && omega <= high * number && omega > 0.0 {
+                try_push(&mut frequencies, omega, CONTEXT)?;
+                try_push(&mut shapes, try_copy(shape.as_slice(), CONTEXT)?, CONTEXT)?;
+            }
+        }
+        let damping = structure.wave_matrix(MatrixKind::Damping, h)?;
+        let widths = Widths { damping, skew };
+        let mut found = Vec::new();
+        let mut first = 0;
+        while first < frequencies.len() {
+            let mut next = first + 1;
+            while next < frequencies.len() && widths.couple(&frequencies, &shapes, next)? {
+                next += 1;
+            }
+            let group = first..next;
+            widths.poles(&frequencies[group.clone()], &shapes[group], number, &mut found)?;
+            first = next;
+        }
+        found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+        Ok(Some(found))
+    }
+}
+
+/// The Hermitian part of K, and −i times the skew one.
+fn parts(k: &Csc) -> Result<(Csc, Csc)> {
+    let half = Complex64::new(0.5, 0.0);
+    let turned = Complex64::new(0.0, -0.5);
+    // Aᴴ as the conjugate of the transpose.
+    let transposed = Csc::sum(k.rows, &[(Complex64::ONE, k, Form::Transposed)])?;
+    let combine =
+        |a: Complex64, b: Complex64| Csc::sum(k.rows, &[(a, k, Form::Plain), (b, &transposed, Form::Conjugated)]);
+    Ok((combine(half, half)?, combine(turned, -turned)?))
+}
+
+/// All modes up to a frequency; `None` if there are too many of them.
+fn modes_up_to(k: &Csc, m: &Csc, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<eigen::Pairs>> {
+    let n = k.rows;
+    let mut count = FIRST_MODES;
+    while n > DENSE_UP_TO && count <= n / 4 {
+        if count > MOST_MODES {
+            return Ok(None);
+        }
+        let pairs = lanczos::lowest(k, m, count, interrupt)?;
+        if pairs.values.len() < count || pairs.values.last().is_some_and(|&x| x > omega * omega) {
+            return Ok(Some(pairs));
+        }
+        count *= 2;
+    }
+    // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
+    check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), CONTEXT)?;
+    let dense = |a: &Csc| {
+        let mut d = DMatrix::<Complex64>::zeros(n, n);
+        a.add_to_dense(Complex64::ONE, d.as_mut_slice());
+        d
+    };
+    eigen::generalised(&dense(k), &dense(m), interrupt).map(Some)
+}
+
+/// The damping from which half widths follow.
+struct Widths {
+    damping: Csc,
+    skew: Csc,
+}
+
+impl Widths {
+    /// φᴴ(C + Im K/ω)φ between two shapes.
+    fn between(&self, a: &[Complex64], b: &[Complex64], omega: f64) -> Result<Complex64> {
+        let mut sum = Complex64::ZERO;
+        for (matrix, factor) in [(&self.damping, 1.0), (&self.skew, omega.recip())] {
+            if matrix.max_abs() > 0.0 {
+                let product = matrix.times(b, CONTEXT)?;
+                let inner: Complex64 = a.iter().zip(&product).map(|(a, p)| a.conj() * p).sum();
+                sum += inner * factor;
+            }
+        }
+        Ok(sum)
+    }
+
+    /// Whether damping couples a mode to the one before.
+    fn couple(&self, frequencies: &[f64], shapes: &[Vec<Complex64>], mode: usize) -> Result<bool> {
+        let coupling = self.between(&shapes[mode - 1], &shapes[mode], frequencies[mode])?;
+        Ok(coupling.norm() > COUPLED * (frequencies[mode] - frequencies[mode - 1]))
+    }
+
+    /// The poles of a group of coupled modes.
+    fn poles(
+        &self,
+        frequencies: &[f64],
+        shapes: &[Vec<Complex64>],
+        number: f64,
+        found: &mut Vec<Resonance>,
+    ) -> Result<()> {
+        let count = frequencies.len();
+        let half_i = Complex64::new(0.0, 0.5);
+        let mut add = |pole: Complex64| {
+            let resonance = Resonance {
+                omega: pole.re / number,
+                half_width: pole.im.max(0.0) / number,
+            };
+            try_push(found, resonance, CONTEXT)
+        };
+        if let ([omega], [shape]) = (frequencies, shapes) {
+            let own = quadratic(&self.damping, shape) + quadratic(&self.skew, shape) / omega;
+            // A mode beyond critical damping has no resonance; the undamped frequency stands for it.
+            let sigma = 0.5 * own;
+            let damped = (omega * omega - sigma * sigma).max(0.0).sqrt();
+            let at = if damped > 0.0 { damped } else { *omega };
+            return add(Complex64::new(at, sigma));
+        }
+        check_memory::<Complex64>(count.saturating_mul(count).saturating_mul(EIGEN_COPIES), CONTEXT)?;
+        let mut matrix = DMatrix::<Complex64>::zeros(count, count);
+        for i in 0..count {
+            for j in 0..count {
+                matrix[(i, j)] = half_i * self.between(&shapes[i], &shapes[j], frequencies[i])?;
+            }
+            matrix[(i, i)] += frequencies[i];
+        }
+        let Some(schur) = Schur::try_new(matrix, f64::EPSILON, MAX_ITERATIONS) else {
+            return Err(Error::new(Status::NoConvergence, format_args!("coupled resonances")));
+        };
+        let (_, triangular) = schur.unpack();
+        (0..count).try_for_each(|i| add(triangular[(i, i)]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::linalg::matrix_view::MatrixView;
+
+    #[test]
+    fn damping_that_couples_two_close_modes_moves_their_half_widths() {
+        // A damper on the difference of two equal masses: the common motion is undamped.
+        let mut model = Model::new(2).unwrap();
+        for (kind, values) in [
+            (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
+            (MatrixKind::Damping, [1e-3, -1e-3, -1e-3, 1e-3]),
+            (MatrixKind::Stiffness, [1.0, 0.0, 0.0, 1.0 + 1e-6]),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
+        }
+        let found = model
+            .resonances(1, (0.5, 2.0), ContactState::Stuck, &Interrupt::none())
+            .unwrap()
+            .unwrap();
+        let mut widths: Vec<f64> = found.iter().map(|r| r.half_width).collect();
+        widths.sort_by(f64::total_cmp);
+        assert!(widths[0] < 1e-9 && (widths[1] - 1e-3).abs() < 1e-9, "{found:?}");
+        // In the second harmonic at half the frequency.
+        let second = model
+            .resonances(2, (0.4, 0.6), ContactState::Stuck, &Interrupt::none())
+            .unwrap()
+            .unwrap();
+        assert!(second.len() == 2 && (second[0].omega - 0.5).abs() < 1e-6);
+    }
+}
