@@ -370,6 +370,8 @@ impl<'a> BranchTracer<'a> {
                 locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
             })?;
         }
+        // A peak may have required more harmonics; a fold is located with those of its neighbours.
+        analysis.select(a.1.max(b.1))?;
         let fold = if SpecialPoint::Fold.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Fold, a, b, |locator, problem, a, b| {
                 locator.locate(problem, SpecialPoint::Fold, a, b, interrupt)

@@ -15,11 +15,11 @@ use crate::linalg::norm;
 const HOLDS: f64 = 2.0;
 
 /// Largest spacing, where errors are known and where they are not.
-const MOST: usize = 8;
+const MOST: usize = 6;
 const MOST_UNKNOWN: usize = 32;
 
 /// Factor between a predicted error and the largest for which no estimate is made.
-const SAFETY: f64 = 1.5;
+const SAFETY: f64 = 2.5;
 
 /// Ratio of the shares of two points beyond which nothing is predicted.
 const ALIKE: f64 = 5.0;
@@ -118,18 +118,18 @@ mod tests {
 
     #[test]
     fn estimates_become_rare_while_they_are_predicted() {
-        assert_eq!(estimated(20, |_| 1e-4), [0, 1, 3, 7, 15]);
+        assert_eq!(estimated(20, |_| 1e-4), [0, 1, 3, 7, 13, 19]);
     }
 
     #[test]
     fn a_prediction_that_failed_is_checked_at_the_next_point() {
-        let made = estimated(20, |i| if i < 5 { 1e-4 } else { 5e-4 });
+        let made = estimated(20, |i| if i < 5 { 1e-4 } else { 3e-4 });
         assert_eq!(made, [0, 1, 3, 7, 8, 10, 14]);
     }
 
     #[test]
     fn points_near_the_tolerance_are_estimated_each() {
-        assert_eq!(estimated(5, |_| 8e-4), [0, 1, 2, 3, 4]);
+        assert_eq!(estimated(5, |_| 5e-4), [0, 1, 2, 3, 4]);
     }
 
     #[test]

@@ -18,7 +18,6 @@ use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
-use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Evaluations, each with a product, for which the work must suffice.
@@ -126,7 +125,7 @@ impl<'a> ForcedEstimator<'a> {
         };
         let samples = extended_options(&self.options, extent.core).samples;
         let core = Sizes::extended(solved.condensed, extent.core, samples);
-        if extent.core > extent.least && !core.is_cheap() {
+        if extent.core > extent.least && !core.is_cheap(&work) {
             return self.extend_by_doubling(solved, extent, work);
         }
         Ok(self.extend_to(solved, None, extent, work)?.0)

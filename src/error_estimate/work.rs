@@ -10,14 +10,20 @@ use crate::error_estimate::cutoff_harmonic::affordable;
 use crate::error_estimate::estimate::{MOST_EXTENDED, extended_options};
 use crate::options::SolverOptions;
 
-/// Least number of Newton iterations of a point that is solved without a neighbour.
-const ITERATIONS: usize = 12;
+/// Least number of Newton iterations that a solution without a neighbour counts: that of an easy homotopy.
+const ITERATIONS: usize = 40;
+
+/// Newton iterations of an extension.
+const EXTENSION: f64 = 12.0;
 
 /// Work of an estimate as a multiple of that of such a point.
 const MULTIPLE: f64 = 4.0;
 
 /// Operations that every estimate may take: about as many as the set-up of a small model.
-const LEAST: f64 = 3e6;
+const LEAST: f64 = 6e6;
+
+/// Share of the work that is small.
+const SMALL: f64 = 0.25;
 
 /// Bytes that every estimate may take, and as a multiple of those of the point.
 const BYTES: (f64, f64) = (100e6, 4.0);
@@ -135,9 +141,10 @@ impl Sizes {
         self.evaluation() + self.factors(self.packed, 0.0)
     }
 
-    /// Whether several Newton iterations with the whole matrix cost no more than any estimate may.
-    pub fn is_cheap(&self) -> bool {
-        ITERATIONS as f64 * self.iteration() <= LEAST
+    /// Whether several Newton iterations with the whole matrix cost no more than any estimate may, or a small part of
+    /// the work.
+    pub fn is_cheap(&self, work: &Work) -> bool {
+        EXTENSION * self.iteration() <= LEAST.max(SMALL * work.operations)
     }
 
     /// Bytes of the contact Jacobians, with their copies, of the tables of samples, and of the factors.

@@ -106,12 +106,12 @@ static void matrices(hbvib_model *model)
         a = matrix(1, &k1);
         WORKS("31", hbvib_model_new(1, &one));
         REFUSED("31", hbvib_model_set_matrix(one, HBVIB_MASS, &a), HBVIB_E_NOT_POSITIVE_DEFINITE, 3, "mass[0,0]");
-        REFUSED("33", hbvib_linear_modes(one, 0, 0, 1, &omega, NULL), HBVIB_E_NOT_POSITIVE_DEFINITE, 0, "mass");
-        /* row 33: without a force the zero solution */
+        REFUSED("33", hbvib_linear_modes(one, 0, 0, 1, &omega, NULL), HBVIB_E_ARGUMENT, 0, "no matrices were set");
+        /* row 33: without a force the zero solution, and a status that says so */
         a.values = k2;
         WORKS("33", hbvib_model_set_matrix(one, HBVIB_MASS, &a));
         WORKS("33", hbvib_model_set_matrix(one, HBVIB_STIFFNESS, &a));
-        WORKS("33", hbvib_forced_response(one, &s, &o, NULL, &branch));
+        EXPECT("33", hbvib_forced_response(one, &s, &o, NULL, &branch) == HBVIB_STOPPED_NO_FORCE);
         {
             double x[20];
             WORKS("33", hbvib_branch_harmonics(branch, 0, 0, 1, x, 10));

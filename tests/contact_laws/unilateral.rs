@@ -16,6 +16,13 @@ use std::f64::consts::TAU;
 
 /// m ẍ + c ẋ + k x with m = k = 1, c = 0.02, and a stop kn·max(x − gap, 0).
 fn stopped(kn: f64, gap: f64, force: f64) -> Model {
+    let mut model = oscillator(force);
+    model.add_contact(&Contact::unilateral(None, Some(0), kn, gap)).unwrap();
+    model
+}
+
+/// The same without its stop.
+fn oscillator(force: f64) -> Model {
     let mut model = Model::new(1).unwrap();
     for (kind, value) in [
         (MatrixKind::Mass, 1.0),
@@ -24,7 +31,6 @@ fn stopped(kn: f64, gap: f64, force: f64) -> Model {
     ] {
         model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
     }
-    model.add_contact(&Contact::unilateral(None, Some(0), kn, gap)).unwrap();
     model.add_force(0, 1, force.into()).unwrap();
     model
 }
@@ -80,7 +86,7 @@ fn a_stop_that_never_opens_is_a_spring_about_the_static_position() {
         );
     }
     // The same by a preload: gap = −preload/kn.
-    let mut other = stopped(0.0, 0.0, 0.2);
+    let mut other = oscillator(0.2);
     other
         .add_contact(&Contact {
             preload: 500.0,
