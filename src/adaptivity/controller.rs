@@ -9,7 +9,7 @@
 //! where the error is far below the tolerance, so that they do not alternate.
 
 use crate::adaptivity::discretised::{Assessment, Discretised};
-use crate::adaptivity::estimate_spacing::EstimateSpacing;
+use crate::adaptivity::estimate_spacing::{EstimateSpacing, Signs};
 use crate::continuation::Point;
 use crate::error::Result;
 use crate::error_estimate::Estimate;
@@ -172,17 +172,17 @@ impl AdaptivityController {
         let found = equations.estimate(point)?;
         if let Some(found) = &found {
             self.count(found);
-            let share = equations.share_of_highest(point);
-            self.spacing.note(equations.resolution(), share, found.error);
+            let signs = Signs::of(point, equations.share_of_highest(point));
+            self.spacing.note(equations.resolution(), signs, found.error);
         }
         Ok(found)
     }
 
     /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
     fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point) -> Result<bool> {
-        let share = equations.share_of_highest(point);
+        let signs = Signs::of(point, equations.share_of_highest(point));
         let largest = self.tolerance / MARGIN;
-        let Some(factor) = self.spacing.factor(equations.resolution(), share, largest) else {
+        let Some(factor) = self.spacing.factor(equations.resolution(), signs, largest) else {
             return Ok(false);
         };
         if !equations.take_over_estimate(point, factor)? {

@@ -2,12 +2,14 @@
 //!
 //! Between two estimates the error follows the share of the highest carried harmonics in the motion,
 //!
-//! > η ≈ η₀ t/t₀,  t = ‖Y_{>H/2}‖/‖Y‖,
+//! > η ≈ η₀ t/t₀ · max(1, s/s₀),  t = ‖Y_{>H/2}‖/‖Y‖,  s = |dX/dp|/|X|,
 //!
-//! with η₀ and t₀ at the point estimated last. Each estimate checks this rule. While it holds within a factor of two, the
+//! with η₀, t₀ and s₀ at the point estimated last: towards a fold, where the response X is steep against the parameter p,
+//! the error at a fixed parameter grows without bound. Each estimate checks this rule. While it holds within a factor of two, the
 //! spacing doubles; where it does not, the next point is estimated again. A point whose error would come near the
 //! tolerance, or whose share changes much, is estimated in any case.
 
+use crate::continuation::Point;
 use crate::fourier::HarmonicSet;
 use crate::linalg::norm;
 
@@ -15,11 +17,11 @@ use crate::linalg::norm;
 const HOLDS: f64 = 2.0;
 
 /// Largest spacing, where errors are known and where they are not.
-const MOST: usize = 6;
+const MOST: usize = 4;
 const MOST_UNKNOWN: usize = 32;
 
 /// Factor between a predicted error and the largest for which no estimate is made.
-const SAFETY: f64 = 2.5;
+const SAFETY: f64 = 12.0;
 
 /// Ratio of the shares of two points beyond which nothing is predicted.
 const ALIKE: f64 = 5.0;
@@ -38,11 +40,43 @@ pub(crate) fn share_of_highest(set: &HarmonicSet, motion: &[f64]) -> f64 {
     above / norm(motion)
 }
 
+/// Signs of the error of a point.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Signs {
+    /// Share of the highest harmonics, see [`share_of_highest`].
+    pub share: f64,
+    /// |dX/dp|/|X| of the response observed.
+    pub steepness: f64,
+}
+
+impl Signs {
+    /// The signs of a point with this share.
+    pub fn of(point: &Point, share: f64) -> Self {
+        let along = point.tangent.last().copied().unwrap_or(0.0).abs() * point.amplitude.norm();
+        let steepness = if along > 0.0 {
+            point.slope.norm() / along
+        } else {
+            f64::INFINITY
+        };
+        Self { share, steepness }
+    }
+
+    /// The factor from the error of a point with other signs.
+    fn factor_from(self, other: Self) -> f64 {
+        let steeper = if self.steepness > other.steepness {
+            self.steepness / other.steepness
+        } else {
+            1.0
+        };
+        self.share / other.share * steeper
+    }
+}
+
 /// Estimate made last.
 #[derive(Clone, Copy, Debug)]
 struct Known {
     error: f64,
-    share: f64,
+    signs: Signs,
     level: usize,
 }
 
@@ -56,14 +90,18 @@ pub(crate) struct EstimateSpacing {
 }
 
 impl EstimateSpacing {
-    /// The factor from the error estimated last to that of a point with this share of the highest harmonics; `None`
-    /// where the point is to be estimated. Errors up to `largest` need no estimate.
-    pub fn factor(&mut self, level: usize, share: f64, largest: f64) -> Option<f64> {
+    /// The factor from the error estimated last to that of a point with these signs; `None` where the point is to be
+    /// estimated. Errors up to `largest` need no estimate.
+    pub fn factor(&mut self, level: usize, signs: Signs, largest: f64) -> Option<f64> {
         let known = self.known.filter(|known| known.level == level)?;
         if self.since + 1 >= self.spacing {
             return None;
         }
-        let factor = if known.error.is_nan() { 1.0 } else { share / known.share };
+        let factor = if known.error.is_nan() {
+            1.0
+        } else {
+            signs.factor_from(known.signs)
+        };
         let alike = (1.0 / ALIKE..=ALIKE).contains(&factor);
         if !alike || SAFETY * factor * known.error > largest {
             return None;
@@ -73,7 +111,7 @@ impl EstimateSpacing {
     }
 
     /// Notes an estimate: its error, NaN where it is unknown.
-    pub fn note(&mut self, level: usize, share: f64, error: f64) {
+    pub fn note(&mut self, level: usize, signs: Signs, error: f64) {
         let before = self.known.filter(|known| known.level == level);
         let (holds, most) = match before {
             None => (false, MOST),
@@ -81,7 +119,7 @@ impl EstimateSpacing {
                 (error.is_nan() && known.error.is_nan(), MOST_UNKNOWN)
             }
             Some(known) => {
-                let ratio = error * known.share / (known.error * share);
+                let ratio = error / (known.error * signs.factor_from(known.signs));
                 ((1.0 / HOLDS..=HOLDS).contains(&ratio), MOST)
             }
         };
@@ -90,7 +128,8 @@ impl EstimateSpacing {
             self.spacing = self.spacing.max(2);
         }
         self.since = 0;
-        self.known = (error.is_nan() || (error > 0.0 && share > 0.0)).then_some(Known { error, share, level });
+        let is_known = error.is_nan() || (error > 0.0 && signs.share > 0.0);
+        self.known = is_known.then_some(Known { error, signs, level });
     }
 
     /// Forgets the estimate made last: the next point is estimated.
@@ -101,16 +140,20 @@ impl EstimateSpacing {
 
 #[cfg(test)]
 mod tests {
-    use super::EstimateSpacing;
+    use super::{EstimateSpacing, Signs};
+
+    const fn signs(share: f64, steepness: f64) -> Signs {
+        Signs { share, steepness }
+    }
 
     /// Estimated points among `count` ones whose error follows `error`.
     fn estimated(count: usize, error: impl Fn(usize) -> f64) -> Vec<usize> {
         let mut spacing = EstimateSpacing::default();
         let mut made = Vec::new();
         for i in 0..count {
-            if spacing.factor(3, 1e-3, 1e-3).is_none() {
+            if spacing.factor(3, signs(1e-3, 1.0), 1e-3).is_none() {
                 made.push(i);
-                spacing.note(3, 1e-3, error(i));
+                spacing.note(3, signs(1e-3, 1.0), error(i));
             }
         }
         made
@@ -118,18 +161,18 @@ mod tests {
 
     #[test]
     fn estimates_become_rare_while_they_are_predicted() {
-        assert_eq!(estimated(20, |_| 1e-4), [0, 1, 3, 7, 13, 19]);
+        assert_eq!(estimated(20, |_| 5e-5), [0, 1, 3, 7, 11, 15, 19]);
     }
 
     #[test]
     fn a_prediction_that_failed_is_checked_at_the_next_point() {
-        let made = estimated(20, |i| if i < 5 { 1e-4 } else { 3e-4 });
-        assert_eq!(made, [0, 1, 3, 7, 8, 10, 14]);
+        let made = estimated(20, |i| if i < 5 { 2e-5 } else { 5e-5 });
+        assert_eq!(made, [0, 1, 3, 7, 8, 10, 14, 18]);
     }
 
     #[test]
     fn points_near_the_tolerance_are_estimated_each() {
-        assert_eq!(estimated(5, |_| 5e-4), [0, 1, 2, 3, 4]);
+        assert_eq!(estimated(5, |_| 1e-4), [0, 1, 2, 3, 4]);
     }
 
     #[test]
@@ -141,10 +184,11 @@ mod tests {
     fn other_harmonics_are_estimated_anew() {
         let mut spacing = EstimateSpacing::default();
         for _ in 0..3 {
-            spacing.note(3, 1e-3, 1e-4);
+            spacing.note(3, signs(1e-3, 1.0), 5e-5);
         }
-        assert!(spacing.factor(4, 1e-3, 1e-3).is_none());
-        assert!(spacing.factor(3, 1e-2, 1e-3).is_none());
-        assert!(spacing.factor(3, 1e-3, 1e-3).is_some());
+        assert!(spacing.factor(4, signs(1e-3, 1.0), 1e-3).is_none());
+        assert!(spacing.factor(3, signs(1e-2, 1.0), 1e-3).is_none());
+        assert!(spacing.factor(3, signs(1e-3, 10.0), 1e-3).is_none());
+        assert!(spacing.factor(3, signs(1e-3, 1.0), 1e-3).is_some());
     }
 }

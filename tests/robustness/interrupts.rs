@@ -123,8 +123,8 @@ fn of_branch(branch: Result<Branch>) -> Result<Status> {
 
 /// Status of a call that has nothing to keep.
 fn of_call<T>(outcome: Result<T>) -> Result<Status> {
-    match outcome {
-        Ok(_) => Ok(Status::Ok),
+    match outcome.map(drop) {
+        Ok(()) => Ok(Status::Ok),
         Err(e) if e.status == Status::StoppedByCaller => Ok(e.status),
         Err(e) => Err(e),
     }
@@ -133,6 +133,7 @@ fn of_call<T>(outcome: Result<T>) -> Result<Status> {
 type Analysis<'a> = (&'static str, Box<dyn Fn(&mut Hooks<'_>) -> Result<Status> + 'a>);
 
 /// Every analysis of a case; `solved` is a branch with the first harmonics at one frequency, `mode` a short mode.
+#[allow(clippy::too_many_lines, reason = "one list of all analyses")]
 fn analyses<'a>(case: &'a Case, solved: &'a Branch, mode: &'a Branch) -> Vec<Analysis<'a>> {
     let n = case.model.ndof();
     let automatic = SolverOptions {
@@ -143,7 +144,7 @@ fn analyses<'a>(case: &'a Case, solved: &'a Branch, mode: &'a Branch) -> Vec<Ana
         .map(|k| Complex64::cis(k as f64) / (1 + k / n) as f64)
         .collect();
     let signal: Vec<Complex64> = (0..=400)
-        .map(|h| Complex64::cis(h as f64) / (1 + h * h) as f64)
+        .map(|h| Complex64::cis(f64::from(h)) / f64::from(1 + h * h))
         .collect();
     let time = TimeOptions {
         omega: case.omega,
@@ -267,11 +268,11 @@ fn stop_when(analysis: &Analysis<'_>, now: impl Fn(u64, Duration) -> bool) -> St
         assert!(stopped.get().is_none(), "{}: asked again after the stop", analysis.0);
         let time = spent(start);
         if phase.get() != Some(Phase::Factorisation) {
-            widest.set(widest.get().max(time - last.get()));
+            widest.set(widest.get().max(time.saturating_sub(last.get())));
         }
         last.set(time);
         checks.set(checks.get() + 1);
-        let stop = now(checks.get(), time - begin);
+        let stop = now(checks.get(), time.saturating_sub(begin));
         stopped.set(stop.then_some(time));
         stop
     };
@@ -288,7 +289,7 @@ fn stop_when(analysis: &Analysis<'_>, now: impl Fn(u64, Duration) -> bool) -> St
     };
     let status = (analysis.1)(&mut hooks).unwrap();
     let end = spent(start);
-    let late = stopped.get().map(|at| end - at);
+    let late = stopped.get().map(|at| end.saturating_sub(at));
     assert_eq!(
         status == Status::StoppedByCaller,
         late.is_some(),
