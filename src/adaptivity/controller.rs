@@ -29,6 +29,9 @@ const RAISE: f64 = 0.7;
 /// Share of the tolerance below which the next point is coarsened.
 const DROP: f64 = 0.08;
 
+/// Successive estimates below that share after which the branch is coarsened: one alone may be an exception.
+const LOW: usize = 2;
+
 /// Number of points for which a branch is not coarsened to a level at which one missed the tolerance.
 const PATIENCE: usize = 10;
 
@@ -72,6 +75,8 @@ pub(crate) struct AdaptivityController {
     folded: bool,
     /// Whether a nonlinear point was estimated.
     begun: bool,
+    /// Number of successive estimates far below the tolerance.
+    low: usize,
     spacing: EstimateSpacing,
 }
 
@@ -86,6 +91,7 @@ impl AdaptivityController {
             highest: 0,
             folded: false,
             begun: false,
+            low: 0,
             spacing: EstimateSpacing::default(),
         }
     }
@@ -174,6 +180,8 @@ impl AdaptivityController {
             self.count(found);
             let signs = Signs::of(point, equations.share_of_highest(point));
             self.spacing.note(equations.resolution(), signs, found.error);
+            let is_low = MARGIN * found.error < DROP * self.tolerance;
+            self.low = if is_low { self.low + 1 } else { 0 };
         }
         Ok(found)
     }
@@ -268,7 +276,8 @@ impl AdaptivityController {
         let last = equations.levels().last();
         let next = equations.levels().level_with(required).max(floor).min(last);
         let too_few = level < floor.min(FEW);
-        if !((share > RAISE && next > level) || (share < DROP && next < level) || too_few) {
+        let may_fall = share < DROP && (error == 0.0 || self.low >= LOW);
+        if !((share > RAISE && next > level) || (may_fall && next < level) || too_few) {
             return Ok(point);
         }
         // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch
