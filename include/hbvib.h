@@ -944,7 +944,7 @@ typedef struct {
   /// nonlinear mode of the frequency and of the damping ratio, the latter relative to the largest
   /// one so far. 0: exactly `harmonics`, whatever the error.
   double tolerance;
-  /// Highest harmonic number H; with a tolerance the H of the first point.
+  /// Highest harmonic number H; with a tolerance the H of a given guess.
   int64_t harmonics;
   /// Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need
   /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.

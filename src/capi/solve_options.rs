@@ -22,7 +22,7 @@ pub struct hbvib_solver_options {
     /// nonlinear mode of the frequency and of the damping ratio, the latter relative to the largest
     /// one so far. 0: exactly `harmonics`, whatever the error.
     pub tolerance: f64,
-    /// Highest harmonic number H; with a tolerance the H of the first point.
+    /// Highest harmonic number H; with a tolerance the H of a given guess.
     pub harmonics: i64,
     /// Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need
     /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
