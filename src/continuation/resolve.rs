@@ -11,7 +11,7 @@ use crate::problem::Problem;
 const NEAR: f64 = 0.3;
 
 /// Solves from `near`, at its parameter or in the plane across its tangent. The found point is followed in the sense of
-/// `near`, see [`in_sense_of`]. `None` where Newton's method fails or converges to another solution.
+/// `near`, see `in_sense_of`. `None` where Newton's method fails or converges to another solution.
 ///
 /// # Errors
 /// Those of the problem; `StoppedByCaller`.

@@ -46,7 +46,7 @@ pub trait MatrixFree {
     fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
 
     /// Fills the complex matrix, column-major, by which J acts on average on one pair of numbers of each group, taken as
-    /// x[at] + i·x[at + 1]: the part of its 2 × 2 blocks that commutes with i.
+    /// `x[at] + i·x[at + 1]`: the part of its 2 × 2 blocks that commutes with i.
     fn fill_pair(&mut self, at: usize, matrix: &mut [Complex64]);
 
     /// Keeps J as it is at the point evaluated last, for [`Self::multiply`]; the problem may then be evaluated
