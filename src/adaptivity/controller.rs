@@ -125,14 +125,18 @@ impl AdaptivityController {
         interrupt: &Interrupt<'_>,
     ) -> Result<Refined> {
         let done = |point| Ok(Refined { point, stuck: false });
-        if !equations.levels().is_automatic() || self.is_predicted(equations, &point)? {
+        if !equations.levels().is_automatic() {
+            return done(point);
+        }
+        let mut signs = Signs::of(&point, equations.share_of_highest(&point));
+        if self.is_predicted(equations, &point, signs)? {
             return done(point);
         }
         // Whether the errors before the last refinement were unknown, and the refinement changed nothing.
         let mut settled = false;
         for refinements in 0..=MOST_REFINEMENTS {
             let level = equations.resolution();
-            let Some(found) = self.estimate(equations, &point)? else {
+            let Some(found) = self.estimate(equations, &point, signs)? else {
                 return done(point);
             };
             let accepted = self.accepts(found.error);
@@ -169,16 +173,16 @@ impl AdaptivityController {
             let before = equations.transfer(&point, level)?;
             settled = found.error.is_nan() && self.is_same(&before, &better);
             point = better;
+            signs = Signs::of(&point, equations.share_of_highest(&point));
         }
         done(point)
     }
 
     /// Estimates the error of a point, and notes it for the spacing of the estimates.
-    fn estimate(&mut self, equations: &mut dyn Discretised, point: &Point) -> Result<Option<Assessment>> {
+    fn estimate(&mut self, equations: &mut dyn Discretised, point: &Point, signs: Signs) -> Result<Option<Assessment>> {
         let found = equations.estimate(point)?;
         if let Some(found) = &found {
             self.count(found);
-            let signs = Signs::of(point, equations.share_of_highest(point));
             self.spacing.note(equations.resolution(), signs, found.error);
             let is_low = MARGIN * found.error < DROP * self.tolerance;
             self.low = if is_low { self.low + 1 } else { 0 };
@@ -187,8 +191,7 @@ impl AdaptivityController {
     }
 
     /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
-    fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point) -> Result<bool> {
-        let signs = Signs::of(point, equations.share_of_highest(point));
+    fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, signs: Signs) -> Result<bool> {
         let largest = self.tolerance / MARGIN;
         let Some(factor) = self.spacing.factor(equations.resolution(), signs, largest) else {
             return Ok(false);

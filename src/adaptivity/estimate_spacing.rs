@@ -5,9 +5,9 @@
 //! > η ≈ η₀ t/t₀ · max(1, s/s₀),  t = ‖Y_{>H/2}‖/‖Y‖,  s = |dX/dp|/|X|,
 //!
 //! with η₀, t₀ and s₀ at the point estimated last: towards a fold, where the response X is steep against the parameter p,
-//! the error at a fixed parameter grows without bound. Each estimate checks this rule. While it holds within a factor of two, the
-//! spacing doubles; where it does not, the next point is estimated again. A point whose error would come near the
-//! tolerance, or whose share changes much, is estimated in any case.
+//! the error at a fixed parameter grows without bound. Each estimate checks this rule. While it holds within a factor of
+//! two, the spacing doubles; where it does not, the next point is estimated again. A point whose error is not far below
+//! the tolerance, or whose share changes much, is estimated in any case.
 
 use crate::continuation::Point;
 use crate::fourier::HarmonicSet;

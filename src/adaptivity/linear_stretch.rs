@@ -10,6 +10,7 @@ use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::resonance_grid::LinearGrid;
 use crate::continuation::Point;
+use crate::continuation::special_points::SpecialPoint;
 use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::results::SpecialKind;
@@ -388,10 +389,5 @@ fn predicted_growth(a: &Point, b: &Point, s: f64) -> (f64, f64) {
 
 /// d|z|/dp of the observed amplitude.
 fn growth(point: &Point) -> f64 {
-    let z = point.amplitude;
-    let size = z.norm();
-    if size == 0.0 {
-        return 0.0;
-    }
-    (z.conj() / size * point.slope).re / point.tangent[point.tangent.len() - 1]
+    SpecialPoint::Peak.function(point, point.tangent[point.tangent.len() - 1])
 }

@@ -9,7 +9,7 @@ use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy};
-use crate::error_estimate::mode_error::ModeEstimator;
+use crate::error_estimate::mode_error::{ModeEstimator, NO_DAMPING};
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -19,9 +19,6 @@ use crate::problem::epmc::Epmc;
 use crate::results::mode_branch::{ModeData, ModePoint};
 use crate::results::{Branch, Record, SpecialKind};
 use num_complex::Complex64;
-
-/// Damping ratio below which errors of it no longer count as relative ones.
-const NO_DAMPING: f64 = 1e-8;
 
 /// A nonlinear mode in the form that the tracer follows.
 pub(super) struct ModeDiscretised<'a> {

@@ -19,8 +19,10 @@ pub enum SpecialPoint {
 }
 
 impl SpecialPoint {
-    /// The function whose root is the special point; tangents must have length 1.
-    fn function(self, point: &Point, length: f64) -> f64 {
+    /// The function whose root is the special point: the derivative of the parameter or of the amplitude along the
+    /// tangent, over a `length` of the tangent.
+    #[must_use]
+    pub fn function(self, point: &Point, length: f64) -> f64 {
         match self {
             Self::Fold => point.tangent[point.tangent.len() - 1] / length,
             Self::Peak => {

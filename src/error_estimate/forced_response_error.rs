@@ -156,7 +156,6 @@ impl<'a> ForcedEstimator<'a> {
             let Some(mut found) = found.filter(|found| found.certified) else {
                 return Ok(last.filter(|_| series.suffices()).map(|last| series.completed(last)));
             };
-
             series.add(found.corrected.response);
             found.steps += last.as_ref().map_or(0, |last| last.steps);
             if highest >= extent.core && !extent.short {
@@ -200,7 +199,7 @@ impl<'a> ForcedEstimator<'a> {
         solved: &Solved<'_>,
         from: Option<&Corrected>,
         extent: Extent,
-        work: Work,
+        mut work: Work,
     ) -> Result<(Option<Estimate>, Work)> {
         let slot = self.models.slot_with(extent.highest);
         if slot == self.models.slots() {
@@ -219,7 +218,6 @@ impl<'a> ForcedEstimator<'a> {
         let condensed = &*resolution.condensed;
         let set = condensed.set();
         let sizes = Sizes::new(condensed, resolution.samples);
-        let mut work = work;
         if !work.spend(sizes.flexibility()) {
             return Ok((None, work));
         }

@@ -28,8 +28,8 @@ const ITERATIONS: f64 = 3.0;
 /// a backbone the latter passes through zero.
 const NEGLIGIBLE: f64 = 1e-3;
 
-/// Damping ratio below which a mode has none but round-off.
-const NO_DAMPING: f64 = 1e-8;
+/// Damping ratio below which a mode has none but round-off, so that errors are not relative to it.
+pub const NO_DAMPING: f64 = 1e-8;
 
 /// Estimates the errors of points of one nonlinear mode, one after the other.
 pub struct ModeEstimator<'a> {

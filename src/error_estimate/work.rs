@@ -2,7 +2,7 @@
 //! multiple of the solution of the point itself.
 //!
 //! Only the leading terms count. An operation is one of a simple loop; those of a factorisation in blocks are five
-//! times as fast, and an event of a contact law takes hundreds.
+//! times as fast, and each direction of a contact law takes thousands.
 
 use crate::aft::Evaluator;
 use crate::condense::Condensed;
@@ -36,6 +36,12 @@ const WIDTH: f64 = 300.0;
 
 /// Operations of a law for each direction, for each number of its motion, and for each number of its Jacobian.
 const OF_LAW: (f64, f64, f64) = (8e3, 3e2, 12.0);
+
+/// Operations for each sample and number of a packed signal.
+const OF_SAMPLE: f64 = 4.0;
+
+/// Operations for each unknown by which a vector is made orthogonal to those before.
+const BASIS: f64 = 100.0;
 
 /// Operations of a simple loop that take the time of one of a factorisation.
 const OF_FACTORS: f64 = 0.2;
@@ -124,7 +130,7 @@ impl Sizes {
         fill + OF_FACTORS * 2.0 / 3.0 * order.powi(3) + 8.0 / 3.0 * pairs * self.coordinates.powi(3)
     }
 
-    /// Operations of one product of an iteration with such a preconditioner, `before` products made before.
+    /// Operations of one product of an iteration with such a preconditioner.
     pub fn product(&self, packed: f64, pairs: f64) -> f64 {
         let order = self.coordinates * packed;
         let couple = 8.0 * self.coordinates * self.coordinates * (self.harmonics + pairs);
@@ -154,12 +160,6 @@ impl Sizes {
         8.0 * (jacobians + 2.0 * self.tables + 2.0 * order * order + 2.0 * pairs * self.coordinates * self.coordinates)
     }
 }
-
-/// Operations for each sample and number of a packed signal.
-const OF_SAMPLE: f64 = 4.0;
-
-/// Operations for each unknown by which a vector is made orthogonal to those before.
-const BASIS: f64 = 100.0;
 
 /// The work that an estimate has left.
 #[derive(Clone, Copy, Debug)]
