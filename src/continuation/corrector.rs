@@ -4,7 +4,7 @@
 use crate::continuation::Metric;
 use crate::error::{Error, Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::linear_system::dense::DenseSystem;
+use crate::linalg::linear_system::automatic::AutomaticSystem;
 use crate::linalg::linear_system::{Border, LinearSystem};
 use crate::linalg::norm;
 use crate::problem::{Problem, Residual};
@@ -52,7 +52,7 @@ enum Factors {
 /// Newton's method with its memory.
 pub struct Corrector {
     at: Residual,
-    system: Box<dyn LinearSystem>,
+    system: AutomaticSystem,
     factors: Factors,
     step: Vec<f64>,
     trial: Vec<f64>,
@@ -72,8 +72,8 @@ const ROUND_OFF: f64 = 1e-13;
 /// damping, a point with a residual within the tolerance may be far from any solution: the last step shows that.
 const NEAR: f64 = 1e-3;
 
-/// Relative errors of a Newton step and of a tangent that are found with the factors of an earlier iteration. The
-/// error of a step is far below the correction of the next iteration; the error of a tangent is as small as
+/// Relative errors of a Newton step and of a tangent that are found by iteration, or with the factors of an earlier
+/// one. The error of a step is far below the correction of the next iteration; the error of a tangent is as small as
 /// round-off.
 const STEP_ERROR: f64 = 1e-4;
 const TANGENT_ERROR: f64 = 1e-12;
@@ -89,7 +89,7 @@ impl Corrector {
     pub fn new(n: usize, tolerance: f64, max_iterations: usize) -> Result<Self> {
         Ok(Self {
             at: Residual::new(n)?,
-            system: Box::new(DenseSystem::new(n)?),
+            system: AutomaticSystem::new(n)?,
             factors: Factors::None,
             step: try_vec(n + 1, 0.0, "Newton's method")?,
             trial: try_vec(n + 1, 0.0, "Newton's method")?,
@@ -169,7 +169,7 @@ impl Corrector {
             let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
             let converged = (residual <= self.attainable() && near) || (round_off && !shrinks);
             if converged && iteration >= self.min_iterations {
-                let found = self.finish(problem, v, metric, (iteration, residual), interrupt)?;
+                let found = self.finish(problem, v, (metric, row), (iteration, residual), interrupt)?;
                 return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
             }
             if iteration == self.max_iterations || (!damped && size > last_size) {
@@ -252,8 +252,8 @@ impl Corrector {
     }
 
     /// Factors the current matrix; `false` where it is singular.
-    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
-        let factored = tolerate(self.system.factor(interrupt))?;
+    fn factor(&mut self, problem: &mut dyn Problem, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let factored = tolerate(self.system.factor(problem, interrupt))?;
         self.factors = if factored { Factors::Own } else { Factors::None };
         Ok(factored)
     }
@@ -275,19 +275,36 @@ impl Corrector {
         self.step[n] = 0.0;
         self.factors = if reuse { Factors::Earlier } else { Factors::None };
         self.update(problem, metric, row, interrupt)?;
-        self.solve(problem, STEP_ERROR, interrupt)
+        self.solve(problem, (metric, row), STEP_ERROR, interrupt)
     }
 
     /// Solves for `step` with the current matrix, by factors of an earlier one to the given error; `false` where it
-    /// is singular.
-    fn solve(&mut self, problem: &mut dyn Problem, error: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
-        if self.factors == Factors::Earlier && self.system.solve_by_earlier_factors(error, &mut self.step) {
+    /// is singular. The problem is at the point of the matrix.
+    fn solve(
+        &mut self,
+        problem: &mut dyn Problem,
+        (metric, row): (Metric, &[f64]),
+        error: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        if self.factors == Factors::Earlier
+            && self
+                .system
+                .solve_by_earlier_factors(problem, error, &mut self.step, interrupt)?
+        {
             return Ok(true);
         }
-        if self.factors != Factors::Own && !self.factor(interrupt)? {
+        if self.factors != Factors::Own && !self.factor(problem, interrupt)? {
             return Ok(false);
         }
-        self.system.solve(problem, &mut self.step, interrupt)
+        if self.system.solve(problem, error, &mut self.step, interrupt)? {
+            return Ok(true);
+        }
+        if !self.system.solve_directly() {
+            return Ok(false);
+        }
+        self.update(problem, metric, row, interrupt)?;
+        Ok(self.factor(problem, interrupt)? && self.system.solve(problem, error, &mut self.step, interrupt)?)
     }
 
     /// Tries λ = min(1, 4·last), halving; returns the accepted λ.
@@ -318,7 +335,7 @@ impl Corrector {
                     *s = -r;
                 }
                 self.next[n] = 0.0;
-                let solved = self.system.solve(problem, &mut self.next, interrupt)?;
+                let solved = self.system.solve(problem, STEP_ERROR, &mut self.next, interrupt)?;
                 let shrunk = solved && norm(&self.next) <= (1.0 - 0.25 * damping) * size;
                 if shrunk || self.relative_residual() <= self.attainable() {
                     v.copy_from_slice(&self.trial);
@@ -336,7 +353,7 @@ impl Corrector {
         &mut self,
         problem: &mut dyn Problem,
         v: &mut [f64],
-        metric: Metric,
+        (metric, row): (Metric, &[f64]),
         (iterations, residual): (usize, f64),
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Corrected>> {
@@ -349,7 +366,7 @@ impl Corrector {
         } else {
             correction = Complex64::ZERO;
         }
-        if !self.tangent(problem, metric, &mut tangent, interrupt)? {
+        if !self.tangent(problem, (metric, row), &mut tangent, interrupt)? {
             return Ok(None);
         }
         let (_, slope) = problem.observe(&v[..n], &tangent);
@@ -373,14 +390,14 @@ impl Corrector {
     fn tangent(
         &mut self,
         problem: &mut dyn Problem,
-        metric: Metric,
+        (metric, row): (Metric, &[f64]),
         tangent: &mut [f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let n = self.step.len() - 1;
         self.step.fill(0.0);
         self.step[n] = 1.0;
-        if !self.solve(problem, TANGENT_ERROR, interrupt)? {
+        if !self.solve(problem, (metric, row), TANGENT_ERROR, interrupt)? {
             return Ok(false);
         }
         let length = norm(&self.step);
@@ -409,7 +426,7 @@ impl Corrector {
             return Ok(None);
         }
         self.update(problem, metric, row, interrupt)?;
-        if !self.factor(interrupt)? || !self.tangent(problem, metric, tangent, interrupt)? {
+        if !self.factor(problem, interrupt)? || !self.tangent(problem, (metric, row), tangent, interrupt)? {
             return Ok(None);
         }
         Ok(Some(self.system.is_positive()))

@@ -104,7 +104,7 @@ impl<P: Problem> ExtendedSystem<P> {
             row: &self.row,
         };
         self.system.update(&mut self.problem, border, interrupt)?;
-        match self.system.factor(interrupt) {
+        match self.system.factor(&mut self.problem, interrupt) {
             Err(e) if e.status == Status::Singular => Ok(false),
             factored => factored.map(|()| true),
         }
@@ -122,7 +122,9 @@ impl<P: Problem> ExtendedSystem<P> {
             *b = -r;
         }
         self.b[n] = 0.0;
-        let solved = self.system.solve(&mut self.problem, &mut self.b, interrupt)?;
+        let solved = self
+            .system
+            .solve(&mut self.problem, TOLERANCE, &mut self.b, interrupt)?;
         step.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
@@ -182,5 +184,5 @@ fn krylov(problem: &HarmonicBalance<'_>, factored: Factored) -> Result<KrylovSys
     let set = problem.set();
     let part = packed_up_to(set, factored.block);
     let lengths = (set.packed_len(), part, packed_up_to(set, factored.each).max(part));
-    KrylovSystem::new(problem.unknowns(), lengths, TOLERANCE, MOST_PRODUCTS)
+    KrylovSystem::new(problem.unknowns(), lengths, MOST_PRODUCTS)
 }

@@ -15,6 +15,11 @@ impl MatrixFree for HarmonicBalance<'_> {
         self.condensed.set().packed_len()
     }
 
+    fn coupled(&self) -> usize {
+        let coordinates = 0..self.condensed.coordinates();
+        self.group() * coordinates.filter(|&c| self.forces.is_coupled(c)).count()
+    }
+
     fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -81,14 +86,18 @@ impl MatrixFree for HarmonicBalance<'_> {
         for (c, dw) in dw.chunks_exact_mut(m).enumerate() {
             self.forces.change(d, c, dw);
         }
+        let sum = &mut self.sum[..];
         for (i, table) in self.tables.current().iter().enumerate() {
             let (at, mean) = (set.offset(i), set.numbers()[i] == 0);
-            for c in 0..coordinates {
-                let z = set.get(&dw[c * m..(c + 1) * m], i);
-                let column = &table.value[c * (coordinates + 1)..];
-                for (row, g) in column.iter().take(coordinates).enumerate() {
-                    put(out, row * m + at, mean, g * z);
+            sum.fill(Complex64::ZERO);
+            for (dw, column) in dw.chunks_exact(m).zip(table.value.chunks_exact(coordinates + 1)) {
+                let z = set.get(dw, i);
+                for (sum, g) in sum.iter_mut().zip(column) {
+                    *sum += g * z;
                 }
+            }
+            for (c, sum) in sum.iter().enumerate() {
+                put(out, c * m + at, mean, *sum);
                 if mean {
                     out[c * m + at] += self.forces.mean_floor(c) * d[c * m + at];
                 }

@@ -92,11 +92,17 @@ impl LinearSystem for DenseSystem {
         Ok(())
     }
 
-    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
+    fn factor(&mut self, _jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
         self.factor_memory(interrupt)
     }
 
-    fn solve(&mut self, _jacobian: &mut dyn Jacobian, b: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
+    fn solve(
+        &mut self,
+        _jacobian: &mut dyn Jacobian,
+        _tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
         interrupt.check()?;
         self.factors.solve(b);
         Ok(true)
@@ -115,7 +121,14 @@ impl LinearSystem for DenseSystem {
         Ok(())
     }
 
-    fn solve_by_earlier_factors(&mut self, tolerance: f64, b: &mut [f64]) -> bool {
+    fn solve_by_earlier_factors(
+        &mut self,
+        _jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        interrupt.check()?;
         let matrix = Parts {
             jacobian: &self.matrix,
             column: &self.column,
@@ -123,7 +136,7 @@ impl LinearSystem for DenseSystem {
             scales: self.scales,
             row: &self.row,
         };
-        self.factors.refine(&matrix, tolerance, b)
+        Ok(self.factors.refine(&matrix, tolerance, b))
     }
 
     fn is_positive(&self) -> bool {

@@ -6,7 +6,7 @@
 
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::gmres::gmres;
+use crate::linalg::gmres::Gmres;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::{Border, Jacobian, LinearSystem, MatrixFree};
 use crate::linalg::lu::Lu;
@@ -14,15 +14,26 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the linear system";
 
+/// Least relative residual that is asked of an iteration: rounding may leave more than a smaller one.
+const FINEST: f64 = 1e-10;
+
+/// Products beyond those with its own factors up to which a solution with the factors of an earlier matrix is quicker
+/// than new factors.
+const SPARED: usize = 12;
+
 /// A bordered system that is solved by iteration.
 pub struct KrylovSystem {
     block: DenseSystem,
     lengths: Lengths,
     pairs: Pairs,
-    tolerance: f64,
+    memory: Gmres,
     most_products: usize,
     /// Products of the last solution.
     products: usize,
+    /// Products for each digit with the factors of the matrix itself.
+    of_own_factors: f64,
+    /// Sign of det K M⁻¹ that the last solution showed.
+    positive: bool,
     column: Vec<f64>,
     scales: (f64, f64),
     row: Vec<f64>,
@@ -100,12 +111,12 @@ impl Pairs {
 
 impl KrylovSystem {
     /// Memory for `n` unknowns in groups of equal length. `lengths`: that length; how many of its first numbers are in
-    /// the block; and the end of the pairs behind them whose mean coupling is factored. A solution has this relative
-    /// residual, or takes more products than `most_products` and fails.
+    /// the block; and the end of the pairs behind them whose mean coupling is factored. A solution that takes more
+    /// products than `most_products` fails.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(n: usize, lengths: (usize, usize, usize), tolerance: f64, most_products: usize) -> Result<Self> {
+    pub fn new(n: usize, lengths: (usize, usize, usize), most_products: usize) -> Result<Self> {
         let (group, part, middle) = lengths;
         let lengths = Lengths { group, part, middle };
         let groups = n / group.max(1);
@@ -114,9 +125,11 @@ impl KrylovSystem {
             block: DenseSystem::new(order)?,
             pairs: Pairs::new(groups, lengths)?,
             lengths,
-            tolerance,
+            memory: Gmres::default(),
             most_products,
             products: 0,
+            of_own_factors: 0.0,
+            positive: true,
             column: try_vec(n, 0.0, CONTEXT)?,
             scales: (1.0, 1.0),
             row: try_vec(n + 1, 0.0, CONTEXT)?,
@@ -156,6 +169,39 @@ impl KrylovSystem {
             }
         }
         v[n] = reduced[reduced.len() - 1];
+    }
+
+    /// Solves by GMRES with the factors made last, in at most so many products.
+    fn iterate(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        (tolerance, most): (f64, usize),
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        interrupt.check()?;
+        let lengths = self.lengths;
+        self.products = 0;
+        self.positive = true;
+        let is_direct = self.is_direct();
+        let (factors, reduced) = ((&mut self.block, &mut self.pairs), &mut self.reduced);
+        if !is_direct {
+            let border = (&self.column[..], self.scales, &self.row[..]);
+            let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
+            let solved = self.memory.solve(b, tolerance.max(FINEST), most, |v, out| {
+                interrupt.check()?;
+                preconditioned.copy_from_slice(v);
+                Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, preconditioned);
+                product(jacobian, border, scaled, preconditioned, out)
+            })?;
+            let Some(solved) = solved else {
+                self.products = most;
+                return Ok(false);
+            };
+            (self.products, self.positive) = (solved.products, solved.positive);
+        }
+        Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, b);
+        Ok(true)
     }
 
     /// Whether the block is the whole matrix.
@@ -198,13 +244,13 @@ impl LinearSystem for KrylovSystem {
         self.column.copy_from_slice(border.column);
         self.row.copy_from_slice(border.row);
         self.scales = border.scales;
+        interrupt.check()?;
         let is_direct = self.is_direct();
         let operator = operator(jacobian)?;
         let (matrix, active) = self.block.memory();
         operator.fill_block(self.lengths.part, matrix, active)?;
         if !is_direct {
             operator.keep()?;
-            self.pairs.factor(self.lengths, operator, interrupt)?;
         }
         let lengths = self.lengths;
         let groups = border.column.chunks_exact(lengths.group.max(1));
@@ -214,33 +260,39 @@ impl LinearSystem for KrylovSystem {
         Ok(())
     }
 
-    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
+    fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
+        if !self.is_direct() {
+            self.pairs.factor(self.lengths, operator(jacobian)?, interrupt)?;
+        }
         self.block.factor_memory(interrupt)
     }
 
-    fn solve(&mut self, jacobian: &mut dyn Jacobian, b: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
-        interrupt.check()?;
-        let lengths = self.lengths;
-        self.products = 0;
-        let is_direct = self.is_direct();
-        let (factors, reduced) = ((&mut self.block, &mut self.pairs), &mut self.reduced);
-        if !is_direct {
-            let border = (&self.column[..], self.scales, &self.row[..]);
-            let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
-            let products = &mut self.products;
-            let solved = gmres(b, self.tolerance, self.most_products, |v, out| {
-                interrupt.check()?;
-                *products += 1;
-                preconditioned.copy_from_slice(v);
-                Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, preconditioned);
-                product(jacobian, border, scaled, preconditioned, out)
-            })?;
-            if !solved {
-                return Ok(false);
-            }
+    fn solve(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        let solved = self.iterate(jacobian, (tolerance, self.most_products), b, interrupt)?;
+        self.of_own_factors = self.products as f64 / -tolerance.max(FINEST).log10();
+        Ok(solved)
+    }
+
+    fn solve_by_earlier_factors(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        if self.is_direct() {
+            return Ok(false);
         }
-        Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, b);
-        Ok(true)
+        // An iteration converges linearly in the products.
+        let digits = -tolerance.max(FINEST).log10();
+        let most = (self.of_own_factors * digits) as usize + SPARED;
+        self.iterate(jacobian, (tolerance, most.min(self.most_products)), b, interrupt)
     }
 
     fn apply(&mut self, jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()> {
@@ -259,7 +311,8 @@ impl LinearSystem for KrylovSystem {
         self.products
     }
 
+    /// det K = det M · det K M⁻¹, and the determinant of a complex matrix taken as a real one is positive.
     fn is_positive(&self) -> bool {
-        self.block.is_positive()
+        self.block.is_positive() == self.positive
     }
 }

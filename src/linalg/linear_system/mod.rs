@@ -9,6 +9,7 @@
 //! matrix, [`krylov`] iterates with products, and factors the block of the strongly coupled unknowns and the mean
 //! coupling of those beyond it.
 
+pub mod automatic;
 pub mod dense;
 pub mod krylov;
 
@@ -37,6 +38,9 @@ pub trait Jacobian {
 pub trait MatrixFree {
     /// Length of one group.
     fn group(&self) -> usize;
+
+    /// Number of columns that differ from those of the identity.
+    fn coupled(&self) -> usize;
 
     /// Fills the block of J between the first `part` numbers of each group, column-major, and tells of each of its
     /// columns whether it differs from that of the identity.
@@ -82,18 +86,25 @@ pub trait LinearSystem {
     /// `OutOfMemory`; `StoppedByCaller`.
     fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()>;
 
-    /// Factors the matrix that was taken over last.
+    /// Factors the matrix that was taken over last, with the Jacobian still at its point.
     ///
     /// # Errors
     /// `Singular`; `StoppedByCaller`.
-    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()>;
+    fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()>;
 
-    /// Solves in place for n + 1 numbers with the matrix that was factored last; `false` where an iteration did not
-    /// converge. `jacobian` is that of the problem of [`Self::update`], which may have been evaluated elsewhere since.
+    /// Solves in place for n + 1 numbers with the matrix that was factored last, to this relative residual; `false` where
+    /// an iteration did not converge. `jacobian` is that of the problem of [`Self::update`], which may have been
+    /// evaluated elsewhere since.
     ///
     /// # Errors
     /// `OutOfMemory`, and those of products; `StoppedByCaller`.
-    fn solve(&mut self, jacobian: &mut dyn Jacobian, b: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool>;
+    fn solve(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool>;
 
     /// out = K x with the matrix that was taken over last.
     ///
@@ -103,8 +114,19 @@ pub trait LinearSystem {
 
     /// Solves in place with the matrix that was taken over last by the factors of an earlier one, to a relative error
     /// of `tolerance`. `false`, with `b` as it was, where new factors are needed or are quicker.
-    fn solve_by_earlier_factors(&mut self, tolerance: f64, b: &mut [f64]) -> bool {
-        let _ = (tolerance, b);
+    ///
+    /// # Errors
+    /// `OutOfMemory`, and those of products; `StoppedByCaller`.
+    fn solve_by_earlier_factors(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool>;
+
+    /// Solves directly from the next update on, where an iteration did not converge; `false` where that is so already.
+    fn solve_directly(&mut self) -> bool {
         false
     }
 
@@ -118,8 +140,7 @@ pub trait LinearSystem {
         0
     }
 
-    /// Whether the determinant of the factored matrix is positive: that of K for a dense backend, that of its block for
-    /// an iteration.
+    /// Whether the determinant of the matrix of the last solution is positive.
     fn is_positive(&self) -> bool;
 }
 
@@ -179,6 +200,10 @@ mod tests {
             self.group
         }
 
+        fn coupled(&self) -> usize {
+            self.n
+        }
+
         fn fill_block(&mut self, part: usize, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
             let inner: Vec<usize> = (0..self.n).filter(|i| i % self.group < part).collect();
             for (k, &column) in inner.iter().enumerate() {
@@ -227,9 +252,9 @@ mod tests {
             row: &row,
         };
         system.update(toy, border, &Interrupt::none()).unwrap();
-        system.factor(&Interrupt::none()).unwrap();
+        system.factor(toy, &Interrupt::none()).unwrap();
         let (mut x, mut product) = (b.clone(), vec![0.0; n + 1]);
-        assert!(system.solve(toy, &mut x, &Interrupt::none()).unwrap());
+        assert!(system.solve(toy, 1e-12, &mut x, &Interrupt::none()).unwrap());
         system.apply(toy, &x, &mut product).unwrap();
         let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let difference: Vec<f64> = product.iter().zip(&b).map(|(p, b)| p - b).collect();
@@ -246,7 +271,7 @@ mod tests {
                 assert!(gap < 1e-12, "{gap:e}");
                 for (part, middle) in [(2, 2), (1, 3), (3, 7), (group, group)] {
                     let lengths = (group, part.min(group), middle.min(group));
-                    let mut krylov = KrylovSystem::new(n, lengths, 1e-12, 200).unwrap();
+                    let mut krylov = KrylovSystem::new(n, lengths, 200).unwrap();
                     let (gap, x) = solved(&mut krylov, &mut toy, scales);
                     assert!(gap < 1e-11, "{gap:e}");
                     let largest = dense.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
@@ -269,6 +294,6 @@ mod tests {
         };
         let mut system = DenseSystem::new(6).unwrap();
         system.update(&mut toy, border, &Interrupt::none()).unwrap();
-        assert_eq!(system.factor(&Interrupt::none()).unwrap_err().status, Status::Singular);
+        assert_eq!(system.factor(&mut toy, &Interrupt::none()).unwrap_err().status, Status::Singular);
     }
 }
