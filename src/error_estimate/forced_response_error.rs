@@ -26,6 +26,9 @@ const EVALUATIONS: f64 = 6.0;
 /// Factorisations of the block for which the work must suffice.
 const FACTORISATIONS: f64 = 5.0;
 
+/// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
+const BLOCK: f64 = 300.0;
+
 /// Estimates that a ratio serves before it is found anew.
 const MOST_USES: usize = 3;
 
@@ -257,12 +260,15 @@ impl<'a> ForcedEstimator<'a> {
     }
 }
 
-/// The compliant harmonics in one block as far as the work allows to factor it, and the others each by itself.
+/// The first harmonics in one block as far as its factors cost little and the work allows, and the other compliant ones
+/// each by itself.
 fn factored(sizes: &Sizes, compliant: usize, work: &Work) -> Factored {
     let fits = |block: usize| {
         let packed = sizes.packed().min(2.0 * block as f64);
         let pairs = (compliant - block) as f64;
-        FACTORISATIONS * sizes.factors(packed, pairs) <= work.left() && work.fits(sizes.bytes(packed, pairs))
+        sizes.order(packed) <= BLOCK
+            && FACTORISATIONS * sizes.factors(packed, pairs) <= work.left()
+            && work.fits(sizes.bytes(packed, pairs))
     };
     let block = (1..=compliant)
         .rev()

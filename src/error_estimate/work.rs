@@ -108,6 +108,11 @@ impl Sizes {
         self.packed
     }
 
+    /// Unknowns of the block between the first `packed` numbers of each coordinate.
+    pub fn order(&self, packed: f64) -> f64 {
+        self.coordinates * packed
+    }
+
     /// Unknowns.
     pub fn unknowns(&self) -> f64 {
         self.coordinates * self.packed

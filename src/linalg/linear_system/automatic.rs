@@ -1,0 +1,152 @@
+//! The backend that suits the matrix at hand: direct where few columns differ from those of the identity, iterative
+//! where many do and the problem has products with its Jacobian.
+//!
+//! The factors of a direct solution cost as the cube of the columns, those of an iterative one little more than its
+//! block of the strongly coupled unknowns.
+
+use crate::error::Result;
+use crate::interrupt::Interrupt;
+use crate::linalg::linear_system::dense::DenseSystem;
+use crate::linalg::linear_system::krylov::KrylovSystem;
+use crate::linalg::linear_system::{Border, Jacobian, LinearSystem};
+
+/// Columns up to which a direct solution is quicker.
+const DIRECT_UP_TO: usize = 480;
+
+/// Unknowns of the factored block, unless the first numbers of the groups are more.
+const BLOCK: usize = 300;
+
+/// Most products of an iteration.
+const MOST_PRODUCTS: usize = 80;
+
+/// Updates for which the solution is direct after an iteration that did not converge.
+const PATIENCE: usize = 16;
+
+/// A bordered system that is solved directly or by iteration.
+pub struct AutomaticSystem {
+    n: usize,
+    dense: Option<DenseSystem>,
+    krylov: Option<KrylovSystem>,
+    /// Whether the matrix taken over last is solved by iteration.
+    iterates: bool,
+    /// Backend that holds factors, if one does: the iterative one where `true`.
+    factored: Option<bool>,
+    /// Updates for which no iteration is tried.
+    direct: usize,
+}
+
+impl AutomaticSystem {
+    /// Memory for `n` unknowns and one parameter; that of larger systems when it is first used.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize) -> Result<Self> {
+        let dense = if n <= DIRECT_UP_TO {
+            Some(DenseSystem::new(n)?)
+        } else {
+            None
+        };
+        Ok(Self {
+            n,
+            dense,
+            krylov: None,
+            iterates: false,
+            factored: None,
+            direct: 0,
+        })
+    }
+
+    /// Length of the groups and of their part in the block, where an iteration is quicker.
+    fn lengths(&self, jacobian: &mut dyn Jacobian) -> Option<(usize, usize)> {
+        if self.direct > 0 || self.n <= DIRECT_UP_TO {
+            return None;
+        }
+        let operator = jacobian.matrix_free()?;
+        let group = operator.group();
+        // The mean is one number, each harmonic a pair.
+        let first = group % 2 + 2;
+        let groups = self.n / group.max(1);
+        let pairs = (BLOCK / groups.max(1)).saturating_sub(group % 2) / 2;
+        let part = first.max(group % 2 + 2 * pairs);
+        (part < group && operator.coupled() > DIRECT_UP_TO).then_some((group, part))
+    }
+
+    fn backend(&mut self) -> Result<&mut dyn LinearSystem> {
+        if self.iterates
+            && let Some(krylov) = &mut self.krylov
+        {
+            return Ok(krylov);
+        }
+        if self.dense.is_none() {
+            self.dense = Some(DenseSystem::new(self.n)?);
+        }
+        match &mut self.dense {
+            Some(dense) => Ok(dense),
+            None => crate::error::fail!(Internal, "no linear system was made"),
+        }
+    }
+}
+
+impl LinearSystem for AutomaticSystem {
+    fn update(&mut self, jacobian: &mut dyn Jacobian, border: Border<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+        let lengths = self.lengths(jacobian);
+        self.direct = self.direct.saturating_sub(1);
+        self.iterates = lengths.is_some();
+        if let (Some((group, part)), None) = (lengths, &self.krylov) {
+            self.krylov = Some(KrylovSystem::new(self.n, (group, part, group), MOST_PRODUCTS)?);
+        }
+        self.backend()?.update(jacobian, border, interrupt)
+    }
+
+    fn factor(&mut self, jacobian: &mut dyn Jacobian, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.factored = None;
+        self.backend()?.factor(jacobian, interrupt)?;
+        self.factored = Some(self.iterates);
+        Ok(())
+    }
+
+    fn solve(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        self.backend()?.solve(jacobian, tolerance, b, interrupt)
+    }
+
+    fn apply(&mut self, jacobian: &mut dyn Jacobian, x: &[f64], out: &mut [f64]) -> Result<()> {
+        self.backend()?.apply(jacobian, x, out)
+    }
+
+    fn solve_by_earlier_factors(
+        &mut self,
+        jacobian: &mut dyn Jacobian,
+        tolerance: f64,
+        b: &mut [f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        if self.factored != Some(self.iterates) {
+            return Ok(false);
+        }
+        self.backend()?
+            .solve_by_earlier_factors(jacobian, tolerance, b, interrupt)
+    }
+
+    fn solve_directly(&mut self) -> bool {
+        if !self.iterates {
+            return false;
+        }
+        self.direct = PATIENCE;
+        true
+    }
+
+    fn is_positive(&self) -> bool {
+        let backends = (self.iterates, &self.krylov, &self.dense);
+        match backends {
+            (true, Some(krylov), _) => krylov.is_positive(),
+            (_, _, Some(dense)) => dense.is_positive(),
+            _ => true,
+        }
+    }
+}
