@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-3;
 const DENSE_UP_TO: usize = 100;
 
 /// Most products of an iteration.
-const MOST_PRODUCTS: usize = 80;
+const MOST_PRODUCTS: usize = 240;
 
 /// The carried harmonics that an iterative linear system factors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

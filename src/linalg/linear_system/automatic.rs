@@ -17,7 +17,7 @@ const DIRECT_UP_TO: usize = 480;
 const BLOCK: usize = 300;
 
 /// Most products of an iteration.
-const MOST_PRODUCTS: usize = 80;
+const MOST_PRODUCTS: usize = 240;
 
 /// Updates for which the solution is direct after an iteration that did not converge.
 const PATIENCE: usize = 16;
