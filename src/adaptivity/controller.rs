@@ -32,8 +32,10 @@ const DROP: f64 = 0.08;
 /// Successive estimates below that share after which the branch is coarsened: one alone may be an exception.
 const LOW: usize = 2;
 
-/// Number of points for which a branch is not coarsened to a level at which one missed the tolerance.
+/// Number of points for which a branch is not coarsened to a level at which one missed the tolerance, and the most points
+/// where the error of one was unknown there time and again.
 const PATIENCE: usize = 10;
+const MOST_PATIENCE: usize = 80;
 
 /// Lowest level along a branch where something is nonlinear: with the forced harmonics alone nothing would show how the
 /// error changes from point to point.
@@ -73,6 +75,8 @@ pub(crate) struct AdaptivityController {
     /// Whether the branch had a fold. If so, it is not coarsened at all where something is nonlinear: with fewer
     /// harmonics it may fold elsewhere and reverse.
     folded: bool,
+    /// Where the branch was refined because an error was unknown: the number of points until it may be coarsened again.
+    unknown: Option<usize>,
     /// Whether a nonlinear point was estimated.
     begun: bool,
     /// Number of successive estimates far below the tolerance.
@@ -90,6 +94,7 @@ impl AdaptivityController {
             floor: (0, 0),
             highest: 0,
             folded: false,
+            unknown: None,
             begun: false,
             low: 0,
             spacing: EstimateSpacing::default(),
@@ -143,7 +148,7 @@ impl AdaptivityController {
             let required = self.required_harmonics(&found);
             self.last = accepted.then_some((found.error, required));
             if !accepted {
-                self.floor = (level + 1, PATIENCE);
+                self.note_miss(found.error, level);
             }
             if found.error.is_nan() && settled {
                 return done(point);
@@ -176,6 +181,14 @@ impl AdaptivityController {
             signs = Signs::of(&point, equations.share_of_highest(&point));
         }
         done(point)
+    }
+
+    /// Notes a point that misses the tolerance at a level, or whose error is unknown there.
+    fn note_miss(&mut self, error: f64, level: usize) {
+        self.unknown = error
+            .is_nan()
+            .then(|| self.unknown.map_or(PATIENCE, |points| (2 * points).min(MOST_PATIENCE)));
+        self.floor = (level + 1, self.unknown.unwrap_or(PATIENCE));
     }
 
     /// Estimates the error of a point, and notes it for the spacing of the estimates.
@@ -279,7 +292,11 @@ impl AdaptivityController {
         let last = equations.levels().last();
         let next = equations.levels().level_with(required).max(floor).min(last);
         let too_few = level < floor.min(FEW);
-        let may_fall = share < DROP && (error == 0.0 || self.low >= LOW);
+        // Where only an unknown error asked for more harmonics, those below may do again.
+        let below = level.saturating_sub(1).max(FEW);
+        let again = self.unknown.is_some() && self.floor.1 == 0 && share < RAISE && !self.folded;
+        let next = if again { next.min(below) } else { next };
+        let may_fall = again || (share < DROP && (error == 0.0 || self.low >= LOW));
         if !((share > RAISE && next > level) || (may_fall && next < level) || too_few) {
             return Ok(point);
         }

@@ -105,10 +105,9 @@ impl Doubling {
         estimate
     }
 
-    /// The estimate of the first extension with a ratio found before.
-    pub fn scaled(&self, mut estimate: Estimate, ratio: f64) -> Estimate {
-        estimate.response = relative(ratio * self.first, self.last);
-        estimate
+    /// The error of the response after the first extension, with a ratio found before.
+    pub fn scaled(&self, ratio: f64) -> f64 {
+        relative(ratio * self.first, self.last)
     }
 }
 

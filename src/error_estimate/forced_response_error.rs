@@ -29,8 +29,14 @@ const FACTORISATIONS: f64 = 5.0;
 /// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
 const BLOCK: f64 = 300.0;
 
-/// Estimates that a ratio serves before it is found anew.
-const MOST_USES: usize = 3;
+/// Estimates that a ratio serves before it is found anew: the first one, and the most while it does not change.
+const USES: (usize, usize) = (3, 12);
+
+/// Largest error, relative to the tolerance, that a ratio tells well enough.
+const SURE: f64 = 0.5;
+
+/// Relative change of a ratio up to which the next one serves twice as many estimates.
+const STEADY: f64 = 0.25;
 
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
@@ -45,9 +51,18 @@ pub struct ForcedEstimator<'a> {
     interrupt: &'a Interrupt<'a>,
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
-    /// Ratio of the whole change of the response to that of the first extension, the harmonic of that extension, and the
-    /// estimates that it served.
-    ratio: Option<(usize, f64, usize)>,
+    ratio: Option<Ratio>,
+}
+
+/// Ratio of the whole change of the response to that of the first extension.
+#[derive(Clone, Copy)]
+struct Ratio {
+    value: f64,
+    /// Harmonic of the first extension.
+    least: usize,
+    /// Estimates that it serves, and how many of them were made.
+    uses: usize,
+    used: usize,
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -165,7 +180,11 @@ impl<'a> ForcedEstimator<'a> {
                 return Ok(Some(found));
             }
             if let Some(ratio) = self.ratio_for(extent.least).filter(|_| last.is_none()) {
-                return Ok(Some(series.scaled(found, ratio)));
+                let scaled = series.scaled(ratio);
+                if scaled <= SURE * self.options.tolerance {
+                    found.response = scaled;
+                    return Ok(Some(found));
+                }
             }
             if series.is_harmless(self.options.tolerance) {
                 return Ok(Some(series.bounded(found)));
@@ -174,7 +193,7 @@ impl<'a> ForcedEstimator<'a> {
             let next = if extent.short { next } else { next.min(extent.highest) };
             let ends = next > self.affordable(solved, &work);
             if series.has_settled() || (ends && series.suffices()) {
-                self.ratio = Some((extent.least, series.ratio(), 0));
+                self.note_ratio(extent.least, series.ratio());
                 return Ok(Some(series.completed(found)));
             }
             if ends {
@@ -187,12 +206,28 @@ impl<'a> ForcedEstimator<'a> {
 
     /// The ratio found for points with these harmonics, as long as it serves.
     fn ratio_for(&mut self, least: usize) -> Option<f64> {
-        let (of, ratio, used) = self.ratio.as_mut()?;
-        if *of != least || *used == MOST_USES {
+        let ratio = self.ratio.as_mut()?;
+        if ratio.least != least || ratio.used == ratio.uses {
             return None;
         }
-        *used += 1;
-        Some(*ratio)
+        ratio.used += 1;
+        Some(ratio.value)
+    }
+
+    /// Keeps a ratio for the following estimates: for more of them where it is about the one before.
+    fn note_ratio(&mut self, least: usize, value: f64) {
+        let uses = match self.ratio {
+            Some(before) if before.least == least && (value / before.value - 1.0).abs() <= STEADY => {
+                (2 * before.uses).min(USES.1)
+            }
+            _ => USES.0,
+        };
+        self.ratio = Some(Ratio {
+            value,
+            least,
+            uses,
+            used: 0,
+        });
     }
 
     /// Extends a point to the highest harmonic of an extent, from a solution with fewer of them or from the point itself.

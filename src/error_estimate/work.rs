@@ -17,7 +17,7 @@ const ITERATIONS: usize = 40;
 const EXTENSION: f64 = 12.0;
 
 /// Work of an estimate as a multiple of that of such a point.
-const MULTIPLE: f64 = 4.0;
+const MULTIPLE: f64 = 8.0;
 
 /// Operations that every estimate may take: about as many as the set-up of a small model.
 const LEAST: f64 = 6e6;
