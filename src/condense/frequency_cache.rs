@@ -4,6 +4,7 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
+use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles;
 use crate::error::{Result, try_push};
 use crate::interrupt::{Interrupt, Phase};
@@ -19,6 +20,8 @@ pub struct FrequencyCache {
     workspace: Workspace,
     current: Vec<Table>,
     interpolations: Vec<FrequencyInterpolation>,
+    /// Per harmonic the table from modes, where it is used; without slopes.
+    modal: Vec<Option<ModalTable>>,
     /// Frequency of the current tables; `true` if they were made pointwise.
     tabulated: Option<(f64, bool)>,
     pointwise: bool,
@@ -53,6 +56,7 @@ impl FrequencyCache {
             workspace,
             current: tables,
             interpolations,
+            modal: Vec::new(),
             tabulated: None,
             // Without a sweep no slope is used.
             pointwise: !sweep && condensed.ndof() > INTERPOLATE_ABOVE,
@@ -75,6 +79,18 @@ impl FrequencyCache {
         }
     }
 
+    /// Makes tables of the harmonics from modes where they are given, without slopes.
+    pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
+        self.modal = modal;
+        self.tabulated = None;
+    }
+
+    /// Whether tables are made from modes.
+    #[must_use]
+    pub fn has_modes(&self) -> bool {
+        !self.modal.is_empty()
+    }
+
     /// The tables made last.
     #[must_use]
     pub fn current(&self) -> &[Table] {
@@ -93,6 +109,10 @@ impl FrequencyCache {
         let workspace = &mut self.workspace;
         for (i, table) in self.current.iter_mut().enumerate() {
             interrupt.check()?;
+            if let Some(Some(modal)) = self.modal.get_mut(i) {
+                modal.evaluate(omega, table, interrupt)?;
+                continue;
+            }
             let done = match self.interpolations.get_mut(i) {
                 Some(interpolation) if !self.pointwise && !self.factorised => {
                     interpolation.evaluate(omega, table, |w, values| {

@@ -9,12 +9,14 @@ pub mod frequency_cache;
 pub mod frequency_interpolation;
 pub mod harmonic_block;
 pub mod modal_flexibility;
+pub mod modal_table;
 mod model_cache;
 mod reduction;
 mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
+pub mod wave_modes;
 
 pub use condensed::{Condensed, Reference};
 pub use harmonic_block::{Artificial, HarmonicBlock};

@@ -30,7 +30,7 @@ const RATIO: f64 = 1.25;
 /// Relative distance within which the cut-off harmonic of a large structure is found.
 const FINE: f64 = 0.03;
 
-/// Relative change of frequency up to which a cut-off, as a frequency, is reused.
+/// Relative change of frequency up to which a cut-off, as a frequency, is reused where harmonics are different waves.
 const NEAR: f64 = 0.01;
 
 /// Iterations for the norm of a matrix.
@@ -88,8 +88,10 @@ impl CutoffHarmonic {
     /// The last harmonic above `from` and up to `most` in which the structure is compliant, at the angular frequency
     /// ω; `from` where it is compliant in none.
     pub fn at(&mut self, omega: f64, from: usize, most: usize, interrupt: &Interrupt<'_>) -> Result<usize> {
+        // Where all harmonics are one wave, G depends on hω alone.
+        let one_wave = self.condensed.in_step() <= 1;
         if let Some((frequency, near, searched_from)) = self.found
-            && (omega / near - 1.0).abs() <= NEAR
+            && (one_wave || (omega / near - 1.0).abs() <= if self.highest.is_some() { NEAR } else { FINE })
             && from >= searched_from
         {
             return Ok(((frequency / omega).round() as usize).clamp(from, most.max(from)));

@@ -1,5 +1,7 @@
 //! The error of a point of a forced response.
 
+use crate::condense::modal_table::ModalTable;
+use crate::condense::wave_modes::WaveCache;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
@@ -29,6 +31,9 @@ const FACTORISATIONS: f64 = 5.0;
 /// Unknowns of the block of an iterative solution: with more its factors cost more than the products that they spare.
 const BLOCK: f64 = 300.0;
 
+/// Flexibility tables by factorisation that cost about as much as all modes of a structure.
+const TABLES: usize = 24;
+
 /// Estimates that a ratio serves before it is found anew: the first one, and the most while it does not change.
 const USES: (usize, usize) = (3, 12);
 
@@ -52,6 +57,9 @@ pub struct ForcedEstimator<'a> {
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
     ratio: Option<Ratio>,
+    /// Modes of the waves, and the flexibility tables made so far.
+    waves: WaveCache,
+    tables: usize,
 }
 
 /// Ratio of the whole change of the response to that of the first extension.
@@ -84,6 +92,8 @@ impl<'a> ForcedEstimator<'a> {
             interrupt,
             extended: Vec::new(),
             ratio: None,
+            waves: WaveCache::default(),
+            tables: 0,
         }
     }
 
@@ -204,6 +214,23 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
+    /// Whether so many tables were made that modes pay.
+    fn modes_pay(&mut self, condensed: &Condensed) -> bool {
+        self.tables += condensed.set().numbers().len();
+        self.tables > TABLES && !self.waves.is_refused()
+    }
+
+    /// The table of each harmonic from modes, where it has them.
+    fn modal_tables(&mut self, condensed: &Condensed) -> Result<Vec<Option<ModalTable>>> {
+        let mut tables = Vec::new();
+        for i in 0..condensed.set().numbers().len() {
+            let modes = self.waves.of(self.model, condensed, i, self.interrupt)?;
+            let table = modes.map(|modes| ModalTable::new(condensed, i, self.response, modes));
+            try_push(&mut tables, table.transpose()?, CONTEXT)?;
+        }
+        Ok(tables)
+    }
+
     /// The ratio found for points with these harmonics, as long as it serves.
     fn ratio_for(&mut self, least: usize) -> Option<f64> {
         let ratio = self.ratio.as_mut()?;
@@ -255,7 +282,11 @@ impl<'a> ForcedEstimator<'a> {
         })?;
         let condensed = &*resolution.condensed;
         let set = condensed.set();
-        let sizes = Sizes::new(condensed, resolution.samples);
+        let by_modes = self.modes_pay(condensed);
+        let mut sizes = Sizes::new(condensed, resolution.samples);
+        if by_modes {
+            sizes = sizes.with_modes(condensed);
+        }
         if !work.spend(sizes.flexibility()) {
             return Ok((None, work));
         }
@@ -278,6 +309,9 @@ impl<'a> ForcedEstimator<'a> {
             )?;
             ExtendedSystem::iterative(problem, omega, factored, (sizes, work))?
         };
+        if by_modes && !system.problem.has_modes() {
+            system.problem.set_modes(self.modal_tables(condensed)?);
+        }
         let found = on(
             &mut system,
             condensed,

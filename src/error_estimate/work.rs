@@ -103,6 +103,13 @@ impl Sizes {
         }
     }
 
+    /// The same sizes where the flexibility is made from modes.
+    pub fn with_modes(mut self, condensed: &Condensed) -> Self {
+        let outputs = self.coordinates + 1.0;
+        self.flexibility = OF_FACTORS * 8.0 * condensed.ndof() as f64 * outputs * outputs;
+        self
+    }
+
     /// Length of a packed signal.
     pub fn packed(&self) -> f64 {
         self.packed

@@ -5,6 +5,7 @@
 
 use crate::condense::Condensed;
 use crate::condense::frequency_cache::FrequencyCache;
+use crate::condense::modal_table::ModalTable;
 use crate::error::{Result, Status, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -79,6 +80,17 @@ impl<'a> HarmonicBalance<'a> {
             change: try_vec(set.packed_len(), 0.0, CONTEXT)?,
             products: ProductMemory::default(),
         })
+    }
+
+    /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only.
+    pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
+        self.tables.set_modes(modal);
+    }
+
+    /// Whether the flexibility is made from modes.
+    #[must_use]
+    pub fn has_modes(&self) -> bool {
+        self.tables.has_modes()
     }
 
     /// Share of the period that each law slips, at the point last evaluated.

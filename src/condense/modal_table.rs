@@ -1,0 +1,174 @@
+//! Flexibility table of one harmonic from the modes of its wave.
+//!
+//! With L and R the rows and columns of outputs and inputs in the modes and d the denominators of
+//! [`crate::condense::wave_modes`], the table without the low-rank term is T′ = L d⁻¹ R. With it
+//!
+//! > T = T′ + c T′_B k X,  X = (1 − c G′ k)⁻¹ T′ᴮ,
+//!
+//! where T′_B are the columns and T′ᴮ the rows of B, and G′ is where they cross (Woodbury's identity; X are the rows of
+//! B in T itself).
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::Table;
+use crate::condense::wave_modes::WaveModes;
+use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::lu::Lu;
+use crate::model::spring::along;
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use num_complex::Complex64;
+use std::rc::Rc;
+
+const CONTEXT: &str = "the flexibility from modes";
+
+/// A harmonic with the modes of its wave.
+pub struct ModalTable {
+    modes: Rc<WaveModes>,
+    number: f64,
+    coordinates: usize,
+    /// Rows of contacts, response and springs.
+    rows: usize,
+    /// rows × n and n × rows: Φ seen by the outputs, and the inputs seen by Φᴴ.
+    left: Vec<Complex64>,
+    right: Vec<Complex64>,
+    /// R over the denominators.
+    weighted: Vec<Complex64>,
+    /// Stiffness of B: of the coordinates, then of the springs.
+    stiffness: Vec<f64>,
+    /// T′, rows × rows.
+    plain: Vec<Complex64>,
+    lu: Lu<Complex64>,
+    /// X, one column for each contact and for the excitation.
+    inner: Vec<Complex64>,
+}
+
+impl ModalTable {
+    /// The table of the i-th carried harmonic with degree of freedom `response` as the last row.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, i: usize, response: usize, modes: Rc<WaveModes>) -> Result<Self> {
+        let block = &condensed.blocks()[i];
+        let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
+        // Without damping by stiffness the low-rank term vanishes.
+        let springs = if modes.proportional.1 == 0.0 { &[][..] } else { &modes.springs };
+        let (outputs, rows) = (coordinates + 1, coordinates + 1 + springs.len());
+        let mut left = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
+        let mut right = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
+        for (mode, shape) in modes.vectors.chunks_exact(n).enumerate() {
+            let column = &mut left[mode * rows..(mode + 1) * rows];
+            for (to, row) in column.iter_mut().zip(&block.rows) {
+                *to = along(row, shape);
+            }
+            column[coordinates] = shape[response];
+            for (to, (row, _)) in column[outputs..].iter_mut().zip(springs) {
+                *to = along(row, shape);
+            }
+            for (r, l) in column.iter().enumerate() {
+                right[r * n + mode] = l.conj();
+            }
+            right[coordinates * n + mode] = crate::linalg::inner(shape, &block.force);
+        }
+        let mut stiffness = try_vec(coordinates + springs.len(), 0.0, CONTEXT)?;
+        for (c, k) in stiffness.iter_mut().take(coordinates).enumerate() {
+            *k = condensed.kappa(c, i).re;
+        }
+        for (k, (_, spring)) in stiffness[coordinates..].iter_mut().zip(springs) {
+            *k = *spring;
+        }
+        let low_rank = if modes.proportional.1 == 0.0 { 0 } else { stiffness.len() };
+        Ok(Self {
+            number: block.number as f64,
+            coordinates,
+            rows,
+            left,
+            right,
+            weighted: try_vec(rows * n, Complex64::ZERO, CONTEXT)?,
+            plain: try_vec(rows * rows, Complex64::ZERO, CONTEXT)?,
+            lu: Lu::new(low_rank, outputs)?,
+            inner: try_vec(low_rank * outputs, Complex64::ZERO, CONTEXT)?,
+            stiffness,
+            modes,
+        })
+    }
+
+    /// Evaluates H at `omega`; its slope is left as zero.
+    ///
+    /// # Errors
+    /// `Singular` at an undamped resonance; `StoppedByCaller`.
+    pub fn evaluate(&mut self, omega: f64, table: &mut Table, interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.modes.values.len();
+        let (rows, coordinates) = (self.rows, self.coordinates);
+        let outputs = coordinates + 1;
+        let (alpha, beta) = self.modes.proportional;
+        let frequency = self.number * omega;
+        let c = Complex64::new(0.0, frequency * beta);
+        let inertia = Complex64::new(frequency * frequency, -frequency * alpha);
+        for (to, from) in self.weighted.chunks_exact_mut(n).zip(self.right.chunks_exact(n)) {
+            for ((to, from), mu) in to.iter_mut().zip(from).zip(&self.modes.values) {
+                *to = from / (1.0 + c - inertia * mu);
+            }
+        }
+        multiply((&self.left, rows, n), &self.weighted, &mut self.plain);
+        table.slope.fill(Complex64::ZERO);
+        for (to, from) in table.value.chunks_exact_mut(outputs).zip(self.plain.chunks_exact(rows)) {
+            to.copy_from_slice(&from[..outputs]);
+        }
+        let order = self.lu.order();
+        if order == 0 {
+            return check_finite(&table.value, omega);
+        }
+        // Position of the rows of B in T′: the response lies between contacts and springs.
+        let at = |b: usize| if b < coordinates { b } else { b + 1 };
+        let a = self.lu.matrix();
+        for (q, column) in a.chunks_exact_mut(order).enumerate() {
+            let factor = -c * self.stiffness[q];
+            for (p, to) in column.iter_mut().enumerate() {
+                *to = factor * self.plain[at(q) * rows + at(p)];
+            }
+            column[q] += 1.0;
+        }
+        self.lu.factor(interrupt)?;
+        for (to, from) in self.inner.chunks_exact_mut(order).zip(self.plain.chunks_exact(rows)) {
+            for (p, to) in to.iter_mut().enumerate() {
+                *to = from[at(p)];
+            }
+        }
+        self.lu.solve_columns(&mut self.inner, false, interrupt)?;
+        for x in self.inner.chunks_exact_mut(order) {
+            for (x, k) in x.iter_mut().zip(&self.stiffness) {
+                *x *= c * k;
+            }
+        }
+        // The columns of B, without those of the excitation.
+        for (x, to) in self.inner.chunks_exact(order).zip(table.value.chunks_exact_mut(outputs)) {
+            for (q, x) in x.iter().enumerate() {
+                for (to, from) in to.iter_mut().zip(&self.plain[at(q) * rows..]) {
+                    *to += from * x;
+                }
+            }
+        }
+        check_finite(&table.value, omega)
+    }
+}
+
+fn check_finite(values: &[Complex64], omega: f64) -> Result<()> {
+    if values.iter().all(|z| z.is_finite()) {
+        return Ok(());
+    }
+    crate::error::fail!(Singular, "the structure resonates without damping at angular frequency {omega}")
+}
+
+/// out = A B with `rows` × `n` numbers in A.
+fn multiply((a, rows, n): (&[Complex64], usize, usize), b: &[Complex64], out: &mut [Complex64]) {
+    let columns = out.len() / rows.max(1);
+    matmul(
+        MatMut::from_column_major_slice_mut(out, rows, columns),
+        Accum::Replace,
+        MatRef::from_column_major_slice(a, rows, n),
+        MatRef::from_column_major_slice(b, n, columns),
+        Complex64::ONE,
+        Par::Seq,
+    );
+}

@@ -1,0 +1,201 @@
+//! Modes of one wave of the structure with its contacts stuck, by which the flexibility at any frequency is a sum.
+//!
+//! With M φ = μ K_κ φ, φᴴ K_κ φ = 1, and damping C = αM + βK of the structure alone,
+//!
+//! > Z_κ = (1 + c) K_κ − (ν² − iνα) M − c Bᴴ k B,  c = iνβ,  ν = hω,
+//!
+//! where Bᴴ k B is the part of K_κ that belongs to no structure: springs, stuck contacts and κ. Without the last term
+//! Z⁻¹ = Σ φ φᴴ/(1 + c − (ν² − iνα) μ); the term itself is of low rank, see [`crate::condense::modal_table`].
+
+use crate::condense::{Artificial, Condensed, HarmonicBlock};
+use crate::contact::relative_motion::Direction;
+use crate::error::{Result, Status, try_extend, try_push};
+use crate::interrupt::Interrupt;
+use crate::linalg::eigen;
+use crate::linalg::sparse::Csc;
+use crate::model::Model;
+use crate::model::spring::{Row, relative_row};
+use crate::model::structure::MatrixKind;
+use nalgebra::DMatrix;
+use num_complex::Complex64;
+use std::rc::Rc;
+
+/// Relative deviation of a damping matrix from αM + βK that is rounding.
+const PROPORTIONAL: f64 = 1e-12;
+
+/// Degrees of freedom up to which all modes are computed.
+const MOST: usize = 600;
+
+const CONTEXT: &str = "the modes of the structure";
+
+/// The modes of one wave.
+pub struct WaveModes {
+    /// K_κ and M, by which the wave is known again.
+    reference: Csc,
+    mass: Vec<Complex64>,
+    /// μ
+    pub(super) values: Vec<f64>,
+    /// φ, column after column.
+    pub(super) vectors: Vec<Complex64>,
+    /// α and β
+    pub(super) proportional: (f64, f64),
+    /// Rows of B beyond those of the relative coordinates, with their stiffness.
+    pub(super) springs: Vec<(Row, f64)>,
+}
+
+/// The waves met so far; `None` for one whose flexibility is no such sum.
+#[derive(Default)]
+pub struct WaveCache {
+    waves: Vec<Rc<WaveModes>>,
+    /// Whether a wave without such modes was met: there are no others then.
+    refused: bool,
+}
+
+impl WaveCache {
+    /// Whether no wave has such modes.
+    #[must_use]
+    pub fn is_refused(&self) -> bool {
+        self.refused
+    }
+
+    /// The modes of the i-th carried harmonic; `None` where the damping is not proportional, the reference stiffness is
+    /// complex, the structure can move without it, or has too many degrees of freedom.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn of(
+        &mut self,
+        model: &Model,
+        condensed: &Condensed,
+        i: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Rc<WaveModes>>> {
+        let block = &condensed.blocks()[i];
+        let is_real = (0..condensed.coordinates()).all(|c| condensed.kappa(c, i).im == 0.0);
+        if self.refused || block.number == 0 || !is_real {
+            return Ok(None);
+        }
+        if let Some(known) = self.waves.iter().find(|known| known.is_of(block)) {
+            return Ok(Some(Rc::clone(known)));
+        }
+        let Some(found) = WaveModes::new(model, condensed, i, interrupt)? else {
+            self.refused = true;
+            return Ok(None);
+        };
+        let found = Rc::new(found);
+        try_push(&mut self.waves, Rc::clone(&found), CONTEXT)?;
+        Ok(Some(found))
+    }
+}
+
+impl WaveModes {
+    fn new(model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
+        let block = &condensed.blocks()[i];
+        let n = condensed.ndof();
+        if n > MOST || !matches!(block.artificial, Artificial::None) {
+            return Ok(None);
+        }
+        let structure = model.structure().wave_matrix(MatrixKind::Stiffness, block.number)?;
+        let own = structure.aligned(&block.reference)?;
+        let Some(proportional) = proportional(block, &own) else {
+            return Ok(None);
+        };
+        let Some(springs) = springs(model, condensed, block.number)? else {
+            return Ok(None);
+        };
+        interrupt.check()?;
+        let pattern = &block.reference;
+        let dense = |values: &[Complex64]| {
+            let mut a = DMatrix::<Complex64>::zeros(n, n);
+            for j in 0..n {
+                for at in pattern.col_ptr[j]..pattern.col_ptr[j + 1] {
+                    a[(pattern.row_idx[at], j)] = values[at];
+                }
+            }
+            a
+        };
+        // The pencil turned round: the lowest modes, which matter most, are the most accurate.
+        let pairs = match eigen::generalised(&dense(&block.mass), &dense(&pattern.values), interrupt) {
+            Ok(pairs) => pairs,
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
+            Err(_) => return Ok(None),
+        };
+        if pairs.values.len() < n {
+            return Ok(None);
+        }
+        let mut mass = Vec::new();
+        try_extend(&mut mass, &block.mass, CONTEXT)?;
+        let mut vectors = Vec::new();
+        try_extend(&mut vectors, pairs.vectors.as_slice(), CONTEXT)?;
+        Ok(Some(Self {
+            reference: pattern.try_clone()?,
+            mass,
+            values: pairs.values,
+            vectors,
+            proportional,
+            springs,
+        }))
+    }
+
+    /// Whether these are the modes of a harmonic.
+    fn is_of(&self, block: &HarmonicBlock) -> bool {
+        self.reference.col_ptr == block.reference.col_ptr
+            && self.reference.row_idx == block.reference.row_idx
+            && self.reference.values == block.reference.values
+            && self.mass == block.mass
+    }
+}
+
+/// α and β of C = αM + βK by least squares; `None` where C is not of this form.
+fn proportional(block: &HarmonicBlock, own: &[Complex64]) -> Option<(f64, f64)> {
+    let (m, k, c) = (&block.mass[..], own, &block.damping[..]);
+    let inner = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| (a.conj() * b).re).sum::<f64>();
+    let largest = |a: &[Complex64]| a.iter().fold(0.0_f64, |s, z| s.max(z.norm()));
+    let (size_m, size_k, size_c) = (largest(m), largest(k), largest(c));
+    if size_c == 0.0 {
+        return Some((0.0, 0.0));
+    }
+    if size_m == 0.0 || size_k == 0.0 {
+        return None;
+    }
+    // Stiffness alone is the usual form, and two nearly parallel matrices would lose digits.
+    let candidates = [
+        (0.0, inner(k, c) / inner(k, k)),
+        (inner(m, c) / inner(m, m), 0.0),
+        {
+            let (mm, kk, mk) = (inner(m, m), inner(k, k), inner(m, k));
+            let (mc, kc) = (inner(m, c), inner(k, c));
+            let determinant = mm * kk - mk * mk;
+            ((kk * mc - mk * kc) / determinant, (mm * kc - mk * mc) / determinant)
+        },
+    ];
+    candidates.into_iter().find(|&(alpha, beta)| {
+        let off = |((m, k), c): ((&Complex64, &Complex64), &Complex64)| (c - alpha * m - beta * k).norm();
+        m.iter().zip(k).zip(c).map(off).fold(0.0_f64, f64::max) <= PROPORTIONAL * size_c
+    })
+}
+
+/// Rows of the linear springs and stuck contacts with their stiffness; `None` where one couples its directions.
+fn springs(model: &Model, condensed: &Condensed, number: usize) -> Result<Option<Vec<(Row, f64)>>> {
+    let structure = model.structure();
+    let mut rows = Vec::new();
+    for s in model.springs() {
+        let phase = structure.phase(number, s.sector_offset);
+        let direction = Direction::between(s.dof_a, s.dof_b);
+        try_push(&mut rows, (relative_row(&direction, phase), s.stiffness), CONTEXT)?;
+    }
+    for &i in &condensed.contact_classes().never_slipping {
+        let contact = &model.contacts()[i];
+        let phase = structure.phase(number, contact.sector_offset);
+        for k in 0..contact.directions() {
+            let couples = |&l: &usize| l != k && contact.stiffness_at_small_motion(k, l) != 0.0;
+            if (0..contact.directions()).any(|l| couples(&l)) {
+                return Ok(None);
+            }
+            let row = relative_row(&contact.direction(k), phase);
+            try_push(&mut rows, (row, contact.stiffness_at_small_motion(k, k)), CONTEXT)?;
+        }
+    }
+    rows.retain(|(_, stiffness)| *stiffness != 0.0);
+    Ok(Some(rows))
+}
