@@ -172,3 +172,128 @@ fn multiply((a, rows, n): (&[Complex64], usize, usize), b: &[Complex64], out: &m
         Par::Seq,
     );
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::condense::flexibility::Workspace;
+    use crate::condense::wave_modes::WaveCache;
+    use crate::condense::{Condensed, Reference};
+    use crate::contact::Contact;
+    use crate::linalg::matrix_view::MatrixView;
+    use crate::model::Model;
+    use crate::model::spring::Spring;
+    use crate::model::structure::MatrixKind;
+    use crate::options::SolverOptions;
+
+    const N: usize = 9;
+
+    /// A chain with uneven masses and springs, on a wheel where `sectors` is more than 1.
+    fn chain(sectors: usize, (alpha, beta): (f64, f64)) -> Model {
+        let mut model = if sectors > 1 {
+            let mut wheel = Model::cyclic(N, sectors).unwrap();
+            wheel.set_wave(2);
+            wheel
+        } else {
+            Model::new(N).unwrap()
+        };
+        let (mut m, mut k) = (vec![0.0; N * N], vec![0.0; N * N]);
+        for i in 0..N {
+            m[i * N + i] = 1.0 + 0.3 * (i as f64).sin();
+            k[i * N + i] += 0.2 + 0.1 * (2.0 * i as f64).cos();
+            if i > 0 {
+                let spring = 40.0 + 7.0 * (3.0 * i as f64).sin();
+                k[i * N + i] += spring;
+                k[(i - 1) * N + i - 1] += spring;
+                k[i * N + i - 1] -= spring;
+                k[(i - 1) * N + i] -= spring;
+            }
+        }
+        model.set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &m)).unwrap();
+        model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &k)).unwrap();
+        if sectors > 1 {
+            let mut to_next = vec![0.0; N * N];
+            (to_next[3], to_next[5 * N + 4]) = (-0.11, -0.07);
+            model
+                .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(N, &to_next))
+                .unwrap();
+        }
+        model.set_rayleigh(alpha, beta).unwrap();
+        model.add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0)).unwrap();
+        model.add_contact(&Contact::jenkins(6, None, 25.0, 0.3, 1.0)).unwrap();
+        let mut across = Contact::jenkins(2, Some(7), 4.0, 0.3, 1.0);
+        across.sector_offset = i64::from(sectors > 1);
+        model.add_contact(&across).unwrap();
+        // One that never slips is a spring.
+        model.add_contact(&Contact::jenkins(0, Some(8), 12.0, 0.3, f64::INFINITY)).unwrap();
+        model
+            .add_spring(&Spring {
+                dof_a: Some(3),
+                dof_b: Some(5),
+                sector_offset: i64::from(sectors > 1),
+                stiffness: 15.0,
+            })
+            .unwrap();
+        model.add_force(8, 1, Complex64::new(0.7, -0.2)).unwrap();
+        model
+    }
+
+    fn condensed(model: &Model, reference: Reference) -> Condensed {
+        let options = SolverOptions {
+            harmonics: 7,
+            ..SolverOptions::default()
+        };
+        Condensed::with_reference(model, &options, 1.3, Some(reference), &Interrupt::none()).unwrap()
+    }
+
+    #[test]
+    fn tables_from_modes_are_those_by_factorisation() {
+        for sectors in [1, 24] {
+            for damping in [(0.0, 1e-3), (0.02, 0.0), (0.03, 4e-2), (0.0, 1e-6)] {
+                let model = chain(sectors, damping);
+                let condensed = condensed(&model, Reference::Stuck);
+                let mut cache = WaveCache::default();
+                let mut direct = Workspace::new(&condensed, Some(4)).unwrap();
+                for i in 0..condensed.blocks().len() {
+                    let modes = cache.of(&model, &condensed, i, &Interrupt::none()).unwrap().unwrap();
+                    let mut by_modes = ModalTable::new(&condensed, i, 4, modes).unwrap();
+                    let mut table = Table::new(condensed.coordinates()).unwrap();
+                    for omega in [0.05, 0.4, 1.0, 1.3, 2.7, 9.0] {
+                        by_modes.evaluate(omega, &mut table, &Interrupt::none()).unwrap();
+                        let exact = direct
+                            .evaluate(&condensed, i, omega, false, &Interrupt::none())
+                            .unwrap();
+                        let size = |z: &[Complex64]| z.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+                        let off: Vec<Complex64> = table.value.iter().zip(&exact.value).map(|(a, b)| a - b).collect();
+                        assert!(
+                            size(&off) <= 1e-10 * size(&exact.value),
+                            "{sectors} sectors, {damping:?}, block {i} at {omega}: {:e}",
+                            size(&off) / size(&exact.value)
+                        );
+                    }
+                }
+                let waves = if sectors == 1 { 1 } else { 4 };
+                assert_eq!(cache.len(), waves, "{sectors} sectors");
+            }
+        }
+    }
+
+    #[test]
+    fn other_damping_and_a_complex_reference_have_no_such_modes() {
+        let mut model = chain(1, (0.0, 0.0));
+        let mut dashpot = vec![0.0; N * N];
+        dashpot[0] = 0.1;
+        model
+            .set_matrix(MatrixKind::Damping, &MatrixView::dense(N, &dashpot))
+            .unwrap();
+        let mut cache = WaveCache::default();
+        let stuck = condensed(&model, Reference::Stuck);
+        assert!(cache.of(&model, &stuck, 0, &Interrupt::none()).unwrap().is_none());
+        assert!(cache.is_refused());
+        let model = chain(1, (0.0, 1e-3));
+        let complex = condensed(&model, Reference::Complex);
+        let mut cache = WaveCache::default();
+        assert!(cache.of(&model, &complex, 0, &Interrupt::none()).unwrap().is_none());
+        assert!(!cache.is_refused());
+    }
+}

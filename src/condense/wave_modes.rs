@@ -52,6 +52,12 @@ pub struct WaveCache {
 }
 
 impl WaveCache {
+    /// Number of waves with modes.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.waves.len()
+    }
+
     /// Whether no wave has such modes.
     #[must_use]
     pub fn is_refused(&self) -> bool {
