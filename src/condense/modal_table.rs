@@ -52,7 +52,11 @@ impl ModalTable {
         let block = &condensed.blocks()[i];
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
         // Without damping by stiffness the low-rank term vanishes.
-        let springs = if modes.proportional.1 == 0.0 { &[][..] } else { &modes.springs };
+        let springs = if modes.proportional.1 == 0.0 {
+            &[][..]
+        } else {
+            &modes.springs
+        };
         let (outputs, rows) = (coordinates + 1, coordinates + 1 + springs.len());
         let mut left = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
         let mut right = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
@@ -77,7 +81,11 @@ impl ModalTable {
         for (k, (_, spring)) in stiffness[coordinates..].iter_mut().zip(springs) {
             *k = *spring;
         }
-        let low_rank = if modes.proportional.1 == 0.0 { 0 } else { stiffness.len() };
+        let low_rank = if modes.proportional.1 == 0.0 {
+            0
+        } else {
+            stiffness.len()
+        };
         Ok(Self {
             number: block.number as f64,
             coordinates,
@@ -142,7 +150,11 @@ impl ModalTable {
             }
         }
         // The columns of B, without those of the excitation.
-        for (x, to) in self.inner.chunks_exact(order).zip(table.value.chunks_exact_mut(outputs)) {
+        for (x, to) in self
+            .inner
+            .chunks_exact(order)
+            .zip(table.value.chunks_exact_mut(outputs))
+        {
             for (q, x) in x.iter().enumerate() {
                 for (to, from) in to.iter_mut().zip(&self.plain[at(q) * rows..]) {
                     *to += from * x;
@@ -157,7 +169,10 @@ fn check_finite(values: &[Complex64], omega: f64) -> Result<()> {
     if values.iter().all(|z| z.is_finite()) {
         return Ok(());
     }
-    crate::error::fail!(Singular, "the structure resonates without damping at angular frequency {omega}")
+    crate::error::fail!(
+        Singular,
+        "the structure resonates without damping at angular frequency {omega}"
+    )
 }
 
 /// out = A B with `rows` × `n` numbers in A.
@@ -210,7 +225,9 @@ mod tests {
             }
         }
         model.set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &m)).unwrap();
-        model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &k)).unwrap();
+        model
+            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &k))
+            .unwrap();
         if sectors > 1 {
             let mut to_next = vec![0.0; N * N];
             (to_next[3], to_next[5 * N + 4]) = (-0.11, -0.07);
@@ -225,7 +242,9 @@ mod tests {
         across.sector_offset = i64::from(sectors > 1);
         model.add_contact(&across).unwrap();
         // One that never slips is a spring.
-        model.add_contact(&Contact::jenkins(0, Some(8), 12.0, 0.3, f64::INFINITY)).unwrap();
+        model
+            .add_contact(&Contact::jenkins(0, Some(8), 12.0, 0.3, f64::INFINITY))
+            .unwrap();
         model
             .add_spring(&Spring {
                 dof_a: Some(3),

@@ -165,16 +165,12 @@ fn proportional(block: &HarmonicBlock, own: &[Complex64]) -> Option<(f64, f64)> 
         return None;
     }
     // Stiffness alone is the usual form, and two nearly parallel matrices would lose digits.
-    let candidates = [
-        (0.0, inner(k, c) / inner(k, k)),
-        (inner(m, c) / inner(m, m), 0.0),
-        {
-            let (mm, kk, mk) = (inner(m, m), inner(k, k), inner(m, k));
-            let (mc, kc) = (inner(m, c), inner(k, c));
-            let determinant = mm * kk - mk * mk;
-            ((kk * mc - mk * kc) / determinant, (mm * kc - mk * mc) / determinant)
-        },
-    ];
+    let candidates = [(0.0, inner(k, c) / inner(k, k)), (inner(m, c) / inner(m, m), 0.0), {
+        let (mm, kk, mk) = (inner(m, m), inner(k, k), inner(m, k));
+        let (mc, kc) = (inner(m, c), inner(k, c));
+        let determinant = mm * kk - mk * mk;
+        ((kk * mc - mk * kc) / determinant, (mm * kc - mk * mc) / determinant)
+    }];
     candidates.into_iter().find(|&(alpha, beta)| {
         let off = |((m, k), c): ((&Complex64, &Complex64), &Complex64)| (c - alpha * m - beta * k).norm();
         m.iter().zip(k).zip(c).map(off).fold(0.0_f64, f64::max) <= PROPORTIONAL * size_c

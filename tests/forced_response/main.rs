@@ -11,6 +11,7 @@ mod duffing;
 mod duffing_folds;
 mod folds;
 mod full_wheel;
+mod many_contacts;
 mod preload;
 mod reference_point;
 mod reference_response;
