@@ -141,6 +141,7 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         harmonics: number(o.harmonics, "harmonics")?,
         max_harmonics: number(o.max_harmonics, "max_harmonics")?,
         samples: number(o.samples, "samples")?,
+        refinement: 1,
         step: o.step,
         step_min: o.step_min,
         step_max: o.step_max,

@@ -65,6 +65,8 @@ pub struct Condensed {
     pub(super) contact_classes: ContactClasses,
     pub(super) sectors: usize,
     pub(super) in_step: usize,
+    /// Factor of the samples of laws without exact events.
+    pub(super) refinement: usize,
 }
 
 impl Condensed {
@@ -176,6 +178,12 @@ impl Condensed {
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
         self.preloaded
+    }
+
+    /// Factor of the samples of laws without exact events.
+    #[must_use]
+    pub fn refinement(&self) -> usize {
+        self.refinement
     }
 
     /// The chosen reference stiffness.

@@ -56,7 +56,7 @@ impl<'a> ContactForces<'a> {
         let mut forces = Self::unchecked(condensed, samples, interrupt)?;
         let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
         if laws().any(|law| forces.evaluator.samples(law)) {
-            forces.other = Some(Evaluator::otherwise(condensed.set(), samples, laws())?);
+            forces.other = Some(Evaluator::otherwise(condensed.set(), (samples, condensed.refinement()), laws())?);
         }
         Ok(forces)
     }
@@ -81,7 +81,7 @@ impl<'a> ContactForces<'a> {
             try_push(&mut found, memory, CONTEXT)?;
         }
         let samples = if linear { 0 } else { samples };
-        let evaluator = Evaluator::new(set, samples, laws())?;
+        let evaluator = Evaluator::refined(set, (samples, condensed.refinement()), laws())?;
         Ok(Self {
             condensed,
             interrupt,
