@@ -57,3 +57,15 @@ pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
         }
     }
 }
+
+/// out += Σⱼ aⱼ bⱼᵀ over `count` rows aⱼ of `rows` numbers and bⱼ of `columns`; `out` is column-major.
+pub fn add_outer_products(a: &[f64], b: &[f64], (count, rows, columns): (usize, usize, usize), out: &mut [f64]) {
+    matmul(
+        MatMut::from_column_major_slice_mut(out, rows, columns),
+        Accum::Add,
+        MatRef::from_column_major_slice(a, rows, count),
+        MatRef::from_row_major_slice(b, count, columns),
+        1.0,
+        Par::Seq,
+    );
+}
