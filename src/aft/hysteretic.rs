@@ -316,6 +316,12 @@ impl HystereticEvaluator {
         Ok(0.0)
     }
 
+    /// Whether the march had the force of a linear spring throughout.
+    fn is_spring(&self, law: &dyn Hysteretic) -> bool {
+        let none = |share: &[f64]| share[..self.signals.samples].iter().all(|x| *x == 0.0);
+        law.sticks() && none(&self.march.slip) && none(&self.march.open)
+    }
+
     /// Derivatives of the force by the motion and ω, those of the periodic start included. Only a start that is kept in
     /// part depends on the earlier marches; their derivatives are then followed from the load on.
     fn differentiate(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
@@ -334,6 +340,10 @@ impl HystereticEvaluator {
             }
             self.march_from(law, omega, last)?;
             self.map.form(&self.march, self.signals.samples);
+        }
+        if self.starts_stuck && self.is_spring(law) {
+            self.sensitivity.pass_stuck(&self.march, &self.signals);
+            return Ok(());
         }
         self.sensitivity.pass(&self.march, &self.signals, omega, true);
         if self.starts_stuck {

@@ -18,6 +18,7 @@ pub(super) struct Signals {
     pub directions: usize,
     /// Packed length m of one signal.
     length: usize,
+    has_mean: bool,
     /// bⱼ, samples × m.
     basis: Vec<f64>,
     /// dbⱼ/dτ, samples × m; empty without velocities.
@@ -57,6 +58,7 @@ impl Signals {
             samples,
             directions,
             length: m,
+            has_mean: set.has_mean(),
             basis,
             rate,
             u,
@@ -251,6 +253,38 @@ impl Sensitivity {
                         &mut self.sums,
                     );
                 }
+            }
+        }
+    }
+
+    /// The sums of [`Self::pass`] in closed form for a law that sticks through the period: every step is the same spring,
+    /// zⱼ = z + B (uⱼ − u_last) with the start z, and the force is C zⱼ.
+    pub fn pass_stuck(&mut self, march: &March, signals: &Signals) {
+        let (d, s, n, m, row) = (
+            signals.directions,
+            self.states,
+            signals.samples,
+            signals.length,
+            self.row(),
+        );
+        let (count, means) = (n as f64, usize::from(signals.has_mean));
+        let last = signals.basis(n - 1);
+        self.sums.fill(0.0);
+        for i in 0..self.forces {
+            let by_state = &march.df_dz[i * s..(i + 1) * s];
+            let sums = &mut self.sums[i * row * m..(i + 1) * row * m];
+            for k in 0..d {
+                let spring: f64 = (0..s).map(|a| by_state[a] * march.dz_du[a * d + k]).sum();
+                for q in 0..m {
+                    let column = &mut sums[(k * m + q) * m..(k * m + q + 1) * m];
+                    column[q] += spring * if q < means { count } else { 0.5 * count };
+                    for mean in &mut column[..means] {
+                        *mean -= spring * count * last[q];
+                    }
+                }
+            }
+            for (column, factor) in sums[self.width * m..].chunks_exact_mut(m.max(1)).zip(by_state) {
+                column[..means].fill(count * factor);
             }
         }
     }
