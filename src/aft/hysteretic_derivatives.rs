@@ -6,7 +6,7 @@ use crate::aft::periodic_state::ReturnMap;
 use crate::contact::march::{March, StuckState};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::linalg::add_outer_products;
+use crate::linalg::{add_outer_products, transposed_products};
 use std::f64::consts::TAU;
 
 /// Number of samples whose outer products are added at a time.
@@ -68,16 +68,10 @@ impl Signals {
 
     /// Samples a packed motion and its velocity.
     pub fn fill(&mut self, omega: f64, motion: &[f64]) {
-        let m = self.length;
-        let value = |row: &[f64], signal: &[f64]| row.iter().zip(signal).map(|(b, x)| b * x).sum::<f64>();
-        for j in 0..self.samples {
-            for (k, signal) in motion.chunks_exact(m.max(1)).enumerate() {
-                let at = j * self.directions + k;
-                self.u[at] = value(self.basis(j), signal);
-                if !self.rate.is_empty() {
-                    self.v[at] = omega * value(self.rate(j), signal);
-                }
-            }
+        transposed_products(motion, self.directions, &self.basis, &mut self.u);
+        if !self.rate.is_empty() {
+            transposed_products(motion, self.directions, &self.rate, &mut self.v);
+            self.v.iter_mut().for_each(|v| *v *= omega);
         }
     }
 
@@ -149,7 +143,7 @@ impl Sensitivity {
         let (force, mut sums) = (rows(forces.saturating_mul(BATCH))?, rows(forces.saturating_mul(length))?);
         // The first product of a thread asks for memory; those of an iteration must not.
         let (basis, columns) = (memory(BATCH.saturating_mul(length))?, forces.saturating_mul(row));
-        add_outer_products(&basis, &force, (BATCH, length, columns), &mut sums);
+        add_outer_products((&basis, length), (&force, columns, columns), BATCH, &mut sums);
         Ok(Self {
             states,
             forces,
@@ -247,9 +241,12 @@ impl Sensitivity {
                     let batch = j - j % BATCH..j + 1;
                     let columns = self.forces * row;
                     add_outer_products(
-                        &signals.basis[batch.start * signals.length..batch.end * signals.length],
-                        &self.force[..batch.len() * columns],
-                        (batch.len(), signals.length, columns),
+                        (
+                            &signals.basis[batch.start * signals.length..batch.end * signals.length],
+                            signals.length,
+                        ),
+                        (&self.force[..batch.len() * columns], columns, columns),
+                        batch.len(),
                         &mut self.sums,
                     );
                 }
@@ -310,11 +307,12 @@ impl Sensitivity {
     /// weights.
     pub fn add_to(&mut self, march: &March, signals: &Signals, out: &mut Evaluation) {
         let (d, m, row, width) = (signals.directions, signals.length, self.row(), self.width);
-        for (j, force) in march.f[..signals.samples * d].chunks_exact(d).enumerate() {
-            for (f, sum) in force.iter().zip(out.force.chunks_exact_mut(m.max(1))).take(self.forces) {
-                axpy(*f, signals.basis(j), sum);
-            }
-        }
+        add_outer_products(
+            (&signals.basis, m),
+            (&march.f[..signals.samples * d], self.forces, d),
+            signals.samples,
+            &mut out.force[..self.forces * m],
+        );
         for i in 0..self.forces {
             let sums = &mut self.sums[i * row * m..(i + 1) * row * m];
             let (fixed, by_start) = sums.split_at_mut(width * m);

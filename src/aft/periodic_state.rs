@@ -57,7 +57,12 @@ impl ReturnMap {
     pub fn form(&mut self, march: &March, samples: usize) {
         let s = self.states;
         unit(s, &mut self.p);
+        unit(s, &mut self.kept);
         for step in march.dz_dz[..samples * s * s].chunks_exact((s * s).max(1)) {
+            // Stick keeps all states.
+            if step == self.kept {
+                continue;
+            }
             product(s, step, &self.p, &mut self.scratch);
             std::mem::swap(&mut self.p, &mut self.scratch);
         }
