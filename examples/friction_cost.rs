@@ -45,7 +45,11 @@ fn main() -> Result<()> {
     println!("|---|---|---|---|---|");
     for highest in [3, 9, 21] {
         let set = HarmonicSet::all(highest)?;
-        for (name, size, closing) in [("slip", 3.0, 0.3), ("slip and lift-off", 3.0, 1.4), ("stick", 0.05, 0.3)] {
+        for (name, size, closing) in [
+            ("slip", 3.0, 0.3),
+            ("slip and lift-off", 3.0, 1.4),
+            ("stick", 0.05, 0.3),
+        ] {
             let (x1, x2, y) = (
                 signal(&set, size, 0.4),
                 signal(&set, 0.7 * size, 1.7),
@@ -62,7 +66,12 @@ fn main() -> Result<()> {
             };
             let a = cost(&one, &set, &[&x1[..], &y].concat())?;
             let b = cost(&plane, &set, &[&x1[..], &x2, &y].concat())?;
-            println!("| {highest} | {name} | {:.1} µs | {:.1} µs | {:.1} |", 1e6 * a, 1e6 * b, b / a);
+            println!(
+                "| {highest} | {name} | {:.1} µs | {:.1} µs | {:.1} |",
+                1e6 * a,
+                1e6 * b,
+                b / a
+            );
         }
     }
     Ok(())

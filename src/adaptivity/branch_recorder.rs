@@ -125,7 +125,9 @@ impl<'a> BranchRecorder<'a> {
             return 1;
         }
         let excess = self.sampling_error / (SAMPLING * SHARE * self.tolerance);
-        (excess.sqrt().min(MAX_REFINEMENT as f64).ceil() as usize).next_power_of_two().max(2)
+        (excess.sqrt().min(MAX_REFINEMENT as f64).ceil() as usize)
+            .next_power_of_two()
+            .max(2)
     }
 
     /// Stores a point of the curve.

@@ -140,7 +140,10 @@ impl Sensitivity {
         let start = || memory(states.saturating_mul(width));
         let row = width.saturating_add(states);
         let rows = |n: usize| memory(n.saturating_mul(row));
-        let (force, mut sums) = (rows(forces.saturating_mul(BATCH))?, rows(forces.saturating_mul(length))?);
+        let (force, mut sums) = (
+            rows(forces.saturating_mul(BATCH))?,
+            rows(forces.saturating_mul(length))?,
+        );
         // The first product of a thread asks for memory; those of an iteration must not.
         let (basis, columns) = (memory(BATCH.saturating_mul(length))?, forces.saturating_mul(row));
         add_outer_products((&basis, length), (&force, columns, columns), BATCH, &mut sums);
@@ -231,7 +234,13 @@ impl Sensitivity {
                 let block = (j * s + a) * d..(j * s + a + 1) * d;
                 let from = (&march.dz_du_before[block.clone()], &march.dz_dv_before[block.clone()]);
                 signals.add(before, omega, from.0, from.1, &mut to[..width]);
-                signals.add(j, omega, &march.dz_du[block.clone()], &march.dz_dv[block], &mut to[..width]);
+                signals.add(
+                    j,
+                    omega,
+                    &march.dz_du[block.clone()],
+                    &march.dz_dv[block],
+                    &mut to[..width],
+                );
                 to[width - 1] += march.dz_domega[j * s + a];
             }
             std::mem::swap(&mut self.now, &mut self.next);

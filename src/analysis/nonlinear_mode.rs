@@ -5,9 +5,9 @@ use crate::adaptivity::branch_recorder::Ending;
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
-use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::mode_equations::LinearStart;
+use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::condense::Condensed;
 use crate::contact::Contact;
 use crate::continuation::initial_point::{self, First, Way};
@@ -222,7 +222,12 @@ fn on_wave(
         return Ok(Sampled::TooFew(factor));
     }
     let ending = Ending::of(outcome, mode.branch())?;
-    Ok(Sampled::Enough(mode.finish(model, solver, &ending, tracer.estimates())?))
+    Ok(Sampled::Enough(mode.finish(
+        model,
+        solver,
+        &ending,
+        tracer.estimates(),
+    )?))
 }
 
 /// Selects the degree of freedom of the phase and scales the linear mode to amplitude 1.

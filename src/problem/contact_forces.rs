@@ -56,7 +56,11 @@ impl<'a> ContactForces<'a> {
         let mut forces = Self::unchecked(condensed, samples, interrupt)?;
         let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
         if laws().any(|law| forces.evaluator.samples(law)) {
-            forces.other = Some(Evaluator::otherwise(condensed.set(), (samples, condensed.refinement()), laws())?);
+            forces.other = Some(Evaluator::otherwise(
+                condensed.set(),
+                (samples, condensed.refinement()),
+                laws(),
+            )?);
         }
         Ok(forces)
     }
