@@ -130,7 +130,7 @@ fn follow(
         }
     };
     if let Some(factor) = required(solver, &response) {
-        return Ok(Sampled::TooFew(factor));
+        return Ok(Err(factor));
     }
     let mut ending = Ending::of(outcome, response.branch())?;
     if ending.status == Status::StoppedStepTooSmall
@@ -151,7 +151,7 @@ fn follow(
     {
         branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
     }
-    Ok(Sampled::Enough(branch))
+    Ok(Ok(branch))
 }
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and

@@ -219,15 +219,10 @@ fn on_wave(
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, interrupt);
     if let Some(factor) = required(solver, &mode) {
-        return Ok(Sampled::TooFew(factor));
+        return Ok(Err(factor));
     }
     let ending = Ending::of(outcome, mode.branch())?;
-    Ok(Sampled::Enough(mode.finish(
-        model,
-        solver,
-        &ending,
-        tracer.estimates(),
-    )?))
+    mode.finish(model, solver, &ending, tracer.estimates()).map(Ok)
 }
 
 /// Selects the degree of freedom of the phase and scales the linear mode to amplitude 1.

@@ -6,13 +6,8 @@ use crate::error::Result;
 use crate::options::{MAX_REFINEMENT, SolverOptions};
 use crate::results::Branch;
 
-/// The outcome of a run.
-pub(super) enum Sampled {
-    /// The branch.
-    Enough(Branch),
-    /// The run ended early: the factor by which more samples are required.
-    TooFew(usize),
-}
+/// The outcome of a run: the branch, or for a run that ended early the factor by which more samples are required.
+pub(super) type Sampled = core::result::Result<Branch, usize>;
 
 /// Whether a run may begin again with more samples: with samples of the laws' own, and a tolerance to meet.
 pub(super) fn may_refine(solver: &SolverOptions) -> bool {
@@ -35,8 +30,8 @@ pub(super) fn with_samples(
     let mut options = *solver;
     loop {
         match run(&options)? {
-            Sampled::Enough(branch) => return Ok(branch),
-            Sampled::TooFew(factor) => {
+            Ok(branch) => return Ok(branch),
+            Err(factor) => {
                 options.refinement = options.refinement.saturating_mul(factor).min(MAX_REFINEMENT);
             }
         }
