@@ -952,7 +952,8 @@ typedef struct {
   /// 0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a
   /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact in
   /// both cases; HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number
-  /// that follows from H.
+  /// that follows from H, and from the tolerance: a run that has too few samples begins again,
+  /// progress included, with more.
   int64_t samples;
   /// First arc-length step in scaled unknowns; 0 = automatic.
   double step;
