@@ -952,7 +952,8 @@ typedef struct {
   /// 0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a
   /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact in
   /// both cases; HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number
-  /// that follows from H.
+  /// that follows from H, and from the tolerance: a run that has too few samples begins again,
+  /// progress included, with more.
   int64_t samples;
   /// First arc-length step in scaled unknowns; 0 = automatic.
   double step;
@@ -1172,7 +1173,8 @@ int64_t hbvib_branch_stored(const hbvib_branch *branch);
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
 hbvib_status hbvib_branch_status(const hbvib_branch *branch);
 
-/// Results that a branch holds for each point of the curve. Energies are of one sector.
+/// Results that a branch holds for each point of the curve. Energies are of one sector. All are
+/// finite, except for errors that are unknown: those are NaN.
 typedef enum {
   /// Angular frequency.
   HBVIB_OMEGA = 0,
@@ -1209,9 +1211,9 @@ typedef enum {
   HBVIB_MODAL_ASSURANCE = 13,
   /// Aliasing check of laws that are sampled: relative change of their force harmonics with half
   /// the samples (twice as many where half are too few). 0 where all laws are exact, NaN where a
-  /// force of the caller failed. It estimates the error by sampling and is no bound of it.
+  /// law failed at the other samples. It estimates the error by sampling and is no bound of it.
   HBVIB_SAMPLING_ERROR = 14,
-  /// Nonlinear modes only: estimated absolute error of the damping ratio, as
+  /// Nonlinear modes only: estimated absolute error of the damping ratio, NaN as
   /// HBVIB_ERROR_ESTIMATE.
   HBVIB_DAMPING_ERROR_ESTIMATE = 15,
 } hbvib_field;
@@ -1844,7 +1846,7 @@ typedef struct {
   /// Angular frequency of the linear mode without damping.
   double omega;
   /// log10 of the largest amplitude at which all contacts stick; minus infinity where a law is
-  /// never linear.
+  /// never linear, or the call was stopped before this was known.
   double linear_up_to;
 } hbvib_mode_info;
 

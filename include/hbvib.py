@@ -186,7 +186,7 @@ class Field(enum.IntEnum):
     #: Aliasing check of laws that are sampled: relative change of their force harmonics with half the samples (twice as
     #: many where half are too few).
     SAMPLING_ERROR = 14
-    #: Nonlinear modes only: estimated absolute error of the damping ratio, as HBVIB_ERROR_ESTIMATE.
+    #: Nonlinear modes only: estimated absolute error of the damping ratio, NaN as HBVIB_ERROR_ESTIMATE.
     DAMPING_ERROR_ESTIMATE = 15
 
 
@@ -1636,10 +1636,11 @@ class Branch(_Owner):
     newton_iterations = _field_property(Field.NEWTON_ITERATIONS, "Newton iterations, as float64.")
     harmonics_used = _field_property(Field.HARMONICS_USED, "Highest harmonic number carried, as float64.")
     slip_fraction = _field_property(Field.SLIP_FRACTION, "Share of the period that each contact slips.")
-    sampling_error = _field_property(Field.SAMPLING_ERROR, "Relative change of forces with half the samples.")
+    sampling_error = _field_property(Field.SAMPLING_ERROR, "Relative change of forces with half the samples; NaN where a law"
+                                     " failed at the other samples.")
     error_estimate = _field_property(Field.ERROR_ESTIMATE, "Relative error of the response (modes: of the frequency) by"
                                      " harmonics left out; NaN where unknown, or with a fixed number unless estimate_error.")
-    damping_error_estimate = _field_property(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, as error_estimate.")
+    damping_error_estimate = _field_property(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, NaN as error_estimate.")
     damping_ratio = _field_property(Field.DAMPING_RATIO, "Modes: damping ratio D.")
     mode_energy = _field_property(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")
     dissipation = _field_property(Field.DISSIPATION, "Modes: work of friction per cycle and sector.")

@@ -2,6 +2,7 @@
 
 use crate::condense::{Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_copy, try_push};
+use crate::options::MAX_REFINEMENT;
 use crate::results::mode_branch::ModePoint;
 use crate::results::{Branch, Record, SpecialKind};
 use core::cmp::Ordering;
@@ -65,10 +66,15 @@ pub(crate) struct BranchRecorder<'a> {
     /// tolerance.
     missed: bool,
     stalled: bool,
+    /// Largest change of forces with half the samples.
+    sampling_error: f64,
 }
 
 /// Change of forces with half the samples over their error: samples are of second order.
 const SAMPLING: f64 = 3.0;
+
+/// Share of the tolerance that the error of sampling may take.
+const SHARE: f64 = 0.5;
 
 impl<'a> BranchRecorder<'a> {
     /// An empty branch whose points may miss a tolerance.
@@ -79,6 +85,7 @@ impl<'a> BranchRecorder<'a> {
             tolerance,
             missed: false,
             stalled: false,
+            sampling_error: 0.0,
         }
     }
 
@@ -101,10 +108,32 @@ impl<'a> BranchRecorder<'a> {
         self.missed |= self.tolerance > 0.0 && !meets;
     }
 
+    /// Notes the error of sampling of a point. An error that is not known misses the tolerance.
+    fn note_sampling(&mut self, error: f64) {
+        if self.tolerance > 0.0 {
+            self.missed |= !matches!(
+                error.partial_cmp(&(SAMPLING * SHARE * self.tolerance)),
+                Some(Ordering::Less | Ordering::Equal)
+            );
+            self.sampling_error = self.sampling_error.max(error);
+        }
+    }
+
+    /// Factor by which more samples meet the tolerance at the points so far, a power of two; 1: none are required.
+    pub fn sampling_factor(&self) -> usize {
+        if self.sampling_error <= SAMPLING * SHARE * self.tolerance {
+            return 1;
+        }
+        let excess = self.sampling_error / (SAMPLING * SHARE * self.tolerance);
+        (excess.sqrt().min(MAX_REFINEMENT as f64).ceil() as usize)
+            .next_power_of_two()
+            .max(2)
+    }
+
     /// Stores a point of the curve.
     pub fn record(&mut self, record: &Record<'_>, stalled: bool) -> Result<()> {
         self.stalled |= stalled;
-        self.missed |= self.tolerance > 0.0 && record.sampling_error > SAMPLING * self.tolerance;
+        self.note_sampling(record.sampling_error);
         self.branch.push_curve(record)
     }
 
@@ -116,6 +145,7 @@ impl<'a> BranchRecorder<'a> {
         record: &Record<'_>,
         mode: Option<ModePoint>,
     ) -> Result<()> {
+        self.note_sampling(record.sampling_error);
         let special = SpecialRecord {
             kind,
             resolution,

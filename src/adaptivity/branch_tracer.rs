@@ -31,6 +31,8 @@ pub(crate) struct Course<'a> {
     /// Parameter values of requested solutions.
     pub at: &'a [f64],
     pub max_points: usize,
+    /// Whether the run ends, to begin again, where more samples are required.
+    pub may_refine: bool,
     /// Parameter value before the range up to which a branch that leaves at its start is followed, because it may
     /// come back; `None`: it is not followed.
     pub before: Option<f64>,
@@ -253,8 +255,12 @@ impl<'a> BranchTracer<'a> {
         Ok(true)
     }
 
-    /// Reports the point recorded last to the caller; `true` if the caller stops the run.
+    /// Reports the point recorded last to the caller; `true` if the caller stops the run, or it begins again with more
+    /// samples.
     pub fn report(&self, analysis: &dyn Traceable, hooks: &mut Hooks<'_>, point: &Point) -> bool {
+        if self.course.may_refine && analysis.sampling_factor() > 1 {
+            return true;
+        }
         let branch = analysis.branch();
         hooks.report(&Progress {
             point: branch.points(),

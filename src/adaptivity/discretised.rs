@@ -87,6 +87,9 @@ pub(crate) trait Recorder {
         false
     }
 
+    /// Factor by which more samples of the laws without exact events are required to meet the tolerance; 1: none.
+    fn sampling_factor(&self) -> usize;
+
     /// The points that were recorded.
     fn branch(&self) -> &Branch;
 }

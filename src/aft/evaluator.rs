@@ -31,12 +31,16 @@ pub struct Evaluator {
 struct Sampling {
     /// Samples requested; 0 selects the number of the law.
     requested: usize,
+    /// Factor of the number of the law.
+    refinement: usize,
     /// Whether half of them are used, or twice as many where half are too few.
     other: bool,
 }
 
 impl Sampling {
     fn of(self, samples: usize, highest: usize) -> usize {
+        let factor = if self.requested == 0 { self.refinement } else { 1 };
+        let samples = samples.saturating_mul(factor);
         match samples / 2 {
             _ if !self.other => samples,
             half if half > 2 * highest => half,
@@ -59,10 +63,23 @@ impl Evaluator {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+        Self::refined(set, (samples, 1), laws)
+    }
+
+    /// The same with a multiple of the samples of laws without exact events, where `samples` = 0.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn refined<'l>(
+        set: &HarmonicSet,
+        (samples, refinement): (usize, usize),
+        laws: impl Iterator<Item = &'l dyn Law>,
+    ) -> Result<Self> {
         Self::with(
             set,
             Sampling {
                 requested: samples,
+                refinement,
                 other: false,
             },
             laws,
@@ -70,15 +87,20 @@ impl Evaluator {
     }
 
     /// The same with half as many samples, or twice as many where half are too few: the reference for the sampling
-    /// error of [`Self::new`].
+    /// error of [`Self::refined`].
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn otherwise<'l>(set: &HarmonicSet, samples: usize, laws: impl Iterator<Item = &'l dyn Law>) -> Result<Self> {
+    pub fn otherwise<'l>(
+        set: &HarmonicSet,
+        (samples, refinement): (usize, usize),
+        laws: impl Iterator<Item = &'l dyn Law>,
+    ) -> Result<Self> {
         Self::with(
             set,
             Sampling {
                 requested: samples,
+                refinement,
                 other: true,
             },
             laws,
@@ -200,14 +222,19 @@ impl Evaluator {
     }
 
     /// Samples per period at which `law` is evaluated on harmonics up to the reduced number `highest`, of `requested`
-    /// ones; 0 where it is exact.
+    /// ones and with a factor of its own number; 0 where it is exact.
     #[must_use]
-    pub fn samples_of(law: &dyn Law, highest: usize, requested: usize) -> usize {
+    pub fn samples_of(law: &dyn Law, highest: usize, (requested, refinement): (usize, usize)) -> usize {
+        let sampling = Sampling {
+            requested,
+            refinement,
+            other: false,
+        };
         match law.form() {
             Form::PiecewiseLinear(_) => requested,
             Form::Spectral(_) | Form::VaryingNormalLoad(_) => 0,
-            Form::Hysteretic(law) => law.samples(highest, requested),
-            Form::Memoryless(law) => law.samples(highest, requested),
+            Form::Hysteretic(law) => sampling.of(law.samples(highest, requested), highest),
+            Form::Memoryless(law) => sampling.of(law.samples(highest, requested), highest),
         }
     }
 

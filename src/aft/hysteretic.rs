@@ -132,12 +132,11 @@ impl HystereticEvaluator {
     ) -> Result<()> {
         let virgin = self.find_periodic_states(law, omega, motion, interrupt)?;
         let omega = self.base * omega;
-        self.differentiate_start(law, omega, interrupt)?;
+        self.differentiate(law, omega, interrupt)?;
         for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
             sums.fill(0.0);
         }
-        self.sensitivity
-            .pass(&self.march, &self.signals, omega, Some(&mut *out));
+        self.sensitivity.add_to(&self.march, &self.signals, out);
         self.finish(motion, out);
         if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
             normal.evaluate(law, motion, out);
@@ -317,31 +316,43 @@ impl HystereticEvaluator {
         Ok(0.0)
     }
 
-    /// Derivative of the periodic start by the motion and ω. Only a start that is kept in part depends on the earlier
-    /// marches; their derivatives are then followed from the load on.
-    fn differentiate_start(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
-        if self.starts_stuck {
-            return Ok(());
-        }
+    /// Whether the march had the force of a linear spring throughout.
+    fn is_spring(&self, law: &dyn Hysteretic) -> bool {
+        let none = |share: &[f64]| share[..self.signals.samples].iter().all(|x| *x == 0.0);
+        law.sticks() && none(&self.march.slip) && none(&self.march.open)
+    }
+
+    /// Derivatives of the force by the motion and ω, those of the periodic start included. Only a start that is kept in
+    /// part depends on the earlier marches; their derivatives are then followed from the load on.
+    fn differentiate(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let last = self.marches - 1;
-        if self.map.has_kept && last > 0 {
+        if !self.starts_stuck && self.map.has_kept && last > 0 {
             for k in 0..last {
                 interrupt.check()?;
                 self.march_from(law, omega, k)?;
+                self.sensitivity.pass(&self.march, &self.signals, omega, false);
                 if self.by_newton[k] {
                     self.map.form(&self.march, self.signals.samples);
-                    self.sensitivity.periodic(&self.map, &self.march, &self.signals, omega);
+                    self.sensitivity.periodic(&self.map);
                 } else {
-                    self.sensitivity.onward(&self.march, &self.signals, omega);
+                    self.sensitivity.onward();
                 }
             }
             self.march_from(law, omega, last)?;
             self.map.form(&self.march, self.signals.samples);
         }
+        if self.starts_stuck && self.is_spring(law) {
+            self.sensitivity.pass_stuck(&self.march, &self.signals);
+            return Ok(());
+        }
+        self.sensitivity.pass(&self.march, &self.signals, omega, true);
+        if self.starts_stuck {
+            return Ok(());
+        }
         if self.map.is_regular {
-            self.sensitivity.periodic(&self.map, &self.march, &self.signals, omega);
+            self.sensitivity.periodic(&self.map);
         } else {
-            self.sensitivity.onward(&self.march, &self.signals, omega);
+            self.sensitivity.onward();
         }
         Ok(())
     }

@@ -6,10 +6,11 @@ use crate::aft::periodic_state::ReturnMap;
 use crate::contact::march::{March, StuckState};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::linalg::{add_outer_products, transposed_products};
 use std::f64::consts::TAU;
 
 /// Number of samples whose outer products are added at a time.
-const BATCH: usize = 4;
+const BATCH: usize = 32;
 
 /// The motion at the samples, with the tables from which it follows.
 pub(super) struct Signals {
@@ -17,6 +18,7 @@ pub(super) struct Signals {
     pub directions: usize,
     /// Packed length m of one signal.
     length: usize,
+    has_mean: bool,
     /// bⱼ, samples × m.
     basis: Vec<f64>,
     /// dbⱼ/dτ, samples × m; empty without velocities.
@@ -56,6 +58,7 @@ impl Signals {
             samples,
             directions,
             length: m,
+            has_mean: set.has_mean(),
             basis,
             rate,
             u,
@@ -65,16 +68,10 @@ impl Signals {
 
     /// Samples a packed motion and its velocity.
     pub fn fill(&mut self, omega: f64, motion: &[f64]) {
-        let m = self.length;
-        let value = |row: &[f64], signal: &[f64]| row.iter().zip(signal).map(|(b, x)| b * x).sum::<f64>();
-        for j in 0..self.samples {
-            for (k, signal) in motion.chunks_exact(m.max(1)).enumerate() {
-                let at = j * self.directions + k;
-                self.u[at] = value(self.basis(j), signal);
-                if !self.rate.is_empty() {
-                    self.v[at] = omega * value(self.rate(j), signal);
-                }
-            }
+        transposed_products(motion, self.directions, &self.basis, &mut self.u);
+        if !self.rate.is_empty() {
+            transposed_products(motion, self.directions, &self.rate, &mut self.v);
+            self.v.iter_mut().for_each(|v| *v *= omega);
         }
     }
 
@@ -112,13 +109,17 @@ fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
     }
 }
 
-/// Derivatives of states and forces by (X, ω), in rows of d·m + 1.
+/// Derivatives of states and forces by (X, ω) at a fixed start of the period, and by the states at that start.
+///
+/// The start depends on (X, ω) too, in a way that is known after the march only; its share of all sums follows from the
+/// derivatives by the start. Rows have d·m + 1 numbers for (X, ω), and s for the start.
 pub(super) struct Sensitivity {
     states: usize,
     /// Number of directions whose forces are differentiated: the first ones.
     forces: usize,
+    /// d·m + 1
     width: usize,
-    /// Derivatives of the states at the start of the period.
+    /// Derivatives of the states at the start of the period by (X, ω), rows of d·m + 1.
     start: Vec<f64>,
     /// Derivatives of the start of the previous march.
     before: Vec<f64>,
@@ -127,24 +128,42 @@ pub(super) struct Sensitivity {
     next: Vec<f64>,
     /// Derivatives of the forces at the samples of a batch.
     force: Vec<f64>,
+    /// Their Fourier sums without weights, signal after signal.
+    sums: Vec<f64>,
     column: Vec<f64>,
 }
 
 impl Sensitivity {
     pub fn new(directions: usize, states: usize, forces: usize, length: usize) -> Result<Self> {
         let width = directions.saturating_mul(length).saturating_add(1);
-        let rows = |n: usize| try_vec(n.saturating_mul(width), 0.0, "a march over samples");
+        let memory = |n: usize| try_vec(n, 0.0, "a march over samples");
+        let start = || memory(states.saturating_mul(width));
+        let row = width.saturating_add(states);
+        let rows = |n: usize| memory(n.saturating_mul(row));
+        let (force, mut sums) = (
+            rows(forces.saturating_mul(BATCH))?,
+            rows(forces.saturating_mul(length))?,
+        );
+        // The first product of a thread asks for memory; those of an iteration must not.
+        let (basis, columns) = (memory(BATCH.saturating_mul(length))?, forces.saturating_mul(row));
+        add_outer_products((&basis, length), (&force, columns, columns), BATCH, &mut sums);
         Ok(Self {
             states,
             forces,
             width,
-            start: rows(states)?,
-            before: rows(states)?,
+            start: start()?,
+            before: start()?,
             now: rows(states)?,
             next: rows(states)?,
-            force: rows(directions.saturating_mul(BATCH))?,
-            column: try_vec(states, 0.0, "a march over samples")?,
+            force,
+            sums,
+            column: memory(states)?,
         })
+    }
+
+    /// Length of a row of derivatives.
+    fn row(&self) -> usize {
+        self.width + self.states
     }
 
     /// Sets the start after a load from rest to the last sample, whose step is the first of `march`.
@@ -170,98 +189,153 @@ impl Sensitivity {
         }
     }
 
-    /// Sets the start that returns, from that of the march; see [`crate::aft::periodic_state`].
-    pub fn periodic(&mut self, map: &ReturnMap, march: &March, signals: &Signals, omega: f64) {
+    /// Sets the start that returns, from that of the march followed last; see [`crate::aft::periodic_state`].
+    pub fn periodic(&mut self, map: &ReturnMap) {
         std::mem::swap(&mut self.start, &mut self.before);
-        self.start.fill(0.0);
-        self.pass(march, signals, omega, None);
+        let row = self.row();
         for column in 0..self.width {
-            map.start_column(&self.now, &self.before, self.width, column, &mut self.column);
-            for (row, value) in self.start.chunks_exact_mut(self.width).zip(&self.column) {
-                row[column] = *value;
+            map.start_column((&self.now, row), (&self.before, self.width), column, &mut self.column);
+            for (start, value) in self.start.chunks_exact_mut(self.width).zip(&self.column) {
+                start[column] = *value;
             }
         }
     }
 
-    /// Sets the end of the march as the next start.
-    pub fn onward(&mut self, march: &March, signals: &Signals, omega: f64) {
-        self.pass(march, signals, omega, None);
-        self.start.copy_from_slice(&self.now);
+    /// Sets the end of the march followed last as the next start.
+    pub fn onward(&mut self) {
+        std::mem::swap(&mut self.start, &mut self.before);
+        let (row, width) = (self.row(), self.width);
+        for (start, end) in self.start.chunks_exact_mut(width).zip(self.now.chunks_exact(row)) {
+            start.copy_from_slice(&end[..width]);
+            for (factor, before) in end[width..].iter().zip(self.before.chunks_exact(width)) {
+                axpy(*factor, before, start);
+            }
+        }
     }
 
-    /// Follows the states through the period from `start` to `now`, and adds the Fourier sums of the force and its
-    /// derivatives, without their weights, to `out`.
-    pub fn pass(&mut self, march: &March, signals: &Signals, omega: f64, mut out: Option<&mut Evaluation>) {
-        let (d, s, n) = (signals.directions, self.states, signals.samples);
-        self.now.copy_from_slice(&self.start);
+    /// Follows the states through the period, and with `sums` adds up the Fourier sums of the derivatives of the
+    /// force.
+    pub fn pass(&mut self, march: &March, signals: &Signals, omega: f64, sums: bool) {
+        let (d, s, n, width, row) = (signals.directions, self.states, signals.samples, self.width, self.row());
+        self.now.fill(0.0);
+        self.now[width..].iter_mut().step_by(row + 1).for_each(|x| *x = 1.0);
+        if sums {
+            self.sums.fill(0.0);
+        }
         for j in 0..n {
             let before = if j == 0 { n - 1 } else { j - 1 };
             for a in 0..s {
-                let row = &mut self.next[a * self.width..(a + 1) * self.width];
-                row.fill(0.0);
+                let to = &mut self.next[a * row..(a + 1) * row];
+                to.fill(0.0);
                 let steps = &march.dz_dz[(j * s + a) * s..(j * s + a + 1) * s];
-                for (factor, state) in steps.iter().zip(self.now.chunks_exact(self.width)) {
-                    axpy(*factor, state, row);
+                for (factor, state) in steps.iter().zip(self.now.chunks_exact(row)) {
+                    axpy(*factor, state, to);
                 }
                 let block = (j * s + a) * d..(j * s + a + 1) * d;
                 let from = (&march.dz_du_before[block.clone()], &march.dz_dv_before[block.clone()]);
-                signals.add(before, omega, from.0, from.1, row);
-                signals.add(j, omega, &march.dz_du[block.clone()], &march.dz_dv[block], row);
-                row[self.width - 1] += march.dz_domega[j * s + a];
+                signals.add(before, omega, from.0, from.1, &mut to[..width]);
+                signals.add(
+                    j,
+                    omega,
+                    &march.dz_du[block.clone()],
+                    &march.dz_dv[block],
+                    &mut to[..width],
+                );
+                to[width - 1] += march.dz_domega[j * s + a];
             }
             std::mem::swap(&mut self.now, &mut self.next);
-            if let Some(out) = &mut out {
+            if sums {
                 self.force_at(march, signals, omega, j);
                 if (j + 1) % BATCH == 0 || j + 1 == n {
-                    self.add_batch(march, signals, j - j % BATCH..j + 1, out);
+                    let batch = j - j % BATCH..j + 1;
+                    let columns = self.forces * row;
+                    add_outer_products(
+                        (
+                            &signals.basis[batch.start * signals.length..batch.end * signals.length],
+                            signals.length,
+                        ),
+                        (&self.force[..batch.len() * columns], columns, columns),
+                        batch.len(),
+                        &mut self.sums,
+                    );
                 }
+            }
+        }
+    }
+
+    /// The sums of [`Self::pass`] in closed form for a law that sticks through the period: every step is the same spring,
+    /// zⱼ = z + B (uⱼ − u_last) with the start z, and the force is C zⱼ.
+    pub fn pass_stuck(&mut self, march: &March, signals: &Signals) {
+        let (d, s, n, m, row) = (
+            signals.directions,
+            self.states,
+            signals.samples,
+            signals.length,
+            self.row(),
+        );
+        let (count, means) = (n as f64, usize::from(signals.has_mean));
+        let last = signals.basis(n - 1);
+        self.sums.fill(0.0);
+        for i in 0..self.forces {
+            let by_state = &march.df_dz[i * s..(i + 1) * s];
+            let sums = &mut self.sums[i * row * m..(i + 1) * row * m];
+            for k in 0..d {
+                let spring: f64 = (0..s).map(|a| by_state[a] * march.dz_du[a * d + k]).sum();
+                for q in 0..m {
+                    let column = &mut sums[(k * m + q) * m..(k * m + q + 1) * m];
+                    column[q] += spring * if q < means { count } else { 0.5 * count };
+                    for mean in &mut column[..means] {
+                        *mean -= spring * count * last[q];
+                    }
+                }
+            }
+            for (column, factor) in sums[self.width * m..].chunks_exact_mut(m.max(1)).zip(by_state) {
+                column[..means].fill(count * factor);
             }
         }
     }
 
     /// Evaluates the derivatives of the force at sample j.
     fn force_at(&mut self, march: &March, signals: &Signals, omega: f64, j: usize) {
-        let (d, s) = (signals.directions, self.states);
+        let (d, s, row) = (signals.directions, self.states, self.row());
         let slot = j % BATCH;
         for i in 0..self.forces {
-            let row = &mut self.force[(slot * d + i) * self.width..(slot * d + i + 1) * self.width];
-            row.fill(0.0);
+            let to = &mut self.force[(slot * self.forces + i) * row..(slot * self.forces + i + 1) * row];
+            to.fill(0.0);
             let by_state = &march.df_dz[(j * d + i) * s..(j * d + i + 1) * s];
-            for (factor, state) in by_state.iter().zip(self.now.chunks_exact(self.width)) {
-                axpy(*factor, state, row);
+            for (factor, state) in by_state.iter().zip(self.now.chunks_exact(row)) {
+                axpy(*factor, state, to);
             }
             let block = (j * d + i) * d..(j * d + i + 1) * d;
-            signals.add(j, omega, &march.df_du[block.clone()], &march.df_dv[block], row);
+            let to = &mut to[..self.width];
+            signals.add(j, omega, &march.df_du[block.clone()], &march.df_dv[block], to);
         }
     }
 
-    /// Adds f bᵀ and ∂f bᵀ of the samples of a batch.
-    fn add_batch(&self, march: &March, signals: &Signals, batch: std::ops::Range<usize>, out: &mut Evaluation) {
-        let (d, m) = (signals.directions, signals.length);
-        let first = batch.start;
-        let row = |slot: usize| signals.basis(if slot < batch.len() { first + slot } else { first });
-        let rows: [&[f64]; BATCH] = std::array::from_fn(row);
-        let add = |factors: [f64; BATCH], sums: &mut [f64]| {
-            if factors.iter().all(|f| *f == 0.0) {
-                return;
-            }
-            let [b0, b1, b2, b3] = rows;
-            for ((((sum, b0), b1), b2), b3) in sums.iter_mut().zip(b0).zip(b1).zip(b2).zip(b3) {
-                *sum += factors[0] * b0 + factors[1] * b1 + factors[2] * b2 + factors[3] * b3;
-            }
-        };
-        let used = |slot: usize, value: f64| if slot < batch.len() { value } else { 0.0 };
+    /// Adds the Fourier sums of the force and of its derivatives, those of the start included, to `out`, without their
+    /// weights.
+    pub fn add_to(&mut self, march: &March, signals: &Signals, out: &mut Evaluation) {
+        let (d, m, row, width) = (signals.directions, signals.length, self.row(), self.width);
+        add_outer_products(
+            (&signals.basis, m),
+            (&march.f[..signals.samples * d], self.forces, d),
+            signals.samples,
+            &mut out.force[..self.forces * m],
+        );
         for i in 0..self.forces {
-            let part = i * m..(i + 1) * m;
-            let factor = |slot: usize| used(slot, march.f[(first + slot.min(batch.len() - 1)) * d + i]);
-            add(std::array::from_fn(factor), &mut out.force[part.clone()]);
-            for column in 0..self.width {
-                let factor = |slot: usize| used(slot, self.force[(slot * d + i) * self.width + column]);
-                let sums = match out.jacobian.get_mut(column * d * m..(column + 1) * d * m) {
-                    Some(sums) => sums,
+            let sums = &mut self.sums[i * row * m..(i + 1) * row * m];
+            let (fixed, by_start) = sums.split_at_mut(width * m);
+            for (start, by_start) in self.start.chunks_exact(width).zip(by_start.chunks_exact(m.max(1))) {
+                for (sum, factor) in fixed.chunks_exact_mut(m.max(1)).zip(start) {
+                    axpy(*factor, by_start, sum);
+                }
+            }
+            for (column, sum) in fixed.chunks_exact(m.max(1)).enumerate() {
+                let to = match out.jacobian.get_mut(column * d * m..(column + 1) * d * m) {
+                    Some(to) => to,
                     None => &mut out.by_omega,
                 };
-                add(std::array::from_fn(factor), &mut sums[part.clone()]);
+                axpy(1.0, sum, &mut to[i * m..(i + 1) * m]);
             }
         }
     }

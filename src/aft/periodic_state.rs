@@ -57,7 +57,12 @@ impl ReturnMap {
     pub fn form(&mut self, march: &March, samples: usize) {
         let s = self.states;
         unit(s, &mut self.p);
+        unit(s, &mut self.kept);
         for step in march.dz_dz[..samples * s * s].chunks_exact((s * s).max(1)) {
+            // Stick keeps all states.
+            if step == self.kept {
+                continue;
+            }
             product(s, step, &self.p, &mut self.scratch);
             std::mem::swap(&mut self.p, &mut self.scratch);
         }
@@ -106,13 +111,19 @@ impl ReturnMap {
         self.factors.solve(b);
     }
 
-    /// Column `column` of S = (I − P + Π)⁻¹ (q + Π S_before), into `solved`; S_before and q are row-major with rows
-    /// of `width`.
-    pub fn start_column(&self, q: &[f64], before: &[f64], width: usize, column: usize, solved: &mut [f64]) {
+    /// Column `column` of S = (I − P + Π)⁻¹ (q + Π S_before), into `solved`; q and S_before are row-major with the length
+    /// of their rows.
+    pub fn start_column(
+        &self,
+        (q, of_q): (&[f64], usize),
+        (before, of_before): (&[f64], usize),
+        column: usize,
+        solved: &mut [f64],
+    ) {
         for (row, value) in solved.iter_mut().enumerate() {
-            *value = q[row * width + column];
+            *value = q[row * of_q + column];
             for k in 0..self.states {
-                *value += self.kept[row * self.states + k] * before[k * width + column];
+                *value += self.kept[row * self.states + k] * before[k * of_before + column];
             }
         }
         self.factors.solve(solved);

@@ -408,6 +408,10 @@ impl Recorder for ForcedDiscretised<'_> {
         Ok(())
     }
 
+    fn sampling_factor(&self) -> usize {
+        self.recorder.sampling_factor()
+    }
+
     fn branch(&self) -> &Branch {
         self.recorder.branch()
     }

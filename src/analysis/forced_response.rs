@@ -5,6 +5,7 @@ use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
+use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, ModelCache, Reference};
@@ -44,20 +45,22 @@ pub fn forced_response(
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
     let interrupt = hooks.interrupt();
-    match follow(model, solver, range, hooks, &interrupt) {
+    let outcome = with_samples(solver, |solver| follow(model, solver, range, hooks, &interrupt));
+    match outcome {
         Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver),
         outcome => outcome,
     }
 }
 
-/// The branch from a model to its recorded points. A stop before there is a branch is an error.
+/// The branch from a model to its recorded points, or the factor by which more samples are required. A stop before
+/// there is a branch is an error.
 fn follow(
     model: &Model,
     solver: &SolverOptions,
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
-) -> Result<Branch> {
+) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
@@ -103,6 +106,7 @@ fn follow(
         range: (range.omega_start, range.omega_stop),
         at: range.at,
         max_points: solver.max_points,
+        may_refine: may_refine(solver),
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
     };
@@ -125,6 +129,9 @@ fn follow(
             return Err(with_reason(e, at, held, interrupt));
         }
     };
+    if let Some(factor) = required(solver, &response) {
+        return Ok(Err(factor));
+    }
     let mut ending = Ending::of(outcome, response.branch())?;
     if ending.status == Status::StoppedStepTooSmall
         && ending.reason.is_none()
@@ -144,7 +151,7 @@ fn follow(
     {
         branch.set_ending(Status::StoppedUnbounded, Some(reason), (false, false));
     }
-    Ok(branch)
+    Ok(Ok(branch))
 }
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and

@@ -269,6 +269,10 @@ impl Recorder for ModeDiscretised<'_> {
         Ok(())
     }
 
+    fn sampling_factor(&self) -> usize {
+        self.recorder.sampling_factor()
+    }
+
     fn branch(&self) -> &Branch {
         self.recorder.branch()
     }

@@ -7,6 +7,7 @@ use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::mode_equations::LinearStart;
+use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::condense::Condensed;
 use crate::contact::Contact;
 use crate::continuation::initial_point::{self, First, Way};
@@ -90,7 +91,7 @@ pub fn nonlinear_mode(
         }
     };
     let interrupt = hooks.interrupt();
-    match on_wave(model, solver, range, hooks, &interrupt) {
+    match with_samples(solver, |solver| on_wave(model, solver, range, hooks, &interrupt)) {
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
         outcome => outcome,
     }
@@ -125,14 +126,14 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
     Ok(branch)
 }
 
-/// The mode on the wave of the model's engine order.
+/// The mode on the wave of the model's engine order, or the factor by which more samples are required.
 fn on_wave(
     model: &Model,
     solver: &SolverOptions,
     range: &ModeOptions<'_>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
-) -> Result<Branch> {
+) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let chosen = model.select_mode_with(range.choice, interrupt)?;
     let damped = model.damped_mode_with(&chosen, range.damping_form, interrupt)?;
@@ -217,8 +218,11 @@ fn on_wave(
     let (course, settings) = course(solver, range, settings, onset);
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, interrupt);
+    if let Some(factor) = required(solver, &mode) {
+        return Ok(Err(factor));
+    }
     let ending = Ending::of(outcome, mode.branch())?;
-    mode.finish(model, solver, &ending, tracer.estimates())
+    mode.finish(model, solver, &ending, tracer.estimates()).map(Ok)
 }
 
 /// Selects the degree of freedom of the phase and scales the linear mode to amplitude 1.
@@ -302,6 +306,7 @@ fn course<'a>(
         range: (start, end),
         at: range.at,
         max_points: solver.max_points,
+        may_refine: may_refine(solver),
         before: None,
     };
     (course, settings)

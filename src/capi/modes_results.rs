@@ -154,7 +154,7 @@ pub struct hbvib_mode_info {
     /// Angular frequency of the linear mode without damping.
     pub omega: f64,
     /// log10 of the largest amplitude at which all contacts stick; minus infinity where a law is
-    /// never linear.
+    /// never linear, or the call was stopped before this was known.
     pub linear_up_to: f64,
 }
 

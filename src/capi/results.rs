@@ -53,7 +53,8 @@ pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbv
     call(|| Ok(Outcome::from(&read::<KeptBranch>(branch, 1)?.branch)))
 }
 
-/// Results that a branch holds for each point of the curve. Energies are of one sector.
+/// Results that a branch holds for each point of the curve. Energies are of one sector. All are
+/// finite, except for errors that are unknown: those are NaN.
 #[repr(C)]
 pub enum hbvib_field {
     /// Angular frequency.
@@ -91,9 +92,9 @@ pub enum hbvib_field {
     HBVIB_MODAL_ASSURANCE = 13,
     /// Aliasing check of laws that are sampled: relative change of their force harmonics with half
     /// the samples (twice as many where half are too few). 0 where all laws are exact, NaN where a
-    /// force of the caller failed. It estimates the error by sampling and is no bound of it.
+    /// law failed at the other samples. It estimates the error by sampling and is no bound of it.
     HBVIB_SAMPLING_ERROR = 14,
-    /// Nonlinear modes only: estimated absolute error of the damping ratio, as
+    /// Nonlinear modes only: estimated absolute error of the damping ratio, NaN as
     /// HBVIB_ERROR_ESTIMATE.
     HBVIB_DAMPING_ERROR_ESTIMATE = 15,
 }

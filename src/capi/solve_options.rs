@@ -30,7 +30,8 @@ pub struct hbvib_solver_options {
     /// 0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a
     /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact in
     /// both cases; HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number
-    /// that follows from H.
+    /// that follows from H, and from the tolerance: a run that has too few samples begins again,
+    /// progress included, with more.
     pub samples: i64,
     /// First arc-length step in scaled unknowns; 0 = automatic.
     pub step: f64,
@@ -141,6 +142,7 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         harmonics: number(o.harmonics, "harmonics")?,
         max_harmonics: number(o.max_harmonics, "max_harmonics")?,
         samples: number(o.samples, "samples")?,
+        refinement: 1,
         step: o.step,
         step_min: o.step_min,
         step_max: o.step_max,

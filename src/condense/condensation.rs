@@ -139,6 +139,7 @@ impl Condensed {
             contact_classes: ContactClasses::new(model)?,
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
+            refinement: 1,
         })
     }
 
@@ -230,6 +231,7 @@ impl Condensed {
             contact_classes,
             sectors: model.structure().sectors(),
             in_step: model.structure().in_step(),
+            refinement: options.refinement,
         };
         Ok((condensed, assembled))
     }

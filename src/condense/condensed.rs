@@ -7,6 +7,9 @@ use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
 use std::sync::Arc;
 
+/// Rounding of a motion relative to its size.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
 /// The reference stiffness κ of the contacts. Solutions do not depend on it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reference {
@@ -62,6 +65,8 @@ pub struct Condensed {
     pub(super) contact_classes: ContactClasses,
     pub(super) sectors: usize,
     pub(super) in_step: usize,
+    /// Factor of the samples of laws without exact events.
+    pub(super) refinement: usize,
 }
 
 impl Condensed {
@@ -145,6 +150,16 @@ impl Condensed {
         self.stiffness[coordinate]
     }
 
+    /// Rounding of the force of a coordinate over the size of its motion if its contacts are near-rigid, otherwise 0.
+    #[must_use]
+    pub fn rounding(&self, coordinate: usize) -> f64 {
+        if self.is_near_rigid(coordinate) {
+            ROUNDING * self.stiffness[coordinate]
+        } else {
+            0.0
+        }
+    }
+
     /// Whether the contacts of a coordinate are so stiff that κ is below their stiffness.
     #[must_use]
     pub fn is_near_rigid(&self, coordinate: usize) -> bool {
@@ -163,6 +178,12 @@ impl Condensed {
     #[must_use]
     pub fn is_preloaded(&self) -> bool {
         self.preloaded
+    }
+
+    /// Factor of the samples of laws without exact events.
+    #[must_use]
+    pub fn refinement(&self) -> usize {
+        self.refinement
     }
 
     /// The chosen reference stiffness.

@@ -147,6 +147,21 @@ impl Workspace {
             .solve(condensed, i, omega, &mut self.columns, false, interrupt)
     }
 
+    /// Z⁻¹ Wᴴ of the i-th carried harmonic at `omega` with its current factors, column after column.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub(super) fn contact_columns(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<&[Complex64]> {
+        self.solve_columns(condensed, i, omega, interrupt)?;
+        Ok(&self.columns)
+    }
+
     /// Evaluates H of the i-th carried harmonic at `omega`, and ∂H/∂ω if `slopes`.
     ///
     /// # Errors

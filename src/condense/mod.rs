@@ -11,6 +11,7 @@ pub mod harmonic_block;
 pub mod modal_flexibility;
 pub mod modal_table;
 mod model_cache;
+pub mod near_rigid_motion;
 mod reduction;
 mod reference_stiffness;
 mod relative_coordinates;

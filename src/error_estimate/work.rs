@@ -83,7 +83,8 @@ impl Sizes {
         let (mut blocks, mut directions, mut sampled, mut tables) = (0.0, 0.0, 0.0, 0.0_f64);
         for assembled in condensed.laws() {
             let d = assembled.coordinates.len() as f64;
-            let count = Evaluator::samples_of(&*assembled.law, highest / base, samples) as f64;
+            let sampling = (samples, condensed.refinement());
+            let count = Evaluator::samples_of(&*assembled.law, highest / base, sampling) as f64;
             blocks += d * d;
             directions += d;
             sampled += d * d * count;

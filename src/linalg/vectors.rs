@@ -57,3 +57,34 @@ pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
         }
     }
 }
+
+/// out += Σⱼ aⱼ bⱼᵀ over `count` rows aⱼ of `rows` numbers and the first `columns` numbers of rows bⱼ that are `stride`
+/// apart; `out` is column-major.
+pub fn add_outer_products(
+    (a, rows): (&[f64], usize),
+    (b, columns, stride): (&[f64], usize, usize),
+    count: usize,
+    out: &mut [f64],
+) {
+    matmul(
+        MatMut::from_column_major_slice_mut(out, rows, columns),
+        Accum::Add,
+        MatRef::from_column_major_slice(a, rows, count),
+        MatRef::from_row_major_slice_with_stride(b, count, columns, stride),
+        1.0,
+        Par::Seq,
+    );
+}
+
+/// outⱼ = Aᵀ bⱼ for rows bⱼ and outⱼ, with `columns` columns of A that are as long as a row bⱼ.
+pub fn transposed_products(a: &[f64], columns: usize, b: &[f64], out: &mut [f64]) {
+    let (length, count) = (a.len() / columns.max(1), out.len() / columns.max(1));
+    matmul(
+        MatMut::from_column_major_slice_mut(out, columns, count),
+        Accum::Replace,
+        MatRef::from_row_major_slice(a, columns, length),
+        MatRef::from_column_major_slice(b, length, count),
+        1.0,
+        Par::Seq,
+    );
+}

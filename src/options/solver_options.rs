@@ -19,6 +19,9 @@ pub struct SolverOptions {
     /// number of equidistant times, at least 2H + 1; where the tolerance chooses the harmonics, at least 8H. Laws
     /// without events, and friction in one direction under a varying load, are exact either way.
     pub samples: usize,
+    /// Factor of the samples that a law without exact events takes where [`Self::samples`] is 0, at least 1. With a
+    /// tolerance an analysis raises it until the error of sampling is below the tolerance.
+    pub refinement: usize,
     /// First arc-length step in scaled unknowns; `0`: automatic.
     pub step: f64,
     /// Smallest step, below which the branch ends; `0`: automatic.
@@ -51,6 +54,7 @@ impl Default for SolverOptions {
             harmonics: 9,
             max_harmonics: 511,
             samples: 0,
+            refinement: 1,
             step: 0.0,
             step_min: 0.0,
             step_max: 0.0,
@@ -66,6 +70,9 @@ impl Default for SolverOptions {
 
 /// Highest harmonic number that is accepted; beyond it index arithmetic may overflow and run times are excessive.
 pub const MAX_HARMONIC: usize = 100_000;
+
+/// Largest factor of the samples of laws without exact events.
+pub const MAX_REFINEMENT: usize = 64;
 
 /// Largest accepted number of samples per period.
 pub const MAX_SAMPLES: usize = 1 << 24;
@@ -97,6 +104,13 @@ impl SolverOptions {
                 Argument,
                 "max_harmonics = {}, needs 0 .. {MAX_HARMONIC}",
                 self.max_harmonics
+            );
+        }
+        if self.refinement == 0 || self.refinement > MAX_REFINEMENT {
+            return fail!(
+                Argument,
+                "refinement = {}, needs 1 .. {MAX_REFINEMENT}",
+                self.refinement
             );
         }
         if self.samples > MAX_SAMPLES || (self.samples > 0 && self.samples < 2 * self.harmonics + 1) {

@@ -13,9 +13,6 @@ use crate::linalg::norm;
 use crate::problem::contact_jacobian::Blocks;
 use num_complex::Complex64;
 
-/// Rounding of a motion relative to its size.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
-
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
 pub struct ContactForces<'a> {
     condensed: &'a Condensed,
@@ -46,8 +43,8 @@ pub struct ContactForces<'a> {
     /// Per coordinate, whether all its laws stick and none acts along its normal, where a load acts at rest.
     inactive: Vec<bool>,
     slip_fractions: Vec<f64>,
-    /// Per coordinate, the largest share of the period in which one of its laws neither slips nor is open.
-    share_stuck: Vec<f64>,
+    /// Per coordinate, the rounding of the force of near-rigid contacts.
+    rounding: Vec<f64>,
 }
 
 impl<'a> ContactForces<'a> {
@@ -59,7 +56,11 @@ impl<'a> ContactForces<'a> {
         let mut forces = Self::unchecked(condensed, samples, interrupt)?;
         let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
         if laws().any(|law| forces.evaluator.samples(law)) {
-            forces.other = Some(Evaluator::otherwise(condensed.set(), samples, laws())?);
+            forces.other = Some(Evaluator::otherwise(
+                condensed.set(),
+                (samples, condensed.refinement()),
+                laws(),
+            )?);
         }
         Ok(forces)
     }
@@ -84,7 +85,7 @@ impl<'a> ContactForces<'a> {
             try_push(&mut found, memory, CONTEXT)?;
         }
         let samples = if linear { 0 } else { samples };
-        let evaluator = Evaluator::new(set, samples, laws())?;
+        let evaluator = Evaluator::refined(set, (samples, condensed.refinement()), laws())?;
         Ok(Self {
             condensed,
             interrupt,
@@ -104,7 +105,7 @@ impl<'a> ContactForces<'a> {
             linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
             inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
             slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
-            share_stuck: try_vec(condensed.coordinates(), 0.0, CONTEXT)?,
+            rounding: try_vec(condensed.coordinates(), 0.0, CONTEXT)?,
         })
     }
 
@@ -136,7 +137,7 @@ impl<'a> ContactForces<'a> {
         self.all_linear = true;
         self.linear.fill(true);
         self.inactive.fill(true);
-        self.share_stuck.fill(0.0);
+        self.rounding.fill(0.0);
         let s = self.factor;
         // Forces that scale with the motion; at rest they follow from the Jacobians.
         let unit = if s.is_infinite() { 0.0 } else { s };
@@ -162,11 +163,18 @@ impl<'a> ContactForces<'a> {
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
-            let stuck = (1.0 - found.slip_fraction - found.open_fraction).max(0.0);
+            let closed = 1.0 - found.open_fraction;
+            let stuck = (closed - found.slip_fraction).max(0.0);
+            // Slip under a load that varies has the rounding of the load.
+            let of_load = match assembled.normal.and_then(|i| at.get(i)) {
+                Some(&c) => closed * self.condensed.rounding(c) * norm(&motion[c * m..(c + 1) * m]),
+                None => 0.0,
+            };
             self.all_linear &= found.linear;
             for (i, &c) in at.iter().enumerate() {
-                self.share_stuck[c] = self.share_stuck[c].max(stuck);
                 let normal = assembled.normal == Some(i);
+                let of_spring = stuck * self.condensed.rounding(c) * norm(&motion[c * m..(c + 1) * m]);
+                self.rounding[c] = self.rounding[c].max(of_spring + of_load);
                 self.linear[c] &= if normal {
                     found.open_fraction == 0.0
                 } else {
@@ -230,13 +238,8 @@ impl<'a> ContactForces<'a> {
     /// Rounding of the force of a coordinate if its contacts are near-rigid, otherwise 0. In a stick phase the force
     /// is kt times a difference of motions that are known to their own rounding.
     #[must_use]
-    pub fn rounding(&self, motion: &[f64], coordinate: usize) -> f64 {
-        if !self.condensed.is_near_rigid(coordinate) {
-            return 0.0;
-        }
-        let m = self.condensed.set().packed_len();
-        let size = norm(&motion[coordinate * m..(coordinate + 1) * m]);
-        ROUNDING * self.condensed.stiffness(coordinate) * self.share_stuck[coordinate] * size
+    pub fn rounding(&self, coordinate: usize) -> f64 {
+        self.rounding[coordinate]
     }
 
     /// Packed forces, coordinate after coordinate.

@@ -302,7 +302,7 @@ impl<'a> Epmc<'a> {
                 }
                 for c in 0..coordinates {
                     let g = along(row, self.modal.column(c));
-                    let lost = self.forces.rounding(motion, c);
+                    let lost = self.forces.rounding(c);
                     rounding += lost * lost * g.norm_sqr();
                     self.flexibility[(i * coordinates + c) * coordinates + r] = g;
                     let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;

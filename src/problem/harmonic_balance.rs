@@ -157,7 +157,7 @@ impl<'a> HarmonicBalance<'a> {
                     continue;
                 }
                 let w = self.forces.minus_reference(u, column, i);
-                let lost = self.forces.rounding(u, column);
+                let lost = self.forces.rounding(column);
                 let (by_scale, by_omega) = (self.forces.d_ln_scale(column, i), self.forces.by_omega(column, i));
                 for row in 0..coordinates {
                     let r = row * m + at;

@@ -3,6 +3,7 @@
 use crate::condense::Condensed;
 use crate::condense::Resolution;
 use crate::condense::flexibility::Workspace;
+use crate::condense::near_rigid_motion;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::problem::contact_forces::ContactForces;
@@ -85,6 +86,11 @@ impl<'a> Recovery<'a> {
         let omega = self.branch.omega[self.point];
         self.workspace
             .recover(condensed, i, omega, &self.w, x, self.interrupt)?;
+        let m = set.packed_len();
+        for (c, y) in self.w.iter_mut().enumerate() {
+            *y = set.get(&motion[c * m..(c + 1) * m], i);
+        }
+        near_rigid_motion::correct(&mut self.workspace, condensed, (i, omega), &self.w, x, self.interrupt)?;
         for z in x.iter_mut() {
             *z *= condensed.length();
             if set.numbers()[i] == 0 {

@@ -5,6 +5,7 @@ use crate::common::{all_harmonics, relative_gap, solve_at};
 use hbvib::analysis::contact_evaluate;
 use hbvib::contact::laws::polynomial::Polynomial;
 use hbvib::contact::{Contact, ContactKind};
+use hbvib::error::Status;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
@@ -114,5 +115,54 @@ fn laws_that_are_exact_have_nothing_to_check() {
         (Contact::between(0, None, ContactKind::Polynomial(cubic)), 64),
     ] {
         assert!(check(&contact, samples, samples).0 == 0.0);
+    }
+}
+
+/// With a tolerance the samples are as many as the error of the response requires: against the same harmonics with many
+/// more samples.
+#[test]
+fn the_samples_follow_from_the_tolerance() {
+    let (plane, stop) = ([Some(0), Some(1), Some(2)], [None; 3]);
+    for (name, contact) in [
+        ("pressed", Contact::friction_3d(plane, stop, (1.0, 0.9), 0.4, 0.5)),
+        (
+            "constant load",
+            Contact::friction_3d([Some(0), Some(1), None], stop, (1.0, 0.0), 0.5, 0.4),
+        ),
+    ] {
+        let model = model(&contact);
+        for tolerance in [1e-2, 1e-5] {
+            let solver = SolverOptions {
+                tolerance,
+                max_harmonics: 7,
+                keep_even_harmonics: true,
+                ..SolverOptions::default()
+            };
+            let branch = solve_at(&model, &solver, OMEGA);
+            let check = branch.sampling_error()[0] / 3.0;
+            let harmonics = branch.harmonics_used()[0] as usize;
+            let finer = SolverOptions {
+                tolerance: 0.0,
+                harmonics,
+                samples: 1 << 14,
+                ..solver
+            };
+            let error = relative_gap(
+                &branch.response_at(0).unwrap()[..2],
+                &solve_at(&model, &finer, OMEGA).response_at(0).unwrap()[..2],
+            );
+            println!("{name}, tolerance {tolerance:e}: H {harmonics}, check {check:.1e}, error {error:.1e}");
+            assert!(check <= 0.5 * tolerance && error <= 0.5 * tolerance, "{name}");
+        }
+        // Beyond the bound of the samples the status tells that the tolerance is missed.
+        let solver = SolverOptions {
+            tolerance: 1e-10,
+            max_harmonics: 1,
+            keep_even_harmonics: true,
+            ..SolverOptions::default()
+        };
+        let branch = solve_at(&model, &solver, OMEGA);
+        assert!(branch.sampling_error()[0] > 3e-10, "{name}");
+        assert_eq!(branch.status(), Status::StoppedMaxHarmonics, "{name}");
     }
 }

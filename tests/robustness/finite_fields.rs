@@ -4,7 +4,8 @@
 use crate::random_problems::random::Random;
 use hbvib::analysis::{forced_response, nonlinear_mode};
 use hbvib::contact::Contact;
-use hbvib::hooks::Hooks;
+use hbvib::error::Status;
+use hbvib::hooks::{Hooks, Progress};
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
@@ -76,22 +77,62 @@ fn all_finite(name: &str, branch: &Branch) {
     finite("iterations", branch.newton_iterations());
     finite("harmonics", branch.harmonics_used());
     finite("slip", branch.slip_fraction());
+    // Unknown errors are NaN, and infinite ones do not exist.
+    for errors in [
+        branch.error_estimate(),
+        branch.damping_error_estimate(),
+        branch.sampling_error(),
+    ] {
+        assert!(errors.iter().all(|e| !e.is_infinite()), "{name}: errors {errors:?}");
+    }
     for field in [
         ModeField::DampingRatio,
         ModeField::Energy,
         ModeField::FrictionLoss,
         ModeField::Log10Amplitude,
+        ModeField::ModalAmplitude,
+        ModeField::StructuralLoss,
+        ModeField::Assurance,
+        ModeField::FundamentalShare,
     ] {
         finite("mode", branch.mode_field(field).unwrap_or(&[]));
     }
-    for special in branch.peaks().iter().chain(branch.folds()) {
+    if let Some(mode) = branch.mode() {
+        finite("linear mode", &[mode.omega]);
+        // Minus infinity where a law is never linear.
+        assert!(
+            !mode.linear_up_to.is_nan() && mode.linear_up_to < f64::INFINITY,
+            "{name}"
+        );
+    }
+    for special in branch.peaks().iter().chain(branch.folds()).chain(branch.at(0)) {
         finite("special point", &[special.omega, special.amplitude]);
     }
-    let stored = branch.points() + branch.peaks().len() + branch.folds().len();
     let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * branch.ndof()];
-    for point in (0..stored).step_by(5) {
+    for point in (0..branch.stored()).step_by(5) {
         branch.harmonics_at(point, &mut x).unwrap();
         assert!(x.iter().all(|z| z.is_finite()), "{name}: harmonics of point {point}");
+        let response = branch.response_at(point).unwrap();
+        assert!(
+            response.iter().all(|z| z.is_finite()),
+            "{name}: response of point {point}"
+        );
+        finite("slip of a point", branch.slip_fraction_at(point).unwrap());
+        finite("frequency of a point", &[branch.omega_at(point).unwrap()]);
+        let energy = format!("{:?}", branch.energy_at(point).unwrap());
+        assert!(!energy.contains("inf") && !energy.contains("NaN"), "{name}: {energy}");
+        finite("motion in time", &branch.time_history(point, 0, 8).unwrap());
+        for contact in 0..branch.contacts() {
+            let summary = branch.contact_summary(point, contact).unwrap();
+            finite("work", &[summary.work, summary.slip_share, summary.open_share]);
+            finite("ranges", &summary.half_range);
+            finite("motions", &[summary.motion_min, summary.motion_max].concat());
+            // The infinite preload of a contact that never slips is reported as it is.
+            assert!(summary.load_min >= 0.0 && summary.load_max >= 0.0, "{name}");
+        }
+        for error in [branch.error_estimate_at(point), branch.damping_error_estimate_at(point)] {
+            assert!(!error.unwrap().is_infinite(), "{name}: error of point {point}");
+        }
     }
 }
 
@@ -134,4 +175,93 @@ fn every_stored_number_is_finite() {
     }
     println!("{branches} branches, {points} points");
     assert!(branches > 300);
+}
+
+/// Branches that end in every way: with a tolerance that is met or missed, stopped by the caller before and after the
+/// first point, by the number of points, by the step, without a force, without a bound.
+#[test]
+fn every_kind_of_branch_is_finite_outside_of_unknown_errors() {
+    let chain = |damping: f64, force: f64, contact: &Contact| {
+        let mut model = Model::new(2).unwrap();
+        model
+            .set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.0, 0.0, 1.0]))
+            .unwrap();
+        model
+            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &[2.0, -1.0, -1.0, 2.0]))
+            .unwrap();
+        model.set_rayleigh(0.0, damping).unwrap();
+        model.add_contact(contact).unwrap();
+        model.add_force(0, 1, force.into()).unwrap();
+        model
+    };
+    let friction = Contact::jenkins(1, None, 0.5, 1.0, 0.1);
+    let stop = Contact::unilateral(Some(1), None, 0.5, 0.2);
+    let plane = Contact::friction_3d([Some(0), Some(1), None], [None; 3], (0.5, 0.0), 1.0, 0.1);
+    let far = Contact::jenkins(1, None, 0.5, 1.0, f64::INFINITY);
+    let (plain, fixed) = (
+        SolverOptions::default(),
+        SolverOptions {
+            tolerance: 0.0,
+            ..SolverOptions::default()
+        },
+    );
+    let few = SolverOptions {
+        max_harmonics: 1,
+        ..plain
+    };
+    let short = SolverOptions {
+        max_points: 5,
+        estimate_error: true,
+        ..fixed
+    };
+    let none = Contact::jenkins(1, None, 0.5, 1.0, 0.0);
+    let one = SolverOptions { harmonics: 1, ..fixed };
+    let mut statuses = Vec::new();
+    for (name, model, solver, stop_after) in [
+        ("tolerance", chain(0.01, 0.1, &friction), plain, usize::MAX),
+        ("few harmonics", chain(0.01, 0.1, &friction), few, usize::MAX),
+        ("a stop behind a gap", chain(0.01, 0.1, &stop), plain, usize::MAX),
+        ("friction in a plane", chain(0.01, 0.1, &plane), plain, usize::MAX),
+        ("few points", chain(0.01, 0.1, &friction), short, usize::MAX),
+        ("beyond the capacity", chain(0.0, 1.0, &friction), one, usize::MAX),
+        ("no force", chain(0.01, 0.0, &friction), plain, usize::MAX),
+        ("sticks for ever", chain(0.01, 0.1, &far), fixed, usize::MAX),
+        ("no bound", chain(0.0, 0.1, &none), one, usize::MAX),
+        ("stopped at a point", chain(0.01, 0.1, &friction), plain, 3),
+        ("stopped at once", chain(0.01, 0.1, &friction), plain, 0),
+    ] {
+        let at = [0.97];
+        let range = ForcedOptions {
+            omega_start: 0.7,
+            omega_stop: 2.0,
+            at: &at,
+            guess: None,
+        };
+        let cancelled = || stop_after == 0;
+        let mut progress = |p: &Progress| p.point >= stop_after;
+        let mut hooks = Hooks {
+            progress: Some(&mut progress),
+            cancelled: Some(&cancelled),
+            ..Hooks::default()
+        };
+        let forced = forced_response(&model, &solver, &range, &mut hooks);
+        let mode = ModeOptions {
+            log10_start: -2.0,
+            log10_stop: 1.0,
+            at: &[0.1],
+            ..ModeOptions::default()
+        };
+        let mode = nonlinear_mode(&model, &solver, &mode, &mut hooks);
+        for branch in [forced, mode].iter().flatten() {
+            all_finite(name, branch);
+            if branch.status() == Status::Ok && solver.tolerance > 0.0 {
+                assert!(branch.error_estimate().iter().all(|e| e.is_finite()), "{name}");
+            }
+            if !statuses.contains(&branch.status()) {
+                statuses.push(branch.status());
+            }
+        }
+    }
+    println!("{statuses:?}");
+    assert!(statuses.len() >= 6);
 }

@@ -19,6 +19,8 @@
 //! it; the most violated one is added, and of the three those that hold the new point are found. Every round
 //! moves the point further out, so that their number is finite.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 /// A disc |w − centre| ≤ radius.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Disc {
@@ -47,6 +49,17 @@ pub(super) struct StuckSlider {
 
 /// Violations below this, relative to the current lengths, are rounding.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// Gap between two discs, relative to the size of the motion, that is no rounding.
+const CLEARLY: f64 = 1e-6;
+
+/// Directions along which discs are compared, unit vectors at 0, 45, 90 and 135 degrees.
+const DIRECTIONS: [[f64; 2]; 4] = [
+    [1.0, 0.0],
+    [FRAC_1_SQRT_2, FRAC_1_SQRT_2],
+    [0.0, 1.0],
+    [-FRAC_1_SQRT_2, FRAC_1_SQRT_2],
+];
 
 /// Largest number of discs that are added; a few suffice but for a cycle by rounding.
 const ROUNDS: usize = 200;
@@ -91,6 +104,9 @@ impl Disc {
 /// Shortly before slip ends, two discs are hardly apart. A little slip at both takes the slider to that point, but
 /// the slower the nearer it is, so that it is good to begin there.
 pub(super) fn stuck_slider(count: usize, disc: impl Fn(usize) -> Disc) -> Option<StuckSlider> {
+    if let Some((a, b)) = clearly_apart(count, &disc) {
+        return midway(a, b, &disc);
+    }
     let mut at = [0.0; 2];
     let mut held: [Option<usize>; 2] = [None; 2];
     for _ in 0..ROUNDS {
@@ -110,6 +126,30 @@ pub(super) fn stuck_slider(count: usize, disc: impl Fn(usize) -> Disc) -> Option
         }
     }
     None
+}
+
+/// Two discs whose shadows along some direction are apart, by more than rounding: slip needs no search. Of a few
+/// directions, that of the largest gap.
+fn clearly_apart(count: usize, disc: &impl Fn(usize) -> Disc) -> Option<(usize, usize)> {
+    // The largest lower end and the smallest upper end of the shadows, along each direction.
+    let mut ends = [((f64::NEG_INFINITY, 0), (f64::INFINITY, 0)); DIRECTIONS.len()];
+    let mut size = 0.0_f64;
+    for j in 0..count {
+        let Disc { centre: [x, y], radius } = disc(j);
+        size = size.max(x.abs() + y.abs());
+        for ([c, s], (low, high)) in DIRECTIONS.iter().zip(&mut ends) {
+            let at = c * x + s * y;
+            if at - radius > low.0 {
+                *low = (at - radius, j);
+            }
+            if at + radius < high.0 {
+                *high = (at + radius, j);
+            }
+        }
+    }
+    let gap = |(low, high): &((f64, usize), (f64, usize))| low.0 - high.0;
+    let widest = ends.iter().max_by(|a, b| gap(a).total_cmp(&gap(b)))?;
+    (gap(widest) > CLEARLY * size).then_some((widest.0.1, widest.1.1))
 }
 
 /// The point nearest to 0 in the disc `new`, which holds it, and in those that held it before.
