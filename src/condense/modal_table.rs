@@ -292,7 +292,7 @@ mod tests {
                     }
                 }
                 let waves = if sectors == 1 { 1 } else { 4 };
-                assert_eq!(cache.len(), waves, "{sectors} sectors");
+                assert_eq!(cache.count(), waves, "{sectors} sectors");
             }
         }
     }

@@ -54,7 +54,7 @@ pub struct WaveCache {
 impl WaveCache {
     /// Number of waves with modes.
     #[must_use]
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         self.waves.len()
     }
 
