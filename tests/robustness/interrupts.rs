@@ -3,6 +3,7 @@
 //! Tests of the suite count the checks of the interrupt, which no busy machine changes; timings are printed. The test
 //! with limits on them is run by tests/deep.sh.
 
+use crate::common::processor_time;
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
@@ -260,13 +261,13 @@ struct Stopped {
 /// Runs an analysis and stops it at the first check at which `now(checks, elapsed)` says so.
 fn stop_when(analysis: &Analysis<'_>, now: impl Fn(u64, Duration) -> bool) -> Stopped {
     let start = Instant::now();
-    let begin = spent(start);
+    let begin = processor_time(start);
     let (checks, last, widest) = (Cell::new(0), Cell::new(begin), Cell::new(Duration::ZERO));
     let stopped: Cell<Option<Duration>> = Cell::new(None);
     let phase = Cell::new(None);
     let cancelled = || {
         assert!(stopped.get().is_none(), "{}: asked again after the stop", analysis.0);
-        let time = spent(start);
+        let time = processor_time(start);
         if phase.get() != Some(Phase::Factorisation) {
             widest.set(widest.get().max(time.saturating_sub(last.get())));
         }
@@ -288,7 +289,7 @@ fn stop_when(analysis: &Analysis<'_>, now: impl Fn(u64, Duration) -> bool) -> St
         ..Hooks::default()
     };
     let status = (analysis.1)(&mut hooks).unwrap();
-    let end = spent(start);
+    let end = processor_time(start);
     let late = stopped.get().map(|at| end.saturating_sub(at));
     assert_eq!(
         status == Status::StoppedByCaller,
@@ -303,14 +304,6 @@ fn stop_when(analysis: &Analysis<'_>, now: impl Fn(u64, Duration) -> bool) -> St
         widest: widest.get(),
         phase: phase.get(),
     }
-}
-
-/// Processor time of this thread where the system reports it (Linux), else the time of a clock: a busy machine then
-/// counts as a slow one.
-fn spent(begin: Instant) -> Duration {
-    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let busy = stat.and_then(|text| text.split_whitespace().next()?.parse().ok());
-    busy.map_or_else(|| begin.elapsed(), Duration::from_nanos)
 }
 
 /// Numbers in 0 .. 1 (Marsaglia's xorshift, doi:10.18637/jss.v008.i14).
