@@ -4,6 +4,7 @@
 use crate::adaptivity::controller::{AdaptivityController, PointAt, Refined};
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::resonance_grid::LinearGrid;
+use crate::adaptivity::retracing::RecentPoints;
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status};
@@ -49,8 +50,12 @@ pub(crate) struct BranchTracer<'a> {
 /// The end of a linear stretch.
 pub(super) enum Stretch {
     /// A contact leaves its linear state just beyond the point, which was recorded last, and has left it at `distance`
-    /// from there.
-    Onset { point: Point, distance: f64 },
+    /// from there. Before it lies a point of the stretch, unless that was where the stretch began.
+    Onset {
+        before: Option<Point>,
+        point: Point,
+        distance: f64,
+    },
     /// The end of the range, or its start, was reached at the point recorded last.
     End(Point, Status),
     /// The run ends.
@@ -114,6 +119,8 @@ impl<'a> BranchTracer<'a> {
         // located between recorded points, so that none is omitted or found twice.
         let mut recorded = (continuation.current().try_clone()?, began);
         let mut backtracks = 0;
+        let mut recent = RecentPoints::default();
+        recent.restart((&recorded.0, recorded.1))?;
         // Number of points with linear contacts for which the continuation goes on all the same, after an onset.
         let mut patience = 0_usize;
         loop {
@@ -125,8 +132,16 @@ impl<'a> BranchTracer<'a> {
             if patience == 0 && analysis.is_linear() {
                 match self.follow_linear(analysis, (&recorded.0, recorded.1), hooks)? {
                     None => {}
-                    Some(Stretch::Onset { point, distance }) => {
+                    Some(Stretch::Onset {
+                        before,
+                        point,
+                        distance,
+                    }) => {
                         recorded = (point.try_clone()?, analysis.resolution());
+                        if let Some(before) = before {
+                            recent.restart((&before, recorded.1))?;
+                            recent.push((&recorded.0, recorded.1))?;
+                        }
                         continuation.start_at(point, ONSET_SHARE * distance)?;
                         patience = PATIENCE;
                     }
@@ -136,6 +151,7 @@ impl<'a> BranchTracer<'a> {
                             Return::Recorded(back) => {
                                 continuation = Continuation::new(settings, back)?;
                                 recorded = (continuation.current().try_clone()?, analysis.resolution());
+                                recent.restart((&recorded.0, recorded.1))?;
                                 continue;
                             }
                         }
@@ -153,6 +169,11 @@ impl<'a> BranchTracer<'a> {
                 Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),
                 Advance::Stopped(status) => return Ok(status),
+            };
+
+            // Turn round a branch that comes back along its own points.
+            let Some(point) = self.mend(analysis, (&mut continuation, &mut recent), point, hooks)? else {
+                continue;
             };
 
             // Refine until the error meets the tolerance.
@@ -182,6 +203,7 @@ impl<'a> BranchTracer<'a> {
             self.locate_special(analysis, (&recorded.0, recorded.1), (&point, resolution), end.is_some())?;
             analysis.select(resolution)?;
             recorded = (point.try_clone()?, resolution);
+            recent.push((&recorded.0, recorded.1))?;
             patience = if analysis.is_linear() {
                 patience.saturating_sub(1)
             } else {
@@ -210,6 +232,7 @@ impl<'a> BranchTracer<'a> {
                     };
                     continuation = Continuation::new(settings, back)?;
                     recorded = (continuation.current().try_clone()?, analysis.resolution());
+                    recent.restart((&recorded.0, recorded.1))?;
                 }
                 Some(status) => return Ok(status),
             }

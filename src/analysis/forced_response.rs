@@ -1,5 +1,8 @@
 //! Forced response over a range of frequency.
 
+#[cfg(test)]
+mod lost_sense;
+
 use crate::adaptivity::branch_recorder::Ending;
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
@@ -8,9 +11,9 @@ use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, ModelCache, Reference};
-use crate::continuation::Settings;
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
+use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
@@ -44,19 +47,30 @@ pub fn forced_response(
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
     let interrupt = hooks.interrupt();
-    match follow(model, solver, range, hooks, &interrupt) {
+    match follow(model, solver, range, hooks, &interrupt, trace) {
         Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver),
         outcome => outcome,
     }
 }
 
-/// The branch from a model to its recorded points. A stop before there is a branch is an error.
+/// Records the branch from its first point on.
+fn trace(
+    tracer: &mut BranchTracer<'_>,
+    response: &mut ForcedDiscretised<'_>,
+    first: Point,
+    hooks: &mut Hooks<'_>,
+) -> Result<Status> {
+    tracer.trace(response, first, hooks)
+}
+
+/// The branch from a model to its recorded points, which `trace` records. A stop before there is a branch is an error.
 fn follow(
     model: &Model,
     solver: &SolverOptions,
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
+    trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
 ) -> Result<Branch> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
@@ -117,7 +131,7 @@ fn follow(
             }
             hooks.log(LogLevel::Info, way.sentence());
             response.note_first(&point);
-            tracer.trace(&mut response, point, hooks)
+            trace(&mut tracer, &mut response, point, hooks)
         }
         Err(e) if e.status == Status::StoppedByCaller => Err(e),
         Err(e) => {
