@@ -24,8 +24,9 @@ const KEPT: usize = 6;
 /// Distance of a point to the recorded curve, over that to the point before it, below which it may lie on the curve.
 const CLOSE: f64 = 0.2;
 
-/// Relative distance of two solutions that are one.
-const SAME: f64 = 1e-6;
+/// Distance of two solutions that are one, over that step: at a corner the branch may come back at a small angle, so that
+/// its two sides are close to each other.
+const SAME: f64 = 1e-2;
 
 /// Bisections that find a parameter value on a cubic.
 const BISECTIONS: usize = 50;
@@ -91,9 +92,8 @@ impl RecentPoints {
         let Some(found) = analysis.resolve(&near, true, interrupt)? else {
             return Ok((false, true));
         };
-        let distance = found.unknowns().iter().zip(point.unknowns());
-        let distance = distance.fold(0.0_f64, |d, (a, b)| d.hypot(a - b));
-        Ok((distance <= SAME * norm(point.unknowns()), true))
+        let step = metric.distance(&last.v, &point.v);
+        Ok((metric.distance(&found.v, &point.v) <= SAME * step, true))
     }
 
     /// The point from which the branch went back, of the current resolution, with its sense corrected: away from the
