@@ -164,8 +164,7 @@ impl Evaluator {
                 let Some(evaluator) = &mut self.varying_load else {
                     return fail!(Internal, "no memory for the pieces of a contact law");
                 };
-                interrupt.check()?;
-                evaluator.evaluate(law, set, motion, out);
+                evaluator.evaluate(law, set, motion, out, interrupt)?;
             }
             (Form::Hysteretic(law), _) => {
                 let highest = set.highest_reduced();
@@ -181,8 +180,7 @@ impl Evaluator {
                 let Some(evaluator) = self.memoryless.iter_mut().find(|e| e.suits(law, requested)) else {
                     return fail!(Internal, "no memory for the samples of a contact law");
                 };
-                interrupt.check()?;
-                return evaluator.evaluate(law, set, omega, motion, out);
+                return evaluator.evaluate(law, set, (omega, motion), out, interrupt);
             }
         }
         Ok(())

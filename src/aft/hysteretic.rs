@@ -137,10 +137,10 @@ impl HystereticEvaluator {
             sums.fill(0.0);
         }
         self.sensitivity
-            .pass(&self.march, &self.signals, omega, Some(&mut *out));
+            .pass(&self.march, (&self.signals, omega), Some(&mut *out), interrupt)?;
         self.finish(motion, out);
         if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
-            normal.evaluate(law, motion, out);
+            normal.evaluate(law, motion, out, interrupt)?;
         }
         let n = self.signals.samples as f64;
         out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
@@ -286,7 +286,7 @@ impl HystereticEvaluator {
             }
             self.marches = k + 1;
             if defect <= tolerance * largest(&self.march.z[..n * s]) {
-                self.map.form(&self.march, n);
+                self.map.form(&self.march, n, interrupt)?;
                 return Ok(0.0);
             }
             if k + 1 == most {
@@ -297,7 +297,7 @@ impl HystereticEvaluator {
             let mut by_newton = k > 0 && k < newton_until && defect < before;
             before = defect;
             if by_newton {
-                self.map.form(&self.march, n);
+                self.map.form(&self.march, n, interrupt)?;
                 by_newton = self.map.is_regular;
             }
             if by_newton {
@@ -329,19 +329,23 @@ impl HystereticEvaluator {
                 interrupt.check()?;
                 self.march_from(law, omega, k)?;
                 if self.by_newton[k] {
-                    self.map.form(&self.march, self.signals.samples);
-                    self.sensitivity.periodic(&self.map, &self.march, &self.signals, omega);
+                    self.map.form(&self.march, self.signals.samples, interrupt)?;
+                    self.sensitivity
+                        .periodic(&self.map, &self.march, (&self.signals, omega), interrupt)?;
                 } else {
-                    self.sensitivity.onward(&self.march, &self.signals, omega);
+                    self.sensitivity
+                        .onward(&self.march, (&self.signals, omega), interrupt)?;
                 }
             }
             self.march_from(law, omega, last)?;
-            self.map.form(&self.march, self.signals.samples);
+            self.map.form(&self.march, self.signals.samples, interrupt)?;
         }
         if self.map.is_regular {
-            self.sensitivity.periodic(&self.map, &self.march, &self.signals, omega);
+            self.sensitivity
+                .periodic(&self.map, &self.march, (&self.signals, omega), interrupt)?;
         } else {
-            self.sensitivity.onward(&self.march, &self.signals, omega);
+            self.sensitivity
+                .onward(&self.march, (&self.signals, omega), interrupt)?;
         }
         Ok(())
     }

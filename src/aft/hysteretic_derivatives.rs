@@ -6,6 +6,7 @@ use crate::aft::periodic_state::ReturnMap;
 use crate::contact::march::{March, StuckState};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 /// Number of samples whose outer products are added at a time.
@@ -171,30 +172,49 @@ impl Sensitivity {
     }
 
     /// Sets the start that returns, from that of the march; see [`crate::aft::periodic_state`].
-    pub fn periodic(&mut self, map: &ReturnMap, march: &March, signals: &Signals, omega: f64) {
+    pub fn periodic(
+        &mut self,
+        map: &ReturnMap,
+        march: &March,
+        (signals, omega): (&Signals, f64),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         std::mem::swap(&mut self.start, &mut self.before);
         self.start.fill(0.0);
-        self.pass(march, signals, omega, None);
+        self.pass(march, (signals, omega), None, interrupt)?;
         for column in 0..self.width {
             map.start_column(&self.now, &self.before, self.width, column, &mut self.column);
             for (row, value) in self.start.chunks_exact_mut(self.width).zip(&self.column) {
                 row[column] = *value;
             }
         }
+        Ok(())
     }
 
     /// Sets the end of the march as the next start.
-    pub fn onward(&mut self, march: &March, signals: &Signals, omega: f64) {
-        self.pass(march, signals, omega, None);
+    pub fn onward(&mut self, march: &March, of_motion: (&Signals, f64), interrupt: &Interrupt<'_>) -> Result<()> {
+        self.pass(march, of_motion, None, interrupt)?;
         self.start.copy_from_slice(&self.now);
+        Ok(())
     }
 
     /// Follows the states through the period from `start` to `now`, and adds the Fourier sums of the force and its
     /// derivatives, without their weights, to `out`.
-    pub fn pass(&mut self, march: &March, signals: &Signals, omega: f64, mut out: Option<&mut Evaluation>) {
+    pub fn pass(
+        &mut self,
+        march: &March,
+        (signals, omega): (&Signals, f64),
+        mut out: Option<&mut Evaluation>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let (d, s, n) = (signals.directions, self.states, signals.samples);
+        let of_batch =
+            BATCH * self.width * (s * (s + 4) + if out.is_some() { self.forces * signals.length } else { 0 });
         self.now.copy_from_slice(&self.start);
         for j in 0..n {
+            if j % BATCH == 0 {
+                interrupt.check_before(2 * of_batch as u64)?;
+            }
             let before = if j == 0 { n - 1 } else { j - 1 };
             for a in 0..s {
                 let row = &mut self.next[a * self.width..(a + 1) * self.width];
@@ -217,6 +237,7 @@ impl Sensitivity {
                 }
             }
         }
+        Ok(())
     }
 
     /// Evaluates the derivatives of the force at sample j.

@@ -19,6 +19,7 @@ pub mod programs;
 pub mod refusal;
 pub mod rest;
 pub mod stencil;
+pub mod stopping;
 
 use hbvib::analysis::forced_response::forced_response;
 use hbvib::contact::Contact;
