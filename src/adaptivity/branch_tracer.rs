@@ -35,12 +35,15 @@ pub(crate) struct Course<'a> {
     /// Parameter value before the range up to which a branch that leaves at its start is followed, because it may
     /// come back; `None`: it is not followed.
     pub before: Option<f64>,
+    /// Highest harmonic of a first point that may be sought again with more of them, at the start of the range; `None`: it
+    /// may not.
+    pub starts_again: Option<usize>,
 }
 
 /// Traces one branch.
 pub(crate) struct BranchTracer<'a> {
     pub(super) course: Course<'a>,
-    controller: AdaptivityController,
+    pub(super) controller: AdaptivityController,
     pub(super) interrupt: &'a Interrupt<'a>,
     /// Values of linear stretches, where they can be had, and whether they were requested.
     pub(super) linear_grid: Option<LinearGrid>,
@@ -99,7 +102,7 @@ impl<'a> BranchTracer<'a> {
 
     /// Records the first point of the curve, or the only one, and follows the branch from there.
     pub fn trace(&mut self, analysis: &mut dyn Traceable, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
-        let first = self.controller.refine(analysis, first, true, self.interrupt)?.point;
+        let first = self.refine_first(analysis, first)?;
         analysis.record(&first)?;
         if self.report(analysis, hooks, &first) {
             return Ok(Status::StoppedByCaller);

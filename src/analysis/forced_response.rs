@@ -119,6 +119,7 @@ fn follow(
         max_points: solver.max_points,
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
+        starts_again: range.guess.is_none().then_some(solver.harmonics),
     };
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {

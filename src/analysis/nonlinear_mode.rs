@@ -303,6 +303,7 @@ fn course<'a>(
         at: range.at,
         max_points: solver.max_points,
         before: None,
+        starts_again: None,
     };
     (course, settings)
 }

@@ -37,13 +37,9 @@ fn analyses(model: &Model, response: usize, diameter: usize) -> Vec<Analysis<'_>
         log10_stop: -2.0,
         ..ModeOptions::default()
     };
-    vec![
+    let mut all: Vec<Analysis<'_>> = vec![
         ("forced, fixed H", Box::new(forced(fixed))),
         ("forced, tolerance", Box::new(forced(automatic))),
-        (
-            "nonlinear mode",
-            Box::new(move |hooks| of_branch(nonlinear_mode(model, &fixed, &shape, hooks))),
-        ),
         (
             "linear modes",
             Box::new(move |hooks| {
@@ -51,7 +47,15 @@ fn analyses(model: &Model, response: usize, diameter: usize) -> Vec<Analysis<'_>
                 of_call(model.lowest_modes_with(diameter, ContactState::Stuck, 20, &interrupt))
             }),
         ),
-    ]
+    ];
+    // Under constant forces there are no nonlinear modes.
+    if diameter > 0 {
+        all.push((
+            "nonlinear mode",
+            Box::new(move |hooks| of_branch(nonlinear_mode(model, &fixed, &shape, hooks))),
+        ));
+    }
+    all
 }
 
 #[test]
