@@ -153,7 +153,10 @@ impl Evaluator {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         match (law.form(), &mut self.scalar) {
-            (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
+            (Form::Spectral(law), _) => {
+                interrupt.check_before((set.packed_len() * set.packed_len()) as u64)?;
+                self.smooth.spectral(law, set, motion, out);
+            }
             (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => {
                 evaluator.evaluate(law, set, motion, out, interrupt)?;
             }

@@ -3,6 +3,7 @@
 //! Tests of the suite count the checks of the interrupt, which no busy machine changes; timings are printed. The test
 //! with limits on them is run by tests/deep.sh.
 
+use crate::common::laws;
 use crate::common::stopping::{Analysis, Lateness, of_branch, of_call, random, stop_when};
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
@@ -294,6 +295,36 @@ fn no_step_of_a_large_structure_is_long() {
         assert!(
             interrupt.largest() <= MOST_OPERATIONS && interrupt.checks() > 50,
             "{name}"
+        );
+    }
+}
+
+/// A law of the caller is called for a whole period at a time, which is not interrupted; its harmonics and derivatives are.
+#[test]
+fn one_evaluation_of_a_law_with_many_harmonics_is_checked() {
+    const HIGHEST: usize = 100;
+    for case in laws::cases() {
+        let directions = case.contact.directions();
+        let signal = (0..directions * (HIGHEST + 1)).map(|i| {
+            let h = i % (HIGHEST + 1);
+            Complex64::cis(i as f64) / (1 + h * h) as f64
+        });
+        let signal: Vec<Complex64> = signal.collect();
+        let mut force = vec![Complex64::ZERO; signal.len()];
+        let mut jacobian = vec![0.0; 4 * signal.len() * signal.len()];
+        let interrupt = Interrupt::none();
+        let at = (HIGHEST, 0, case.omega);
+        contact_evaluate_with(&case.contact, at, &signal, &mut force, Some(&mut jacobian), &interrupt).unwrap();
+        println!(
+            "{}: {} checks, at most {} operations between them",
+            case.name,
+            interrupt.checks(),
+            interrupt.largest()
+        );
+        assert!(
+            interrupt.checks() > 0 && interrupt.largest() <= MOST_OPERATIONS,
+            "{}",
+            case.name
         );
     }
 }
