@@ -32,7 +32,7 @@ const MOST_MEMORY: u64 = 200_000;
 const RESOLVED: f64 = 1e-7;
 
 /// Time after which a call is stopped: one without an answer.
-const LONGEST: Duration = Duration::from_secs(20);
+const LONGEST: Duration = Duration::from_secs(8);
 
 /// Time after which a call is not repeated.
 const REPEATED: Duration = Duration::from_millis(10);
@@ -191,8 +191,7 @@ struct Table {
 }
 
 impl Table {
-    fn run(numbers: core::ops::Range<u64>) -> Self {
-        let seed = from_environment("HBVIB_SEED", 300);
+    fn run(seed: u64, numbers: impl Iterator<Item = u64>) -> Self {
         let mut table = Self::default();
         for number in numbers {
             table.add(&Case::random(seed, number));
@@ -311,7 +310,8 @@ impl Table {
     }
 
     /// What holds for every model, and for as many as asked.
-    fn check(&self) {
+    fn check(&mut self) {
+        assert!(top(&mut self.checks, 0.0) <= MOST_TIMES, "counted work");
         let share = |part: usize, of: usize| part as f64 / of.max(1) as f64;
         assert!(share(self.failed.len(), self.models) <= 0.01, "not found");
         assert!(share(self.unknown.len(), self.models) <= 0.05, "unknown errors");
@@ -326,16 +326,25 @@ impl Table {
     }
 }
 
+/// Seed of the models.
+const SEED: u64 = 300;
+
+/// Models that take some ten milliseconds each: every law, 1 to 51 harmonics, some whose first point is found on a second
+/// start.
+const QUICK: [u64; 36] = [
+    3, 21, 26, 28, 30, 34, 38, 39, 50, 60, 64, 76, 83, 85, 91, 94, 100, 103, 124, 129, 164, 165, 170, 185, 192, 195,
+    196, 213, 217, 235, 244, 281, 284, 292, 294, 295,
+];
+
 #[test]
 fn random_models_are_answered_within_the_tolerance() {
-    Table::run(0..30).check();
+    Table::run(SEED, QUICK.into_iter()).check();
 }
 
 #[test]
 #[ignore = "minutes: limits on times, for tests/deep.sh"]
 fn three_hundred_random_models_are_answered_within_the_tolerance_and_a_bounded_time() {
     let first = from_environment("HBVIB_FIRST", 0);
-    let mut table = Table::run(first..first + from_environment("HBVIB_CASES", 300));
-    table.check();
-    assert!(top(&mut table.times, 0.0) <= MOST_TIMES);
+    let numbers = first..first + from_environment("HBVIB_CASES", 300);
+    Table::run(from_environment("HBVIB_SEED", SEED), numbers).check();
 }
