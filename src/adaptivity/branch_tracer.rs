@@ -117,13 +117,10 @@ impl<'a> BranchTracer<'a> {
             return self.record_single(analysis, &first);
         }
         let (begin, began) = (first.try_clone()?, analysis.resolution());
-        let mut continuation = Continuation::new(settings, first)?;
         // Where harmonics change, the branch continues from beside the point recorded last. Special points are
         // located between recorded points, so that none is omitted or found twice.
-        let mut recorded = (continuation.current().try_clone()?, began);
+        let (mut recent, mut continuation) = RecentPoints::begin(settings, first, began)?;
         let mut backtracks = 0;
-        let mut recent = RecentPoints::default();
-        recent.restart((&recorded.0, recorded.1))?;
         // Number of points with linear contacts for which the continuation goes on all the same, after an onset.
         let mut patience = 0_usize;
         loop {
@@ -133,18 +130,14 @@ impl<'a> BranchTracer<'a> {
 
             // Where every contact is linear, follow the linear response to the onset of slip or to the end.
             if patience == 0 && analysis.is_linear() {
-                match self.follow_linear(analysis, (&recorded.0, recorded.1), hooks)? {
+                match self.follow_linear(analysis, recent.last(), hooks)? {
                     None => {}
                     Some(Stretch::Onset {
                         before,
                         point,
                         distance,
                     }) => {
-                        recorded = (point.try_clone()?, analysis.resolution());
-                        if let Some(before) = before {
-                            recent.restart((&before, recorded.1))?;
-                            recent.push((&recorded.0, recorded.1))?;
-                        }
+                        recent.go_on((before.as_ref(), &point), analysis.resolution())?;
                         continuation.start_at(point, ONSET_SHARE * distance)?;
                         patience = PATIENCE;
                     }
@@ -152,9 +145,7 @@ impl<'a> BranchTracer<'a> {
                         match self.come_back(analysis, point, (&begin, began), hooks)? {
                             Return::Ended(status) => return Ok(status),
                             Return::Recorded(back) => {
-                                continuation = Continuation::new(settings, back)?;
-                                recorded = (continuation.current().try_clone()?, analysis.resolution());
-                                recent.restart((&recorded.0, recorded.1))?;
+                                (recent, continuation) = RecentPoints::begin(settings, back, analysis.resolution())?;
                                 continue;
                             }
                         }
@@ -184,8 +175,8 @@ impl<'a> BranchTracer<'a> {
             let Some(Refined { point, stuck }) = some_unless_lost(refined)? else {
                 return Ok(Status::StoppedStepTooSmall);
             };
-            let reversed = analysis.resolution() != before
-                && self.is_reversed_or_outside(analysis, (&recorded.0, recorded.1), &point)?;
+            let reversed =
+                analysis.resolution() != before && self.is_reversed_or_outside(analysis, recent.last(), &point)?;
             if (stuck || reversed)
                 && backtracks < MOST_BACKTRACKS
                 && let Some(previous) = continuation.previous()
@@ -203,15 +194,10 @@ impl<'a> BranchTracer<'a> {
             }
             let resolution = analysis.resolution();
             let stop = self.report(analysis, hooks, &point);
-            self.locate_special(analysis, (&recorded.0, recorded.1), (&point, resolution), end.is_some())?;
+            self.locate_special(analysis, recent.last(), (&point, resolution), end.is_some())?;
             analysis.select(resolution)?;
-            recorded = (point.try_clone()?, resolution);
-            recent.push((&recorded.0, recorded.1))?;
-            patience = if analysis.is_linear() {
-                patience.saturating_sub(1)
-            } else {
-                0
-            };
+            recent.push((&point, resolution))?;
+            patience = patience.saturating_sub(1) * usize::from(analysis.is_linear());
             if stop {
                 return Ok(Status::StoppedByCaller);
             }
@@ -228,15 +214,12 @@ impl<'a> BranchTracer<'a> {
                         continuation.go_on_from(previous, current)?;
                     }
                 }
-                Some(Status::StoppedLeftRange) => {
-                    let back = match self.come_back(analysis, point, (&begin, began), hooks)? {
-                        Return::Recorded(back) => back,
-                        Return::Ended(status) => return Ok(status),
-                    };
-                    continuation = Continuation::new(settings, back)?;
-                    recorded = (continuation.current().try_clone()?, analysis.resolution());
-                    recent.restart((&recorded.0, recorded.1))?;
-                }
+                Some(Status::StoppedLeftRange) => match self.come_back(analysis, point, (&begin, began), hooks)? {
+                    Return::Ended(status) => return Ok(status),
+                    Return::Recorded(back) => {
+                        (recent, continuation) = RecentPoints::begin(settings, back, analysis.resolution())?;
+                    }
+                },
                 Some(status) => return Ok(status),
             }
         }

@@ -9,7 +9,7 @@ use crate::error::{Result, Status};
 use crate::interrupt::Phase;
 
 /// Most starts, each with at least twice the harmonics of the one before.
-const MOST_STARTS: usize = 2;
+const MOST_STARTS: usize = 3;
 
 /// Most points of a homotopy to such a start.
 const MOST_POINTS: usize = 100;

@@ -18,8 +18,8 @@ use crate::linalg::norm;
 
 const CONTEXT: &str = "the last points of the branch";
 
-/// Number of recorded points that are kept: steps grow by a small factor each.
-const KEPT: usize = 6;
+/// Number of recorded points before the last that are kept: steps grow by a small factor each.
+const KEPT: usize = 5;
 
 /// Distance of a point to the recorded curve, over that to the point before it, below which it may lie on the curve.
 const CLOSE: f64 = 0.2;
@@ -32,27 +32,51 @@ const SAME: f64 = 1e-2;
 const BISECTIONS: usize = 50;
 
 /// The points recorded last, without a gap between them.
-#[derive(Default)]
 pub(super) struct RecentPoints {
-    points: Vec<(Point, usize)>,
+    before: Vec<(Point, usize)>,
+    last: (Point, usize),
     /// Whether the branch was turned round at the last one.
     turned: bool,
 }
 
 impl RecentPoints {
-    /// Begins anew with a recorded point that is no neighbour of those before.
-    pub fn restart(&mut self, recorded: PointAt<'_>) -> Result<()> {
-        self.points.clear();
-        self.push(recorded)
+    /// Begins at a recorded point, with the continuation from there.
+    pub fn begin(settings: Settings, point: Point, resolution: usize) -> Result<(Self, Continuation)> {
+        let continuation = Continuation::new(settings, point)?;
+        let recent = Self {
+            before: Vec::new(),
+            last: (continuation.current().try_clone()?, resolution),
+            turned: false,
+        };
+        Ok((recent, continuation))
+    }
+
+    /// The point recorded last, with its resolution.
+    pub fn last(&self) -> PointAt<'_> {
+        (&self.last.0, self.last.1)
     }
 
     /// Adds a recorded point with its resolution.
     pub fn push(&mut self, (point, resolution): PointAt<'_>) -> Result<()> {
-        if self.points.len() == KEPT {
-            self.points.remove(0);
+        if self.before.len() == KEPT {
+            self.before.remove(0);
         }
+        let before = core::mem::replace(&mut self.last, (point.try_clone()?, resolution));
         self.turned = false;
-        try_push(&mut self.points, (point.try_clone()?, resolution), CONTEXT)
+        try_push(&mut self.before, before, CONTEXT)
+    }
+
+    /// Goes on at the end of a linear stretch, with the point before it in that stretch; none where the stretch ends at
+    /// the last point.
+    pub fn go_on(&mut self, (before, point): (Option<&Point>, &Point), resolution: usize) -> Result<()> {
+        let Some(before) = before else {
+            self.last = (point.try_clone()?, resolution);
+            return Ok(());
+        };
+        self.before.clear();
+        try_push(&mut self.before, (before.try_clone()?, resolution), CONTEXT)?;
+        self.last = (point.try_clone()?, resolution);
+        Ok(())
     }
 
     /// Whether a solution of the current resolution, found after the last point, lies on the curve through the points;
@@ -64,22 +88,21 @@ impl RecentPoints {
         settings: &Settings,
         interrupt: &Interrupt<'_>,
     ) -> Result<(bool, bool)> {
-        let [.., (before, _), (last, resolution)] = &self.points[..] else {
+        let (last, resolution) = self.last();
+        let Some((before, _)) = self.before.last() else {
             return Ok((false, false));
         };
         let p = point.parameter();
         if (p - last.parameter()) * (last.parameter() - before.parameter()) >= 0.0 {
             return Ok((false, false));
         }
-        let between = |pair: &&[(Point, usize)]| {
-            let (a, b) = (pair[0].0.parameter(), pair[1].0.parameter());
-            (p - a) * (p - b) <= 0.0
-        };
-        let Some([a, b]) = self.points.windows(2).rev().find(between) else {
+        let ends = core::iter::once(&self.last).chain(self.before.iter().rev());
+        let mut pairs = self.before.iter().rev().zip(ends);
+        let Some((a, b)) = pairs.find(|(a, b)| (p - a.0.parameter()) * (p - b.0.parameter()) <= 0.0) else {
             return Ok((false, false));
         };
         let (a, b) = (analysis.transfer(&a.0, a.1)?, analysis.transfer(&b.0, b.1)?);
-        let last = analysis.transfer(last, *resolution)?;
+        let last = analysis.transfer(last, resolution)?;
         let metric = Metric::along(norm(point.unknowns()), settings);
         let near = Point {
             v: on_cubic(&a, &b, metric, p)?,
@@ -105,7 +128,7 @@ impl RecentPoints {
         settings: &Settings,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let [.., (before, resolution), _] = &self.points[..] else {
+        let Some((before, resolution)) = self.before.last() else {
             return Ok(None);
         };
         // A chord between points of one resolution: harmonics that only one of them has would hide its direction.

@@ -201,7 +201,12 @@ mod tests {
     #[test]
     fn sign_of_the_determinant_of_a_matrix_near_the_identity() {
         let n = 24;
-        for (few, positive) in [(vec![], true), (vec![-0.3], false), (vec![-4.0, -0.2], true), (vec![-2.0, 0.1], false)] {
+        for (few, positive) in [
+            (vec![], true),
+            (vec![-0.3], false),
+            (vec![-4.0, -0.2], true),
+            (vec![-2.0, 0.1], false),
+        ] {
             let mut b: Vec<f64> = (0..n).map(|k| 1.0 + (k as f64).cos()).collect();
             // Q D Qᵀ with a reflection Q along a vector of equal numbers.
             let product = |v: &[f64], out: &mut [f64]| {

@@ -294,6 +294,9 @@ mod tests {
         };
         let mut system = DenseSystem::new(6).unwrap();
         system.update(&mut toy, border, &Interrupt::none()).unwrap();
-        assert_eq!(system.factor(&mut toy, &Interrupt::none()).unwrap_err().status, Status::Singular);
+        assert_eq!(
+            system.factor(&mut toy, &Interrupt::none()).unwrap_err().status,
+            Status::Singular
+        );
     }
 }

@@ -106,7 +106,7 @@ impl Case {
         let mut model = structure(&chain.mass, &damping, &chain.stiffness);
         // Pressed contacts share the masses that move along their normals.
         let normals = [random.below(n), random.below(n)];
-        let kinds: Vec<usize> = (0..1 + random.below(3)).map(|_| random.below(LAWS.len())).collect();
+        let kinds: Vec<usize> = (0..=random.below(3)).map(|_| random.below(LAWS.len())).collect();
         let contacts = 2 + random.below(9);
         let mut laws = [false; LAWS.len()];
         for _ in 0..contacts {
