@@ -328,7 +328,7 @@ fn evaluating_laws_without_memory_asks_for_none() {
             let evaluation = || {
                 evaluator
                     .evaluate(&*law, &set, (1.1, &motion), &mut out, &Interrupt::none())
-                    .unwrap()
+                    .unwrap();
             };
             let (count, ()) = allocations(evaluation);
             assert_eq!(count, 0, "{name}, H = {highest}");
