@@ -166,7 +166,8 @@ impl<'a> BranchTracer<'a> {
             };
 
             // Turn round a branch that comes back along its own points.
-            let Some(point) = self.mend(analysis, (&mut continuation, &mut recent), point, hooks)? else {
+            let by = (&settings, self.interrupt);
+            let Some(point) = recent.mend(analysis, &mut continuation, point, by, hooks)? else {
                 continue;
             };
 

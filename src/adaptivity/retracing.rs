@@ -6,7 +6,6 @@
 //! p = −s² near a fold, a step from −x to y that comes back in p has y > x, and the recorded solution at its parameter
 //! lies 2y > x + y away. Solving at the parameter of the point, from the cubic through the recorded ones, decides the rest.
 
-use crate::adaptivity::branch_tracer::BranchTracer;
 use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
 use crate::continuation::predictor::Cubic;
@@ -145,31 +144,29 @@ impl RecentPoints {
         turned.reverse();
         Ok(Some(turned))
     }
-}
 
-impl BranchTracer<'_> {
     /// The point, unless it lies on the curve recorded so far: then the branch goes on in the other sense from the point
     /// before.
-    pub(super) fn mend(
-        &self,
+    pub fn mend(
+        &mut self,
         analysis: &mut dyn Traceable,
-        (continuation, recent): (&mut Continuation, &mut RecentPoints),
+        continuation: &mut Continuation,
         point: Point,
+        (settings, interrupt): (&Settings, &Interrupt<'_>),
         hooks: &mut Hooks<'_>,
     ) -> Result<Option<Point>> {
-        let settings = &self.course.settings;
-        let (retraces, evaluated) = recent.hold(analysis, &point, settings, self.interrupt)?;
+        let (retraces, evaluated) = self.hold(analysis, &point, settings, interrupt)?;
         if !retraces {
             // The problem is to be evaluated at the point again.
             let again = if evaluated {
-                analysis.resolve(&point, false, self.interrupt)?
+                analysis.resolve(&point, false, interrupt)?
             } else {
                 None
             };
             return Ok(Some(again.unwrap_or(point)));
         }
         let from = match continuation.previous() {
-            Some(from) if !recent.turned => recent.turned_round(analysis, from, settings, self.interrupt)?,
+            Some(from) if !self.turned => self.turned_round(analysis, from, settings, interrupt)?,
             _ => None,
         };
         let Some(from) = from else {
@@ -179,7 +176,7 @@ impl BranchTracer<'_> {
             LogLevel::Info,
             "the branch came back along its own points: its sense was corrected",
         );
-        recent.turned = true;
+        self.turned = true;
         continuation.go_on_from(None, from)?;
         Ok(None)
     }
