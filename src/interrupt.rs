@@ -4,7 +4,7 @@
 //! error with [`Status::StoppedByCaller`], which passes through every layer unchanged; the analysis at the top turns
 //! it into the end of its result. Once requested, a stop stays: every later check fails too.
 
-use crate::error::{Error, Result, Status};
+use crate::error::{Error, Result, Status, try_vec};
 use core::cell::Cell;
 
 /// Phase of a running call.
@@ -51,6 +51,9 @@ const BETWEEN_REPORTS: u64 = 20_000_000;
 
 /// Operations that a check without a number stands for.
 const OF_ONE_CHECK: u64 = 10_000;
+
+/// Zeros written between two checks.
+const ZEROS_TOGETHER: usize = 1 << 20;
 
 /// Asked by every long loop whether the caller wants to stop; see the module.
 pub struct Interrupt<'a> {
@@ -170,6 +173,21 @@ impl<'a> Interrupt<'a> {
         });
         self.current.set(before);
         told
+    }
+
+    /// Memory for a large array of zeros, which the system maps when they are written: checked between its parts.
+    ///
+    /// # Errors
+    /// `OutOfMemory` naming `what`, `StoppedByCaller`.
+    pub fn zeros(&self, len: usize, what: &str) -> Result<Vec<f64>> {
+        let mut values = try_vec(0, 0.0, what)?;
+        values.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))?;
+        while values.len() < len {
+            let part = (len - values.len()).min(ZEROS_TOGETHER);
+            self.check_before(part as u64)?;
+            values.resize(values.len() + part, 0.0);
+        }
+        Ok(values)
     }
 
     fn report(&self, report: PhaseReport) -> Result<()> {

@@ -325,7 +325,11 @@ fn evaluating_laws_without_memory_asks_for_none() {
             let motion = vec![0.1; law.directions() * set.packed_len()];
             let mut out = Evaluation::new(&set, law.directions()).unwrap();
             let mut evaluator = MemorylessEvaluator::new(&set, &*law, law.samples(set.highest_reduced(), 0)).unwrap();
-            let evaluation = || evaluator.evaluate(&*law, &set, 1.1, &motion, &mut out).unwrap();
+            let evaluation = || {
+                evaluator
+                    .evaluate(&*law, &set, (1.1, &motion), &mut out, &Interrupt::none())
+                    .unwrap();
+            };
             let (count, ()) = allocations(evaluation);
             assert_eq!(count, 0, "{name}, H = {highest}");
         }

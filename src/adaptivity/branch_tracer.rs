@@ -4,6 +4,7 @@
 use crate::adaptivity::controller::{AdaptivityController, PointAt, Refined};
 use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::resonance_grid::LinearGrid;
+use crate::adaptivity::retracing::RecentPoints;
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status};
@@ -36,12 +37,15 @@ pub(crate) struct Course<'a> {
     /// Parameter value before the range up to which a branch that leaves at its start is followed, because it may
     /// come back; `None`: it is not followed.
     pub before: Option<f64>,
+    /// Highest harmonic of a first point that may be sought again with more of them, at the start of the range; `None`: it
+    /// may not.
+    pub starts_again: Option<usize>,
 }
 
 /// Traces one branch.
 pub(crate) struct BranchTracer<'a> {
     pub(super) course: Course<'a>,
-    controller: AdaptivityController,
+    pub(super) controller: AdaptivityController,
     pub(super) interrupt: &'a Interrupt<'a>,
     /// Values of linear stretches, where they can be had, and whether they were requested.
     pub(super) linear_grid: Option<LinearGrid>,
@@ -51,8 +55,12 @@ pub(crate) struct BranchTracer<'a> {
 /// The end of a linear stretch.
 pub(super) enum Stretch {
     /// A contact leaves its linear state just beyond the point, which was recorded last, and has left it at `distance`
-    /// from there.
-    Onset { point: Point, distance: f64 },
+    /// from there. Before it lies a point of the stretch, unless that was where the stretch began.
+    Onset {
+        before: Option<Point>,
+        point: Point,
+        distance: f64,
+    },
     /// The end of the range, or its start, was reached at the point recorded last.
     End(Point, Status),
     /// The run ends.
@@ -96,7 +104,7 @@ impl<'a> BranchTracer<'a> {
 
     /// Records the first point of the curve, or the only one, and follows the branch from there.
     pub fn trace(&mut self, analysis: &mut dyn Traceable, first: Point, hooks: &mut Hooks<'_>) -> Result<Status> {
-        let first = self.controller.refine(analysis, first, true, self.interrupt)?.point;
+        let first = self.refine_first(analysis, first)?;
         analysis.record(&first)?;
         if self.report(analysis, hooks, &first) {
             return Ok(Status::StoppedByCaller);
@@ -111,10 +119,9 @@ impl<'a> BranchTracer<'a> {
             return self.record_single(analysis, &first);
         }
         let (begin, began) = (first.try_clone()?, analysis.resolution());
-        let mut continuation = Continuation::new(settings, first)?;
         // Where harmonics change, the branch continues from beside the point recorded last. Special points are
         // located between recorded points, so that none is omitted or found twice.
-        let mut recorded = (continuation.current().try_clone()?, began);
+        let (mut recent, mut continuation) = RecentPoints::begin(settings, first, began)?;
         let mut backtracks = 0;
         // Number of points with linear contacts for which the continuation goes on all the same, after an onset.
         let mut patience = 0_usize;
@@ -125,10 +132,14 @@ impl<'a> BranchTracer<'a> {
 
             // Where every contact is linear, follow the linear response to the onset of slip or to the end.
             if patience == 0 && analysis.is_linear() {
-                match self.follow_linear(analysis, (&recorded.0, recorded.1), hooks)? {
+                match self.follow_linear(analysis, recent.last(), hooks)? {
                     None => {}
-                    Some(Stretch::Onset { point, distance }) => {
-                        recorded = (point.try_clone()?, analysis.resolution());
+                    Some(Stretch::Onset {
+                        before,
+                        point,
+                        distance,
+                    }) => {
+                        recent.go_on((before.as_ref(), &point), analysis.resolution())?;
                         continuation.start_at(point, ONSET_SHARE * distance)?;
                         patience = PATIENCE;
                     }
@@ -136,8 +147,7 @@ impl<'a> BranchTracer<'a> {
                         match self.come_back(analysis, point, (&begin, began), hooks)? {
                             Return::Ended(status) => return Ok(status),
                             Return::Recorded(back) => {
-                                continuation = Continuation::new(settings, back)?;
-                                recorded = (continuation.current().try_clone()?, analysis.resolution());
+                                (recent, continuation) = RecentPoints::begin(settings, back, analysis.resolution())?;
                                 continue;
                             }
                         }
@@ -157,13 +167,19 @@ impl<'a> BranchTracer<'a> {
                 Advance::Stopped(status) => return Ok(status),
             };
 
+            // Turn round a branch that comes back along its own points.
+            let by = (&settings, self.interrupt);
+            let Some(point) = recent.mend(analysis, &mut continuation, point, by, hooks)? else {
+                continue;
+            };
+
             // Refine until the error meets the tolerance.
             let refined = self.controller.refine(analysis, point, end.is_some(), self.interrupt);
             let Some(Refined { point, stuck }) = some_unless_lost(refined)? else {
                 return Ok(Status::StoppedStepTooSmall);
             };
-            let reversed = analysis.resolution() != before
-                && self.is_reversed_or_outside(analysis, (&recorded.0, recorded.1), &point)?;
+            let reversed =
+                analysis.resolution() != before && self.is_reversed_or_outside(analysis, recent.last(), &point)?;
             if (stuck || reversed)
                 && backtracks < MOST_BACKTRACKS
                 && let Some(previous) = continuation.previous()
@@ -181,14 +197,10 @@ impl<'a> BranchTracer<'a> {
             }
             let resolution = analysis.resolution();
             let stop = self.report(analysis, hooks, &point);
-            self.locate_special(analysis, (&recorded.0, recorded.1), (&point, resolution), end.is_some())?;
+            self.locate_special(analysis, recent.last(), (&point, resolution), end.is_some())?;
             analysis.select(resolution)?;
-            recorded = (point.try_clone()?, resolution);
-            patience = if analysis.is_linear() {
-                patience.saturating_sub(1)
-            } else {
-                0
-            };
+            recent.push((&point, resolution))?;
+            patience = patience.saturating_sub(1) * usize::from(analysis.is_linear());
             if stop {
                 return Ok(Status::StoppedByCaller);
             }
@@ -205,14 +217,12 @@ impl<'a> BranchTracer<'a> {
                         continuation.go_on_from(previous, current)?;
                     }
                 }
-                Some(Status::StoppedLeftRange) => {
-                    let back = match self.come_back(analysis, point, (&begin, began), hooks)? {
-                        Return::Recorded(back) => back,
-                        Return::Ended(status) => return Ok(status),
-                    };
-                    continuation = Continuation::new(settings, back)?;
-                    recorded = (continuation.current().try_clone()?, analysis.resolution());
-                }
+                Some(Status::StoppedLeftRange) => match self.come_back(analysis, point, (&begin, began), hooks)? {
+                    Return::Ended(status) => return Ok(status),
+                    Return::Recorded(back) => {
+                        (recent, continuation) = RecentPoints::begin(settings, back, analysis.resolution())?;
+                    }
+                },
                 Some(status) => return Ok(status),
             }
         }

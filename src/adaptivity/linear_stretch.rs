@@ -83,7 +83,8 @@ impl BranchTracer<'_> {
             let end = [settings.end, settings.start]
                 .into_iter()
                 .find(|bound| bound.to_bits() == point.parameter().to_bits());
-            if point.parameter().to_bits() != here.parameter().to_bits() {
+            let moved = point.parameter().to_bits() != here.parameter().to_bits();
+            if moved {
                 if some_unless_lost(analysis.record(&point))?.is_none() {
                     return Ok(Some(Stretch::Stopped(Status::StoppedStepTooSmall)));
                 }
@@ -94,7 +95,11 @@ impl BranchTracer<'_> {
                 }
             }
             if let Some(distance) = onset {
-                return Ok(Some(Stretch::Onset { point, distance }));
+                return Ok(Some(Stretch::Onset {
+                    before: moved.then_some(here),
+                    point,
+                    distance,
+                }));
             }
             if let Some(bound) = end {
                 let status = if bound.to_bits() == settings.end.to_bits() {

@@ -175,7 +175,10 @@ impl Evaluator {
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         match (law.form(), &mut self.scalar) {
-            (Form::Spectral(law), _) => self.smooth.spectral(law, set, motion, out),
+            (Form::Spectral(law), _) => {
+                interrupt.check_before((set.packed_len() * set.packed_len()) as u64)?;
+                self.smooth.spectral(law, set, motion, out);
+            }
             (Form::PiecewiseLinear(law), Scalar::Exact(evaluator)) => {
                 evaluator.evaluate(law, set, motion, out, interrupt)?;
             }
@@ -186,8 +189,7 @@ impl Evaluator {
                 let Some(evaluator) = &mut self.varying_load else {
                     return fail!(Internal, "no memory for the pieces of a contact law");
                 };
-                interrupt.check()?;
-                evaluator.evaluate(law, set, motion, out);
+                evaluator.evaluate(law, set, motion, out, interrupt)?;
             }
             (Form::Hysteretic(law), _) => {
                 let highest = set.highest_reduced();
@@ -203,8 +205,7 @@ impl Evaluator {
                 let Some(evaluator) = self.memoryless.iter_mut().find(|e| e.suits(law, requested)) else {
                     return fail!(Internal, "no memory for the samples of a contact law");
                 };
-                interrupt.check()?;
-                return evaluator.evaluate(law, set, omega, motion, out);
+                return evaluator.evaluate(law, set, (omega, motion), out, interrupt);
             }
         }
         Ok(())

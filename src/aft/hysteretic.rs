@@ -139,7 +139,7 @@ impl HystereticEvaluator {
         self.sensitivity.add_to(&self.march, &self.signals, out);
         self.finish(motion, out);
         if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
-            normal.evaluate(law, motion, out);
+            normal.evaluate(law, motion, out, interrupt)?;
         }
         let n = self.signals.samples as f64;
         out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
@@ -285,7 +285,7 @@ impl HystereticEvaluator {
             }
             self.marches = k + 1;
             if defect <= tolerance * largest(&self.march.z[..n * s]) {
-                self.map.form(&self.march, n);
+                self.map.form(&self.march, n, interrupt)?;
                 return Ok(0.0);
             }
             if k + 1 == most {
@@ -296,7 +296,7 @@ impl HystereticEvaluator {
             let mut by_newton = k > 0 && k < newton_until && defect < before;
             before = defect;
             if by_newton {
-                self.map.form(&self.march, n);
+                self.map.form(&self.march, n, interrupt)?;
                 by_newton = self.map.is_regular;
             }
             if by_newton {
@@ -330,22 +330,24 @@ impl HystereticEvaluator {
             for k in 0..last {
                 interrupt.check()?;
                 self.march_from(law, omega, k)?;
-                self.sensitivity.pass(&self.march, &self.signals, omega, false);
+                self.sensitivity
+                    .pass(&self.march, &self.signals, omega, false, interrupt)?;
                 if self.by_newton[k] {
-                    self.map.form(&self.march, self.signals.samples);
+                    self.map.form(&self.march, self.signals.samples, interrupt)?;
                     self.sensitivity.periodic(&self.map);
                 } else {
                     self.sensitivity.onward();
                 }
             }
             self.march_from(law, omega, last)?;
-            self.map.form(&self.march, self.signals.samples);
+            self.map.form(&self.march, self.signals.samples, interrupt)?;
         }
         if self.starts_stuck && self.is_spring(law) {
             self.sensitivity.pass_stuck(&self.march, &self.signals);
             return Ok(());
         }
-        self.sensitivity.pass(&self.march, &self.signals, omega, true);
+        self.sensitivity
+            .pass(&self.march, &self.signals, omega, true, interrupt)?;
         if self.starts_stuck {
             return Ok(());
         }

@@ -6,6 +6,7 @@ use crate::aft::periodic_state::ReturnMap;
 use crate::contact::march::{March, StuckState};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use crate::linalg::{add_outer_products, transposed_products};
 use std::f64::consts::TAU;
 
@@ -215,7 +216,17 @@ impl Sensitivity {
 
     /// Follows the states through the period, and with `sums` adds up the Fourier sums of the derivatives of the
     /// force.
-    pub fn pass(&mut self, march: &March, signals: &Signals, omega: f64, sums: bool) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn pass(
+        &mut self,
+        march: &March,
+        signals: &Signals,
+        omega: f64,
+        sums: bool,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let (d, s, n, width, row) = (signals.directions, self.states, signals.samples, self.width, self.row());
         self.now.fill(0.0);
         self.now[width..].iter_mut().step_by(row + 1).for_each(|x| *x = 1.0);
@@ -223,6 +234,9 @@ impl Sensitivity {
             self.sums.fill(0.0);
         }
         for j in 0..n {
+            if j % BATCH == 0 {
+                interrupt.check_before((BATCH * row * (s * s + self.forces * signals.length)) as u64)?;
+            }
             let before = if j == 0 { n - 1 } else { j - 1 };
             for a in 0..s {
                 let to = &mut self.next[a * row..(a + 1) * row];
@@ -261,6 +275,7 @@ impl Sensitivity {
                 }
             }
         }
+        Ok(())
     }
 
     /// The sums of [`Self::pass`] in closed form for a law that sticks through the period: every step is the same spring,

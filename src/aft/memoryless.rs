@@ -16,6 +16,7 @@ use crate::contact::samples::Samples;
 use crate::error::{Result, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::transform::{Half, Lane, Transform};
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 
 /// Tables and memory for one law, or for several of equal directions and samples, on the motions of one harmonic set.
@@ -104,20 +105,20 @@ impl MemorylessEvaluator {
     /// memory was allocated, or the same in other units.
     ///
     /// # Errors
-    /// Those of the law; `out` is then invalid.
+    /// Those of the law, `StoppedByCaller`; `out` is then invalid.
     pub fn evaluate(
         &mut self,
         law: &dyn Memoryless,
         set: &HarmonicSet,
-        omega: f64,
-        motion: &[f64],
+        (omega, motion): (f64, &[f64]),
         out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
     ) -> Result<()> {
         if motion.is_empty() {
             // The set has no harmonics.
             return Ok(());
         }
-        self.sample(set, omega, motion);
+        self.sample(set, omega, motion, interrupt)?;
         for values in [&mut self.f, &mut self.df_du, &mut self.df_dv] {
             values.fill(0.0);
         }
@@ -129,10 +130,11 @@ impl MemorylessEvaluator {
         };
         // The samples cover the period 2π/(gω) of the set.
         let own = set.base() as f64 * omega;
+        interrupt.check()?;
         law.evaluate(own, self.transform.held(), &self.u, &self.v, samples)?;
         out.clear();
         self.forces(set, out);
-        self.tangents(set, omega, out);
+        self.tangents(set, omega, out, interrupt)?;
         // F − J·X
         let order = out.force.len();
         out.offset.copy_from_slice(&out.force);
@@ -145,10 +147,11 @@ impl MemorylessEvaluator {
     }
 
     /// Samples of the motions and their velocities.
-    fn sample(&mut self, set: &HarmonicSet, omega: f64, motion: &[f64]) {
+    fn sample(&mut self, set: &HarmonicSet, omega: f64, motion: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let m = set.packed_len();
         let step = self.directions;
         for first in 0..step {
+            interrupt.check()?;
             let lane = Lane { first, step };
             let x = &motion[first * m..(first + 1) * m];
             self.transform.synthesise(set, x, &mut self.u, lane);
@@ -165,6 +168,7 @@ impl MemorylessEvaluator {
             }
             self.transform.synthesise(set, &self.packed, &mut self.v, lane);
         }
+        Ok(())
     }
 
     /// Packed harmonics of the forces.
@@ -187,12 +191,19 @@ impl MemorylessEvaluator {
     }
 
     /// Jacobian and ∂F/∂ω, one pair of directions after the other.
-    fn tangents(&mut self, set: &HarmonicSet, omega: f64, out: &mut Evaluation) {
+    fn tangents(
+        &mut self,
+        set: &HarmonicSet,
+        omega: f64,
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let (m, d) = (set.packed_len(), self.directions);
         let order = d * m;
         let step = d * d;
         for j in 0..d {
             for i in 0..d {
+                interrupt.check_before((2 * m * m) as u64)?;
                 let lane = Lane { first: i * d + j, step };
                 let corner = j * m * order + i * m;
                 self.transform
@@ -229,5 +240,6 @@ impl MemorylessEvaluator {
                 }
             }
         }
+        Ok(())
     }
 }

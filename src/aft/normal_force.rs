@@ -10,6 +10,7 @@ use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use crate::contact::law::VaryingNormalLoad;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 
 /// Tables and memory for normal forces.
 pub(super) struct Normal {
@@ -29,15 +30,22 @@ impl Normal {
     }
 
     /// Writes force, Jacobian and offset of the last of several motions.
-    pub fn evaluate(&mut self, law: &dyn VaryingNormalLoad, motion: &[f64], out: &mut Evaluation) {
+    pub fn evaluate(
+        &mut self,
+        law: &dyn VaryingNormalLoad,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let (n, m) = (motion.len(), self.set.packed_len());
         self.evaluator
-            .evaluate(law, &self.set, &motion[n - 2 * m..], &mut self.found);
+            .evaluate(law, &self.set, &motion[n - 2 * m..], &mut self.found, interrupt)?;
         out.force[n - m..].copy_from_slice(&self.found.force[m..]);
         out.offset[n - m..].copy_from_slice(&self.found.offset[m..]);
         for k in 0..m {
             let column = &self.found.jacobian[(m + k) * 2 * m..][m..2 * m];
             out.jacobian[(n - m + k) * n..][n - m..n].copy_from_slice(column);
         }
+        Ok(())
     }
 }

@@ -12,13 +12,15 @@
 //! that of the start marched from.
 
 use crate::contact::march::March;
-use crate::error::Result;
-use crate::error::try_vec;
+use crate::error::{Result, Status, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
 
 /// Squarings in the search for Π; a part that decays by less than 1e-10 per period counts as kept.
 const SQUARINGS: usize = 40;
+
+/// Products of steps between two checks of the interrupt.
+const TOGETHER: usize = 16;
 
 /// Largest size of Π that is no projection.
 const NOTHING: f64 = 1e-9;
@@ -54,11 +56,18 @@ impl ReturnMap {
     }
 
     /// Forms P, Π and the factors from the steps of a march.
-    pub fn form(&mut self, march: &March, samples: usize) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn form(&mut self, march: &March, samples: usize, interrupt: &Interrupt<'_>) -> Result<()> {
         let s = self.states;
+        let of_product = 2 * (s * s * s) as u64;
         unit(s, &mut self.p);
         unit(s, &mut self.kept);
-        for step in march.dz_dz[..samples * s * s].chunks_exact((s * s).max(1)) {
+        for (j, step) in march.dz_dz[..samples * s * s].chunks_exact((s * s).max(1)).enumerate() {
+            if j % TOGETHER == 0 {
+                interrupt.check_before(TOGETHER as u64 * of_product)?;
+            }
             // Stick keeps all states.
             if step == self.kept {
                 continue;
@@ -66,6 +75,7 @@ impl ReturnMap {
             product(s, step, &self.p, &mut self.scratch);
             std::mem::swap(&mut self.p, &mut self.scratch);
         }
+        interrupt.check_before(of_product)?;
         self.project();
         let matrix = self.factors.matrix();
         for row in 0..s {
@@ -74,7 +84,12 @@ impl ReturnMap {
                 matrix[column * s + row] = unit - self.p[row * s + column] + self.kept[row * s + column];
             }
         }
-        self.is_regular = self.factors.factor(&Interrupt::none()).is_ok();
+        let factored = self.factors.factor(interrupt);
+        self.is_regular = factored.is_ok();
+        match factored {
+            Err(e) if e.status == Status::StoppedByCaller => Err(e),
+            _ => Ok(()),
+        }
     }
 
     /// Π = lim ((I + P)/2)^(2ⁿ): the mean with I keeps an eigenvalue of 1 and damps all others on the unit circle, −1

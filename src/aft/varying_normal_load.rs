@@ -20,6 +20,7 @@ use crate::contact::law::VaryingNormalLoad;
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -72,20 +73,33 @@ impl VaryingNormalLoadEvaluator {
     }
 
     /// Force and Jacobian of `law` at the packed x, then the packed y, in `out` of two directions.
-    pub fn evaluate(&mut self, law: &dyn VaryingNormalLoad, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn evaluate(
+        &mut self,
+        law: &dyn VaryingNormalLoad,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        interrupt.check()?;
         law.coupled_pieces(set, motion, &mut self.search, &mut self.normal, &mut self.tangential);
         out.clear();
         for spectrum in &mut self.spectra {
             spectrum.fill(Complex64::ZERO);
         }
         self.add_normal(set, out);
-        self.add_tangential(set, motion, out);
+        self.add_tangential(set, motion, out, interrupt)?;
         let m = set.packed_len();
         for (spectrum, place) in self.spectra.iter().zip(BLOCKS) {
+            interrupt.check_before((m * m) as u64)?;
             self.toeplitz.set(set, spectrum);
             Block::new(&mut out.jacobian, 2, m, place).add_toeplitz(&self.toeplitz);
         }
         apply(&out.jacobian, motion, &out.offset, &mut out.force);
+        Ok(())
     }
 
     fn add_normal(&mut self, set: &HarmonicSet, out: &mut Evaluation) {
@@ -104,9 +118,16 @@ impl VaryingNormalLoadEvaluator {
         }
     }
 
-    fn add_tangential(&mut self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
+    fn add_tangential(
+        &mut self,
+        set: &HarmonicSet,
+        motion: &[f64],
+        out: &mut Evaluation,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
         let m = set.packed_len();
         for piece in &self.tangential {
+            interrupt.check_before((4 * m * m) as u64)?;
             if piece.state == State::Open {
                 continue;
             }
@@ -133,5 +154,6 @@ impl VaryingNormalLoadEvaluator {
                 *o += constant * g;
             }
         }
+        Ok(())
     }
 }

@@ -1,5 +1,8 @@
 //! Forced response over a range of frequency.
 
+#[cfg(test)]
+mod lost_sense;
+
 use crate::adaptivity::branch_recorder::Ending;
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
@@ -9,9 +12,9 @@ use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, ModelCache, Reference};
-use crate::continuation::Settings;
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
+use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
@@ -45,21 +48,32 @@ pub fn forced_response(
         return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
     }
     let interrupt = hooks.interrupt();
-    let outcome = with_samples(solver, |solver| follow(model, solver, range, hooks, &interrupt));
+    let outcome = with_samples(solver, |solver| follow(model, solver, range, hooks, &interrupt, trace));
     match outcome {
         Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver),
         outcome => outcome,
     }
 }
 
-/// The branch from a model to its recorded points, or the factor by which more samples are required. A stop before
-/// there is a branch is an error.
+/// Records the branch from its first point on.
+fn trace(
+    tracer: &mut BranchTracer<'_>,
+    response: &mut ForcedDiscretised<'_>,
+    first: Point,
+    hooks: &mut Hooks<'_>,
+) -> Result<Status> {
+    tracer.trace(response, first, hooks)
+}
+
+/// The branch from a model to its recorded points, which `trace` records, or the factor by which more samples are
+/// required. A stop before there is a branch is an error.
 fn follow(
     model: &Model,
     solver: &SolverOptions,
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
+    trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
@@ -109,6 +123,7 @@ fn follow(
         may_refine: may_refine(solver),
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
+        starts_again: range.guess.is_none().then_some(solver.harmonics),
     };
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {
@@ -121,7 +136,7 @@ fn follow(
             }
             hooks.log(LogLevel::Info, way.sentence());
             response.note_first(&point);
-            tracer.trace(&mut response, point, hooks)
+            trace(&mut tracer, &mut response, point, hooks)
         }
         Err(e) if e.status == Status::StoppedByCaller => Err(e),
         Err(e) => {

@@ -308,6 +308,7 @@ fn course<'a>(
         max_points: solver.max_points,
         may_refine: may_refine(solver),
         before: None,
+        starts_again: None,
     };
     (course, settings)
 }

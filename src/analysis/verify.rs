@@ -8,6 +8,7 @@
 use crate::analysis::time_response::{TimeResponse, time_response};
 use crate::error::{Result, Status, fail, try_vec};
 use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{TimeOptions, VerifyOptions};
 use crate::results::Branch;
@@ -112,7 +113,14 @@ pub fn verify(
         Err(e) if e.status == Status::StoppedByCaller => TimeResponse::stopped(model, &options_in_time)?,
         Err(e) => return Err(e),
     };
-    let found = compare(&x, time, branch.response_dof(), options.same_within)?;
+    let (dof, same_within) = (branch.response_dof(), options.same_within);
+    let found = match compare(&x, time, dof, same_within, &interrupt) {
+        Err(e) if e.status == Status::StoppedByCaller => {
+            let time = TimeResponse::stopped(model, &options_in_time)?;
+            compare(&x, time, dof, same_within, &Interrupt::none())?
+        }
+        outcome => outcome?,
+    };
     if !found.same && found.status == Status::Ok {
         hooks.log(
             LogLevel::Warn,
@@ -149,7 +157,13 @@ fn times(highest: usize) -> usize {
     (TIMES_PER_WAVE * (highest + 1)).next_power_of_two().max(FEWEST_TIMES)
 }
 
-fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) -> Result<Verification> {
+fn compare(
+    x: &[Complex64],
+    time: TimeResponse,
+    dof: usize,
+    same_within: f64,
+    interrupt: &Interrupt<'_>,
+) -> Result<Verification> {
     const CONTEXT: &str = "the comparison with the motion in time";
     let (ndof, count) = (time.ndof, time.harmonics.len() / time.ndof);
     let mut errors = try_vec(count, 0.0, CONTEXT)?;
@@ -163,7 +177,7 @@ fn compare(x: &[Complex64], time: TimeResponse, dof: usize, same_within: f64) ->
         square += weight * y.iter().map(Complex64::norm_sqr).sum::<f64>();
     }
     let series = Series::new(time.samples.len() / ndof)?;
-    let part_above = series.part_above(&time);
+    let part_above = series.part_above(&time, interrupt)?;
     let whole = (square + part_above * part_above).sqrt();
     for error in &mut errors {
         *error = over(*error, whole);
@@ -228,14 +242,19 @@ impl Series {
 
     /// Root mean square of the part of the motion in time above H. It is computed from the differences themselves,
     /// because a difference of squares would lose half the digits.
-    fn part_above(&self, time: &TimeResponse) -> f64 {
+    fn part_above(&self, time: &TimeResponse, interrupt: &Interrupt<'_>) -> Result<f64> {
+        if time.harmonics.iter().any(|x| x.is_nan()) {
+            // No period was recorded.
+            return Ok(f64::NAN);
+        }
         let mut square = 0.0;
         for (i, samples) in time.samples.chunks_exact(time.ndof).enumerate() {
+            interrupt.check_before(4 * time.harmonics.len() as u64)?;
             for (dof, x) in samples.iter().enumerate() {
                 square += (x - self.at(&time.harmonics, time.ndof, dof, i)).powi(2);
             }
         }
-        (square / self.turns.len() as f64).sqrt()
+        Ok((square / self.turns.len() as f64).sqrt())
     }
 
     /// Largest displacements of a degree of freedom over the period, of the point and in time.

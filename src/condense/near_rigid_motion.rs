@@ -46,7 +46,7 @@ pub fn correct(
     let rows = &condensed.blocks()[i].rows;
     let (n, order) = (x.len(), 2 * rigid.len());
     let columns = workspace.contact_columns(condensed, i, omega, interrupt)?;
-    let mut system = LeastSquares::new(order)?;
+    let mut system = LeastSquares::new(order, interrupt)?;
     let mut lambda = try_vec(order, 0.0, CONTEXT)?;
     let mut last = f64::INFINITY;
     let mut before = try_vec(n, Complex64::ZERO, CONTEXT)?;

@@ -73,15 +73,28 @@ const UNBALANCED: f64 = 1e-2;
 /// `NoConvergence` if every method failed, or the failure of a law if that was the cause; `Singular` if the linear
 /// structure has no solution; those of the problem; `StoppedByCaller`.
 pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interrupt<'_>) -> Result<First> {
+    solve_within(problem, settings, MAX_HOMOTOPY_POINTS, interrupt)
+}
+
+/// The same by homotopies of so many points at most.
+///
+/// # Errors
+/// Those of [`solve`].
+pub fn solve_within(
+    problem: &mut dyn Problem,
+    settings: &Settings,
+    most_points: usize,
+    interrupt: &Interrupt<'_>,
+) -> Result<First> {
     let mut corrector = Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?;
-    let mut first = try_each_way(problem, settings, &mut corrector, interrupt)?;
+    let mut first = try_each_way(problem, (settings, most_points), &mut corrector, interrupt)?;
     first.point.iterations = corrector.steps_taken();
     Ok(first)
 }
 
 fn try_each_way(
     problem: &mut dyn Problem,
-    settings: &Settings,
+    (settings, most_points): (&Settings, usize),
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
 ) -> Result<First> {
@@ -113,7 +126,7 @@ fn try_each_way(
         }
         // The homotopy is more reliable than a poorer initial guess.
         if let Some(u) = &homotopy_guess {
-            let reached = homotopy(problem, settings, u, corrector, interrupt);
+            let reached = homotopy(problem, (settings, most_points), u, corrector, interrupt);
             if let Some(first) = attempt(reached, None, &mut failure)? {
                 return Ok(first);
             }
@@ -121,7 +134,7 @@ fn try_each_way(
         }
     }
     if problem.is_bounded() {
-        let reached = try_anchors(problem, settings, corrector, interrupt);
+        let reached = try_anchors(problem, (settings, most_points), corrector, interrupt);
         if let Some(first) = attempt(reached, None, &mut failure)? {
             return Ok(first);
         }
@@ -164,7 +177,7 @@ fn at_fixed(
 /// Follows the problem's homotopy, from near `u` to the given problem.
 fn homotopy(
     problem: &mut dyn Problem,
-    settings: &Settings,
+    (settings, most_points): (&Settings, usize),
     u: &[f64],
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
@@ -178,7 +191,7 @@ fn homotopy(
         steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
-    let reached = follow(&mut *homotopy.problem, &path, u, corrector, interrupt);
+    let reached = follow(&mut *homotopy.problem, (&path, most_points), u, corrector, interrupt);
     drop(homotopy);
     let Reached::End(v) = reached? else { return Ok(None) };
     finish(problem, settings, v, Way::Homotopy, corrector, interrupt)
@@ -217,7 +230,7 @@ const ANCHORS: [(InitialGuess, f64); 3] = [
 /// Tries homotopies from one anchor after the other.
 fn try_anchors(
     problem: &mut dyn Problem,
-    settings: &Settings,
+    (settings, most_points): (&Settings, usize),
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<First>> {
@@ -237,7 +250,7 @@ fn try_anchors(
             *a *= factor;
         }
         let mut homotopy = NewtonHomotopy::new(problem, p, &anchor)?;
-        let reached = match follow(&mut homotopy, &path, &anchor, corrector, interrupt) {
+        let reached = match follow(&mut homotopy, (&path, most_points), &anchor, corrector, interrupt) {
             Err(e) if e.recoverable => Reached::Nothing,
             reached => reached?,
         };
@@ -278,7 +291,7 @@ enum Reached {
 /// Follows a homotopy.
 fn follow(
     problem: &mut dyn Problem,
-    settings: &Settings,
+    (settings, most_points): (&Settings, usize),
     u: &[f64],
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
@@ -291,7 +304,7 @@ fn follow(
     let left = |v: &[f64]| (settings.end - v[v.len() - 1]).abs();
     let mut nearest = try_copy(&v, CONTEXT)?;
     let mut continuation = Continuation::new(*settings, Point::new(v, corrected, 0.0))?;
-    for _ in 0..MAX_HOMOTOPY_POINTS {
+    for _ in 0..most_points {
         match continuation.advance(problem, interrupt)? {
             Advance::Accepted { point, last: true } => {
                 corrector.count_steps(continuation.steps_taken());

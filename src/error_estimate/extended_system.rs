@@ -129,6 +129,12 @@ impl<P: Problem> ExtendedSystem<P> {
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
     }
 
+    /// Bytes of the system.
+    pub fn bytes(&self) -> f64 {
+        let (packed, pairs) = self.factored_numbers();
+        self.sizes.bytes(packed, pairs)
+    }
+
     /// The work that is left.
     pub fn work(&self) -> Work {
         self.work

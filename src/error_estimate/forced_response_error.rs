@@ -292,6 +292,9 @@ impl<'a> ForcedEstimator<'a> {
         }
         let compliant = set.numbers().partition_point(|&h| h <= extent.core);
         let factored = factored(&sizes, compliant, &work);
+        let packed = sizes.packed().min(2.0 * factored.block as f64);
+        let pairs = factored.each.saturating_sub(factored.block) as f64;
+        self.forget_beside(slot, sizes.bytes(packed, pairs), &work);
         let kept = self.extended.iter().position(|(kept, _)| *kept == slot);
         let mut system = if let Some(kept) = kept {
             let (_, mut system) = self.extended.swap_remove(kept);
@@ -326,6 +329,18 @@ impl<'a> ForcedEstimator<'a> {
         }
         try_push(&mut self.extended, (slot, system), CONTEXT)?;
         Ok((found?, left))
+    }
+
+    /// Forgets the oldest of the extended problems that do not fit into the memory of an estimate beside that of a slot.
+    fn forget_beside(&mut self, slot: usize, of_slot: f64, work: &Work) {
+        let bytes = |(kept, system): &(usize, ExtendedSystem<HarmonicBalance<'a>>)| {
+            if *kept == slot { 0.0 } else { system.bytes() }
+        };
+        while !work.fits(of_slot + self.extended.iter().map(bytes).sum::<f64>())
+            && let Some(oldest) = self.extended.iter().position(|(kept, _)| *kept != slot)
+        {
+            self.extended.remove(oldest);
+        }
     }
 }
 

@@ -21,12 +21,12 @@ impl LeastSquares {
     /// Memory for systems of order `n`.
     ///
     /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(n: usize) -> Result<Self> {
+    /// `OutOfMemory`, `StoppedByCaller`.
+    pub fn new(n: usize, interrupt: &Interrupt<'_>) -> Result<Self> {
         const CONTEXT: &str = "a least-squares problem";
         Ok(Self {
             n,
-            a: try_vec(n.saturating_mul(n), 0.0, CONTEXT)?,
+            a: interrupt.zeros(n.saturating_mul(n), CONTEXT)?,
             order: try_vec(n, 0, CONTEXT)?,
             lengths: try_vec(n, 0.0, CONTEXT)?,
             solution: try_vec(n, 0.0, CONTEXT)?,
@@ -148,7 +148,7 @@ mod tests {
         let x: Vec<f64> = (0..n).map(|k| (k as f64 + 0.5).cos()).collect();
         let times =
             |a: &[f64], x: &[f64]| -> Vec<f64> { (0..n).map(|i| (0..n).map(|j| a[j * n + i] * x[j]).sum()).collect() };
-        let mut system = LeastSquares::new(n).unwrap();
+        let mut system = LeastSquares::new(n, &Interrupt::none()).unwrap();
         system.matrix().copy_from_slice(&a);
         let mut b = times(&a, &x);
         assert_eq!(system.solve(&mut b, 1e-12, &Interrupt::none()).unwrap(), n);

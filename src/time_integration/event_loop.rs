@@ -3,7 +3,7 @@
 
 use crate::contact::time_piece::{Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
-use crate::interrupt::Phase;
+use crate::interrupt::{Interrupt, Phase};
 use crate::time_integration::event_law::{Element, along};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::implicit_step::Implicit;
@@ -71,10 +71,10 @@ pub(super) struct Sensitivity {
 
 impl Sensitivity {
     /// Memory for the states of `system`.
-    pub fn new(state: &State) -> Result<Self> {
+    pub fn new(state: &State, interrupt: &Interrupt<'_>) -> Result<Self> {
         let m = state.len();
         Ok(Self {
-            columns: try_vec(m.saturating_mul(m), 0.0, "the monodromy matrix")?,
+            columns: interrupt.zeros(m.saturating_mul(m), "the monodromy matrix")?,
         })
     }
 }

@@ -193,9 +193,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         let m = self.state.len();
         let interrupt = self.system.interrupt;
         interrupt.check()?;
-        let mut sensitivity = Sensitivity::new(&self.state)?;
-        interrupt.check()?;
-        let mut equations = LeastSquares::new(m)?;
+        let mut sensitivity = Sensitivity::new(&self.state, interrupt)?;
+        let mut equations = LeastSquares::new(m, interrupt)?;
         let mut step = try_vec(m, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
         for _ in 0..MOST_ITERATIONS {

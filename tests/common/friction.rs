@@ -7,6 +7,7 @@ use hbvib::contact::Piece;
 use hbvib::contact::laws::friction_2d::Friction2d;
 use hbvib::contact::piece::CoupledPiece;
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 pub fn evaluate(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluation {
@@ -16,7 +17,7 @@ pub fn evaluate(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> Evaluati
 pub fn pieces(law: &Friction2d, set: &HarmonicSet, motion: &[f64]) -> (Evaluation, Vec<CoupledPiece>, Vec<Piece>) {
     let mut out = Evaluation::new(set, 2).unwrap();
     let mut way = VaryingNormalLoadEvaluator::new(set).unwrap();
-    way.evaluate(law, set, motion, &mut out);
+    way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
     (out, way.tangential().to_vec(), way.normal().to_vec())
 }
 

@@ -19,6 +19,7 @@ pub mod programs;
 pub mod refusal;
 pub mod rest;
 pub mod stencil;
+pub mod stopping;
 
 use hbvib::analysis::forced_response::forced_response;
 use hbvib::contact::Contact;
@@ -32,6 +33,7 @@ use num_complex::Complex64;
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 /// Degrees of freedom of a sector with its ring, in the order of the reference data.
 pub const B2: usize = 0;
@@ -345,4 +347,12 @@ pub fn one_mass(damping: f64, contact: &Contact, force: f64) -> Model {
     model.add_contact(contact).unwrap();
     model.add_force(0, 1, force.into()).unwrap();
     model
+}
+
+/// Processor time of this thread where the system reports it (Linux), else the time of a clock: a busy machine then
+/// counts as a slow one.
+pub fn processor_time(begin: Instant) -> Duration {
+    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let busy = stat.and_then(|text| text.split_whitespace().next()?.parse().ok());
+    busy.map_or_else(|| begin.elapsed(), Duration::from_nanos)
 }

@@ -8,6 +8,7 @@ use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::samples::Samples;
 use hbvib::error::{Error, Status};
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -56,7 +57,9 @@ pub fn evaluate_with(
 ) -> Evaluation {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
     let mut evaluator = MemorylessEvaluator::new(set, law, samples).unwrap();
-    evaluator.evaluate(law, set, omega, motion, &mut out).unwrap();
+    evaluator
+        .evaluate(law, set, (omega, motion), &mut out, &Interrupt::none())
+        .unwrap();
     out
 }
 

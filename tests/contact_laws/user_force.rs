@@ -9,6 +9,7 @@ use hbvib::contact::laws::user_law::{Call, User, UserForce};
 use hbvib::contact::samples::automatic_samples;
 use hbvib::error::Status;
 use hbvib::fourier::HarmonicSet;
+use hbvib::interrupt::Interrupt;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
@@ -21,7 +22,9 @@ fn a_callback_gives_the_harmonics_of_dense_sampling_and_is_called_once_per_perio
     let mut out = Evaluation::new(&set, 2).unwrap();
     let mut evaluator = MemorylessEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
     for _ in 0..3 {
-        evaluator.evaluate(&law, &set, omega, &x, &mut out).unwrap();
+        evaluator
+            .evaluate(&law, &set, (omega, &x), &mut out, &Interrupt::none())
+            .unwrap();
     }
     assert_eq!(force.calls.load(Ordering::Relaxed), 3);
     let many = User {
@@ -125,7 +128,9 @@ fn failures_of_a_callback_keep_its_code_and_name_the_place() {
         let law = User::new(Arc::new(force), 2, 0).unwrap();
         let mut out = Evaluation::new(&set, 2).unwrap();
         let mut evaluator = MemorylessEvaluator::new(&set, &law, law.samples(set.highest_reduced(), 0)).unwrap();
-        evaluator.evaluate(&law, &set, 1.0, x, &mut out).map(|()| out)
+        evaluator
+            .evaluate(&law, &set, (1.0, x), &mut out, &Interrupt::none())
+            .map(|()| out)
     };
     let error = |force: Failing| answer(force, &x).expect_err("a failure");
     let e = error(Failing { code: 7, ..fine });

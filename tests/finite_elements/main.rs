@@ -30,4 +30,5 @@ mod table;
 mod fe_input;
 mod fe_modes;
 mod fe_sector;
+mod fe_stops;
 mod friction_patch;

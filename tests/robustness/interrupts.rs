@@ -3,6 +3,8 @@
 //! Tests of the suite count the checks of the interrupt, which no busy machine changes; timings are printed. The test
 //! with limits on them is run by tests/deep.sh.
 
+use crate::common::laws;
+use crate::common::stopping::{Analysis, Lateness, of_branch, of_call, random, stop_when};
 use hbvib::contact::Contact;
 use hbvib::error::{Result, Status};
 use hbvib::hooks::Hooks;
@@ -18,8 +20,8 @@ use hbvib::{
     forced_residual_with, forced_response, nonlinear_mode, synthesise_with, time_response, verify,
 };
 use num_complex::Complex64;
-use std::cell::{Cell, RefCell};
-use std::time::{Duration, Instant};
+use std::cell::RefCell;
+use std::time::Duration;
 
 /// A structure for all analyses: a chain with friction at its first masses, whose matrices are full or sparse.
 struct Case {
@@ -102,35 +104,6 @@ impl Case {
         nonlinear_mode(&self.model, &self.fixed(), &range, hooks)
     }
 }
-
-/// Status of a branch whose arrays agree with its points.
-fn of_branch(branch: Result<Branch>) -> Result<Status> {
-    let branch = branch?;
-    let points = branch.points();
-    assert_eq!(
-        (branch.omega().len(), branch.amplitude().len(), branch.residual().len()),
-        (points, points, points)
-    );
-    assert!(branch.omega().iter().chain(branch.amplitude()).all(|x| x.is_finite()));
-    assert!(
-        branch
-            .peaks()
-            .iter()
-            .all(|p| p.point >= points && p.point < branch.stored())
-    );
-    Ok(branch.status())
-}
-
-/// Status of a call that has nothing to keep.
-fn of_call<T>(outcome: Result<T>) -> Result<Status> {
-    match outcome.map(drop) {
-        Ok(()) => Ok(Status::Ok),
-        Err(e) if e.status == Status::StoppedByCaller => Ok(e.status),
-        Err(e) => Err(e),
-    }
-}
-
-type Analysis<'a> = (&'static str, Box<dyn Fn(&mut Hooks<'_>) -> Result<Status> + 'a>);
 
 /// Every analysis of a case; `solved` is a branch with the first harmonics at one frequency, `mode` a short mode.
 #[allow(clippy::too_many_lines, reason = "one list of all analyses")]
@@ -247,80 +220,6 @@ fn analyses<'a>(case: &'a Case, solved: &'a Branch, mode: &'a Branch) -> Vec<Ana
     ]
 }
 
-/// A run that is stopped: the checks until then, the time from the stop to the return, the widest gap between checks,
-/// and the phase at the end.
-struct Stopped {
-    status: Status,
-    checks: u64,
-    late: Option<Duration>,
-    widest: Duration,
-    phase: Option<Phase>,
-}
-
-/// Runs an analysis and stops it at the first check at which `now(checks, elapsed)` says so.
-fn stop_when(analysis: &Analysis<'_>, now: impl Fn(u64, Duration) -> bool) -> Stopped {
-    let start = Instant::now();
-    let begin = spent(start);
-    let (checks, last, widest) = (Cell::new(0), Cell::new(begin), Cell::new(Duration::ZERO));
-    let stopped: Cell<Option<Duration>> = Cell::new(None);
-    let phase = Cell::new(None);
-    let cancelled = || {
-        assert!(stopped.get().is_none(), "{}: asked again after the stop", analysis.0);
-        let time = spent(start);
-        if phase.get() != Some(Phase::Factorisation) {
-            widest.set(widest.get().max(time.saturating_sub(last.get())));
-        }
-        last.set(time);
-        checks.set(checks.get() + 1);
-        let stop = now(checks.get(), time.saturating_sub(begin));
-        stopped.set(stop.then_some(time));
-        stop
-    };
-    let sink = |report: &PhaseReport| {
-        assert!(stopped.get().is_none(), "{}: reported after the stop", analysis.0);
-        assert!(report.share >= 0.0 && report.share <= 1.0 + 1e-12, "{report:?}");
-        phase.set(Some(report.phase));
-        false
-    };
-    let mut hooks = Hooks {
-        cancelled: Some(&cancelled),
-        phase: Some(&sink),
-        ..Hooks::default()
-    };
-    let status = (analysis.1)(&mut hooks).unwrap();
-    let end = spent(start);
-    let late = stopped.get().map(|at| end.saturating_sub(at));
-    assert_eq!(
-        status == Status::StoppedByCaller,
-        late.is_some(),
-        "{}: {status:?}",
-        analysis.0
-    );
-    Stopped {
-        status,
-        checks: checks.get(),
-        late,
-        widest: widest.get(),
-        phase: phase.get(),
-    }
-}
-
-/// Processor time of this thread where the system reports it (Linux), else the time of a clock: a busy machine then
-/// counts as a slow one.
-fn spent(begin: Instant) -> Duration {
-    let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let busy = stat.and_then(|text| text.split_whitespace().next()?.parse().ok());
-    busy.map_or_else(|| begin.elapsed(), Duration::from_nanos)
-}
-
-/// Numbers in 0 .. 1 (Marsaglia's xorshift, doi:10.18637/jss.v008.i14).
-fn random(state: &mut u64) -> f64 {
-    *state ^= *state << 13;
-    *state ^= *state >> 7;
-    *state ^= *state << 17;
-    (*state >> 11) as f64 / (1_u64 << 53) as f64
-}
-
 /// A branch of one point, and a mode of a few, of a case.
 fn solved(case: &Case) -> (Branch, Branch) {
     let branch = case.forced(&case.fixed(), (0.9, 0.9), &mut Hooks::default()).unwrap();
@@ -400,6 +299,36 @@ fn no_step_of_a_large_structure_is_long() {
     }
 }
 
+/// A law of the caller is called for a whole period at a time, which is not interrupted; its harmonics and derivatives are.
+#[test]
+fn one_evaluation_of_a_law_with_many_harmonics_is_checked() {
+    const HIGHEST: usize = 100;
+    for case in laws::cases() {
+        let directions = case.contact.directions();
+        let signal = (0..directions * (HIGHEST + 1)).map(|i| {
+            let h = i % (HIGHEST + 1);
+            Complex64::cis(i as f64) / (1 + h * h) as f64
+        });
+        let signal: Vec<Complex64> = signal.collect();
+        let mut force = vec![Complex64::ZERO; signal.len()];
+        let mut jacobian = vec![0.0; 4 * signal.len() * signal.len()];
+        let interrupt = Interrupt::none();
+        let at = (HIGHEST, 0, case.omega);
+        contact_evaluate_with(&case.contact, at, &signal, &mut force, Some(&mut jacobian), &interrupt).unwrap();
+        println!(
+            "{}: {} checks, at most {} operations between them",
+            case.name,
+            interrupt.checks(),
+            interrupt.largest()
+        );
+        assert!(
+            interrupt.checks() > 0 && interrupt.largest() <= MOST_OPERATIONS,
+            "{}",
+            case.name
+        );
+    }
+}
+
 #[test]
 fn phases_are_reported_apart_from_points_and_may_stop_a_run() {
     let case = Case::chain("sparse", 300, 4, false);
@@ -459,40 +388,16 @@ fn phases_are_reported_apart_from_points_and_may_stop_a_run() {
 #[test]
 #[ignore = "minutes: limits on times, for tests/deep.sh"]
 fn every_analysis_of_the_largest_models_returns_within_a_tenth_of_a_second() {
-    const LIMIT: Duration = Duration::from_millis(100);
-    const LONGEST: f64 = 10.0;
     let mut state = 0xd1ce;
-    let (mut all, mut slow) = (0, 0);
+    let mut all = Lateness::default();
     for case in [
         Case::chain("full", 600, 40, true),
         Case::chain("sparse", 2000, 20, false),
     ] {
         let (branch, mode) = solved(&case);
         for analysis in analyses(&case, &branch, &mode) {
-            let begin = Instant::now();
-            stop_when(&analysis, |_, elapsed| elapsed.as_secs_f64() > LONGEST);
-            let whole = begin.elapsed().as_secs_f64();
-            for _ in 0..4 {
-                let at = Duration::from_secs_f64(whole.min(LONGEST) * random(&mut state));
-                let run = stop_when(&analysis, |_, elapsed| elapsed >= at);
-                // The check itself comes late by the gap since the last one.
-                let late = run.late.unwrap_or_default() + run.widest;
-                println!(
-                    "{:7} {:19} stopped at {:7.2?} in {:?}: back after {:7.2?}, widest gap {:7.2?}",
-                    case.name,
-                    analysis.0,
-                    at,
-                    run.phase,
-                    run.late.unwrap_or_default(),
-                    run.widest
-                );
-                let announced = run.phase == Some(Phase::Factorisation);
-                assert!(announced || late < Duration::from_secs(1), "{}", analysis.0);
-                all += 1;
-                slow += usize::from(!announced && late > LIMIT);
-            }
+            all.add(case.name, &analysis, 4, &mut state);
         }
     }
-    println!("{slow} of {all} later than {LIMIT:?}");
-    assert!(20 * slow <= all);
+    all.check();
 }

@@ -11,4 +11,5 @@ mod hard_sweeps;
 mod interrupts;
 mod linear_stretches;
 mod near_rigid;
+mod random_points;
 mod random_problems;

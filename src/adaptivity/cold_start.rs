@@ -1,0 +1,49 @@
+//! A second start of a branch with more harmonics, where its first point misses the tolerance and leads to none that meets
+//! it: with few harmonics the equations may have a solution far from those with many.
+
+use crate::adaptivity::branch_tracer::BranchTracer;
+use crate::adaptivity::controller::Refined;
+use crate::adaptivity::discretised::Traceable;
+use crate::continuation::{Point, initial_point};
+use crate::error::{Result, Status};
+use crate::interrupt::Phase;
+
+/// Most starts, each with at least twice the harmonics of the one before.
+const MOST_STARTS: usize = 3;
+
+/// Most points of a homotopy to such a start.
+const MOST_POINTS: usize = 100;
+
+impl BranchTracer<'_> {
+    /// The first point with the harmonics that its error requires.
+    pub(super) fn refine_first(&mut self, analysis: &mut dyn Traceable, first: Point) -> Result<Point> {
+        let Refined { mut point, mut stuck } = self.controller.refine(analysis, first, true, self.interrupt)?;
+        for _ in 0..MOST_STARTS {
+            let from = analysis.resolution();
+            let levels = analysis.levels();
+            let few = self.course.starts_again.is_some_and(|most| from <= levels.first(most));
+            if !stuck || !few {
+                break;
+            }
+            let to = levels.level_of_double(from).max(from + 1).min(levels.last());
+            if to <= from {
+                break;
+            }
+            analysis.select(to)?;
+            self.interrupt.phase(Phase::FirstPoint, 0.0)?;
+            match initial_point::solve_within(analysis.problem(), &self.course.settings, MOST_POINTS, self.interrupt) {
+                Ok(start) => {
+                    let refined = self.controller.refine(analysis, start.point, true, self.interrupt)?;
+                    (point, stuck) = (refined.point, refined.stuck);
+                }
+                Err(e) if e.recoverable || e.status == Status::NoConvergence => {
+                    // The point and its estimate are those of the resolution before.
+                    analysis.select(from)?;
+                    break;
+                }
+                Err(e) => return Err(e),
+            }
+        }
+        Ok(point)
+    }
+}
