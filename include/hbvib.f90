@@ -1090,6 +1090,8 @@ module hbvib
       type(c_ptr) :: handle = c_null_ptr
    contains
       procedure :: new => model_new
+      procedure :: from_sector => model_from_sector
+      procedure :: fix => model_fix
       procedure :: clone => model_clone
       procedure :: free => model_free
       procedure :: dofs => model_dofs
@@ -1377,6 +1379,68 @@ contains
          status = hbvib_model_new(int(ndof, i64), self%handle)
       end if
    end function model_new
+
+   !> A cyclic structure from one sector with degrees of freedom on both faces: left(:, :) and right(:, :), one column per node,
+   !> from 1, 0 where a component is missing. fixed: degrees of freedom that do not move. frame: HBVIB_CARTESIAN, the default,
+   !> or HBVIB_CYLINDRICAL. axis: 0 0 1 by default. direction: 1, the default, or -1. coordinates(3, pairs, 2): positions of the
+   !> nodes of both faces, which are then checked.
+   function model_from_sector(self, ndof, sectors, engine_order, left, right, fixed, frame, axis, direction, coordinates) &
+      result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: ndof, sectors, engine_order
+      integer, intent(in) :: left(:, :), right(:, :)
+      integer, intent(in), optional :: fixed(:)
+      integer(i32), intent(in), optional :: frame
+      real(dp), intent(in), optional :: axis(3)
+      integer, intent(in), optional :: direction
+      real(dp), intent(in), optional :: coordinates(:, :, :)
+      integer(i32) :: status
+      type(hbvib_sector) :: description
+      integer(i64), allocatable, target :: left_dofs(:), right_dofs(:), fixed_dofs(:)
+      real(dp), allocatable, target :: left_nodes(:), right_nodes(:)
+      status = self%free()
+      if (status == HBVIB_E_BUSY) return
+      status = hbvib_sector_init(description, c_sizeof(description))
+      if (status /= HBVIB_OK) return
+      left_dofs = [int(left, i64) - 1_i64]
+      right_dofs = [int(right, i64) - 1_i64]
+      fixed_dofs = [integer(i64) ::]
+      if (present(fixed)) fixed_dofs = int(fixed, i64) - 1_i64
+      description%ndof = int(ndof, i64)
+      description%sectors = int(sectors, i64)
+      description%engine_order = int(engine_order, i64)
+      description%components = int(size(left, 1), i64)
+      description%left_len = size(left_dofs, kind=i64)
+      description%right_len = size(right_dofs, kind=i64)
+      description%fixed_len = size(fixed_dofs, kind=i64)
+      if (size(left_dofs) > 0) description%left = c_loc(left_dofs)
+      if (size(right_dofs) > 0) description%right = c_loc(right_dofs)
+      if (size(fixed_dofs) > 0) description%fixed = c_loc(fixed_dofs)
+      if (present(frame)) description%frame = frame
+      if (present(axis)) description%axis = axis
+      if (present(direction)) description%direction = int(direction, i32)
+      if (present(coordinates)) then
+         if (any(shape(coordinates) /= [3, size(left, 2), 2])) then
+            status = HBVIB_E_DIMENSION
+            return
+         end if
+         left_nodes = [coordinates(:, :, 1)]
+         right_nodes = [coordinates(:, :, 2)]
+         description%left_coordinates = c_loc(left_nodes)
+         description%right_coordinates = c_loc(right_nodes)
+      end if
+      status = hbvib_cyclic_from_sector(description, self%handle)
+   end function model_from_sector
+
+   !> Fixes degrees of freedom, now or before matrices are set; their numbers stay.
+   function model_fix(self, dofs) result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: dofs(:)
+      integer(i32) :: status
+      integer(i64), allocatable :: fixed(:)
+      fixed = int(dofs, i64) - 1_i64
+      status = hbvib_model_fix(self%handle, size(fixed, kind=i64), fixed)
+   end function model_fix
 
    !> copy becomes a model of its own.
    function model_clone(self, copy) result(status)

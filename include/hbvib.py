@@ -1113,7 +1113,8 @@ def _law(caller: str, kind: Any, constants: dict) -> Any:
 
 
 class Model(_Owner):
-    """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors.
+    """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
+    sector with both faces.
 
     ndof       degrees of freedom; may be left out where a matrix is given.
     mass, damping, stiffness   ndof x ndof matrices, symmetric or Hermitian: arrays, scipy.sparse, or a number for
@@ -1137,6 +1138,49 @@ class Model(_Owner):
         model = cls.__new__(cls)
         model._create(sectors, ndof, dict(mass=mass, damping=damping, stiffness=stiffness), coupling or {}, rayleigh)
         model.set_wave(engine_order)
+        return model
+
+    @classmethod
+    def sector(cls, *, stiffness: Any, mass: Any, damping: Any = None, sectors: int, engine_order: int,
+               left: ArrayLike, right: ArrayLike, fixed: ArrayLike = (), frame: Any = "cartesian",
+               axis: ArrayLike = (0, 0, 1), direction: int = 1, coordinates: Any = None) -> Model:
+        """A wheel from one sector with both faces, as a finite-element program writes it. The numbering of the sector
+        is kept for matrices, contacts, forces and results; its couplings follow from its matrices.
+
+        stiffness, mass, damping   matrices of the sector, with the degrees of freedom of both faces.
+        left, right   degrees of freedom of both faces, of equal shape: (pairs, 3) x, y, z, or (pairs, 6) with
+                      rotations, in a Cartesian frame, any shape in a cylindrical one; -1 where a component is missing.
+        fixed         degrees of freedom that do not move.
+        frame         "cartesian": the axes of both faces are equal; "cylindrical": any frame that turns with the
+                      sector, as r, theta, z at each node.
+        axis          of the wheel, through the origin.
+        direction     1 or -1: sense about the axis in which sector s + 1 follows s. The wave has its sense from the
+                      sign of engine_order.
+        coordinates   (left, right), Cartesian positions of the nodes, (pairs, 3) each, which are then checked."""
+        faces = [_array(name, face, np.int64) for name, face in (("left", left), ("right", right))]
+        for name, face in zip(("left", "right"), faces):
+            if face.ndim not in (1, 2):
+                raise ValueError(f"{name} has shape {face.shape}, needs (pairs, components)")
+        if faces[0].ndim == faces[1].ndim == 2 and faces[0].shape[1] != faces[1].shape[1]:
+            raise ValueError(f"left has shape {faces[0].shape}, right {faces[1].shape}: needs equal shapes")
+        components = faces[0].shape[1] if faces[0].ndim == 2 else 1
+        places = dict.fromkeys(("left_coordinates", "right_coordinates"))
+        if coordinates is not None:
+            for name, face, positions in zip(places, faces, coordinates):
+                places[name] = _array(name, positions, np.float64, [len(face), 3])
+        still = _array("fixed", fixed if np.size(fixed) else np.empty(0, np.int64), np.int64).ravel()
+        ndof = (*np.shape(stiffness), 1)[0]
+        description = _new("hbvib_sector", frame=_member(SectorFrame, frame), ndof=ndof, sectors=sectors,
+                           engine_order=engine_order, components=components, left=faces[0], left_len=faces[0].size,
+                           right=faces[1], right_len=faces[1].size, fixed=still, fixed_len=still.size, axis=axis,
+                           direction=direction, **places)
+        model, handle = cls.__new__(cls), ctypes.c_void_p()
+        model._handle = None
+        _call("hbvib_cyclic_from_sector", description, handle)
+        model._handle, model._kept = handle.value, []
+        for kind, value in (("stiffness", stiffness), ("mass", mass), ("damping", damping)):
+            if value is not None:
+                model.set_matrix(kind, value)
         return model
 
     def _create(self, sectors: Any, ndof: Any, matrices: dict, coupling: dict, rayleigh: Any) -> None:
@@ -1206,6 +1250,12 @@ class Model(_Owner):
         part   "full": symmetric or Hermitian, which is checked; "lower", "upper": that triangle of such a one, the
                rest is not read; "general": any, for damping and stiffness."""
         self._call("hbvib_model_set_matrix", _member(MatrixKind, which), _matrix(matrix, part))
+
+    def fix(self, dofs: ArrayLike) -> None:
+        """Fixes degrees of freedom: they do not move, whatever matrices, contacts and forces say. Numbers stay as
+        they are; pairs on the faces of a sector are fixed together."""
+        still = _array("dofs", dofs if np.size(dofs) else np.empty(0, np.int64), np.int64).ravel()
+        self._call("hbvib_model_fix", still.size, still)
 
     def set_rayleigh(self, alpha_mass: float, beta_stiffness: float) -> None:
         """Adds alpha_mass M + beta_stiffness K to the damping (1 / time, time); replaces an earlier call."""

@@ -17,6 +17,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
+use crate::model::spring::along;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
@@ -86,7 +87,7 @@ fn follow(
         forced_dof_with_largest_motion(model, &resolution.condensed, omega, interrupt)?
     };
     let given = match range.guess {
-        Some(guess) => Some(relative_motion(resolution, model.ndof(), guess)?),
+        Some(guess) => Some(relative_motion(resolution, guess)?),
         None => None,
     };
     let settings = Settings {
@@ -227,17 +228,16 @@ fn forced_dof_with_largest_motion(
 ) -> Result<usize> {
     let set = condensed.set();
     let observed = set.numbers().iter().position(|&h| h > 0).unwrap_or(0);
-    let n = model.ndof();
-    let mut x = try_vec(n, Complex64::ZERO, "the response")?;
+    let mut x = try_vec(condensed.ndof(), Complex64::ZERO, "the response")?;
     let rest = try_vec(condensed.coordinates(), Complex64::ZERO, "the response")?;
     Workspace::new(condensed, None)?.recover(condensed, observed, omega, &rest, &mut x, interrupt)?;
     let mut best = 0;
-    let mut found = false;
+    let mut most = None;
     for force in model.excitation().forces() {
-        let moves_more = !found || x[force.dof].norm() > x[best].norm();
-        if force.value != Complex64::ZERO && moves_more {
+        let motion = along(&condensed.motion_row(observed, force.dof), &x).norm();
+        if force.value != Complex64::ZERO && most.is_none_or(|most| motion > most) {
             best = force.dof;
-            found = true;
+            most = Some(motion);
         }
     }
     Ok(best)

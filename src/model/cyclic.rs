@@ -62,11 +62,7 @@ impl Structure {
 
     /// e^{−2πi·residue/N}
     fn lag(&self, residue: usize) -> Complex64 {
-        let n = self.sectors();
-        match (4 * residue).checked_div(n) {
-            Some(q) if 4 * residue == q * n => [Complex64::ONE, -Complex64::I, -Complex64::ONE, Complex64::I][q % 4],
-            _ => Complex64::cis(-TAU * residue as f64 / n as f64),
-        }
+        lag(residue, self.sectors())
     }
 
     /// Whether a contact with this sector offset stays within one sector.
@@ -144,6 +140,14 @@ impl Structure {
             }
         }
         Ok(sum)
+    }
+}
+
+/// e^{−2πi·parts/sectors}, exact at quarter turns.
+pub(super) fn lag(parts: usize, sectors: usize) -> Complex64 {
+    match (4 * parts).checked_div(sectors) {
+        Some(q) if 4 * parts == q * sectors => [Complex64::ONE, -Complex64::I, -Complex64::ONE, Complex64::I][q % 4],
+        _ => Complex64::cis(-TAU * parts as f64 / sectors as f64),
     }
 }
 

@@ -2,7 +2,9 @@
 
 pub mod cyclic;
 pub mod damped_mode;
+pub mod degree_map;
 pub mod excitation;
+mod face_coordinates;
 pub mod full_wheel;
 pub mod linear_modes;
 mod mechanical_model;
@@ -10,6 +12,9 @@ pub mod mode_selection;
 mod model_checks;
 pub mod repeated_modes;
 pub mod resonances;
+pub mod sector_faces;
+mod sector_matrices;
+pub mod sector_motion;
 pub mod slip_capacity;
 pub mod spring;
 pub mod spring_stiffness;

@@ -21,7 +21,8 @@ impl Model {
         }
         self.check_list("dofs", &contact.dofs)?;
         for k in 0..contact.directions() {
-            self.check_sides("contact", &contact.direction(k), contact.sector_offset)?;
+            let node_b = contact.frame.map(|_| contact.dof_b);
+            self.check_sides("contact", &contact.direction(k), contact.sector_offset, node_b)?;
         }
         Ok(())
     }
@@ -69,8 +70,15 @@ impl Model {
         }
     }
 
-    /// Both sides of a contact or spring must exist and differ.
-    pub(super) fn check_sides(&self, what: &str, sides: &Direction, sector_offset: i64) -> Result<()> {
+    /// Both sides of a contact or spring must exist and differ; `node_b` is the node on side b of a contact with a
+    /// frame.
+    pub(super) fn check_sides(
+        &self,
+        what: &str,
+        sides: &Direction,
+        sector_offset: i64,
+        node_b: Option<[Option<usize>; 3]>,
+    ) -> Result<()> {
         let n = self.ndof();
         for (name, side) in [("dof_a", sides.a), ("dof_b", sides.b)] {
             if let Some((dof, _)) = side.into_iter().flatten().find(|&(d, _)| d >= n) {
@@ -96,7 +104,7 @@ impl Model {
                 "{what}: sector_offset = {sector_offset}, needs 0 in a plain structure"
             );
         }
-        Ok(())
+        self.structure().check_motion(what, sides, sector_offset, node_b)
     }
 }
 
