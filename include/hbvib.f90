@@ -48,6 +48,8 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_MASS = 0, HBVIB_DAMPING = 1, HBVIB_STIFFNESS = 2
    ! hbvib_special_dof
    integer(c_int32_t), parameter, public :: HBVIB_GROUND = -1
+   ! hbvib_sector_frame
+   integer(c_int32_t), parameter, public :: HBVIB_CARTESIAN = 0, HBVIB_CYLINDRICAL = 1
    ! hbvib_contact_kind
    integer(c_int32_t), parameter, public :: HBVIB_JENKINS = 1, HBVIB_FRICTION_2D = 2, HBVIB_FRICTION_3D = 3, &
       HBVIB_UNILATERAL = 4, HBVIB_CUBIC = 5, HBVIB_REGULARISED = 6
@@ -90,6 +92,21 @@ module hbvib
       type(c_ptr) :: values = c_null_ptr, col_ptr = c_null_ptr, row_idx = c_null_ptr
       integer(c_int32_t) :: index_base = 1, reserved = 0
    end type hbvib_matrix
+
+   !> A sector with degrees of freedom on both faces, as a finite-element program writes it.
+   type, bind(c) :: hbvib_sector
+      integer(c_int32_t) :: struct_size = 136, frame = 0
+      integer(c_int64_t) :: ndof = 0, sectors = 0, engine_order = 0, components = 3
+      type(c_ptr) :: left = c_null_ptr
+      integer(c_int64_t) :: left_len = 0
+      type(c_ptr) :: right = c_null_ptr
+      integer(c_int64_t) :: right_len = 0
+      type(c_ptr) :: fixed = c_null_ptr
+      integer(c_int64_t) :: fixed_len = 0
+      real(c_double) :: axis(3) = [0, 0, 1]
+      integer(c_int32_t) :: direction = 1, reserved = 0
+      type(c_ptr) :: left_coordinates = c_null_ptr, right_coordinates = c_null_ptr
+   end type hbvib_sector
 
    !> A contact between two degrees of freedom, or between one and the ground.
    type, bind(c) :: hbvib_contact
@@ -389,6 +406,14 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_model_set_matrix
 
+      function hbvib_model_fix(model, n, dofs) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: n
+         integer(c_int64_t), intent(in) :: dofs(*)
+         integer(c_int32_t) :: status
+      end function hbvib_model_fix
+
       function hbvib_model_set_rayleigh(model, alpha_mass, beta_stiffness) bind(c) result(status)
          import
          type(c_ptr), value :: model
@@ -458,6 +483,20 @@ module hbvib
          integer(c_int64_t), value :: engine_order
          integer(c_int32_t) :: status
       end function hbvib_cyclic_set_wave
+
+      function hbvib_sector_init(s, size_of_s) bind(c) result(status)
+         import
+         type(hbvib_sector), intent(inout) :: s
+         integer(c_size_t), value :: size_of_s
+         integer(c_int32_t) :: status
+      end function hbvib_sector_init
+
+      function hbvib_cyclic_from_sector(sector, out) bind(c) result(status)
+         import
+         type(hbvib_sector), intent(in) :: sector
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_cyclic_from_sector
 
       function hbvib_contact_init(c, size_of_c) bind(c) result(status)
          import

@@ -112,6 +112,12 @@ class MatrixKind(enum.IntEnum):
 GROUND = -1  #: The ground, which does not move.
 
 
+class SectorFrame(enum.IntEnum):
+    """Frame of the degrees of freedom of a sector with faces."""
+    CARTESIAN = 0  #: x, y and z of each node, and rotations about them: the axes of both faces are equal.
+    CYLINDRICAL = 1  #: Any frame that turns with the sector, as radius, circumference and axis at each node.
+
+
 class ContactKind(enum.IntEnum):
     """Contact laws."""
     #: Elastic Coulomb friction with constant normal load in one direction: a spring kt in series with a slider of limit
@@ -242,6 +248,9 @@ _VERSION = (0, 1)  # of the library that this module was written for
 _STRUCTS = """
 matrix: uint32 struct_size; int32 storage scalar part; int64 rows cols ld; pointer values col_ptr row_idx; int32
     index_base reserved
+sector: uint32 struct_size; int32 frame; int64 ndof sectors engine_order components; pointer left; int64 left_len;
+    pointer right; int64 right_len; pointer fixed; int64 fixed_len; double axis[3]; int32 direction reserved; pointer
+    left_coordinates right_coordinates
 contact: uint32 struct_size; int32 kind; int64 dof_a[3] dof_b[3] sector_offset; double kt kn mu preload gap cubic
     velocity normal[3] tangent[3]
 force_call: uint32 struct_size; int32 reserved; double omega; int64 samples n states; pointer u v z0 f df_du df_dv z
@@ -308,6 +317,7 @@ model_dofs: h -> int64
 model_sectors: h -> int64
 model_contacts: h -> int64
 model_set_matrix: h i matrix
+model_fix: h l p
 model_set_rayleigh: h d d
 model_add_springs: h l p p p p
 model_add_force: h l l d d
@@ -317,6 +327,8 @@ cyclic_set_coupling: h i matrix
 cyclic_set_coupling_previous: h i matrix
 cyclic_set_diameter: h i l matrix
 cyclic_set_wave: h l
+sector_init: sector z
+cyclic_from_sector: sector p
 contact_init: contact z
 model_add_contact: h contact p
 model_set_preload: h l d
@@ -404,6 +416,7 @@ if TYPE_CHECKING:
         def hbvib_model_sectors(self, model: Any) -> int: ...
         def hbvib_model_contacts(self, model: Any) -> int: ...
         def hbvib_model_set_matrix(self, model: Any, which: int, a: Any) -> int: ...
+        def hbvib_model_fix(self, model: Any, n: int, dofs: Any) -> int: ...
         def hbvib_model_set_rayleigh(self, model: Any, alpha_mass: float, beta_stiffness: float) -> int: ...
         def hbvib_model_add_springs(self, model: Any, n: int, dof_a: Any, dof_b: Any, sector_offset: Any, stiffness:
             Any) -> int: ...
@@ -414,6 +427,8 @@ if TYPE_CHECKING:
         def hbvib_cyclic_set_coupling_previous(self, model: Any, which: int, to_previous: Any) -> int: ...
         def hbvib_cyclic_set_diameter(self, model: Any, which: int, diameter: int, a: Any) -> int: ...
         def hbvib_cyclic_set_wave(self, model: Any, engine_order: int) -> int: ...
+        def hbvib_sector_init(self, s: Any, size_of_s: int) -> int: ...
+        def hbvib_cyclic_from_sector(self, sector: Any, out: Any) -> int: ...
         def hbvib_contact_init(self, c: Any, size_of_c: int) -> int: ...
         def hbvib_model_add_contact(self, model: Any, c: Any, id: Any) -> int: ...
         def hbvib_model_set_preload(self, model: Any, id: int, preload: float) -> int: ...

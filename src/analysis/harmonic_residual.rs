@@ -36,8 +36,7 @@ pub fn forced_residual(
     forced_residual_with(model, solver, omega, x, (r, jacobian, d_omega), &Interrupt::none())
 }
 
-/// Receivers of a residual, its Jacobian and its derivative by ω, see [`forced_residual`].
-pub type ResidualArrays<'a> = (&'a mut [Complex64], Option<&'a mut [f64]>, Option<&'a mut [Complex64]>);
+pub use crate::analysis::residual_numbering::ResidualArrays;
 
 /// The same as [`forced_residual`], and the caller may stop it: the arrays are then untouched or NaN.
 ///

@@ -3,12 +3,15 @@
 //! Rows of independent degrees of freedom hold the balance of forces; those of the others, fixed or on the right face
 //! of a sector, hold x − T q = 0, the motion that the independent ones impose.
 
-use crate::analysis::harmonic_residual::ResidualArrays;
 use crate::error::{Result, try_vec};
 use crate::model::Model;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the residual of the independent degrees of freedom";
+
+/// Receivers of a residual, its Jacobian and its derivative by ω, see
+/// [`forced_residual`](crate::analysis::forced_residual).
+pub type ResidualArrays<'a> = (&'a mut [Complex64], Option<&'a mut [f64]>, Option<&'a mut [Complex64]>);
 
 /// Memory for the residual of the independent degrees of freedom.
 pub(super) struct Numbering {

@@ -24,8 +24,8 @@ pub enum hbvib_sector_frame {
     HBVIB_CYLINDRICAL = 1,
 }
 
-/// A sector with degrees of freedom on both faces, as a finite-element program writes it. The right
-/// face of a sector is the left one of the next. Fill it by hbvib_sector_init, then set ndof,
+/// A sector with degrees of freedom on both faces, as a finite-element program writes it. The
+/// right face of a sector is the left one of the next. Fill it by hbvib_sector_init, then set ndof,
 /// sectors, engine_order and the faces.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -97,7 +97,7 @@ unsafe impl VersionedStruct for hbvib_sector {
     }
 }
 
-/// Fills the description of a sector: a Cartesian frame with 3 components per node about the z axis,
+/// Fills the description of a sector: a Cartesian frame with 3 components per node, the z axis,
 /// direction 1; ndof, sectors, engine_order and the faces must be set.
 ///
 /// s          the struct; untouched on error.
@@ -108,17 +108,18 @@ pub unsafe extern "C" fn hbvib_sector_init(s: *mut hbvib_sector, size_of_s: usiz
     call(|| unsafe { init(s, size_of_s) })
 }
 
-/// Creates a cyclic structure from a sector with faces: all matrices zero, no contact, no force. Its
-/// couplings follow from the matrices of the sector alone, which hbvib_model_set_matrix sets: K0 =
-/// T0^T K T0 + T1^T K T1 and K1 = T0^T K T1, where u = T0 q(s) + T1 q(s + 1) is the motion of sector
-/// s (Thomas 1979, doi:10.1002/nme.1620140107).
+/// Creates a cyclic structure from a sector with faces: all matrices zero, no contact, no force.
+/// Its couplings follow from the matrices of the sector alone, which hbvib_model_set_matrix sets:
+/// K0 = T0^T K T0 + T1^T K T1 and K1 = T0^T K T1, where u = T0 q(s) + T1 q(s + 1) is the motion of
+/// sector s (Thomas 1979, doi:10.1002/nme.1620140107).
 ///
-/// The numbering of the sector is kept for all that follows: matrices, contacts, forces, options and
-/// results. Fixed degrees of freedom have results 0; those on the right face move and are loaded
-/// with the phase of the next sector. In a Cartesian frame, side b of a contact in another sector is
-/// turned into the axes of side a; unless all nodes have consecutive degrees of freedom as those of
-/// the faces have, such a contact needs a normal, and x, y, z of both nodes. Superelements
-/// (Craig-Bampton) are sectors as well: their modal degrees of freedom are on no face.
+/// The numbering of the sector is kept for all that follows: matrices, contacts, forces, options
+/// and results. Fixed degrees of freedom have results 0; those on the right face move and are
+/// loaded with the phase of the next sector. In a Cartesian frame, side b of a contact in another
+/// sector is turned into the axes of side a; unless all nodes have consecutive degrees of freedom
+/// as those of the faces have, such a contact needs a normal, and x, y, z of both nodes.
+/// Superelements (Craig-Bampton) are sectors as well: their modal degrees of freedom are on no
+/// face.
 ///
 /// sector  the description; it is copied.
 /// out     receives the model; untouched on error. Free it by hbvib_model_free.

@@ -6,9 +6,9 @@
 
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::part_of_turn::lag;
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 
 impl Structure {
     /// Residue h·EO mod N in 0 .. N.
@@ -140,14 +140,6 @@ impl Structure {
             }
         }
         Ok(sum)
-    }
-}
-
-/// e^{−2πi·parts/sectors}, exact at quarter turns.
-pub(super) fn lag(parts: usize, sectors: usize) -> Complex64 {
-    match (4 * parts).checked_div(sectors) {
-        Some(q) if 4 * parts == q * sectors => [Complex64::ONE, -Complex64::I, -Complex64::ONE, Complex64::I][q % 4],
-        _ => Complex64::cis(-TAU * parts as f64 / sectors as f64),
     }
 }
 

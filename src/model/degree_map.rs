@@ -5,9 +5,7 @@
 //! a row of T₀ or T₁ is the image of a degree of freedom.
 
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
-use crate::linalg::sparse::Csc;
 use crate::model::sector_faces::{Faces, Place};
-use crate::model::sector_matrices::restricted;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -177,17 +175,6 @@ impl DegreeMap {
             None => independent,
             Some(images) => images.origin[independent],
         }
-    }
-
-    /// Rows and columns of the independent degrees of freedom of a matrix that is given for all.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub(super) fn restrict_matrix(&self, a: Csc) -> Result<Csc> {
-        if self.is_identity() {
-            return Ok(a);
-        }
-        restricted(&Self::identity(self.given), self, &a)
     }
 
     /// The motion of all degrees of freedom from that of the independent ones, where the next sector moves `next`

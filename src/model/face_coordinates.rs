@@ -1,7 +1,9 @@
 //! Positions of the nodes on both faces of a sector: the right node must be the image of the left one.
 
 use crate::error::{Result, fail};
-use crate::model::sector_faces::Positions;
+
+/// Positions of the nodes of a face.
+pub type Positions<'a> = &'a [[f64; 3]];
 
 /// Distance from the axis, over the size of the sector, below which a node lies on it.
 const ON_AXIS: f64 = 1e-9;

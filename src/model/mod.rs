@@ -1,5 +1,6 @@
 //! The model: structure, contacts, excitation. The analyses take their matrices and contact data from here.
 
+mod blocks;
 pub mod cyclic;
 pub mod damped_mode;
 pub mod degree_map;
@@ -10,6 +11,7 @@ pub mod linear_modes;
 mod mechanical_model;
 pub mod mode_selection;
 mod model_checks;
+mod part_of_turn;
 pub mod repeated_modes;
 pub mod resonances;
 pub mod sector_faces;

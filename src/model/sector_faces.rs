@@ -5,10 +5,12 @@
 //! 2π/N about the axis.
 
 use crate::error::{Result, fail, try_copy, try_push};
-use crate::model::cyclic::lag;
 use crate::model::face_coordinates::check_coordinates;
+use crate::model::part_of_turn::lag;
 use core::fmt;
 use num_complex::Complex64;
+
+pub use crate::model::face_coordinates::Positions;
 
 const CONTEXT: &str = "the faces of the sector";
 
@@ -20,9 +22,6 @@ pub enum SectorFrame {
     /// Radius, circumference and axis at each node, or any other frame that turns with the sector.
     Cylindrical,
 }
-
-/// Positions of the nodes of a face.
-pub type Positions<'a> = &'a [[f64; 3]];
 
 /// Description of a sector by its faces.
 #[derive(Clone, Copy, Debug)]

@@ -2,8 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
-use crate::model::structure::Blocks;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the matrices of the sector";
@@ -118,4 +118,15 @@ pub(super) fn restricted(old: &DegreeMap, new: &DegreeMap, a: &Csc) -> Result<Cs
         entries.extend(a.column(j).filter_map(|(i, v)| number(i).map(|row| (row, column, v))));
     }
     Csc::from_triplets(n, n, entries)
+}
+
+/// Rows and columns of the independent degrees of freedom of a matrix that is given for all.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn of_independent(map: &DegreeMap, a: Csc) -> Result<Csc> {
+    if map.is_identity() {
+        return Ok(a);
+    }
+    restricted(&DegreeMap::identity(map.given()), map, &a)
 }

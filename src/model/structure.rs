@@ -4,9 +4,10 @@
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::Csc;
+use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use crate::model::sector_faces::{Faces, SectorDescription};
-use crate::model::sector_matrices::{self, restricted};
+use crate::model::sector_matrices::{self, of_independent, restricted};
 
 /// Largest accepted number of degrees of freedom.
 pub const MAX_DOF: usize = 1 << 31;
@@ -32,35 +33,6 @@ impl MatrixKind {
             Self::Damping => "damping",
             Self::Stiffness => "stiffness",
         }
-    }
-}
-
-/// One of M, C, K in the form in which it was given.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Blocks {
-    /// Rows and columns of the same sector.
-    pub own: Option<Csc>,
-    /// Rows of sector s, columns of s + 1.
-    pub next: Option<Csc>,
-    /// Rows of sector s, columns of s − 1; `None`: the transpose of `next`.
-    pub previous: Option<Csc>,
-    /// Matrices per nodal diameter 0 ..= N/2, instead of blocks.
-    pub diameters: Vec<Option<Csc>>,
-}
-
-impl Blocks {
-    fn try_clone(&self) -> Result<Self> {
-        let copy = |a: &Option<Csc>| a.as_ref().map(Csc::try_clone).transpose();
-        let mut diameters = Vec::new();
-        for a in &self.diameters {
-            try_push(&mut diameters, copy(a)?, "the matrices per diameter")?;
-        }
-        Ok(Self {
-            own: copy(&self.own)?,
-            next: copy(&self.next)?,
-            previous: copy(&self.previous)?,
-            diameters,
-        })
     }
 }
 
@@ -205,7 +177,7 @@ impl Structure {
         if self.degrees.faces().is_some() {
             *blocks = sector_matrices::blocks(&self.degrees, &own, a.part != Part::General)?;
         } else {
-            blocks.own = Some(self.degrees.restrict_matrix(own)?);
+            blocks.own = Some(of_independent(&self.degrees, own)?);
         }
         Ok(())
     }
@@ -242,8 +214,8 @@ impl Structure {
             Part::Full => Part::General,
             other => other,
         };
-        self.degrees
-            .restrict_matrix(a.part(part).copy_in(which.name(), self.degrees.given())?)
+        let given = a.part(part).copy_in(which.name(), self.degrees.given())?;
+        of_independent(&self.degrees, given)
     }
 
     pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
@@ -267,7 +239,7 @@ impl Structure {
         }
         self.refuse_faces(which)?;
         let matrix = a.copy_in(which.name(), self.degrees.given())?;
-        let matrix = self.degrees.restrict_matrix(matrix)?;
+        let matrix = of_independent(&self.degrees, matrix)?;
         let blocks = &mut self.blocks[which as usize];
         if blocks.diameters.is_empty() {
             blocks.diameters = try_vec(highest + 1, None, "the matrices per diameter")?;
