@@ -626,6 +626,15 @@ def _load() -> _Library:
 lib = _load()
 __version__ = lib.hbvib_version_string().decode()
 
+
+def __getattr__(name: str) -> Any:
+    """hbvib.io: the readers of finite-element files, a module and library of their own, loaded on first use."""
+    if name != "io":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import hbvib_io
+    return hbvib_io
+
+
 # ------------------------------------------------------------------------------------------ errors
 
 
