@@ -1437,13 +1437,18 @@ contains
       type(hbvib_sector) :: description
       integer(i64), allocatable, target :: left_dofs(:), right_dofs(:), fixed_dofs(:)
       real(dp), allocatable, target :: left_nodes(:), right_nodes(:)
+      integer :: count, stat
       status = self%free()
       if (status == HBVIB_E_BUSY) return
       status = hbvib_sector_init(description, c_sizeof(description))
       if (status /= HBVIB_OK) return
-      left_dofs = [int(left, i64) - 1_i64]
-      right_dofs = [int(right, i64) - 1_i64]
-      fixed_dofs = [integer(i64) ::]
+      count = 0
+      if (present(fixed)) count = size(fixed)
+      allocate (left_dofs(size(left)), right_dofs(size(right)), fixed_dofs(count), stat=stat)
+      status = made(stat)
+      if (status /= HBVIB_OK) return
+      left_dofs = reshape(int(left, i64) - 1_i64, [size(left)])
+      right_dofs = reshape(int(right, i64) - 1_i64, [size(right)])
       if (present(fixed)) fixed_dofs = int(fixed, i64) - 1_i64
       description%ndof = int(ndof, i64)
       description%sectors = int(sectors, i64)
@@ -1463,8 +1468,12 @@ contains
             status = HBVIB_E_DIMENSION
             return
          end if
-         left_nodes = [coordinates(:, :, 1)]
-         right_nodes = [coordinates(:, :, 2)]
+         count = 3*size(left, 2)
+         allocate (left_nodes(count), right_nodes(count), stat=stat)
+         status = made(stat)
+         if (status /= HBVIB_OK) return
+         left_nodes = reshape(coordinates(:, :, 1), [count])
+         right_nodes = reshape(coordinates(:, :, 2), [count])
          description%left_coordinates = c_loc(left_nodes)
          description%right_coordinates = c_loc(right_nodes)
       end if
@@ -1476,7 +1485,7 @@ contains
       class(hbvib_model), intent(inout) :: self
       integer, intent(in) :: dofs(:)
       integer(i32) :: status
-      integer(i64), allocatable :: fixed(:)
+      integer(i64) :: fixed(size(dofs))
       fixed = int(dofs, i64) - 1_i64
       status = hbvib_model_fix(self%handle, size(fixed, kind=i64), fixed)
    end function model_fix

@@ -12,7 +12,7 @@ use crate::condense::{Condensed, ModelCache, Reference};
 use crate::continuation::Settings;
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
-use crate::error::{Error, Result, Status, fail, try_push, try_vec};
+use crate::error::{Error, Result, Status, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -42,9 +42,7 @@ pub fn forced_response(
 ) -> Result<Branch> {
     solver.check()?;
     range.check((solver.harmonics + 1).saturating_mul(model.ndof()))?;
-    if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
-        return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
-    }
+    model.check_response_dof(solver.response_dof)?;
     let interrupt = hooks.interrupt();
     let outcome = with_samples(solver, |solver| follow(model, solver, range, hooks, &interrupt));
     match outcome {
@@ -185,7 +183,8 @@ fn first_point(
 fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
     let mut forced = Vec::new();
     let forces = model.excitation().forces().iter();
-    for force in forces.filter(|f| f.value != Complex64::ZERO) {
+    let degrees = model.structure().degrees();
+    for force in forces.filter(|f| f.value != Complex64::ZERO && !degrees.is_fixed(f.dof)) {
         try_push(&mut forced, force.harmonic, "the forces")?;
     }
     Ok(forced)
@@ -233,7 +232,8 @@ fn forced_dof_with_largest_motion(
     Workspace::new(condensed, None)?.recover(condensed, observed, omega, &rest, &mut x, interrupt)?;
     let mut best = 0;
     let mut most = None;
-    for force in model.excitation().forces() {
+    let moved = |dof| !model.structure().degrees().is_fixed(dof);
+    for force in model.excitation().forces().iter().filter(|f| moved(f.dof)) {
         let motion = along(&condensed.motion_row(observed, force.dof), &x).norm();
         if force.value != Complex64::ZERO && most.is_none_or(|most| motion > most) {
             best = force.dof;

@@ -62,9 +62,7 @@ pub fn nonlinear_mode(
     if solver.harmonics == 0 {
         return fail!(Argument, "harmonics = 0, a nonlinear mode needs at least 1");
     }
-    if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
-        return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
-    }
+    model.check_response_dof(solver.response_dof)?;
     let constant = |f: &&crate::model::excitation::Force| f.harmonic == 0 && f.value != Complex64::ZERO;
     if let Some(force) = model.excitation().forces().iter().find(constant) {
         return fail!(

@@ -47,6 +47,19 @@ impl Model {
         Ok(())
     }
 
+    /// A response degree of freedom must exist and may not be fixed.
+    pub(crate) fn check_response_dof(&self, dof: Option<usize>) -> Result<()> {
+        match dof {
+            Some(dof) if dof >= self.ndof() => {
+                fail!(Index, "response_dof = {dof}, needs 0 .. {}", self.ndof() - 1)
+            }
+            Some(dof) if self.structure().degrees().is_fixed(dof) => {
+                fail!(Argument, "response_dof = {dof} is fixed: it has no response")
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Entry `i` of a list must be a degree of freedom of the model.
     fn check_dof(&self, list: &str, i: usize, dof: usize) -> Result<()> {
         if dof < self.ndof() {

@@ -6,6 +6,7 @@
 use crate::contact::Contact;
 use crate::contact::relative_motion::{Direction, Side};
 use crate::error::{Result, fail};
+use crate::model::sector_faces::Faces;
 use crate::model::spring::{Row, Spring};
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::Structure;
@@ -195,7 +196,7 @@ impl Structure {
             Err(Unknown::Node(dof)) => fail!(
                 Argument,
                 "{what}: dof_b = {dof} lies in a sector whose axes are turned by {} degrees, and the other components of its node are unknown; give a normal with x, y and z of both nodes, or use a cylindrical frame",
-                self.degrees().faces().map_or(0.0, |faces| faces.angle()) * sector_offset as f64
+                self.degrees().faces().map_or(0.0, Faces::angle) * sector_offset as f64
             ),
             Err(Unknown::ManyNodes) => fail!(
                 Argument,

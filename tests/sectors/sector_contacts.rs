@@ -1,16 +1,18 @@
 //! Forced responses and modes of a sector with faces against the same sector from K₀ and K₁.
 
 use crate::boundary_sector::{BoundarySector, N, dofs};
+use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
-use hbvib::analysis::{forced_residual, nonlinear_mode, verify};
+use hbvib::analysis::{forced_residual, forced_response, nonlinear_mode, verify};
 use hbvib::contact::Contact;
+use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::sector_faces::SectorFrame;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, VerifyOptions};
+use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions, VerifyOptions};
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -139,6 +141,38 @@ fn contacts_inside_and_across_the_faces_give_the_response_of_the_sector_from_its
             assert!((history[0] - sum).abs() < 1e-9 * image.norm());
         }
     }
+}
+
+#[test]
+fn a_fixed_degree_of_freedom_has_no_response() {
+    let (model, _) = lumped(1);
+    let solver = SolverOptions {
+        response_dof: Some(3),
+        ..harmonics(3)
+    };
+    let range = ForcedOptions {
+        omega_start: 0.8,
+        omega_stop: 1.0,
+        ..ForcedOptions::default()
+    };
+    let words = ["response_dof = 3 is fixed"];
+    refused(
+        forced_response(&model, &solver, &range, &mut Hooks::default()),
+        Status::Argument,
+        &words,
+    );
+    let mode = ModeOptions {
+        reference_dof: Some(2),
+        log10_start: -2.0,
+        log10_stop: 0.0,
+        ..ModeOptions::default()
+    };
+    let words = ["reference_dof = 2 lies on the right face"];
+    refused(
+        nonlinear_mode(&model, &harmonics(3), &mode, &mut Hooks::default()),
+        Status::Argument,
+        &words,
+    );
 }
 
 /// Harmonic balance against time integration, with its samples on the right face.

@@ -170,6 +170,71 @@ fn shapes_have_the_phase_of_the_wave_on_the_right_face_and_zeros_where_fixed() {
     }
 }
 
+/// Craig-Bampton with all modes inside is exact: faces and tip physical, modes on no face, clamped nodes missing.
+#[test]
+fn a_superelement_is_a_sector_with_modes_on_no_face() {
+    let sector = BoundarySector::read(SectorFrame::Cartesian);
+    let clamped = dofs(&sector.clamped);
+    let faces: Vec<usize> = [dofs(&sector.left), dofs(&sector.right)].concat();
+    let free = |d: &usize| !clamped.contains(d);
+    let physical: Vec<usize> = faces.iter().copied().filter(free).chain([106]).collect();
+    let inside: Vec<usize> = (0..sector.ndof())
+        .filter(free)
+        .filter(|d| !physical.contains(d))
+        .collect();
+    let (n, m) = (physical.len(), inside.len());
+    let block = |a: &DMatrix<f64>, rows: &[usize], columns: &[usize]| {
+        DMatrix::from_fn(rows.len(), columns.len(), |i, j| a[(rows[i], columns[j])])
+    };
+    let inner = block(&sector.k, &inside, &inside);
+    let constraint = -Cholesky::new(inner.clone())
+        .unwrap()
+        .solve(&block(&sector.k, &inside, &physical));
+    let l = Cholesky::new(block(&sector.m, &inside, &inside)).unwrap().unpack();
+    let half = l.solve_lower_triangular(&inner).unwrap();
+    let pencil = l.solve_lower_triangular(&half.transpose()).unwrap();
+    let modes = ((&pencil + pencil.transpose()) * 0.5).symmetric_eigen().eigenvectors;
+    let modes = l.transpose().solve_upper_triangular(&modes).unwrap();
+    let order: Vec<usize> = physical.iter().chain(&inside).copied().collect();
+    let mut basis = DMatrix::zeros(n + m, n + m);
+    basis.view_mut((0, 0), (n, n)).fill_with_identity();
+    basis.view_mut((n, 0), (m, n)).copy_from(&constraint);
+    basis.view_mut((n, n), (m, m)).copy_from(&modes);
+    let face = |nodes: &[usize]| -> Vec<Option<usize>> {
+        dofs(nodes)
+            .iter()
+            .map(|d| physical.iter().position(|p| p == d))
+            .collect()
+    };
+    let (left, right) = (face(&sector.left), face(&sector.right));
+    assert!(left.contains(&None));
+    let mut model = Model::sector(&SectorDescription {
+        ndof: n + m,
+        sectors: N,
+        engine_order: 0,
+        components: 3,
+        left: &left,
+        right: &right,
+        fixed: &[],
+        frame: SectorFrame::Cartesian,
+        axis: [0.0, 0.0, 1.0],
+        forward: true,
+        coordinates: None,
+    })
+    .unwrap();
+    for (kind, a) in [(MatrixKind::Stiffness, &sector.k), (MatrixKind::Mass, &sector.m)] {
+        let reduced = basis.transpose() * block(a, &order, &order) * &basis;
+        let reduced = (&reduced + reduced.transpose()) * 0.5;
+        model
+            .set_matrix(kind, &MatrixView::dense(n + m, reduced.as_slice()))
+            .unwrap();
+    }
+    let whole = all_diameters(&sector.model(0), ContactState::Free);
+    let gap = worst_gap(&all_diameters(&model, ContactState::Free), &whole);
+    println!("superelement: gap {gap:.1e}");
+    assert!(gap < 1e-9, "{gap}");
+}
+
 /// K with and without symmetry: every block against T₀ and T₁ as dense matrices.
 #[test]
 fn couplings_follow_from_matrices_without_symmetry_and_from_complex_symmetric_ones() {
