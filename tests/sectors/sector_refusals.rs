@@ -119,6 +119,12 @@ fn bad_faces_are_refused_by_pair_and_degree_of_freedom() {
         Status::Dimension,
         &["4 components", "Cartesian"],
     );
+}
+
+#[test]
+fn positions_that_contradict_the_description_are_refused_by_pair() {
+    let sector = BoundarySector::read(SectorFrame::Cartesian);
+    let argument = Status::Argument;
     let (left, right) = (sector.positions(&sector.left), sector.positions(&sector.right));
     for (pair, position, words) in [
         (3, [0.0, 0.0, 0.2], ["pair 3", "left node lies on the axis"]),
@@ -242,7 +248,7 @@ fn contacts_in_turned_axes_need_the_node() {
 fn fixed_degrees_of_freedom_leave_the_matrices_of_the_others() {
     let n = 4;
     let k: Vec<f64> = (0..16)
-        .map(|at| if at % 5 == 0 { 3.0 + at as f64 } else { -1.0 })
+        .map(|at| if at % 5 == 0 { 3.0 + f64::from(at) } else { -1.0 })
         .collect();
     let mut model = Model::new(n).unwrap();
     model
