@@ -488,7 +488,7 @@ typedef struct {
   const int64_t *left;
   /// Entries in left.
   int64_t left_len;
-  /// Those of the right face: entry i is the image of left[i].
+  /// Those of the right face, each the image of the entry of left at its place.
   const int64_t *right;
   /// Entries in right.
   int64_t right_len;

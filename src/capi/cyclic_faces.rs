@@ -48,7 +48,7 @@ pub struct hbvib_sector {
     pub left: *const i64,
     /// Entries in left.
     pub left_len: i64,
-    /// Those of the right face: entry i is the image of left[i].
+    /// Those of the right face, each the image of the entry of left at its place.
     pub right: *const i64,
     /// Entries in right.
     pub right_len: i64,
