@@ -48,6 +48,8 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_MASS = 0, HBVIB_DAMPING = 1, HBVIB_STIFFNESS = 2
    ! hbvib_special_dof
    integer(c_int32_t), parameter, public :: HBVIB_GROUND = -1
+   ! hbvib_sector_frame
+   integer(c_int32_t), parameter, public :: HBVIB_CARTESIAN = 0, HBVIB_CYLINDRICAL = 1
    ! hbvib_contact_kind
    integer(c_int32_t), parameter, public :: HBVIB_JENKINS = 1, HBVIB_FRICTION_2D = 2, HBVIB_FRICTION_3D = 3, &
       HBVIB_UNILATERAL = 4, HBVIB_CUBIC = 5, HBVIB_REGULARISED = 6
@@ -90,6 +92,21 @@ module hbvib
       type(c_ptr) :: values = c_null_ptr, col_ptr = c_null_ptr, row_idx = c_null_ptr
       integer(c_int32_t) :: index_base = 1, reserved = 0
    end type hbvib_matrix
+
+   !> A sector with degrees of freedom on both faces, as a finite-element program writes it.
+   type, bind(c) :: hbvib_sector
+      integer(c_int32_t) :: struct_size = 136, frame = 0
+      integer(c_int64_t) :: ndof = 0, sectors = 0, engine_order = 0, components = 3
+      type(c_ptr) :: left = c_null_ptr
+      integer(c_int64_t) :: left_len = 0
+      type(c_ptr) :: right = c_null_ptr
+      integer(c_int64_t) :: right_len = 0
+      type(c_ptr) :: fixed = c_null_ptr
+      integer(c_int64_t) :: fixed_len = 0
+      real(c_double) :: axis(3) = [0, 0, 1]
+      integer(c_int32_t) :: direction = 1, reserved = 0
+      type(c_ptr) :: left_coordinates = c_null_ptr, right_coordinates = c_null_ptr
+   end type hbvib_sector
 
    !> A contact between two degrees of freedom, or between one and the ground.
    type, bind(c) :: hbvib_contact
@@ -389,6 +406,14 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_model_set_matrix
 
+      function hbvib_model_fix(model, n, dofs) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: n
+         integer(c_int64_t), intent(in) :: dofs(*)
+         integer(c_int32_t) :: status
+      end function hbvib_model_fix
+
       function hbvib_model_set_rayleigh(model, alpha_mass, beta_stiffness) bind(c) result(status)
          import
          type(c_ptr), value :: model
@@ -458,6 +483,20 @@ module hbvib
          integer(c_int64_t), value :: engine_order
          integer(c_int32_t) :: status
       end function hbvib_cyclic_set_wave
+
+      function hbvib_sector_init(s, size_of_s) bind(c) result(status)
+         import
+         type(hbvib_sector), intent(inout) :: s
+         integer(c_size_t), value :: size_of_s
+         integer(c_int32_t) :: status
+      end function hbvib_sector_init
+
+      function hbvib_cyclic_from_sector(sector, out) bind(c) result(status)
+         import
+         type(hbvib_sector), intent(in) :: sector
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_cyclic_from_sector
 
       function hbvib_contact_init(c, size_of_c) bind(c) result(status)
          import
@@ -1090,6 +1129,8 @@ module hbvib
       type(c_ptr) :: handle = c_null_ptr
    contains
       procedure :: new => model_new
+      procedure :: from_sector => model_from_sector
+      procedure :: fix => model_fix
       procedure :: clone => model_clone
       procedure :: free => model_free
       procedure :: dofs => model_dofs
@@ -1377,6 +1418,77 @@ contains
          status = hbvib_model_new(int(ndof, i64), self%handle)
       end if
    end function model_new
+
+   !> A cyclic structure from one sector with degrees of freedom on both faces: left(:, :) and right(:, :), one column per node,
+   !> from 1, 0 where a component is missing. fixed: degrees of freedom that do not move. frame: HBVIB_CARTESIAN, the default,
+   !> or HBVIB_CYLINDRICAL. axis: 0 0 1 by default. direction: 1, the default, or -1. coordinates(3, pairs, 2): positions of the
+   !> nodes of both faces, which are then checked.
+   function model_from_sector(self, ndof, sectors, engine_order, left, right, fixed, frame, axis, direction, coordinates) &
+      result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: ndof, sectors, engine_order
+      integer, intent(in) :: left(:, :), right(:, :)
+      integer, intent(in), optional :: fixed(:)
+      integer(i32), intent(in), optional :: frame
+      real(dp), intent(in), optional :: axis(3)
+      integer, intent(in), optional :: direction
+      real(dp), intent(in), optional :: coordinates(:, :, :)
+      integer(i32) :: status
+      type(hbvib_sector) :: description
+      integer(i64), allocatable, target :: left_dofs(:), right_dofs(:), fixed_dofs(:)
+      real(dp), allocatable, target :: left_nodes(:), right_nodes(:)
+      integer :: count, stat
+      status = self%free()
+      if (status == HBVIB_E_BUSY) return
+      status = hbvib_sector_init(description, c_sizeof(description))
+      if (status /= HBVIB_OK) return
+      count = 0
+      if (present(fixed)) count = size(fixed)
+      allocate (left_dofs(size(left)), right_dofs(size(right)), fixed_dofs(count), stat=stat)
+      status = made(stat)
+      if (status /= HBVIB_OK) return
+      left_dofs = reshape(int(left, i64) - 1_i64, [size(left)])
+      right_dofs = reshape(int(right, i64) - 1_i64, [size(right)])
+      if (present(fixed)) fixed_dofs = int(fixed, i64) - 1_i64
+      description%ndof = int(ndof, i64)
+      description%sectors = int(sectors, i64)
+      description%engine_order = int(engine_order, i64)
+      description%components = int(size(left, 1), i64)
+      description%left_len = size(left_dofs, kind=i64)
+      description%right_len = size(right_dofs, kind=i64)
+      description%fixed_len = size(fixed_dofs, kind=i64)
+      if (size(left_dofs) > 0) description%left = c_loc(left_dofs)
+      if (size(right_dofs) > 0) description%right = c_loc(right_dofs)
+      if (size(fixed_dofs) > 0) description%fixed = c_loc(fixed_dofs)
+      if (present(frame)) description%frame = frame
+      if (present(axis)) description%axis = axis
+      if (present(direction)) description%direction = int(direction, i32)
+      if (present(coordinates)) then
+         if (any(shape(coordinates) /= [3, size(left, 2), 2])) then
+            status = HBVIB_E_DIMENSION
+            return
+         end if
+         count = 3*size(left, 2)
+         allocate (left_nodes(count), right_nodes(count), stat=stat)
+         status = made(stat)
+         if (status /= HBVIB_OK) return
+         left_nodes = reshape(coordinates(:, :, 1), [count])
+         right_nodes = reshape(coordinates(:, :, 2), [count])
+         description%left_coordinates = c_loc(left_nodes)
+         description%right_coordinates = c_loc(right_nodes)
+      end if
+      status = hbvib_cyclic_from_sector(description, self%handle)
+   end function model_from_sector
+
+   !> Fixes degrees of freedom, now or before matrices are set; their numbers stay.
+   function model_fix(self, dofs) result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: dofs(:)
+      integer(i32) :: status
+      integer(i64) :: fixed(size(dofs))
+      fixed = int(dofs, i64) - 1_i64
+      status = hbvib_model_fix(self%handle, size(fixed, kind=i64), fixed)
+   end function model_fix
 
    !> copy becomes a model of its own.
    function model_clone(self, copy) result(status)

@@ -55,7 +55,7 @@
  *   Version and errors  the version in use, status codes, the sentence behind a status
  *   Matrices            views of dense and sparse matrices of the caller
  *   Model               structures, their matrices, springs and forces
- *   Cyclic structures   sectors, couplings, nodal diameters, engine order
+ *   Cyclic structures   sectors, their faces and couplings, nodal diameters, engine order
  *   Contacts            friction, unilateral contacts, nonlinear springs and dampers, patches
  *   Laws of the caller  forces computed by a callback, and the check of their derivatives
  *   Solve               options, progress and cancellation, forced responses
@@ -342,6 +342,18 @@ int64_t hbvib_model_contacts(const hbvib_model *model);
 /// Threads: one at a time per model.
 hbvib_status hbvib_model_set_matrix(hbvib_model *model, int32_t which, const hbvib_matrix *a);
 
+/// Fixes degrees of freedom: they do not move, whatever matrices, contacts and forces say, now or
+/// later. All numbers of degrees of freedom stay as they are; results of fixed ones are 0. On a
+/// sector with faces, a pair is fixed on both sides by the same call.
+///
+/// n     number of entries, >= 0.
+/// dofs  degrees of freedom from 0, n numbers.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_ARGUMENT (a pair fixed on one side only, no degree of
+/// freedom left, a contact or spring both sides of which would be fixed), HBVIB_E_DIMENSION (n),
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; the model is then unchanged.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_fix(hbvib_model *model, int64_t n, const int64_t *dofs);
+
 /// Adds alpha_mass * M + beta_stiffness * K to the damping; a later call replaces an earlier one. K
 /// is the stiffness of the structure without contacts.
 ///
@@ -387,7 +399,7 @@ hbvib_status hbvib_model_add_force(hbvib_model *model,
 hbvib_status hbvib_model_clear_forces(hbvib_model *model);
 
 /* ==============================================================================================
- * Cyclic structures: sectors, couplings, nodal diameters, engine order
+ * Cyclic structures: sectors, their faces and couplings, nodal diameters, engine order
  * ============================================================================================== */
 
 /// Creates a cyclic structure, described by one of its sectors, under engine order 0: all matrices
@@ -445,6 +457,88 @@ hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model,
 ///
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
 hbvib_status hbvib_cyclic_set_wave(hbvib_model *model, int64_t engine_order);
+
+/// Frame of the degrees of freedom of a sector with faces.
+typedef enum {
+  /// x, y and z of each node, and rotations about them: the axes of both faces are equal.
+  HBVIB_CARTESIAN = 0,
+  /// Any frame that turns with the sector, as radius, circumference and axis at each node.
+  HBVIB_CYLINDRICAL = 1,
+} hbvib_sector_frame;
+
+/// A sector with degrees of freedom on both faces, as a finite-element program writes it. The
+/// right face of a sector is the left one of the next. Fill it by hbvib_sector_init, then set ndof,
+/// sectors, engine_order and the faces.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_CARTESIAN or HBVIB_CYLINDRICAL.
+  int32_t frame;
+  /// Degrees of freedom of the sector, both faces and the fixed ones included, 1 .. 2^31.
+  int64_t ndof;
+  /// Number of equal sectors N, 2 .. 2^20.
+  int64_t sectors;
+  /// Engine order of the wave, see hbvib_cyclic_set_wave; its sign is the sense of the wave.
+  int64_t engine_order;
+  /// Degrees of freedom of a node on a face: 3 (x, y, z) or 6 (and the rotations about them) in a
+  /// Cartesian frame, any number in a cylindrical one.
+  int64_t components;
+  /// Degrees of freedom of the left face, node after node, left_len numbers; -1 where a component
+  /// is missing, which then does not move.
+  const int64_t *left;
+  /// Entries in left.
+  int64_t left_len;
+  /// Those of the right face, each the image of the entry of left at its place.
+  const int64_t *right;
+  /// Entries in right.
+  int64_t right_len;
+  /// Degrees of freedom that do not move, fixed_len numbers; or NULL.
+  const int64_t *fixed;
+  /// Entries in fixed.
+  int64_t fixed_len;
+  /// Axis of the wheel, of any length; it passes through the origin.
+  double axis[3];
+  /// 1: sector s + 1 follows at +2 pi / N about the axis; -1: at -2 pi / N. It decides about the
+  /// axes of a Cartesian frame and about the check of coordinates, not about the wave.
+  int32_t direction;
+  /// 0.
+  int32_t reserved;
+  /// Cartesian positions of the nodes of the left face, three for each; NULL with that of the
+  /// right one: not checked.
+  const double *left_coordinates;
+  /// Those of the right face.
+  const double *right_coordinates;
+} hbvib_sector;
+
+/// Fills the description of a sector: a Cartesian frame with 3 components per node, the z axis,
+/// direction 1; ndof, sectors, engine_order and the faces must be set.
+///
+/// s          the struct; untouched on error.
+/// size_of_s  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_sector_init(hbvib_sector *s, size_t size_of_s);
+
+/// Creates a cyclic structure from a sector with faces: all matrices zero, no contact, no force.
+/// Its couplings follow from the matrices of the sector alone, which hbvib_model_set_matrix sets:
+/// K0 = T0^T K T0 + T1^T K T1 and K1 = T0^T K T1, where u = T0 q(s) + T1 q(s + 1) is the motion of
+/// sector s (Thomas 1979, doi:10.1002/nme.1620140107).
+///
+/// The numbering of the sector is kept for all that follows: matrices, contacts, forces, options
+/// and results. Fixed degrees of freedom have results 0; those on the right face move and are
+/// loaded with the phase of the next sector. In a Cartesian frame, side b of a contact in another
+/// sector is turned into the axes of side a; unless all nodes have consecutive degrees of freedom
+/// as those of the faces have, such a contact needs a normal, and x, y, z of both nodes.
+/// Superelements (Craig-Bampton) are sectors as well: their modal degrees of freedom are on no
+/// face.
+///
+/// sector  the description; it is copied.
+/// out     receives the model; untouched on error. Free it by hbvib_model_free.
+/// Errors: HBVIB_E_DIMENSION (ndof, faces of different length, components), HBVIB_E_INDEX (left,
+/// right, fixed), HBVIB_E_ARGUMENT (sectors, frame, direction, axis; a degree of freedom in both
+/// faces or twice in one, a pair fixed on one side only, a node on the axis, coordinates that
+/// contradict direction or sectors), HBVIB_E_NOT_FINITE, naming pair and degree of freedom;
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_OUT_OF_MEMORY. Threads: any.
+hbvib_status hbvib_cyclic_from_sector(const hbvib_sector *sector, hbvib_model **out);
 
 /* ==============================================================================================
  * Contacts: friction, unilateral contacts, nonlinear springs and dampers, patches

@@ -384,6 +384,31 @@ struct TimeOptions : Filled<hbvib_time_options, hbvib_time_options_init> {
   TimeOptions& start_from(Span<const Complex> x) { return start = detail::flat(x.data()), start_len = x.length(), *this; }
 };
 
+/// A sector with degrees of freedom on both faces. Arrays handed in are borrowed until the model was made.
+struct Sector : Filled<hbvib_sector, hbvib_sector_init> {
+  Sector() = default;
+  Sector(Index degrees, Index number, Index order) { ndof = degrees, sectors = number, engine_order = order; }
+  /// Degrees of freedom of both faces, node after node; -1 where a component is missing.
+  Sector& faces(Span<const Index> l, Span<const Index> r, Index per_node = 3) {
+    left = l.data(), left_len = l.length(), right = r.data(), right_len = r.length(), components = per_node;
+    return *this;
+  }
+  Sector& fix(Span<const Index> dofs) { return fixed = dofs.data(), fixed_len = dofs.length(), *this; }
+  /// Any frame that turns with the sector, as r, theta, z at each node.
+  Sector& cylindrical() { return frame = HBVIB_CYLINDRICAL, *this; }
+  /// Axis of the wheel through the origin, and the sense about it in which sectors follow.
+  Sector& about(std::array<double, 3> along, int sense = 1) {
+    std::copy(along.begin(), along.end(), axis);
+    return direction = sense, *this;
+  }
+  /// Positions of the nodes of both faces, three numbers each, which are then checked.
+  Sector& nodes_at(Span<const double> l, Span<const double> r) {
+    detail::check_length(l.size(), 3 * left_len / components, 1, "left_coordinates");
+    detail::check_length(r.size(), 3 * right_len / components, 1, "right_coordinates");
+    return left_coordinates = l.data(), right_coordinates = r.data(), *this;
+  }
+};
+
 /// A contact; the functions below set what their kind needs. b may be HBVIB_GROUND, offset is the sector
 /// of side b over that of side a.
 struct Contact : Filled<hbvib_contact, hbvib_contact_init> {
@@ -836,6 +861,8 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   static Model plain(Index ndof) { return make(hbvib_model_new, ndof); }
   /// A cyclic structure of equal sectors, described by one of them.
   static Model cyclic(Index ndof_sector, Index sectors) { return make(hbvib_cyclic_new, ndof_sector, sectors); }
+  /// A cyclic structure from one sector with degrees of freedom on both faces.
+  static Model sector(const Sector& description) { return make(hbvib_cyclic_from_sector, &description); }
   Model clone() const {
     Model copy = make(hbvib_model_clone, get());
     copy.core_->forces = core_->forces;
@@ -847,6 +874,8 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   Index contacts() const { return use(hbvib_model_contacts); }
 
   void set_matrix(hbvib_matrix_kind which, const Matrix& a) { use(hbvib_model_set_matrix, which, &a); }
+  /// Fixes degrees of freedom, now or before matrices are set; their numbers stay.
+  void fix(In<Index> dofs) { use(hbvib_model_fix, dofs.length(), dofs.data()); }
   void set_rayleigh(double alpha_mass, double beta_stiffness) { use(hbvib_model_set_rayleigh, alpha_mass, beta_stiffness); }
   void set_coupling(hbvib_matrix_kind which, const Matrix& to_next) { use(hbvib_cyclic_set_coupling, which, &to_next); }
   void set_coupling_previous(hbvib_matrix_kind which, const Matrix& to_previous) {

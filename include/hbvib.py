@@ -112,6 +112,12 @@ class MatrixKind(enum.IntEnum):
 GROUND = -1  #: The ground, which does not move.
 
 
+class SectorFrame(enum.IntEnum):
+    """Frame of the degrees of freedom of a sector with faces."""
+    CARTESIAN = 0  #: x, y and z of each node, and rotations about them: the axes of both faces are equal.
+    CYLINDRICAL = 1  #: Any frame that turns with the sector, as radius, circumference and axis at each node.
+
+
 class ContactKind(enum.IntEnum):
     """Contact laws."""
     #: Elastic Coulomb friction with constant normal load in one direction: a spring kt in series with a slider of limit
@@ -242,6 +248,9 @@ _VERSION = (0, 1)  # of the library that this module was written for
 _STRUCTS = """
 matrix: uint32 struct_size; int32 storage scalar part; int64 rows cols ld; pointer values col_ptr row_idx; int32
     index_base reserved
+sector: uint32 struct_size; int32 frame; int64 ndof sectors engine_order components; pointer left; int64 left_len;
+    pointer right; int64 right_len; pointer fixed; int64 fixed_len; double axis[3]; int32 direction reserved; pointer
+    left_coordinates right_coordinates
 contact: uint32 struct_size; int32 kind; int64 dof_a[3] dof_b[3] sector_offset; double kt kn mu preload gap cubic
     velocity normal[3] tangent[3]
 force_call: uint32 struct_size; int32 reserved; double omega; int64 samples n states; pointer u v z0 f df_du df_dv z
@@ -308,6 +317,7 @@ model_dofs: h -> int64
 model_sectors: h -> int64
 model_contacts: h -> int64
 model_set_matrix: h i matrix
+model_fix: h l p
 model_set_rayleigh: h d d
 model_add_springs: h l p p p p
 model_add_force: h l l d d
@@ -317,6 +327,8 @@ cyclic_set_coupling: h i matrix
 cyclic_set_coupling_previous: h i matrix
 cyclic_set_diameter: h i l matrix
 cyclic_set_wave: h l
+sector_init: sector z
+cyclic_from_sector: sector p
 contact_init: contact z
 model_add_contact: h contact p
 model_set_preload: h l d
@@ -404,6 +416,7 @@ if TYPE_CHECKING:
         def hbvib_model_sectors(self, model: Any) -> int: ...
         def hbvib_model_contacts(self, model: Any) -> int: ...
         def hbvib_model_set_matrix(self, model: Any, which: int, a: Any) -> int: ...
+        def hbvib_model_fix(self, model: Any, n: int, dofs: Any) -> int: ...
         def hbvib_model_set_rayleigh(self, model: Any, alpha_mass: float, beta_stiffness: float) -> int: ...
         def hbvib_model_add_springs(self, model: Any, n: int, dof_a: Any, dof_b: Any, sector_offset: Any, stiffness:
             Any) -> int: ...
@@ -414,6 +427,8 @@ if TYPE_CHECKING:
         def hbvib_cyclic_set_coupling_previous(self, model: Any, which: int, to_previous: Any) -> int: ...
         def hbvib_cyclic_set_diameter(self, model: Any, which: int, diameter: int, a: Any) -> int: ...
         def hbvib_cyclic_set_wave(self, model: Any, engine_order: int) -> int: ...
+        def hbvib_sector_init(self, s: Any, size_of_s: int) -> int: ...
+        def hbvib_cyclic_from_sector(self, sector: Any, out: Any) -> int: ...
         def hbvib_contact_init(self, c: Any, size_of_c: int) -> int: ...
         def hbvib_model_add_contact(self, model: Any, c: Any, id: Any) -> int: ...
         def hbvib_model_set_preload(self, model: Any, id: int, preload: float) -> int: ...
@@ -610,6 +625,15 @@ def _load() -> _Library:
 #: The library itself, every function of hbvib.h with its prototype: hbvib.lib.hbvib_version().
 lib = _load()
 __version__ = lib.hbvib_version_string().decode()
+
+
+def __getattr__(name: str) -> Any:
+    """hbvib.io: the readers of finite-element files, a module and library of their own, loaded on first use."""
+    if name != "io":
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    import hbvib_io
+    return hbvib_io
+
 
 # ------------------------------------------------------------------------------------------ errors
 
@@ -1113,7 +1137,8 @@ def _law(caller: str, kind: Any, constants: dict) -> Any:
 
 
 class Model(_Owner):
-    """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors.
+    """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
+    sector with both faces.
 
     ndof       degrees of freedom; may be left out where a matrix is given.
     mass, damping, stiffness   ndof x ndof matrices, symmetric or Hermitian: arrays, scipy.sparse, or a number for
@@ -1137,6 +1162,49 @@ class Model(_Owner):
         model = cls.__new__(cls)
         model._create(sectors, ndof, dict(mass=mass, damping=damping, stiffness=stiffness), coupling or {}, rayleigh)
         model.set_wave(engine_order)
+        return model
+
+    @classmethod
+    def sector(cls, *, stiffness: Any, mass: Any, damping: Any = None, sectors: int, engine_order: int,
+               left: ArrayLike, right: ArrayLike, fixed: ArrayLike = (), frame: Any = "cartesian",
+               axis: ArrayLike = (0, 0, 1), direction: int = 1, coordinates: Any = None) -> Model:
+        """A wheel from one sector with both faces, as a finite-element program writes it. The numbering of the sector
+        is kept for matrices, contacts, forces and results; its couplings follow from its matrices.
+
+        stiffness, mass, damping   matrices of the sector, with the degrees of freedom of both faces.
+        left, right   degrees of freedom of both faces, of equal shape: (pairs, 3) x, y, z, or (pairs, 6) with
+                      rotations, in a Cartesian frame, any shape in a cylindrical one; -1 where a component is missing.
+        fixed         degrees of freedom that do not move.
+        frame         "cartesian": the axes of both faces are equal; "cylindrical": any frame that turns with the
+                      sector, as r, theta, z at each node.
+        axis          of the wheel, through the origin.
+        direction     1 or -1: sense about the axis in which sector s + 1 follows s. The wave has its sense from the
+                      sign of engine_order.
+        coordinates   (left, right), Cartesian positions of the nodes, (pairs, 3) each, which are then checked."""
+        faces = [_array(name, face, np.int64) for name, face in (("left", left), ("right", right))]
+        for name, face in zip(("left", "right"), faces):
+            if face.ndim not in (1, 2):
+                raise ValueError(f"{name} has shape {face.shape}, needs (pairs, components)")
+        if faces[0].ndim == faces[1].ndim == 2 and faces[0].shape[1] != faces[1].shape[1]:
+            raise ValueError(f"left has shape {faces[0].shape}, right {faces[1].shape}: needs equal shapes")
+        components = faces[0].shape[1] if faces[0].ndim == 2 else 1
+        places = dict.fromkeys(("left_coordinates", "right_coordinates"))
+        if coordinates is not None:
+            for name, face, positions in zip(places, faces, coordinates):
+                places[name] = _array(name, positions, np.float64, [len(face), 3])
+        still = _array("fixed", fixed if np.size(fixed) else np.empty(0, np.int64), np.int64).ravel()
+        ndof = (*np.shape(stiffness), 1)[0]
+        description = _new("hbvib_sector", frame=_member(SectorFrame, frame), ndof=ndof, sectors=sectors,
+                           engine_order=engine_order, components=components, left=faces[0], left_len=faces[0].size,
+                           right=faces[1], right_len=faces[1].size, fixed=still, fixed_len=still.size, axis=axis,
+                           direction=direction, **places)
+        model, handle = cls.__new__(cls), ctypes.c_void_p()
+        model._handle = None
+        _call("hbvib_cyclic_from_sector", description, handle)
+        model._handle, model._kept = handle.value, []
+        for kind, value in (("stiffness", stiffness), ("mass", mass), ("damping", damping)):
+            if value is not None:
+                model.set_matrix(kind, value)
         return model
 
     def _create(self, sectors: Any, ndof: Any, matrices: dict, coupling: dict, rayleigh: Any) -> None:
@@ -1206,6 +1274,12 @@ class Model(_Owner):
         part   "full": symmetric or Hermitian, which is checked; "lower", "upper": that triangle of such a one, the
                rest is not read; "general": any, for damping and stiffness."""
         self._call("hbvib_model_set_matrix", _member(MatrixKind, which), _matrix(matrix, part))
+
+    def fix(self, dofs: ArrayLike) -> None:
+        """Fixes degrees of freedom: they do not move, whatever matrices, contacts and forces say. Numbers stay as
+        they are; pairs on the faces of a sector are fixed together."""
+        still = _array("dofs", dofs if np.size(dofs) else np.empty(0, np.int64), np.int64).ravel()
+        self._call("hbvib_model_fix", still.size, still)
 
     def set_rayleigh(self, alpha_mass: float, beta_stiffness: float) -> None:
         """Adds alpha_mass M + beta_stiffness K to the damping (1 / time, time); replaces an earlier call."""

@@ -78,6 +78,7 @@ pub use contact::{Contact, ContactKind};
 pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
 pub use model::linear_modes::{ContactState, LinearModes};
+pub use model::sector_faces::{SectorDescription, SectorFrame};
 pub use model::spring::Spring;
 pub use model::structure::MatrixKind;
 

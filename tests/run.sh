@@ -48,3 +48,6 @@ fi
 # The library first: the programs link against it; and the examples, which tests run.
 cargo build --release --lib --examples
 cargo test --release --lib --tests
+# The readers of files, a library of their own, and the command.
+cargo test --release -p hbvib-io --lib --tests
+cargo test --release -p hbvib-cli

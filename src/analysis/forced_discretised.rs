@@ -418,17 +418,20 @@ impl Recorder for ForcedDiscretised<'_> {
 }
 
 /// Packed relative motions of a guess given for all degrees of freedom.
-pub(super) fn relative_motion(resolution: &Resolution, ndof: usize, guess: &[Complex64]) -> Result<Vec<f64>> {
+pub(super) fn relative_motion(resolution: &Resolution, guess: &[Complex64]) -> Result<Vec<f64>> {
     let condensed = &resolution.condensed;
+    let degrees = condensed.degrees();
+    let mut x = try_vec(degrees.independent(), Complex64::ZERO, "the guess")?;
     let set = condensed.set();
     let m = set.packed_len();
     let mut packed = try_vec(condensed.unknowns(), 0.0, "the guess")?;
     for (i, block) in condensed.blocks().iter().enumerate() {
-        let Some(x) = guess.chunks_exact(ndof).nth(block.number) else {
+        let Some(all) = guess.chunks_exact(degrees.given()).nth(block.number) else {
             continue;
         };
+        degrees.restrict(all, &mut x);
         for (c, row) in block.rows.iter().enumerate() {
-            let y = along(row, x);
+            let y = along(row, &x);
             set.set(&mut packed[c * m..(c + 1) * m], i, y / condensed.length());
         }
     }

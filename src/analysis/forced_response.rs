@@ -15,11 +15,12 @@ use crate::condense::{Condensed, ModelCache, Reference};
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
-use crate::error::{Error, Result, Status, fail, try_push, try_vec};
+use crate::error::{Error, Result, Status, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
+use crate::model::spring::along;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
@@ -44,9 +45,7 @@ pub fn forced_response(
 ) -> Result<Branch> {
     solver.check()?;
     range.check((solver.harmonics + 1).saturating_mul(model.ndof()))?;
-    if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
-        return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
-    }
+    model.check_response_dof(solver.response_dof)?;
     let interrupt = hooks.interrupt();
     let outcome = with_samples(solver, |solver| follow(model, solver, range, hooks, &interrupt, trace));
     match outcome {
@@ -100,7 +99,7 @@ fn follow(
         forced_dof_with_largest_motion(model, &resolution.condensed, omega, interrupt)?
     };
     let given = match range.guess {
-        Some(guess) => Some(relative_motion(resolution, model.ndof(), guess)?),
+        Some(guess) => Some(relative_motion(resolution, guess)?),
         None => None,
     };
     let settings = Settings {
@@ -199,7 +198,8 @@ fn first_point(
 fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
     let mut forced = Vec::new();
     let forces = model.excitation().forces().iter();
-    for force in forces.filter(|f| f.value != Complex64::ZERO) {
+    let degrees = model.structure().degrees();
+    for force in forces.filter(|f| f.value != Complex64::ZERO && !degrees.is_fixed(f.dof)) {
         try_push(&mut forced, force.harmonic, "the forces")?;
     }
     Ok(forced)
@@ -242,17 +242,17 @@ fn forced_dof_with_largest_motion(
 ) -> Result<usize> {
     let set = condensed.set();
     let observed = set.numbers().iter().position(|&h| h > 0).unwrap_or(0);
-    let n = model.ndof();
-    let mut x = try_vec(n, Complex64::ZERO, "the response")?;
+    let mut x = try_vec(condensed.ndof(), Complex64::ZERO, "the response")?;
     let rest = try_vec(condensed.coordinates(), Complex64::ZERO, "the response")?;
     Workspace::new(condensed, None)?.recover(condensed, observed, omega, &rest, &mut x, interrupt)?;
     let mut best = 0;
-    let mut found = false;
-    for force in model.excitation().forces() {
-        let moves_more = !found || x[force.dof].norm() > x[best].norm();
-        if force.value != Complex64::ZERO && moves_more {
+    let mut most = None;
+    let moved = |dof| !model.structure().degrees().is_fixed(dof);
+    for force in model.excitation().forces().iter().filter(|f| moved(f.dof)) {
+        let motion = along(&condensed.motion_row(observed, force.dof), &x).norm();
+        if force.value != Complex64::ZERO && most.is_none_or(|most| motion > most) {
             best = force.dof;
-            found = true;
+            most = Some(motion);
         }
     }
     Ok(best)

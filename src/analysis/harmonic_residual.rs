@@ -2,13 +2,14 @@
 //! continuation of their own, and for tests. The problem is neither reduced nor condensed.
 
 use crate::aft::{Evaluation, Evaluator};
+use crate::analysis::residual_numbering::Numbering;
 use crate::contact::{self, Contact};
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, along, relative_row};
+use crate::model::spring::{Row, along};
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
@@ -35,8 +36,7 @@ pub fn forced_residual(
     forced_residual_with(model, solver, omega, x, (r, jacobian, d_omega), &Interrupt::none())
 }
 
-/// Receivers of a residual, its Jacobian and its derivative by ω, see [`forced_residual`].
-pub type ResidualArrays<'a> = (&'a mut [Complex64], Option<&'a mut [f64]>, Option<&'a mut [Complex64]>);
+pub use crate::analysis::residual_numbering::ResidualArrays;
 
 /// The same as [`forced_residual`], and the caller may stop it: the arrays are then untouched or NaN.
 ///
@@ -47,7 +47,7 @@ pub fn forced_residual_with(
     solver: &SolverOptions,
     omega: f64,
     x: &[Complex64],
-    (r, mut jacobian, mut d_omega): ResidualArrays<'_>,
+    (r, jacobian, d_omega): ResidualArrays<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
     solver.fixed().check()?;
@@ -79,6 +79,25 @@ pub fn forced_residual_with(
         }
     }
     // All steps that can fail come before the arrays of the caller are changed.
+    let numbering = Numbering::new(model, highest, jacobian.is_some(), d_omega.is_some())?;
+    if let Some(numbering) = numbering {
+        return numbering.residual(model, x, (r, jacobian, d_omega), |x, arrays| {
+            forced_residual_of_independent(model, solver, omega, x, arrays, interrupt)
+        });
+    }
+    forced_residual_of_independent(model, solver, omega, x, (r, jacobian, d_omega), interrupt)
+}
+
+/// The residual over the independent degrees of freedom.
+fn forced_residual_of_independent(
+    model: &Model,
+    solver: &SolverOptions,
+    omega: f64,
+    x: &[Complex64],
+    (r, mut jacobian, mut d_omega): ResidualArrays<'_>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let highest = solver.harmonics;
     let contact = ContactTerms::new(model, solver, omega, x, interrupt)?;
     let mut dynamic = Vec::new();
     for h in 0..=highest {
@@ -114,7 +133,7 @@ fn assemble(
     (r, mut jacobian, mut d_omega): ResidualArrays<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
-    let n = model.ndof();
+    let n = model.structure().ndof();
     let order = 2 * x.len();
     r.fill(Complex64::ZERO);
     if let Some(d) = d_omega.as_deref_mut() {
@@ -129,7 +148,7 @@ fn assemble(
     for (h, dynamic) in dynamic.iter().enumerate() {
         interrupt.part(Phase::Results, h, x.len() / n)?;
         let range = h * n..(h + 1) * n;
-        model.excitation().add_to(h, -1.0, &mut r[range.clone()]);
+        model.add_forces_to(h, -1.0, &mut r[range.clone()]);
         dynamic
             .z
             .multiply_add(Complex64::ONE, &x[range.clone()], &mut r[range.clone()]);
@@ -184,7 +203,7 @@ struct Dynamic {
 impl Dynamic {
     fn new(model: &Model, h: usize, omega: f64) -> Result<Self> {
         let structure = model.structure();
-        let n = model.ndof();
+        let n = structure.ndof();
         let k = model.sprung_stiffness(Wave::Harmonic(h), core::iter::empty())?;
         let c = structure.wave_matrix(MatrixKind::Damping, h)?;
         let m = structure.wave_matrix(MatrixKind::Mass, h)?;
@@ -224,7 +243,7 @@ impl ContactTerms {
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
         const CONTEXT: &str = "the contacts";
-        let n = model.ndof();
+        let n = model.structure().ndof();
         let set = HarmonicSet::all(solver.harmonics)?;
         let m = set.packed_len();
         let mut terms = Vec::new();
@@ -233,10 +252,10 @@ impl ContactTerms {
             let mut packed = try_vec(m.saturating_mul(directions), 0.0, "a contact motion")?;
             let mut rows = Vec::new();
             for (k, packed) in packed.chunks_exact_mut(m).enumerate() {
-                let direction = contact.direction(k);
+                let motion = model.structure().contact_motion(contact, k);
                 let mut own = Vec::new();
                 for h in 0..=solver.harmonics {
-                    let row = relative_row(&direction, model.structure().phase(h, contact.sector_offset));
+                    let row = model.structure().row(&motion, Wave::Harmonic(h));
                     set.set(packed, h, along(&row, &x[h * n..(h + 1) * n]));
                     try_push(&mut own, row, CONTEXT)?;
                 }

@@ -8,6 +8,7 @@ mod mode_discretised;
 mod mode_equations;
 pub mod nonlinear_mode;
 pub mod point_error;
+mod residual_numbering;
 mod sampling;
 pub mod synthesis;
 pub mod time_response;

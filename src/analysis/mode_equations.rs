@@ -6,6 +6,7 @@ use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
+use crate::model::spring::along;
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Problem, Residual};
 use crate::results::Resolution;
@@ -93,9 +94,10 @@ impl<'a> Equations<'a> {
         for (m, u) in self.motion.iter_mut().zip(u) {
             *m = a * u;
         }
-        let dofs = self.resolution.condensed.ndof();
-        for (r, x) in self.response.iter_mut().zip(self.problem.shape().chunks_exact(dofs)) {
-            *r = a * x[dof];
+        let condensed = &self.resolution.condensed;
+        let harmonics = self.problem.shape().chunks_exact(condensed.ndof());
+        for (i, (r, x)) in self.response.iter_mut().zip(harmonics).enumerate() {
+            *r = a * along(&condensed.motion_row(i, dof), x);
         }
         Ok(())
     }

@@ -19,7 +19,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::repeated_modes::Multiple;
-use crate::model::spring::{along, relative_row};
+use crate::model::spring::along;
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::epmc::{Gauge, LinearMode};
@@ -62,9 +62,7 @@ pub fn nonlinear_mode(
     if solver.harmonics == 0 {
         return fail!(Argument, "harmonics = 0, a nonlinear mode needs at least 1");
     }
-    if let Some(dof) = solver.response_dof.filter(|&d| d >= model.ndof()) {
-        return fail!(Index, "response_dof = {dof}, needs 0 .. {}", model.ndof() - 1);
-    }
+    model.check_response_dof(solver.response_dof)?;
     let constant = |f: &&crate::model::excitation::Force| f.harmonic == 0 && f.value != Complex64::ZERO;
     if let Some(force) = model.excitation().forces().iter().find(constant) {
         return fail!(
@@ -171,7 +169,8 @@ fn on_wave(
             "contact {id} has a force at rest; nonlinear modes under constant forces are not provided yet"
         );
     }
-    let response = solver.response_dof.unwrap_or(gauge.reference_dof);
+    let reference_dof = model.structure().degrees().origin(gauge.reference_dof);
+    let response = solver.response_dof.unwrap_or(reference_dof);
     let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
     let branch = Branch::new(
         resolution,
@@ -203,7 +202,7 @@ fn on_wave(
             omega: chosen.omega,
             multiplicity: chosen.multiplicity,
             multiple: chosen.multiple,
-            reference_dof: gauge.reference_dof,
+            reference_dof,
             engine_order: model.structure().engine_order(),
             amplitude: range.amplitude,
             linear_up_to,
@@ -236,20 +235,34 @@ fn gauge(model: &Model, range: &ModeOptions<'_>, linear: &mut LinearMode) -> Res
         }
     }
     let largest = shape[most].norm();
-    let reference_dof = range.reference_dof.unwrap_or(most);
+    let degrees = model.structure().degrees();
+    let reference_dof = match range.reference_dof {
+        None => most,
+        Some(dof) => match degrees.number(dof) {
+            Some(number) => number,
+            None if degrees.is_fixed(dof) => return fail!(Argument, "reference_dof = {dof} is fixed: it has no phase"),
+            None => {
+                return fail!(
+                    Argument,
+                    "reference_dof = {dof} lies on the right face: name its image on the left one"
+                );
+            }
+        },
+    };
     if shape[reference_dof].norm() <= NODE * largest {
         return fail!(
             Argument,
-            "reference_dof = {reference_dof} is a node of the mode: it moves {} where dof {most} moves {largest}",
-            shape[reference_dof].norm()
+            "reference_dof = {} is a node of the mode: it moves {} where dof {} moves {largest}",
+            degrees.origin(reference_dof),
+            shape[reference_dof].norm(),
+            degrees.origin(most)
         );
     }
     let contact = match range.amplitude {
         Amplitude::Modal => None,
         Amplitude::Contact(id) => {
             let contact = &model.contacts()[id];
-            let phase = model.structure().phase(1, contact.sector_offset);
-            let row = relative_row(&contact.direction(0), phase);
+            let row = model.structure().contact_row(contact, 0, 1);
             let motion = along(&row, shape).norm();
             if motion <= NODE * largest {
                 return fail!(

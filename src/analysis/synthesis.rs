@@ -115,8 +115,9 @@ pub fn synthesise_with(
         );
     };
     check_model(branch, data, model)?;
-    let mut force = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
-    model.excitation().add_to(1, options.force_factor, &mut force);
+    let ndof = model.structure().ndof();
+    let mut force = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+    model.add_forces_to(1, options.force_factor, &mut force);
     if force.iter().all(|f| *f == Complex64::ZERO) {
         return fail!(Argument, "the model has no force in the fundamental");
     }
@@ -125,19 +126,20 @@ pub fn synthesise_with(
     } else {
         None
     };
+    let fundamental = branch.condensed_at(0);
     let load = Load {
         force,
         damping,
         ratio: options.damping_ratio,
-        response_dof: branch.response_dof(),
+        response: fundamental.motion_row(fundamental.set().fundamental(), branch.response_dof()),
     };
     let mut states = Vec::new();
     let mut recovery = Recovery::at(branch, 0, interrupt)?;
-    let mut x = try_vec(model.ndof(), Complex64::ZERO, CONTEXT)?;
+    let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
     for point in 0..branch.points() {
         interrupt.part(Phase::Results, point, branch.points())?;
         recovery.go_to(point)?;
-        recovery.harmonic(branch.condensed_at(point).set().fundamental(), &mut x)?;
+        recovery.independent(branch.condensed_at(point).set().fundamental(), &mut x)?;
         let Some(numbers) = data.point(point) else {
             return fail!(Internal, "point {point} of the mode has no numbers");
         };

@@ -40,6 +40,18 @@ pub(super) fn index(value: i64, limit: usize, argument: i32, name: &str) -> Resu
     })
 }
 
+/// A list of indices of the caller below `limit`.
+pub(super) fn indices(values: &[i64], limit: usize, argument: i32, name: &str) -> Result<Vec<usize>> {
+    let mut list = Vec::new();
+    for (i, &value) in values.iter().enumerate() {
+        match usize::try_from(value).ok().filter(|&value| value < limit) {
+            Some(value) => try_push(&mut list, value, name)?,
+            None => return fail!(Index, "{name}[{i}] = {value}, needs 0 .. {}", limit - 1).with_argument(argument),
+        }
+    }
+    Ok(list)
+}
+
 /// One side of a contact or spring.
 pub(super) fn side(dof: i64, ndof: usize, argument: i32, name: fmt::Arguments<'_>) -> Result<Option<usize>> {
     match dof {

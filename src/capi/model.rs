@@ -5,7 +5,7 @@
 use super::arrays::{check_pointer, count, input};
 use super::boundary::{WithArgument, call, call_count};
 use super::handles::{Kept, Object, free, insert, read, write};
-use super::indices::{GROUND, Sides, index, with_named_argument};
+use super::indices::{GROUND, Sides, index, indices, with_named_argument};
 use super::matrices::{hbvib_matrix, matrix_kind, with_matrix};
 use super::version_and_errors::hbvib_status;
 use crate::error::{Status, fail, try_push};
@@ -129,6 +129,28 @@ pub unsafe extern "C" fn hbvib_model_set_matrix(
         let mut model = write::<Model>(model, 1)?;
         let which = matrix_kind(which)?;
         unsafe { with_matrix(a, 3, model.ndof(), |a| model.set_matrix(which, a)) }?;
+        Ok(Status::Ok)
+    })
+}
+
+/// Fixes degrees of freedom: they do not move, whatever matrices, contacts and forces say, now or
+/// later. All numbers of degrees of freedom stay as they are; results of fixed ones are 0. On a
+/// sector with faces, a pair is fixed on both sides by the same call.
+///
+/// n     number of entries, >= 0.
+/// dofs  degrees of freedom from 0, n numbers.
+/// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_ARGUMENT (a pair fixed on one side only, no degree of
+/// freedom left, a contact or spring both sides of which would be fixed), HBVIB_E_DIMENSION (n),
+/// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; the model is then unchanged.
+/// Threads: one at a time per model.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_model_fix(model: *mut hbvib_model, n: i64, dofs: *const i64) -> hbvib_status {
+    call(|| {
+        let mut model = write::<Model>(model, 1)?;
+        let n = count(n, 2, "n")?;
+        let dofs = unsafe { input(dofs, n, 3, "dofs") }?;
+        let dofs = indices(dofs, model.ndof(), 3, "dofs")?;
+        model.fix(&dofs).with_argument(3)?;
         Ok(Status::Ok)
     })
 }

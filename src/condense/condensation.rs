@@ -78,7 +78,7 @@ impl Condensed {
             .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
         let unit = power_of_two(largest);
         for block in &mut condensed.blocks {
-            model.excitation().add_to(block.number, 1.0 / unit, &mut block.force);
+            model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
         }
         let mut workspace = Workspace::new(&condensed, None)?;
         let mut motion = 0.0_f64;
@@ -126,7 +126,7 @@ impl Condensed {
     pub fn without_harmonics(model: &Model) -> Result<Self> {
         Ok(Self {
             set: HarmonicSet::all(0)?,
-            ndof: model.ndof(),
+            degrees: model.structure().degrees().clone(),
             length: 1.0,
             blocks: Vec::new(),
             laws: Vec::new(),
@@ -218,7 +218,7 @@ impl Condensed {
         }
         let condensed = Self {
             set,
-            ndof: model.ndof(),
+            degrees: model.structure().degrees().clone(),
             length: 1.0,
             blocks,
             laws: Vec::new(),

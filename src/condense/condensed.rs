@@ -4,6 +4,8 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::condense::harmonic_block::HarmonicBlock;
 use crate::contact::Law;
 use crate::fourier::HarmonicSet;
+use crate::model::degree_map::DegreeMap;
+use crate::model::spring::Row;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -48,7 +50,7 @@ pub struct AssembledLaw {
 #[derive(Clone, Debug)]
 pub struct Condensed {
     pub(super) set: HarmonicSet,
-    pub(super) ndof: usize,
+    pub(super) degrees: DegreeMap,
     pub(super) length: f64,
     pub(super) blocks: Vec<HarmonicBlock>,
     pub(super) laws: Vec<AssembledLaw>,
@@ -76,10 +78,32 @@ impl Condensed {
         &self.set
     }
 
-    /// Degrees of freedom of the structure (one sector).
+    /// Independent degrees of freedom of the structure (one sector).
     #[must_use]
     pub fn ndof(&self) -> usize {
-        self.ndof
+        self.degrees.independent()
+    }
+
+    /// The map from the degrees of freedom of the caller to the independent ones.
+    #[must_use]
+    pub fn degrees(&self) -> &DegreeMap {
+        &self.degrees
+    }
+
+    /// Row of the motion of one of the caller's degrees of freedom in the i-th carried harmonic.
+    #[must_use]
+    pub fn motion_row(&self, i: usize, dof: usize) -> Row {
+        let (sector, terms) = self.degrees.image(dof);
+        let turn = if sector == 0 {
+            Complex64::ONE
+        } else {
+            self.blocks[i].next
+        };
+        let mut row = [None; 6];
+        for (entry, (dof, c)) in row.iter_mut().zip(terms) {
+            *entry = Some((dof, turn * c));
+        }
+        row
     }
 
     /// Unit of all lengths in the solver, in the caller's unit.

@@ -6,10 +6,9 @@
 
 use crate::condense::Condensed;
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, product};
-use crate::contact::relative_motion::Direction;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::model::spring::{along, relative_row};
+use crate::model::spring::along;
 use num_complex::Complex64;
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
@@ -180,7 +179,7 @@ impl Workspace {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
-        let response = relative_row(&Direction::between(self.response, None), Complex64::ONE);
+        let response = self.response.map_or([None; 6], |dof| condensed.motion_row(i, dof));
         let rows = block.rows.iter().chain(core::iter::once(&response));
         for (column, table) in self
             .columns

@@ -5,7 +5,7 @@ use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, relative_row};
+use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
@@ -26,6 +26,8 @@ pub enum Artificial {
 pub struct HarmonicBlock {
     /// Harmonic number h.
     pub number: usize,
+    /// Motion of the next sector over that of this one.
+    pub next: Complex64,
     /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
     pub reference: Csc,
     /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
@@ -68,15 +70,13 @@ pub(super) fn harmonic_block(
     interrupt: &Interrupt<'_>,
 ) -> Result<HarmonicBlock> {
     let structure = model.structure();
-    let n = model.ndof();
+    let n = structure.ndof();
     let stuck = contact_classes.never_slipping.iter().map(|&i| &model.contacts()[i]);
     let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
     let rows_of = |contacts: &[(usize, usize)]| -> Result<Vec<Row>> {
         let mut rows = try_vec(contacts.len(), [None; 6], "the contacts")?;
         for (r, &(i, k)) in rows.iter_mut().zip(contacts) {
-            let contact = &model.contacts()[i];
-            let phase = structure.phase(number, contact.sector_offset);
-            *r = relative_row(&contact.direction(k), phase);
+            *r = structure.contact_row(&model.contacts()[i], k, number);
         }
         Ok(rows)
     };
@@ -109,6 +109,7 @@ pub(super) fn harmonic_block(
     interrupt.check()?;
     Ok(HarmonicBlock {
         number,
+        next: structure.phase(number, 1),
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
         stiffness: stiffness.aligned(&reference)?,

@@ -60,12 +60,13 @@ impl ModalTable {
         let (outputs, rows) = (coordinates + 1, coordinates + 1 + springs.len());
         let mut left = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
         let mut right = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
+        let observed = condensed.motion_row(i, response);
         for (mode, shape) in modes.vectors.chunks_exact(n).enumerate() {
             let column = &mut left[mode * rows..(mode + 1) * rows];
             for (to, row) in column.iter_mut().zip(&block.rows) {
                 *to = along(row, shape);
             }
-            column[coordinates] = shape[response];
+            column[coordinates] = along(&observed, shape);
             for (to, (row, _)) in column[outputs..].iter_mut().zip(springs) {
                 *to = along(row, shape);
             }

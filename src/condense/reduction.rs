@@ -55,7 +55,7 @@ impl Condensed {
     pub fn reduction_with(&self, model: &Model, options: &SolverOptions, held_by_contacts: usize) -> Reduction {
         Reduction {
             sectors: model.structure().sectors(),
-            degrees_of_freedom: self.ndof,
+            degrees_of_freedom: self.degrees.given(),
             coordinates: self.coordinates(),
             contacts: self.contacts(),
             never_slipping: self.contact_classes.never_slipping.len(),

@@ -37,8 +37,10 @@ pub(super) fn structural_stiffness(
     let k = model.sprung_stiffness(Wave::Harmonic(lowest), stuck)?;
     let m = model.structure().wave_matrix(MatrixKind::Mass, lowest)?;
     for at in assembled {
-        let direction = model.contacts()[at.contact].direction(at.direction);
-        for &(p, _) in direction.a.iter().chain(&direction.b).flatten() {
+        let motion = model
+            .structure()
+            .contact_motion(&model.contacts()[at.contact], at.direction);
+        for p in motion.terms().map(|term| term.dof) {
             let size = k.get(p, p).norm().max(omega * omega * m.get(p, p).norm());
             structural[at.coordinate] = structural[at.coordinate].max(size);
         }

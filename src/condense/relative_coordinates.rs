@@ -2,7 +2,7 @@
 
 use crate::error::{Result, try_push, try_vec};
 use crate::model::Model;
-use crate::model::spring::{along, relative_row};
+use crate::model::spring::along;
 use num_complex::Complex64;
 
 /// A direction of an active contact, and its relative coordinate.
@@ -23,7 +23,7 @@ pub(super) fn assign_coordinates(
     active: &[usize],
 ) -> Result<(Vec<AssembledDirection>, Vec<ContactDirection>)> {
     const CONTEXT: &str = "the contacts";
-    let sectors = model.structure().sectors() as i128;
+    let structure = model.structure();
     let mut assembled = Vec::new();
     for &contact in active {
         for direction in 0..model.contacts()[contact].directions() {
@@ -35,11 +35,8 @@ pub(super) fn assign_coordinates(
             try_push(&mut assembled, new, CONTEXT)?;
         }
     }
-    let key = |p: AssembledDirection| {
-        let c = &model.contacts()[p.contact];
-        let sector = i128::from(c.sector_offset).rem_euclid(sectors);
-        (c.direction(p.direction).key(), sector)
-    };
+    let key =
+        |p: AssembledDirection| structure.key(&structure.contact_motion(&model.contacts()[p.contact], p.direction));
     let mut order = try_vec(assembled.len(), 0, CONTEXT)?;
     for (i, o) in order.iter_mut().enumerate() {
         *o = i;
@@ -66,8 +63,7 @@ pub(super) fn assign_coordinates(
 /// structure at the contact, the relative motion is no longer small and the resonance is damped.
 pub(super) fn relative_share(model: &Model, (contact, direction): ContactDirection, shape: &[Complex64]) -> f64 {
     let contact = &model.contacts()[contact];
-    let phase = model.structure().phase(1, contact.sector_offset);
-    let row = relative_row(&contact.direction(direction), phase);
+    let row = model.structure().contact_row(contact, direction, 1);
     let sides: f64 = row.iter().flatten().map(|&(p, a)| (a * shape[p]).norm()).sum();
     let relative = along(&row, shape).norm();
     if relative > 1e-9 * sides { relative / sides } else { 1.0 }

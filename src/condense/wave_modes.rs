@@ -8,13 +8,13 @@
 //! Z⁻¹ = Σ φ φᴴ/(1 + c − (ν² − iνα) μ); the term itself is of low rank, see [`crate::condense::modal_table`].
 
 use crate::condense::{Artificial, Condensed, HarmonicBlock};
-use crate::contact::relative_motion::Direction;
 use crate::error::{Result, Status, try_extend, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::spring::{Row, relative_row};
+use crate::model::spring::Row;
+use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
@@ -182,19 +182,17 @@ fn springs(model: &Model, condensed: &Condensed, number: usize) -> Result<Option
     let structure = model.structure();
     let mut rows = Vec::new();
     for s in model.springs() {
-        let phase = structure.phase(number, s.sector_offset);
-        let direction = Direction::between(s.dof_a, s.dof_b);
-        try_push(&mut rows, (relative_row(&direction, phase), s.stiffness), CONTEXT)?;
+        let row = structure.row(&structure.spring_motion(s), Wave::Harmonic(number));
+        try_push(&mut rows, (row, s.stiffness), CONTEXT)?;
     }
     for &i in &condensed.contact_classes().never_slipping {
         let contact = &model.contacts()[i];
-        let phase = structure.phase(number, contact.sector_offset);
         for k in 0..contact.directions() {
             let couples = |&l: &usize| l != k && contact.stiffness_at_small_motion(k, l) != 0.0;
             if (0..contact.directions()).any(|l| couples(&l)) {
                 return Ok(None);
             }
-            let row = relative_row(&contact.direction(k), phase);
+            let row = structure.contact_row(contact, k, number);
             try_push(&mut rows, (row, contact.stiffness_at_small_motion(k, k)), CONTEXT)?;
         }
     }

@@ -15,8 +15,10 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::norm;
 use crate::model::Model;
+use crate::model::spring::along;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
+use num_complex::Complex64;
 
 /// Ratio of the harmonics of an extended model to those needed up to which the model is used again.
 const SPARE: f64 = 1.25;
@@ -159,12 +161,14 @@ impl<'a> ModeEstimator<'a> {
         let (omega2, damping2) = Epmc::frequency_and_damping(self.linear, &z);
         let (omega1, damping1) = Epmc::frequency_and_damping(self.linear, &extended.at);
         let unit = a * condensed.length();
-        let i = set.fundamental() * condensed.ndof() + self.response;
-        let before = system.problem.shape()[i] * unit;
+        let (i, dofs) = (set.fundamental(), condensed.ndof());
+        let row = condensed.motion_row(i, self.response);
+        let response = |shape: &[Complex64]| along(&row, &shape[i * dofs..(i + 1) * dofs]) * unit;
+        let before = response(system.problem.shape());
         if !system.evaluate(&z)? {
             return Ok(None);
         }
-        let response = system.problem.shape()[i] * unit;
+        let response = response(system.problem.shape());
         let motion = &z[..n - 2];
         let size = norm(motion);
         let mut change = try_vec(n - 2, 0.0, CONTEXT)?;

@@ -6,9 +6,9 @@
 
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::part_of_turn::lag;
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
-use std::f64::consts::TAU;
 
 impl Structure {
     /// Residue h·EO mod N in 0 .. N.
@@ -62,11 +62,7 @@ impl Structure {
 
     /// e^{−2πi·residue/N}
     fn lag(&self, residue: usize) -> Complex64 {
-        let n = self.sectors();
-        match (4 * residue).checked_div(n) {
-            Some(q) if 4 * residue == q * n => [Complex64::ONE, -Complex64::I, -Complex64::ONE, Complex64::I][q % 4],
-            _ => Complex64::cis(-TAU * residue as f64 / n as f64),
-        }
+        lag(residue, self.sectors())
     }
 
     /// Whether a contact with this sector offset stays within one sector.

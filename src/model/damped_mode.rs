@@ -82,7 +82,7 @@ impl Model {
         interrupt: &Interrupt<'_>,
     ) -> Result<DampedMode> {
         interrupt.check()?;
-        let n = self.ndof();
+        let n = self.structure().ndof();
         if start.shape.len() != n {
             return fail!(
                 Dimension,

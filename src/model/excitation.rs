@@ -56,11 +56,4 @@ impl Excitation {
     pub fn forces(&self) -> &[Force] {
         &self.forces
     }
-
-    /// Adds the forces of one harmonic, times `scale`, to a vector over the degrees of freedom.
-    pub fn add_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
-        for f in self.forces.iter().filter(|f| f.harmonic == harmonic) {
-            vector[f.dof] += f.value * scale;
-        }
-    }
 }

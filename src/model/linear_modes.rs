@@ -1,7 +1,7 @@
 //! Undamped natural modes of the structure with its contacts removed or stuck.
 
 use crate::contact::Role;
-use crate::error::{Result, Status, check_memory, fail};
+use crate::error::{Result, Status, check_memory, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite::resists_all_motion;
 use crate::linalg::eigen::{self, Pairs};
@@ -79,7 +79,7 @@ impl Model {
         interrupt.phase(Phase::Setup, 0.0)?;
         let pencil = self.pencil(Wave::Diameter(diameter), contacts)?;
         interrupt.phase(Phase::Modes, 0.0)?;
-        pencil.lowest(count, interrupt)
+        self.expanded(pencil.lowest(count, interrupt)?, diameter)
     }
 
     /// All undamped natural modes of nodal diameter `diameter` (0 for a plain structure), in the wave whose sector
@@ -92,7 +92,29 @@ impl Model {
     /// [`eigen::generalised`].
     pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
         self.check_matrices(true)?;
-        self.pencil(Wave::Diameter(diameter), contacts)?.all(&Interrupt::none())
+        let modes = self
+            .pencil(Wave::Diameter(diameter), contacts)?
+            .all(&Interrupt::none())?;
+        self.expanded(modes, diameter)
+    }
+
+    /// The modes with their shapes on all degrees of freedom of the caller.
+    fn expanded(&self, modes: LinearModes, diameter: usize) -> Result<LinearModes> {
+        let degrees = self.structure().degrees();
+        if degrees.is_identity() {
+            return Ok(modes);
+        }
+        let next = self.structure().wave_phase(diameter, 1);
+        let (n, given) = (degrees.independent(), degrees.given());
+        let mut shapes = try_vec(
+            modes.omega.len().saturating_mul(given),
+            Complex64::ZERO,
+            "the natural modes",
+        )?;
+        for (all, shape) in shapes.chunks_exact_mut(given).zip(modes.shapes.chunks_exact(n)) {
+            degrees.expand(next, shape, all);
+        }
+        Ok(LinearModes { shapes, ..modes })
     }
 
     /// Motions of a nodal diameter that neither structure nor springs resist: modes whose frequency without

@@ -7,6 +7,7 @@ use crate::contact::relative_motion::Direction;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
+use crate::model::sector_faces::SectorDescription;
 use crate::model::spring::Spring;
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
@@ -58,6 +59,46 @@ impl Model {
             springs: Vec::new(),
             excitation: Excitation::default(),
         })
+    }
+
+    /// A sector as a finite-element program writes it, with degrees of freedom on both faces. Matrices, contacts,
+    /// forces and results keep the numbering of the sector; its couplings follow from its matrices.
+    ///
+    /// # Errors
+    /// `Dimension`, `Index`, `NotFinite` or `Argument`, naming the pair or degree of freedom: faces of different
+    /// sizes, a degree of freedom in both or twice in one, a pair that is fixed on one side only, a node on the
+    /// axis, coordinates that contradict the sense or the number of sectors.
+    pub fn sector(sector: &SectorDescription<'_>) -> Result<Self> {
+        Ok(Self {
+            structure: Structure::of_sector(sector)?,
+            contacts: Vec::new(),
+            springs: Vec::new(),
+            excitation: Excitation::default(),
+        })
+    }
+
+    /// Fixes degrees of freedom: they move no more, whatever matrices, contacts and forces say. Numbers of degrees
+    /// of freedom stay as they are. Those on both faces of a sector are fixed together.
+    ///
+    /// # Errors
+    /// `Index`; `Argument` for a pair of the faces that is fixed on one side only, if all degrees of freedom were
+    /// fixed, or for a contact or spring both of whose sides were. Nothing has then changed.
+    pub fn fix(&mut self, dofs: &[usize]) -> Result<()> {
+        let old = self.structure.fixing(dofs)?;
+        let old = core::mem::replace(&mut self.structure, old);
+        let checked = self
+            .contacts
+            .iter()
+            .enumerate()
+            .try_for_each(|(i, c)| self.check_contact(c).map_err(|e| e.at(format_args!("contact {i}"))))
+            .and_then(|()| {
+                let mut springs = self.springs.iter().enumerate();
+                springs.try_for_each(|(i, s)| self.check_spring(s).map_err(|e| e.at(format_args!("spring {i}"))))
+            });
+        if checked.is_err() {
+            self.structure = old;
+        }
+        checked
     }
 
     /// A copy, allocated fallibly.
@@ -189,7 +230,7 @@ impl Model {
     /// Those of [`Iwan::elements`] and [`Self::add_contact`].
     pub fn add_iwan(&mut self, between: &Contact, joint: &Iwan, elements: usize) -> Result<usize> {
         let sides = Direction::between(between.dof_a[0], between.dof_b[0]);
-        self.check_sides("Iwan joint", &sides, between.sector_offset)?;
+        self.check_sides("Iwan joint", &sides, between.sector_offset, None)?;
         self.add_contacts(&joint.elements(between, elements)?)
     }
 
@@ -221,7 +262,7 @@ impl Model {
             );
         }
         let sides = Direction::between(spring.dof_a, spring.dof_b);
-        self.check_sides("spring", &sides, spring.sector_offset)
+        self.check_sides("spring", &sides, spring.sector_offset, None)
     }
 
     /// Changes the normal load of a contact.
@@ -255,7 +296,7 @@ impl Model {
     /// # Errors
     /// `Index`, `Argument` or `NotFinite`, naming the argument.
     pub fn add_force(&mut self, dof: usize, harmonic: usize, value: Complex64) -> Result<()> {
-        self.excitation.add(self.structure.ndof(), dof, harmonic, value)
+        self.excitation.add(self.ndof(), dof, harmonic, value)
     }
 
     /// Removes all forces.
@@ -263,10 +304,22 @@ impl Model {
         self.excitation.clear();
     }
 
-    /// Degrees of freedom (of one sector).
+    /// Adds the forces of one harmonic, times `scale`, to a vector over the independent degrees of freedom. A force
+    /// on the right face acts on the next sector; one on a fixed degree of freedom has no effect.
+    pub(crate) fn add_forces_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
+        for f in self.excitation.forces().iter().filter(|f| f.harmonic == harmonic) {
+            let (sector, terms) = self.structure.degrees().image(f.dof);
+            let value = f.value * scale * self.structure.phase(harmonic, -sector);
+            for (dof, c) in terms {
+                vector[dof] += value * c;
+            }
+        }
+    }
+
+    /// Degrees of freedom (of one sector), the fixed ones and both faces included.
     #[must_use]
     pub fn ndof(&self) -> usize {
-        self.structure.ndof()
+        self.structure.degrees().given()
     }
 
     /// The linear structure.

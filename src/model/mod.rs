@@ -1,15 +1,22 @@
 //! The model: structure, contacts, excitation. The analyses take their matrices and contact data from here.
 
+mod blocks;
 pub mod cyclic;
 pub mod damped_mode;
+pub mod degree_map;
 pub mod excitation;
+mod face_coordinates;
 pub mod full_wheel;
 pub mod linear_modes;
 mod mechanical_model;
 pub mod mode_selection;
 mod model_checks;
+mod part_of_turn;
 pub mod repeated_modes;
 pub mod resonances;
+pub mod sector_faces;
+mod sector_matrices;
+pub mod sector_motion;
 pub mod slip_capacity;
 pub mod spring;
 pub mod spring_stiffness;

@@ -1,7 +1,7 @@
 //! The linear mode with stuck contacts from which a nonlinear mode starts, in the wave of the engine order of the
 //! model.
 
-use crate::error::{Result, Status, fail, try_copy, try_extend, try_push};
+use crate::error::{Result, Status, fail, try_copy, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite;
 use crate::linalg::inner;
@@ -67,10 +67,19 @@ impl Model {
     pub fn select_mode_with(&self, choice: ModeChoice<'_>, interrupt: &Interrupt<'_>) -> Result<SelectedMode> {
         interrupt.phase(Phase::Modes, 0.0)?;
         choice.check(self.ndof())?;
+        let mut restricted;
+        let choice = match choice {
+            ModeChoice::Shape(shape) => {
+                restricted = try_vec(self.structure().ndof(), Complex64::ZERO, CONTEXT)?;
+                self.structure().degrees().restrict(shape, &mut restricted);
+                ModeChoice::Shape(&restricted)
+            }
+            other => other,
+        };
         let pencil = self.pencil(Wave::Harmonic(1), ContactState::Stuck)?;
         let (known, chosen) = KnownModes::find(&pencil, choice, interrupt)?;
         known.check_frequency(chosen.index)?;
-        let n = self.ndof();
+        let n = self.structure().ndof();
         let shapes = &known.modes.shapes[chosen.cluster.start * n..chosen.cluster.end * n];
         let (shape, multiple) =
             repeated_modes::resolve(&pencil, shapes, chosen.index - chosen.cluster.start, chosen.projection)?;

@@ -21,7 +21,8 @@ impl Model {
         }
         self.check_list("dofs", &contact.dofs)?;
         for k in 0..contact.directions() {
-            self.check_sides("contact", &contact.direction(k), contact.sector_offset)?;
+            let node_b = contact.frame.map(|_| contact.dof_b);
+            self.check_sides("contact", &contact.direction(k), contact.sector_offset, node_b)?;
         }
         Ok(())
     }
@@ -44,6 +45,19 @@ impl Model {
             return fail!(Argument, "no mass matrix was set: a mode needs one");
         }
         Ok(())
+    }
+
+    /// A response degree of freedom must exist and may not be fixed.
+    pub(crate) fn check_response_dof(&self, dof: Option<usize>) -> Result<()> {
+        match dof {
+            Some(dof) if dof >= self.ndof() => {
+                fail!(Index, "response_dof = {dof}, needs 0 .. {}", self.ndof() - 1)
+            }
+            Some(dof) if self.structure().degrees().is_fixed(dof) => {
+                fail!(Argument, "response_dof = {dof} is fixed: it has no response")
+            }
+            _ => Ok(()),
+        }
     }
 
     /// Entry `i` of a list must be a degree of freedom of the model.
@@ -69,8 +83,15 @@ impl Model {
         }
     }
 
-    /// Both sides of a contact or spring must exist and differ.
-    pub(super) fn check_sides(&self, what: &str, sides: &Direction, sector_offset: i64) -> Result<()> {
+    /// Both sides of a contact or spring must exist and differ; `node_b` is the node on side b of a contact with a
+    /// frame.
+    pub(super) fn check_sides(
+        &self,
+        what: &str,
+        sides: &Direction,
+        sector_offset: i64,
+        node_b: Option<[Option<usize>; 3]>,
+    ) -> Result<()> {
         let n = self.ndof();
         for (name, side) in [("dof_a", sides.a), ("dof_b", sides.b)] {
             if let Some((dof, _)) = side.into_iter().flatten().find(|&(d, _)| d >= n) {
@@ -96,7 +117,7 @@ impl Model {
                 "{what}: sector_offset = {sector_offset}, needs 0 in a plain structure"
             );
         }
-        Ok(())
+        self.structure().check_motion(what, sides, sector_offset, node_b)
     }
 }
 

@@ -21,7 +21,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{along, relative_row};
+use crate::model::spring::along;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
@@ -92,7 +92,7 @@ impl Model {
     /// As [`Self::overload`].
     pub fn resonance(&self, omega: f64, harmonic: usize, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
         interrupt.check()?;
-        let n = self.ndof();
+        let n = self.structure().ndof();
         let structure = self.structure();
         let wave = Wave::Harmonic(harmonic);
         let springs = self.contacts().iter().filter(|c| c.role() == Role::Spring);
@@ -113,7 +113,7 @@ impl Model {
         // The force itself is the starting vector: among repeated resonances it selects the motion on which it does
         // most work.
         let mut forces = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        self.excitation().add_to(harmonic, 1.0, &mut forces);
+        self.add_forces_to(harmonic, 1.0, &mut forces);
         let Some(shape) = left_null(&dynamic(-w * w - SHIFT * square)?, &mass, &forces, interrupt)? else {
             return Ok(None);
         };
@@ -148,9 +148,8 @@ impl Model {
         let wave = if harmonic == 0 { 1.0 } else { 4.0 / PI };
         let mut sum = 0.0;
         for contact in self.contacts().iter().filter(|c| c.role() == Role::Active) {
-            let phase = self.structure().phase(harmonic, contact.sector_offset);
             for k in 0..contact.directions() {
-                let motion = along(&relative_row(&contact.direction(k), phase), shape).norm();
+                let motion = along(&self.structure().contact_row(contact, k, harmonic), shape).norm();
                 // A contact without relative motion contributes nothing, whatever its force.
                 if motion > 0.0 {
                     sum += wave * contact.largest_force() * motion;

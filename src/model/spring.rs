@@ -1,6 +1,5 @@
 //! Linear springs between degrees of freedom, and the rows of relative motions.
 
-use crate::contact::relative_motion::Direction;
 use num_complex::Complex64;
 
 /// A linear spring. Rayleigh damping excludes it.
@@ -18,21 +17,6 @@ pub struct Spring {
 
 /// Row of a relative motion: at most three entries per side, each (degree of freedom, coefficient).
 pub type Row = [Option<(usize, Complex64)>; 6];
-
-/// Row r of the relative motion y = r·x in a direction: side a minus side b, where `phase` is the
-/// motion of b's sector over a's.
-#[must_use]
-pub fn relative_row(direction: &Direction, phase: Complex64) -> Row {
-    let mut row = [None; 6];
-    let (a, b) = row.split_at_mut(3);
-    for (entry, term) in a.iter_mut().zip(direction.a) {
-        *entry = term.map(|(dof, c)| (dof, c.into()));
-    }
-    for (entry, term) in b.iter_mut().zip(direction.b) {
-        *entry = term.map(|(dof, c)| (dof, -phase * c));
-    }
-    row
-}
 
 /// r·x, the relative motion of a row.
 #[must_use]

@@ -1,11 +1,10 @@
 //! Stiffness of a wave with springs and stuck contacts.
 
 use crate::contact::Contact;
-use crate::contact::relative_motion::Direction;
 use crate::error::{Result, try_push};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::spring::{Row, relative_row};
+use crate::model::spring::Row;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 
@@ -25,14 +24,10 @@ impl Model {
     /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
     pub fn sprung_stiffness<'c>(&self, wave: Wave, stuck: impl Iterator<Item = &'c Contact>) -> Result<Csc> {
         let structure = self.structure();
-        let n = self.ndof();
+        let n = structure.ndof();
         let own = match wave {
             Wave::Harmonic(h) => structure.wave_matrix(MatrixKind::Stiffness, h)?,
             Wave::Diameter(d) => structure.diameter_matrix(MatrixKind::Stiffness, d)?,
-        };
-        let phase = |offset| match wave {
-            Wave::Harmonic(h) => structure.phase(h, offset),
-            Wave::Diameter(d) => structure.wave_phase(d, offset),
         };
         let mut entries = Vec::new();
         let mut add = |force: &Row, motion: &Row, stiffness: f64| -> Result<()> {
@@ -47,11 +42,11 @@ impl Model {
             Ok(())
         };
         for s in self.springs() {
-            let row = relative_row(&Direction::between(s.dof_a, s.dof_b), phase(s.sector_offset));
+            let row = structure.row(&structure.spring_motion(s), wave);
             add(&row, &row, s.stiffness)?;
         }
         for c in stuck {
-            let row = |k| relative_row(&c.direction(k), phase(c.sector_offset));
+            let row = |k| structure.row(&structure.contact_motion(c, k), wave);
             for k in 0..c.directions() {
                 for l in 0..c.directions() {
                     add(&row(k), &row(l), c.stiffness_at_small_motion(k, l))?;

@@ -4,6 +4,10 @@
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::Csc;
+use crate::model::blocks::Blocks;
+use crate::model::degree_map::DegreeMap;
+use crate::model::sector_faces::{Faces, SectorDescription};
+use crate::model::sector_matrices::{self, of_independent, restricted};
 
 /// Largest accepted number of degrees of freedom.
 pub const MAX_DOF: usize = 1 << 31;
@@ -32,39 +36,10 @@ impl MatrixKind {
     }
 }
 
-/// One of M, C, K in the form in which it was given.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Blocks {
-    /// Rows and columns of the same sector.
-    pub own: Option<Csc>,
-    /// Rows of sector s, columns of s + 1.
-    pub next: Option<Csc>,
-    /// Rows of sector s, columns of s − 1; `None`: the transpose of `next`.
-    pub previous: Option<Csc>,
-    /// Matrices per nodal diameter 0 ..= N/2, instead of blocks.
-    pub diameters: Vec<Option<Csc>>,
-}
-
-impl Blocks {
-    fn try_clone(&self) -> Result<Self> {
-        let copy = |a: &Option<Csc>| a.as_ref().map(Csc::try_clone).transpose();
-        let mut diameters = Vec::new();
-        for a in &self.diameters {
-            try_push(&mut diameters, copy(a)?, "the matrices per diameter")?;
-        }
-        Ok(Self {
-            own: copy(&self.own)?,
-            next: copy(&self.next)?,
-            previous: copy(&self.previous)?,
-            diameters,
-        })
-    }
-}
-
 /// Matrices of a structure, plain (one sector) or cyclic.
 #[derive(Clone, Debug)]
 pub struct Structure {
-    ndof: usize,
+    degrees: DegreeMap,
     sectors: usize,
     engine_order: i64,
     pub(super) blocks: [Blocks; 3],
@@ -80,7 +55,7 @@ impl Structure {
             return fail!(Argument, "sectors = {sectors}, needs 1 .. {MAX_SECTORS}");
         }
         Ok(Self {
-            ndof,
+            degrees: DegreeMap::identity(ndof),
             sectors,
             engine_order: 0,
             blocks: Default::default(),
@@ -110,15 +85,51 @@ impl Structure {
     pub(super) fn try_clone(&self) -> Result<Self> {
         let [mass, damping, stiffness] = &self.blocks;
         Ok(Self {
+            degrees: self.degrees.clone(),
             blocks: [mass.try_clone()?, damping.try_clone()?, stiffness.try_clone()?],
             ..*self
         })
     }
 
-    /// Degrees of freedom of one sector.
+    /// Independent degrees of freedom of one sector, the order of its matrices.
     #[must_use]
     pub fn ndof(&self) -> usize {
-        self.ndof
+        self.degrees.independent()
+    }
+
+    /// The map from the degrees of freedom of the caller to the independent ones.
+    #[must_use]
+    pub fn degrees(&self) -> &DegreeMap {
+        &self.degrees
+    }
+
+    /// A structure of zero matrices with faces and fixed degrees of freedom.
+    pub(super) fn of_sector(sector: &SectorDescription<'_>) -> Result<Self> {
+        let mut structure = Self::new(sector.ndof, sector.sectors)?;
+        structure.engine_order = sector.engine_order;
+        structure.degrees = DegreeMap::of_sector(sector.ndof, Faces::new(sector)?, sector.fixed)?;
+        Ok(structure)
+    }
+
+    /// The same structure with more degrees of freedom fixed.
+    ///
+    /// # Errors
+    /// As [`DegreeMap::fixing`].
+    pub(super) fn fixing(&self, dofs: &[usize]) -> Result<Self> {
+        let degrees = self.degrees.fixing(dofs)?;
+        let keep = |a: &Option<Csc>| a.as_ref().map(|a| restricted(&self.degrees, &degrees, a)).transpose();
+        let mut blocks: [Blocks; 3] = Default::default();
+        for (new, old) in blocks.iter_mut().zip(&self.blocks) {
+            (new.own, new.next, new.previous) = (keep(&old.own)?, keep(&old.next)?, keep(&old.previous)?);
+            for a in &old.diameters {
+                try_push(&mut new.diameters, keep(a)?, "the matrices per diameter")?;
+            }
+        }
+        Ok(Self {
+            degrees,
+            blocks,
+            ..*self
+        })
     }
 
     /// Number of sectors N; 1 for a plain structure.
@@ -150,9 +161,9 @@ impl Structure {
     pub(super) fn set_own(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
         Self::refuse_general_mass(which, a)?;
         self.refuse_diameters(which)?;
-        let own = a.copy_in(which.name(), self.ndof)?;
+        let own = a.copy_in(which.name(), self.degrees.given())?;
         if which == MatrixKind::Mass
-            && let Some(i) = (0..self.ndof).find(|&i| own.get(i, i).re < 0.0)
+            && let Some(i) = (0..own.cols).find(|&i| own.get(i, i).re < 0.0)
         {
             return fail!(
                 NotPositiveDefinite,
@@ -162,7 +173,12 @@ impl Structure {
                 own.get(i, i).re
             );
         }
-        self.blocks[which as usize].own = Some(own);
+        let blocks = &mut self.blocks[which as usize];
+        if self.degrees.faces().is_some() {
+            *blocks = sector_matrices::blocks(&self.degrees, &own, a.part != Part::General)?;
+        } else {
+            blocks.own = Some(of_independent(&self.degrees, own)?);
+        }
         Ok(())
     }
 
@@ -192,12 +208,14 @@ impl Structure {
                 "a plain structure has no neighbouring sector; use a cyclic model"
             );
         }
+        self.refuse_faces(which)?;
         self.refuse_diameters(which)?;
         let part = match a.part {
             Part::Full => Part::General,
             other => other,
         };
-        a.part(part).copy_in(which.name(), self.ndof)
+        let given = a.part(part).copy_in(which.name(), self.degrees.given())?;
+        of_independent(&self.degrees, given)
     }
 
     pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
@@ -219,13 +237,26 @@ impl Structure {
                 which.name()
             );
         }
-        let matrix = a.copy_in(which.name(), self.ndof)?;
+        self.refuse_faces(which)?;
+        let matrix = a.copy_in(which.name(), self.degrees.given())?;
+        let matrix = of_independent(&self.degrees, matrix)?;
         let blocks = &mut self.blocks[which as usize];
         if blocks.diameters.is_empty() {
             blocks.diameters = try_vec(highest + 1, None, "the matrices per diameter")?;
         }
         blocks.diameters[diameter] = Some(matrix);
         Ok(())
+    }
+
+    fn refuse_faces(&self, which: MatrixKind) -> Result<()> {
+        if self.degrees.faces().is_none() {
+            return Ok(());
+        }
+        fail!(
+            Unsupported,
+            "{} of a sector with faces: its couplings follow from the matrix of the sector, which is the only one to set",
+            which.name()
+        )
     }
 
     fn refuse_diameters(&self, which: MatrixKind) -> Result<()> {

@@ -163,7 +163,7 @@ impl Branch {
     /// Degrees of freedom (of one sector).
     #[must_use]
     pub fn ndof(&self) -> usize {
-        self.resolutions[0].condensed.ndof()
+        self.resolutions[0].condensed.degrees().given()
     }
 
     /// Highest harmonic number H of the results: the requested one or, where a tolerance chose, the highest that a

@@ -20,6 +20,7 @@ pub(crate) struct Recovery<'a> {
     point: usize,
     forces: ContactForces<'a>,
     w: Vec<Complex64>,
+    independent: Vec<Complex64>,
 }
 
 const CONTEXT: &str = "the harmonics";
@@ -43,6 +44,7 @@ impl<'a> Recovery<'a> {
             point,
             forces: ContactForces::unchecked(condensed, *samples, interrupt)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+            independent: Vec::new(),
         };
         recovery.go_to(point)?;
         Ok(recovery)
@@ -72,11 +74,30 @@ impl<'a> Recovery<'a> {
         self.forces.forces()
     }
 
-    /// Motion of all degrees of freedom in the i-th carried harmonic, in the caller's unit.
+    /// Motion of all degrees of freedom in the i-th carried harmonic, in the caller's unit and numbering.
     ///
     /// # Errors
-    /// `Singular` at an undamped resonance that moves no contact.
+    /// `Singular` at an undamped resonance that moves no contact; `OutOfMemory`.
     pub fn harmonic(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
+        let condensed = self.condensed;
+        if condensed.degrees().is_identity() {
+            return self.independent(i, x);
+        }
+        let mut independent = core::mem::take(&mut self.independent);
+        if independent.len() != condensed.ndof() {
+            independent = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
+        }
+        self.independent(i, &mut independent)?;
+        condensed.degrees().expand(condensed.blocks()[i].next, &independent, x);
+        self.independent = independent;
+        Ok(())
+    }
+
+    /// The same for the independent degrees of freedom.
+    ///
+    /// # Errors
+    /// As [`Self::harmonic`].
+    pub fn independent(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
         let condensed = self.condensed;
         let set = condensed.set();
         let motion = self.motion();

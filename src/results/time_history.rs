@@ -79,7 +79,9 @@ impl Branch {
             return fail!(Index, "dof = {dof}, needs 0 .. {}", self.ndof());
         }
         check_times(n)?;
-        let (set, packed) = self.recover(point, 1, |_, _, x| x[dof], interrupt)?;
+        let condensed = self.condensed_at(point);
+        let motion = |i, _, x: &[Complex64]| along(&condensed.motion_row(i, dof), x);
+        let (set, packed) = self.recover(point, 1, motion, interrupt)?;
         let mut history = try_vec(n, 0.0, "a time history")?;
         for (j, x) in history.iter_mut().enumerate() {
             *x = jet(&set, &packed, TAU * j as f64 / n as f64).x;
@@ -249,11 +251,12 @@ impl Branch {
         let set = HarmonicSet::all(highest)?;
         let m = set.packed_len();
         let mut packed = try_vec(signals.saturating_mul(m), 0.0, CONTEXT)?;
-        let mut x = try_vec(self.ndof(), Complex64::ZERO, CONTEXT)?;
+        let ndof = self.condensed_at(point).ndof();
+        let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
         let mut recovery = Recovery::at(self, point, interrupt)?;
         for (i, &h) in carried.iter().enumerate() {
             interrupt.part(Phase::Results, i, carried.len())?;
-            recovery.harmonic(i, &mut x)?;
+            recovery.independent(i, &mut x)?;
             for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
                 set.set(signal, h, of(i, k, &x));
             }

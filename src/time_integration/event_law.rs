@@ -13,10 +13,11 @@
 //! Smooth laws have one piece without end and are evaluated at times; see `smooth_laws`.
 
 use crate::contact::law::{EventLaw, Form, LawInTime, Memoryless, SliderLaw, TimePart};
-use crate::contact::relative_motion::Direction;
 use crate::contact::time_piece::Instant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push};
+use crate::model::sector_motion::SectorMotion;
+use crate::model::structure::Structure;
 
 const CONTEXT: &str = "the contacts";
 
@@ -40,18 +41,13 @@ pub(super) struct Spring {
 /// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
 pub(super) type Row = [Option<(usize, f64)>; 6];
 
-/// Row of a direction whose sides lie in two sectors, side a minus side b; `place` returns the number of a degree of
-/// freedom of a sector in the unrolled structure.
-pub(super) fn row(direction: &Direction, sectors: (usize, usize), place: impl Fn(usize, usize) -> usize) -> Row {
-    let mut row = [None; 6];
-    let (a, b) = row.split_at_mut(3);
-    for (entry, side) in a.iter_mut().zip(&direction.a) {
-        *entry = side.map(|(dof, c)| (place(dof, sectors.0), c));
-    }
-    for (entry, side) in b.iter_mut().zip(&direction.b) {
-        *entry = side.map(|(dof, c)| (place(dof, sectors.1), -c));
-    }
-    row
+/// Row of a relative motion whose side a lies in sector `s` of the unrolled structure.
+pub(super) fn row(structure: &Structure, motion: &SectorMotion, s: usize) -> Row {
+    let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
+    motion.ring_row(|dof, offset| {
+        let sector = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
+        sector * ndof + dof
+    })
 }
 
 /// r·x
@@ -59,13 +55,10 @@ pub(super) fn along(row: &Row, x: &[f64]) -> f64 {
     row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
 }
 
-/// Sorts the contacts of all sectors into springs and elements.
-///
-/// `place` returns the number of a degree of freedom of a sector (of any number) of the ring.
+/// Sorts the contacts of all sectors of the unrolled structure into springs and elements.
 pub(super) fn unroll(
+    structure: &Structure,
     contacts: &[Contact],
-    sectors: usize,
-    place: impl Fn(usize, usize) -> usize,
     springs: &mut Vec<Spring>,
     elements: &mut Vec<Element>,
 ) -> Result<()> {
@@ -79,16 +72,16 @@ pub(super) fn unroll(
                 (stiffness, Some((first, part)))
             }
         };
-        for s in 0..sectors {
-            let other = (s as i64 + c.sector_offset).rem_euclid(sectors as i64) as usize;
+        for s in 0..structure.repeating_sectors() {
+            let row = |k| row(structure, &structure.contact_motion(c, k), s);
             if stiffness != 0.0 {
-                let row = row(&c.direction(0), (s, other), &place);
-                try_push(springs, Spring { row, stiffness }, CONTEXT)?;
+                let spring = Spring { row: row(0), stiffness };
+                try_push(springs, spring, CONTEXT)?;
             }
             if let Some((first, part)) = &law {
                 let mut rows = Vec::new();
                 for k in *first..c.directions() {
-                    try_push(&mut rows, row(&c.direction(k), (s, other), &place), CONTEXT)?;
+                    try_push(&mut rows, row(k), CONTEXT)?;
                 }
                 let law = part.clone();
                 try_push(elements, Element { rows, law, family }, CONTEXT)?;

@@ -5,6 +5,7 @@
 //! one: x₀(t + kT/n) is the motion at t of the sector k·j before.
 
 use crate::error::{Result, try_push, try_vec};
+use crate::model::degree_map::DegreeMap;
 use crate::time_integration::gauss::nodes;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial};
 use crate::time_integration::unrolled_structure::System;
@@ -29,6 +30,7 @@ struct RequestedTime {
 /// Harmonics and samples of a lapse.
 pub(super) struct HarmonicAnalysis {
     ndof: usize,
+    degrees: DegreeMap,
     sectors: usize,
     omega: f64,
     /// ∫ x e^{−ihωt} dt of all degrees of freedom, harmonic after harmonic.
@@ -69,7 +71,12 @@ impl HarmonicAnalysis {
             nodes: nodes(),
             requested,
             next: 0,
-            samples: try_vec(samples.saturating_mul(system.ndof), 0.0, "the samples of the motion")?,
+            degrees: system.degrees.clone(),
+            samples: try_vec(
+                samples.saturating_mul(system.degrees.given()),
+                0.0,
+                "the samples of the motion",
+            )?,
             x: try_vec(n, 0.0, CONTEXT)?,
             v: try_vec(n, 0.0, CONTEXT)?,
             lapse: system.lapse(),
@@ -103,9 +110,13 @@ impl HarmonicAnalysis {
             }
             let within = ((requested.time - step.begin) / step.length).clamp(0.0, theta);
             step.at(within, &mut self.x, &mut self.v);
-            let to = requested.sample * self.ndof;
-            let from = requested.sector * self.ndof;
-            self.samples[to..to + self.ndof].copy_from_slice(&self.x[from..from + self.ndof]);
+            let given = self.degrees.given();
+            let sector = |s: usize| &self.x[s % self.sectors * self.ndof..][..self.ndof];
+            self.degrees.expand_in_time(
+                sector(requested.sector),
+                sector(requested.sector + 1),
+                &mut self.samples[requested.sample * given..][..given],
+            );
             self.next += 1;
         }
     }

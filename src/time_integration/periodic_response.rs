@@ -113,7 +113,20 @@ fn integrate(
         }
         Err(e) => return Err(e),
     };
-    let (harmonics, samples) = recorder.finish(&system)?;
+    let (independent, samples) = recorder.finish(&system)?;
+    let given = model.ndof();
+    let mut harmonics = try_vec(
+        (options.harmonics + 1).saturating_mul(given),
+        Complex64::ZERO,
+        "the harmonics",
+    )?;
+    for (h, (all, x)) in harmonics
+        .chunks_exact_mut(given)
+        .zip(independent.chunks_exact(system.ndof))
+        .enumerate()
+    {
+        system.degrees.expand(model.structure().phase(h, 1), x, all);
+    }
     Ok(TimeResponse {
         status: steady.status,
         period: TAU / options.omega,
@@ -122,7 +135,7 @@ fn integrate(
         marched: steady.marched,
         // In a lapse all sectors together move as one of them does in a period.
         events: summary.events,
-        ndof: system.ndof,
+        ndof: given,
         harmonics,
         samples,
     })
@@ -136,8 +149,12 @@ pub(super) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex6
     const CONTEXT: &str = "the start of the motion in time";
     let mut state = State::rest(system)?;
     let (ndof, n) = (system.ndof, system.order());
-    let mut all = try_vec(harmonics.len().saturating_mul(system.sectors), Complex64::ZERO, CONTEXT)?;
-    for (h, (all, x)) in all.chunks_exact_mut(n).zip(harmonics.chunks_exact(ndof)).enumerate() {
+    let given = model.ndof();
+    let count = harmonics.len() / given;
+    let mut all = try_vec(count.saturating_mul(n), Complex64::ZERO, CONTEXT)?;
+    let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+    for (h, (all, start)) in all.chunks_exact_mut(n).zip(harmonics.chunks_exact(given)).enumerate() {
+        system.degrees.restrict(start, &mut x);
         for s in 0..system.sectors {
             let phase = model.structure().phase(h, s as i64);
             for (dof, x) in x.iter().enumerate() {

@@ -1,13 +1,13 @@
 //! The structure in time: M ẍ + C ẋ + K x + f = F(t) for all sectors that the wave needs, with its loads, springs and
 //! contacts.
 
-use crate::contact::relative_motion::Direction;
 use crate::contact::time_piece::Mode;
 use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
+use crate::model::degree_map::DegreeMap;
 use crate::model::structure::MatrixKind;
 use crate::time_integration::event_law::{Element, Spring, row, unroll};
 use num_complex::Complex64;
@@ -80,8 +80,10 @@ pub(super) struct Load {
 pub(super) struct System<'s> {
     /// Asked by every loop of the integration.
     pub interrupt: &'s Interrupt<'s>,
-    /// Degrees of freedom of a sector.
+    /// Independent degrees of freedom of a sector.
     pub ndof: usize,
+    /// The map from those of the caller.
+    pub degrees: DegreeMap,
     /// Sectors that are carried.
     pub sectors: usize,
     /// x_{s+j}(t + T/sectors) = x_s(t) with this j.
@@ -105,39 +107,41 @@ impl<'s> System<'s> {
     pub fn new(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
         interrupt.phase(Phase::Setup, 0.0)?;
         let structure = model.structure();
-        let (ndof, sectors) = (model.ndof(), structure.repeating_sectors());
-        let place = |dof: usize, s: usize| s * ndof + dof;
+        let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
         let (mut springs, mut elements) = (Vec::new(), Vec::new());
         for spring in model.springs() {
-            let between = Direction::between(spring.dof_a, spring.dof_b);
+            let motion = structure.spring_motion(spring);
             for s in 0..sectors {
-                let other = (s as i64 + spring.sector_offset).rem_euclid(sectors as i64) as usize;
                 let spring = Spring {
-                    row: row(&between, (s, other), place),
+                    row: row(structure, &motion, s),
                     stiffness: spring.stiffness,
                 };
                 try_push(&mut springs, spring, CONTEXT)?;
             }
         }
-        unroll(model.contacts(), sectors, place, &mut springs, &mut elements)?;
+        unroll(structure, model.contacts(), &mut springs, &mut elements)?;
         let inertia = structure.unrolled(MatrixKind::Mass)?;
         let damping = structure.unrolled(MatrixKind::Damping)?;
         let stiffness = with_springs(&structure.unrolled(MatrixKind::Stiffness)?, &springs)?;
         let mut loads = Vec::new();
         for force in model.excitation().forces() {
-            for s in 0..sectors {
-                let load = Load {
-                    dof: s * ndof + force.dof,
-                    harmonic: force.harmonic,
-                    value: force.value * structure.phase(force.harmonic, s as i64),
-                };
-                try_push(&mut loads, load, CONTEXT)?;
+            let (offset, terms) = structure.degrees().image(force.dof);
+            for (dof, c) in terms {
+                for s in 0..sectors {
+                    let load = Load {
+                        dof: (s + offset as usize) % sectors * ndof + dof,
+                        harmonic: force.harmonic,
+                        value: c * force.value * structure.phase(force.harmonic, s as i64),
+                    };
+                    try_push(&mut loads, load, CONTEXT)?;
+                }
             }
         }
         interrupt.check()?;
         Ok(Self {
             interrupt,
             ndof,
+            degrees: structure.degrees().clone(),
             sectors,
             follower: structure.sectors_per_part(),
             omega,

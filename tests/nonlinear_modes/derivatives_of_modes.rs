@@ -8,7 +8,6 @@ use hbvib::condense::Condensed;
 use hbvib::contact::Contact;
 use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
-use hbvib::model::spring::relative_row;
 use hbvib::options::{DampingForm, SolverOptions};
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
 use hbvib::problem::{Problem, Residual};
@@ -92,7 +91,7 @@ impl Case {
         };
         let contact = self.by_contact.map(|id| {
             let c = &skewed.contacts[id];
-            relative_row(&c.direction(0), model.structure().phase(1, c.sector_offset))
+            model.structure().contact_row(c, 0, 1)
         });
         let gauge = Gauge {
             contact,

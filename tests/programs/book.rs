@@ -290,6 +290,8 @@ fn every_name_of_the_interface_exists() {
         "include/hbvib.hpp",
         "include/hbvib.f90",
         "include/hbvib.py",
+        "include/hbvib_io.h",
+        "include/hbvib_io.py",
         "examples/install/hbvib-config.cmake",
     ] {
         interface += &read(Path::new(path));

@@ -90,6 +90,11 @@ fn results_are_what_they_say() {
 }
 
 #[test]
+fn a_sector_from_its_faces_is_a_ring_of_known_frequencies() {
+    silent("sector", |_| vec![]);
+}
+
+#[test]
 fn nonlinear_modes_are_those_of_the_reference() {
     let reference = &data("nnm_base.json")["H"]["3"];
     let table = reference["table"].as_array().unwrap();

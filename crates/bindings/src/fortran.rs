@@ -102,17 +102,23 @@ fn value_type(base: &Base) -> &'static str {
     }
 }
 
-/// The default of a field from the bytes of its struct: one value for all entries of an array.
+/// The default of a field from the bytes of its struct: one value for all entries of an array where they are equal,
+/// else a list of them.
 fn default(all: &Declarations, kind: &Type, place: &Place, bytes: &[u8]) -> Result<String> {
     let entry = |i: usize| {
         let start = place.offset + i * place.size;
         &bytes[start..start + place.size]
     };
-    let first = entry(0);
-    if (1..place.count).any(|i| entry(i) != first) {
-        return Err("the entries of an array have different defaults".into());
+    if (1..place.count).all(|i| entry(i) == entry(0)) {
+        return constant(all, kind, entry(0));
     }
-    let whole = match *first {
+    let entries: Result<Vec<String>> = (0..place.count).map(|i| constant(all, kind, entry(i))).collect();
+    Ok(format!("[{}]", entries?.join(", ")))
+}
+
+/// A constant from its bytes.
+fn constant(all: &Declarations, kind: &Type, bytes: &[u8]) -> Result<String> {
+    let whole = match *bytes {
         [a, b, c, d] => i64::from(i32::from_ne_bytes([a, b, c, d])),
         [a, b, c, d, e, f, g, h] => i64::from_ne_bytes([a, b, c, d, e, f, g, h]),
         _ => return Err("neither 4 nor 8 bytes".into()),

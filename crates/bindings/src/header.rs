@@ -29,8 +29,8 @@ pub const SECTIONS: [Section; 11] = [
     },
     Section {
         title: "Cyclic structures",
-        about: "sectors, couplings, nodal diameters, engine order",
-        files: &["cyclic"],
+        about: "sectors, their faces and couplings, nodal diameters, engine order",
+        files: &["cyclic", "cyclic_faces"],
     },
     Section {
         title: "Contacts",

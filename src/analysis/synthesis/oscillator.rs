@@ -2,6 +2,7 @@
 
 use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
+use crate::model::spring::{Row, along};
 use crate::results::mode_branch::ModePoint;
 use num_complex::Complex64;
 
@@ -25,7 +26,8 @@ pub(super) struct Load {
     pub force: Vec<Complex64>,
     pub damping: Option<Csc>,
     pub ratio: f64,
-    pub response_dof: usize,
+    /// Row of the response degree of freedom in the fundamental.
+    pub response: Row,
 }
 
 /// The mode at one amplitude, reduced to an oscillator.
@@ -62,7 +64,7 @@ impl Load {
             damping,
             square,
             work: inner(x, &self.force),
-            response: x[self.response_dof],
+            response: along(&self.response, x),
             log10: point.log10_amplitude,
             fundamental_share: point.fundamental_share,
         }

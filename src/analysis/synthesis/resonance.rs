@@ -80,7 +80,7 @@ impl<'a> Refinement<'a> {
             load,
             interrupt,
             solver: Solver::new(branch, data, 0, interrupt)?,
-            x: try_vec(branch.ndof(), Complex64::ZERO, CONTEXT)?,
+            x: try_vec(branch.condensed_at(0).ndof(), Complex64::ZERO, CONTEXT)?,
         })
     }
 
@@ -165,7 +165,7 @@ impl<'a> Refinement<'a> {
         problem.evaluate(&v[..n], p, at)?;
         let (omega, damping_ratio) = Epmc::frequency_and_damping(&self.data.linear, &v[..n]);
         let unit = 10f64.powf(p) * condensed.length();
-        let dofs = self.branch.ndof();
+        let dofs = condensed.ndof();
         let i = condensed.set().fundamental();
         let shape = &problem.shape()[i * dofs..(i + 1) * dofs];
         condensed.blocks()[i].multiply_mass(shape, &mut self.x);

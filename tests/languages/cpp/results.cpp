@@ -40,12 +40,21 @@ void linear_modes() {
     a->set_matrix(HBVIB_STIFFNESS, own);
     a->set_coupling(HBVIB_STIFFNESS, next);
   }
+  // The same ring from two halves of a mass on the faces of a sector, the third degree of freedom fixed.
+  const double halves[3][3] = {{0.5, 0, 0}, {0, 0.5, 0}, {0, 0, 1}};
+  const double springs[3][3] = {{3.25, -3, -0.25}, {-3, 3.25, -0.25}, {-0.25, -0.25, 0.5}};
+  const std::vector<Index> left{0}, right{1}, still{2};
+  auto faces = Model::sector(hbvib::Sector(3, 10, 1).faces(left, right, 1).cylindrical().about({0, 0, 2}));
+  faces.set_matrix(HBVIB_MASS, halves);
+  faces.set_matrix(HBVIB_STIFFNESS, springs);
+  faces.fix(still);
   lagged.set_coupling_previous(HBVIB_STIFFNESS, next);
   for (Index d = 0; d <= 5; d++) {
     const double square = 0.5 + 6 * (1 - std::cos(2 * PI * static_cast<double>(d) / 10)), wave[1][1] = {{square}};
     waves.set_diameter(HBVIB_MASS, d, one);
     waves.set_diameter(HBVIB_STIFFNESS, d, wave);
     near(ring.linear_modes(d, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(square), 1e-13, "a wave of the ring");
+    near(faces.linear_modes(d, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(square), 1e-13, "the same from its faces");
     near(lagged.linear_modes(d, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(square), 1e-13, "the same, both neighbours given");
     near(waves.linear_modes(d, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(square), 1e-13, "the same, wave by wave");
   }

@@ -77,6 +77,7 @@ program physics
    call in_time()
    call one_law_in_many_words()
    call never_slipping()
+   call faces()
    call ieee_get_halting_mode(ieee_usual, traps)
    call expect('the caller''s traps are as they were', all(traps))
    call works(model%free(), 'free')
@@ -246,6 +247,32 @@ contains
                   close(amplitude(1), 0.2_dp/abs(cmplx(2 - 1.2_dp**2, 0.1_dp*1.2_dp, dp)), 1e-9_dp))
       call expect('no mode without friction', model%nonlinear_mode(branch, -4._dp, 0._dp) < HBVIB_OK)
    end subroutine never_slipping
+
+   !> A ring of equal masses from two halves of one on the faces of a sector: omega^2 = 0.5 + 6 (1 - cos(2 pi d/10)).
+   subroutine faces()
+      type(hbvib_model) :: ring
+      real(dp) :: m(3, 3), k(3, 3), omega(1), square
+      complex(dp) :: shapes(3, 1)
+      integer :: d
+      call works(ring%from_sector(3, 10, 1, reshape([1], [1, 1]), reshape([2], [1, 1]), frame=HBVIB_CYLINDRICAL, &
+                                  coordinates=reshape([1._dp, 0._dp, 0._dp, cos(0.2_dp*acos(-1._dp)), &
+                                                       sin(0.2_dp*acos(-1._dp)), 0._dp], [3, 1, 2])), 'faces')
+      m = 0
+      m(1, 1) = 0.5_dp
+      m(2, 2) = 0.5_dp
+      m(3, 3) = 1
+      k = reshape([3.25_dp, -3._dp, -0.25_dp, -3._dp, 3.25_dp, -0.25_dp, -0.25_dp, -0.25_dp, 0.5_dp], [3, 3])
+      call works(ring%set_matrix(HBVIB_MASS, m), 'mass of a sector')
+      call works(ring%set_matrix(HBVIB_STIFFNESS, k), 'stiffness of a sector')
+      call works(ring%fix([3]), 'a fixed degree of freedom')
+      do d = 0, 5
+         call works(ring%linear_modes(omega, shapes, diameter=d, contacts=HBVIB_CONTACTS_FREE), 'modes of a sector')
+         square = 0.5_dp + 6*(1 - cos(0.2_dp*acos(-1._dp)*d))
+         call expect('a ring from its faces', abs(omega(1) - sqrt(square)) < 1e-13_dp .and. abs(shapes(3, 1)) <= 0)
+      end do
+      call expect('one side alone is refused', ring%fix([1]) == HBVIB_E_ARGUMENT)
+      call works(ring%free(), 'free')
+   end subroutine faces
 
    subroutine in_time()
       real(dp), parameter :: omega = 1.3_dp, k = 2, c = 0.3_dp, load = 0.7_dp

@@ -47,7 +47,7 @@ PREFIXES = dict(
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
-    "Status Storage Scalar Part MatrixKind ContactKind ContactState State Tangent Field DampingForm "
+    "Status Storage Scalar Part MatrixKind SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():

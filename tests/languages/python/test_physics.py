@@ -25,6 +25,38 @@ for diameter in (0, 1, 5, 12):
 waves = hbvib.Model.cyclic(1, sectors=24, mass=1)
 waves.set_diameter("stiffness", 5, ring.linear_modes(1, 5).omega[0] ** 2)
 close("the same by the matrix of a diameter", waves.linear_modes(1, 5).omega, ring.linear_modes(1, 5).omega, 1e-14)
+halves = dict(
+    mass=np.diag([0.5, 0.5, 1.0]),
+    stiffness=np.array([[1.05, -1, -0.05], [-1, 1.05, -0.05], [-0.05, -0.05, 0.1]]),
+    sectors=24,
+    engine_order=2,
+    left=[0],
+    right=[1],
+    frame="cylindrical",
+)
+faces = hbvib.Model.sector(**halves, fixed=[2], coordinates=([[1, 0, 0]], [[math.cos(HZ / 24), math.sin(HZ / 24), 0]]))
+for diameter in (0, 1, 5, 12):
+    own = faces.linear_modes(1, diameter)
+    close("a ring from the faces of a sector", own.omega, ring.linear_modes(1, diameter).omega, 1e-13)
+    lag = np.exp(-1j * HZ * diameter / 24)
+    close("its shape on both faces", own.shapes[0], own.shapes[0, 0] * np.array([1, lag, 0]), 1e-13)
+late = hbvib.Model.sector(**halves)
+late.fix([2])
+close("fixed later", late.linear_modes(1, 5).omega, faces.linear_modes(1, 5).omega, 1e-14)
+for wrong, words in (
+    (dict(direction=-1, coordinates=([[1, 0, 0]], [[0.9659, 0.2588, 0]])), "15.0"),
+    (dict(right=[1, 2]), "left face has 1"),
+    (dict(right=[0]), "in both faces"),
+    (dict(fixed=[0]), "one side only"),
+    (dict(left=[[0, 1]], right=[[2]]), "equal shapes"),
+    (dict(frame="polar"), "polar"),
+):
+    try:
+        hbvib.Model.sector(**{**halves, **wrong})
+    except (ValueError, hbvib.Error) as error:
+        check(f"the sentence says {words}", words in str(error))
+    else:
+        check(f"{wrong} is refused", False)
 
 # Jenkins under a harmonic motion of amplitude a: secant stiffness and loss by integrals of the loop.
 KT, LIMIT = 1.0, 0.3

@@ -1,0 +1,278 @@
+//! The model of a job.
+
+use crate::job::{Amplitude, ContactPart, FacesPart, FrameName, Job, KindName};
+use hbvib::{
+    Contact, ContactKind, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Storage, Values,
+};
+use hbvib_io::{Matrix, Symmetry};
+use num_complex::Complex64;
+use std::path::Path;
+
+/// A sentence.
+pub type Outcome<T> = Result<T, String>;
+
+/// Matrices of a job by their kind.
+struct Given {
+    own: Vec<(MatrixKind, Matrix)>,
+    next: Vec<(MatrixKind, Matrix)>,
+}
+
+/// The model with its contacts and forces.
+///
+/// # Errors
+/// A sentence that names the file, contact or force.
+pub fn model(job: &Job) -> Outcome<Model> {
+    let given = matrices(job)?;
+    let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
+    let part = &job.model;
+    let mut model = match &part.faces {
+        Some(faces) => from_faces(job, faces, ndof)?,
+        None => Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?,
+    };
+    model.set_wave(part.engine_order);
+    if part.faces.is_none() && !part.fixed.is_empty() {
+        model.fix(&part.fixed).map_err(|e| format!("[model]: {e}"))?;
+    }
+    for (kind, a) in &given.own {
+        with_view(a, |view| model.set_matrix(*kind, view)).map_err(|e| format!("[model]: {e}"))?;
+    }
+    for (kind, a) in &given.next {
+        with_view(a, |view| model.set_coupling(*kind, view)).map_err(|e| format!("[model], coupling: {e}"))?;
+    }
+    if let Some([alpha, beta]) = part.rayleigh {
+        model.set_rayleigh(alpha, beta).map_err(|e| format!("[model]: {e}"))?;
+    }
+    for (i, contact) in job.contact.iter().enumerate() {
+        for contact in contacts(contact).map_err(|e| format!("[[contact]] {}: {e}", i + 1))? {
+            model
+                .add_contact(&contact)
+                .map_err(|e| format!("[[contact]] {}: {e}", i + 1))?;
+        }
+    }
+    for (i, force) in job.force.iter().enumerate() {
+        let value = match force.value {
+            Amplitude::Real(re) => re.into(),
+            Amplitude::Complex([re, im]) => Complex64::new(re, im),
+        };
+        model
+            .add_force(force.dof, force.harmonic, value)
+            .map_err(|e| format!("[[force]] {}: {e}", i + 1))?;
+    }
+    Ok(model)
+}
+
+fn matrices(job: &Job) -> Outcome<Given> {
+    let part = &job.model;
+    let one = |path: &Path| -> Outcome<Matrix> {
+        let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
+        let held = [found.stiffness, found.mass, found.damping];
+        let mut held = held.into_iter().flatten();
+        match (held.next(), held.next()) {
+            (Some(matrix), None) => Ok(matrix),
+            _ => Err(format!(
+                "{}: holds several matrices; name it as `matrices`",
+                path.display()
+            )),
+        }
+    };
+    let mut given = Given {
+        own: Vec::new(),
+        next: Vec::new(),
+    };
+    if let Some(path) = &part.matrices {
+        let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
+        let kinds = [MatrixKind::Stiffness, MatrixKind::Mass, MatrixKind::Damping];
+        for (kind, matrix) in kinds.into_iter().zip([found.stiffness, found.mass, found.damping]) {
+            given.own.extend(matrix.map(|matrix| (kind, matrix)));
+        }
+    }
+    for (kind, path) in [
+        (MatrixKind::Stiffness, &part.stiffness),
+        (MatrixKind::Mass, &part.mass),
+        (MatrixKind::Damping, &part.damping),
+    ] {
+        if let Some(path) = path {
+            given.own.retain(|(other, _)| *other != kind);
+            given.own.push((kind, one(path)?));
+        }
+    }
+    for (kind, path) in [
+        (MatrixKind::Stiffness, &part.coupling_stiffness),
+        (MatrixKind::Mass, &part.coupling_mass),
+    ] {
+        if let Some(path) = path {
+            given.next.push((kind, one(path)?));
+        }
+    }
+    if given.own.is_empty() {
+        return Err("[model]: names no matrix: needs stiffness and mass, or matrices".into());
+    }
+    Ok(given)
+}
+
+/// Passes a matrix as compressed columns, all entries of it.
+fn with_view<R>(a: &Matrix, take: impl FnOnce(&MatrixView<'_>) -> R) -> R {
+    let parts = if a.is_complex { 2 } else { 1 };
+    let mut entries: Vec<(u32, u32, Complex64)> = Vec::with_capacity(2 * a.entries());
+    for (k, v) in a.values.chunks_exact(parts).enumerate() {
+        let (i, j) = (a.row[k], a.column[k]);
+        let v = Complex64::new(v[0], v.get(1).copied().unwrap_or(0.0));
+        entries.push((i, j, v));
+        if i != j {
+            match a.symmetry {
+                Symmetry::General => {}
+                Symmetry::Symmetric => entries.push((j, i, v)),
+                Symmetry::Hermitian => entries.push((j, i, v.conj())),
+                Symmetry::Skew => entries.push((j, i, -v)),
+            }
+        }
+    }
+    entries.sort_unstable_by_key(|&(i, j, _)| (j, i));
+    let mut col_ptr = vec![0_i64; a.columns + 1];
+    for &(_, j, _) in &entries {
+        col_ptr[j as usize + 1] += 1;
+    }
+    for j in 0..a.columns {
+        col_ptr[j + 1] += col_ptr[j];
+    }
+    let row_idx: Vec<i64> = entries.iter().map(|&(i, ..)| i64::from(i)).collect();
+    let real: Vec<f64> = entries.iter().map(|(_, _, v)| v.re).collect();
+    let complex: Vec<Complex64> = entries.iter().map(|(_, _, v)| *v).collect();
+    let symmetric = !matches!(
+        (a.symmetry, a.is_complex),
+        (Symmetry::Skew, _) | (Symmetry::Symmetric, true)
+    );
+    take(&MatrixView {
+        rows: a.rows,
+        cols: a.columns,
+        storage: Storage::Csc {
+            col_ptr: &col_ptr,
+            row_idx: &row_idx,
+        },
+        values: if a.is_complex {
+            Values::Complex(&complex)
+        } else {
+            Values::Real(&real)
+        },
+        part: if symmetric { Part::Full } else { Part::General },
+        index_base: 0,
+    })
+}
+
+fn from_faces(job: &Job, faces: &FacesPart, ndof: usize) -> Outcome<Model> {
+    let components = faces.left.first().map_or(1, Vec::len);
+    let flat = |name: &str, face: &[Vec<i64>]| -> Outcome<Vec<Option<usize>>> {
+        let mut all = Vec::new();
+        for (pair, node) in face.iter().enumerate() {
+            if node.len() != components {
+                return Err(format!(
+                    "[model.faces]: {name}[{pair}] has {} components, needs {components}",
+                    node.len()
+                ));
+            }
+            for &dof in node {
+                all.push(match dof {
+                    -1 => None,
+                    dof => {
+                        Some(usize::try_from(dof).map_err(|_| format!("[model.faces]: {name}[{pair}] names {dof}"))?)
+                    }
+                });
+            }
+        }
+        Ok(all)
+    };
+    let (left, right) = (flat("left", &faces.left)?, flat("right", &faces.right)?);
+    let coordinates = match (&faces.left_coordinates, &faces.right_coordinates) {
+        (Some(left), Some(right)) => Some((&left[..], &right[..])),
+        (None, None) => None,
+        _ => return Err("[model.faces]: needs both left_coordinates and right_coordinates, or none".into()),
+    };
+    if faces.direction.abs() != 1 {
+        return Err(format!("[model.faces]: direction = {}, needs 1 or -1", faces.direction));
+    }
+    Model::sector(&SectorDescription {
+        ndof,
+        sectors: job.model.sectors,
+        engine_order: job.model.engine_order,
+        components,
+        left: &left,
+        right: &right,
+        fixed: &job.model.fixed,
+        frame: match faces.frame {
+            FrameName::Cartesian => SectorFrame::Cartesian,
+            FrameName::Cylindrical => SectorFrame::Cylindrical,
+        },
+        axis: faces.axis,
+        forward: faces.direction == 1,
+        coordinates,
+    })
+    .map_err(|e| format!("[model.faces]: {e}"))
+}
+
+/// The contacts of an entry: one, or for laws of one direction one for each pair of degrees of freedom.
+fn contacts(part: &ContactPart) -> Outcome<Vec<Contact>> {
+    let places: &[usize] = match (part.kind, part.normal) {
+        (KindName::Unilateral, None) => &[2],
+        (KindName::Friction2d, None) => &[0, 2],
+        (KindName::Friction3d, None) if part.a.len() == 2 => &[0, 1],
+        (_, Some(_)) | (KindName::Friction3d, None) => &[0, 1, 2],
+        _ => &[0],
+    };
+    let width = places.len();
+    if part.a.is_empty() || !part.a.len().is_multiple_of(width) {
+        return Err(format!("a has {} numbers, needs a multiple of {width}", part.a.len()));
+    }
+    if !part.b.is_empty() && part.b.len() != part.a.len() {
+        return Err(format!(
+            "b has {} numbers, needs as many as a has, {}, or none for the ground",
+            part.b.len(),
+            part.a.len()
+        ));
+    }
+    let frame = match part.normal {
+        Some(normal) => Some(Frame::new(normal, part.tangent).map_err(|e| e.to_string())?),
+        None if part.tangent.is_some() => return Err("tangent without normal".into()),
+        None => None,
+    };
+    let side = |dofs: &[i64]| -> Outcome<[Option<usize>; 3]> {
+        let mut side = [None; 3];
+        for (&place, &dof) in places.iter().zip(dofs) {
+            side[place] = match dof {
+                -1 => None,
+                dof => Some(usize::try_from(dof).map_err(|_| format!("names degree of freedom {dof}"))?),
+            };
+        }
+        Ok(side)
+    };
+    let ground = vec![-1; part.a.len()];
+    let b = if part.b.is_empty() { &ground } else { &part.b };
+    let kind = match part.kind {
+        KindName::Jenkins => ContactKind::Jenkins,
+        KindName::Friction2d => ContactKind::Friction2d,
+        KindName::Friction3d => ContactKind::Friction3d,
+        KindName::Unilateral => ContactKind::Unilateral,
+        KindName::Cubic => ContactKind::Cubic,
+        KindName::Regularised => ContactKind::Regularised,
+    };
+    part.a
+        .chunks_exact(width)
+        .zip(b.chunks_exact(width))
+        .map(|(a, b)| {
+            Ok(Contact {
+                kind: kind.clone(),
+                dof_a: side(a)?,
+                dof_b: side(b)?,
+                frame,
+                sector_offset: part.sector_offset,
+                kt: part.kt,
+                kn: part.kn,
+                mu: part.mu,
+                preload: part.preload,
+                gap: part.gap,
+                cubic: part.cubic,
+                velocity: part.velocity,
+                dofs: Vec::new(),
+            })
+        })
+        .collect()
+}

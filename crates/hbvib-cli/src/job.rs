@@ -1,0 +1,260 @@
+//! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
+
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+
+/// A job.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Job {
+    pub model: ModelPart,
+    #[serde(default)]
+    pub contact: Vec<ContactPart>,
+    #[serde(default)]
+    pub force: Vec<ForcePart>,
+    pub forced: Option<ForcedPart>,
+    pub mode: Option<ModePart>,
+    #[serde(default)]
+    pub output: OutputPart,
+    /// Folder of the job file, on which all paths depend.
+    #[serde(skip)]
+    pub folder: PathBuf,
+}
+
+/// Matrices and symmetry.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModelPart {
+    /// One file with all matrices (CalculiX, OP4).
+    pub matrices: Option<PathBuf>,
+    pub stiffness: Option<PathBuf>,
+    pub mass: Option<PathBuf>,
+    pub damping: Option<PathBuf>,
+    /// Coupling to the next sector.
+    pub coupling_stiffness: Option<PathBuf>,
+    pub coupling_mass: Option<PathBuf>,
+    /// C += alpha M + beta K
+    pub rayleigh: Option<[f64; 2]>,
+    #[serde(default = "one")]
+    pub sectors: usize,
+    #[serde(default)]
+    pub engine_order: i64,
+    #[serde(default)]
+    pub fixed: Vec<usize>,
+    pub faces: Option<FacesPart>,
+}
+
+/// Faces of a sector.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FacesPart {
+    /// Degrees of freedom of each node, -1 where one is missing.
+    pub left: Vec<Vec<i64>>,
+    pub right: Vec<Vec<i64>>,
+    #[serde(default)]
+    pub frame: FrameName,
+    #[serde(default = "z")]
+    pub axis: [f64; 3],
+    #[serde(default = "forward")]
+    pub direction: i64,
+    pub left_coordinates: Option<Vec<[f64; 3]>>,
+    pub right_coordinates: Option<Vec<[f64; 3]>>,
+}
+
+/// Frame of the faces.
+#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum FrameName {
+    #[default]
+    Cartesian,
+    Cylindrical,
+}
+
+/// Law of a contact.
+#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum KindName {
+    Jenkins,
+    #[serde(rename = "friction_2d")]
+    Friction2d,
+    #[serde(rename = "friction_3d")]
+    Friction3d,
+    Unilateral,
+    Cubic,
+    Regularised,
+}
+
+/// A contact, or one for each pair of two lists.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ContactPart {
+    pub kind: KindName,
+    /// Degrees of freedom of side a: one number, those of the directions, or a list of them, one for each pair.
+    pub a: Vec<i64>,
+    /// Those of side b; -1 is the ground.
+    #[serde(default)]
+    pub b: Vec<i64>,
+    #[serde(default)]
+    pub sector_offset: i64,
+    #[serde(default)]
+    pub kt: f64,
+    #[serde(default)]
+    pub kn: f64,
+    #[serde(default)]
+    pub mu: f64,
+    #[serde(default)]
+    pub preload: f64,
+    #[serde(default)]
+    pub gap: f64,
+    #[serde(default)]
+    pub cubic: f64,
+    #[serde(default)]
+    pub velocity: f64,
+    pub normal: Option<[f64; 3]>,
+    pub tangent: Option<[f64; 3]>,
+}
+
+/// A force Re(value exp(i harmonic omega t)).
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForcePart {
+    pub dof: usize,
+    #[serde(default = "one")]
+    pub harmonic: usize,
+    pub value: Amplitude,
+}
+
+/// A real number or [re, im].
+#[derive(Clone, Copy, Debug, Deserialize)]
+#[serde(untagged)]
+pub enum Amplitude {
+    Real(f64),
+    Complex([f64; 2]),
+}
+
+/// A forced response.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ForcedPart {
+    pub from_hz: f64,
+    pub to_hz: f64,
+    #[serde(default)]
+    pub at_hz: Vec<f64>,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<usize>,
+    #[serde(default)]
+    pub estimate_error: bool,
+}
+
+/// A nonlinear mode.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ModePart {
+    #[serde(default)]
+    pub index: usize,
+    pub log10_from: f64,
+    pub log10_to: f64,
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<usize>,
+    #[serde(default)]
+    pub estimate_error: bool,
+}
+
+/// Files that are written.
+#[derive(Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct OutputPart {
+    pub csv: Option<PathBuf>,
+    pub npz: Option<PathBuf>,
+    /// SVG
+    pub figure: Option<PathBuf>,
+}
+
+fn one() -> usize {
+    1
+}
+
+fn z() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
+fn forward() -> i64 {
+    1
+}
+
+impl Job {
+    /// Reads a job.
+    ///
+    /// # Errors
+    /// A sentence with file and line; the nearest known key for one that is unknown.
+    pub fn read(path: &Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(path).map_err(|e| format!("{}: cannot be read: {e}", path.display()))?;
+        let mut job: Self = toml::from_str(&text)
+            .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
+        path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
+        if job.forced.is_none() && job.mode.is_none() {
+            return Err(format!(
+                "{}: names no analysis: needs [forced] or [mode]",
+                path.display()
+            ));
+        }
+        if job.forced.is_some() && job.mode.is_some() {
+            return Err(format!(
+                "{}: names two analyses: needs one of [forced] and [mode]",
+                path.display()
+            ));
+        }
+        Ok(job)
+    }
+
+    /// A path of the job.
+    pub fn path(&self, path: &Path) -> PathBuf {
+        self.folder.join(path)
+    }
+}
+
+/// The nearest of the names that a message of serde lists.
+fn hint(message: &str) -> String {
+    let mut names = message.split('`').skip(1).step_by(2);
+    let Some(unknown) = names.next().filter(|_| message.starts_with("unknown")) else {
+        return String::new();
+    };
+    match names.min_by_key(|name| distance(unknown, name)) {
+        Some(nearest) if distance(unknown, nearest) <= unknown.len().max(3) / 2 + 1 => {
+            format!("\ndid you mean `{nearest}`?")
+        }
+        _ => String::new(),
+    }
+}
+
+/// Edits between two words (Levenshtein).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, y) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(x != *y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{distance, hint};
+
+    #[test]
+    fn the_nearest_name_is_found() {
+        assert_eq!(distance("kitten", "sitting"), 3);
+        assert_eq!(distance("", "abc"), 3);
+        assert!(hint("unknown field `stifness`, expected one of `mass`, `stiffness`").contains("`stiffness`"));
+        assert!(hint("missing field `model`").is_empty());
+    }
+}

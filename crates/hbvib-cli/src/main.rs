@@ -1,0 +1,185 @@
+//! The command `hbvib`: analyses from a job file.
+//!
+//! ```text
+//! hbvib run job.toml     solves and writes what the job names
+//! hbvib check job.toml   reads the job and its files, and builds the model
+//! hbvib modes job.toml   natural frequencies, with free and with stuck contacts
+//! ```
+
+mod build;
+mod job;
+mod npz;
+mod output;
+
+use build::Outcome;
+use hbvib::{
+    Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status,
+    forced_response, nonlinear_mode,
+};
+use job::{ForcedPart, Job, ModePart};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::io::{IsTerminal, Write};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+const USAGE: &str = "usage: hbvib run|check|modes job.toml";
+
+/// Exit code of a run that was stopped early and kept its points.
+const STOPPED: u8 = 2;
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let outcome = match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
+        ["run", path] => run(Path::new(path)),
+        ["check", path] => check(Path::new(path)),
+        ["modes", path] => modes(Path::new(path)),
+        ["--help" | "-h"] => print(&format!("{USAGE}\n")).map(|()| ExitCode::SUCCESS),
+        _ => Err(USAGE.into()),
+    };
+    outcome.unwrap_or_else(|sentence| {
+        let _ = writeln!(std::io::stderr(), "hbvib: {sentence}");
+        ExitCode::FAILURE
+    })
+}
+
+fn print(text: &str) -> Outcome<()> {
+    std::io::stdout()
+        .write_all(text.as_bytes())
+        .map_err(|e| format!("standard output: {e}"))
+}
+
+fn check(path: &Path) -> Outcome<ExitCode> {
+    let job = Job::read(path)?;
+    let model = build::model(&job)?;
+    print(&format!(
+        "{}: {} degrees of freedom, {} sectors, {} contacts, {} forces\n",
+        path.display(),
+        model.ndof(),
+        model.structure().sectors(),
+        model.contacts().len(),
+        model.excitation().forces().len()
+    ))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Number of natural frequencies that are listed.
+const LISTED: usize = 10;
+
+fn modes(path: &Path) -> Outcome<ExitCode> {
+    let job = Job::read(path)?;
+    let model = build::model(&job)?;
+    let mut text = String::from("diameter,mode,free_hz,stuck_hz\n");
+    for diameter in 0..=model.structure().sectors() / 2 {
+        let count = LISTED.min(model.structure().ndof());
+        let of = |state| {
+            let modes = model.lowest_modes(diameter, state, count);
+            modes
+                .map(|modes| modes.omega)
+                .map_err(|e| format!("diameter {diameter}: {e}"))
+        };
+        let (free, stuck) = (of(ContactState::Free)?, of(ContactState::Stuck)?);
+        for (i, (a, b)) in free.iter().zip(&stuck).enumerate() {
+            let _ = writeln!(text, "{diameter},{i},{:.10e},{:.10e}", a / TAU, b / TAU);
+        }
+    }
+    print(&text)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+fn run(path: &Path) -> Outcome<ExitCode> {
+    let job = Job::read(path)?;
+    let model = build::model(&job)?;
+    let stop = Arc::new(AtomicBool::new(false));
+    let handler = Arc::clone(&stop);
+    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed)).map_err(|e| format!("Ctrl-C: {e}"))?;
+    let branch = solve(&job, &model, &stop)?;
+    let written = output::write(&job, &branch)?;
+    print(&output::summary(&branch))?;
+    for path in written {
+        print(&format!("wrote {}\n", path.display()))?;
+    }
+    if branch.status() == Status::Ok {
+        return Ok(ExitCode::SUCCESS);
+    }
+    let reason = branch.reason().map_or(String::new(), |e| format!(": {e}"));
+    let _ = writeln!(
+        std::io::stderr(),
+        "hbvib: the run ended early, {:?}{reason}",
+        branch.status()
+    );
+    Ok(ExitCode::from(STOPPED))
+}
+
+fn solve(job: &Job, model: &Model, stop: &AtomicBool) -> Outcome<Branch> {
+    let terminal = std::io::stderr().is_terminal();
+    let mut bar = |progress: &Progress| {
+        if terminal {
+            let _ = write!(
+                std::io::stderr(),
+                "\r{:3.0} %  {} points  ",
+                100.0 * progress.fraction_done,
+                progress.point
+            );
+        }
+        false
+    };
+    let cancelled = || stop.load(Ordering::Relaxed);
+    let mut hooks = Hooks {
+        progress: Some(&mut bar),
+        cancelled: Some(&cancelled),
+        ..Hooks::default()
+    };
+    let branch = match (&job.forced, &job.mode) {
+        (Some(part), _) => forced(part, model, &mut hooks),
+        (None, Some(part)) => mode(part, model, &mut hooks),
+        (None, None) => Err("names no analysis".into()),
+    };
+    if terminal {
+        let _ = writeln!(std::io::stderr());
+    }
+    branch
+}
+
+/// A number of harmonics is that number and no other, unless a tolerance is named as well.
+fn solver(
+    harmonics: Option<usize>,
+    tolerance: Option<f64>,
+    response_dof: Option<usize>,
+    estimate_error: bool,
+) -> SolverOptions {
+    let defaults = SolverOptions::default();
+    let automatic = if harmonics.is_some() { 0.0 } else { defaults.tolerance };
+    SolverOptions {
+        harmonics: harmonics.unwrap_or(defaults.harmonics),
+        tolerance: tolerance.unwrap_or(automatic),
+        response_dof,
+        estimate_error,
+        ..defaults
+    }
+}
+
+fn forced(part: &ForcedPart, model: &Model, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+    let at: Vec<f64> = part.at_hz.iter().map(|f| TAU * f).collect();
+    let range = ForcedOptions {
+        omega_start: TAU * part.from_hz,
+        omega_stop: TAU * part.to_hz,
+        at: &at,
+        guess: None,
+    };
+    let solver = solver(part.harmonics, part.tolerance, part.response_dof, part.estimate_error);
+    forced_response(model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))
+}
+
+fn mode(part: &ModePart, model: &Model, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+    let range = ModeOptions {
+        choice: ModeChoice::Index(part.index),
+        log10_start: part.log10_from,
+        log10_stop: part.log10_to,
+        ..ModeOptions::default()
+    };
+    let solver = solver(part.harmonics, part.tolerance, part.response_dof, part.estimate_error);
+    nonlinear_mode(model, &solver, &range, hooks).map_err(|e| format!("[mode]: {e}"))
+}

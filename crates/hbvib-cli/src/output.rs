@@ -1,0 +1,165 @@
+//! Files and summary of a result.
+
+use crate::build::Outcome;
+use crate::job::Job;
+use crate::npz::Npz;
+use hbvib::{Branch, Special};
+use num_complex::Complex64;
+use plotters::prelude::{ChartBuilder, IntoDrawingArea, LineSeries, SVGBackend};
+use plotters::style::{BLUE, WHITE};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs::{self, File};
+use std::io::BufWriter;
+use std::path::{Path, PathBuf};
+
+/// Writes all files of a job.
+///
+/// # Errors
+/// A sentence that names the file.
+pub fn write(job: &Job, branch: &Branch) -> Outcome<Vec<PathBuf>> {
+    let mut written = Vec::new();
+    let mut each = |path: &Option<PathBuf>, write: &dyn Fn(&Path) -> Outcome<()>| -> Outcome<()> {
+        let Some(path) = path else { return Ok(()) };
+        let path = job.path(path);
+        write(&path).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
+        written.push(path);
+        Ok(())
+    };
+    each(&job.output.csv, &|path| csv(path, branch))?;
+    each(&job.output.npz, &|path| npz(path, branch))?;
+    each(&job.output.figure, &|path| figure(path, branch))?;
+    Ok(written)
+}
+
+/// Columns of the curve: a mode has its amplitude and damping ratio, too.
+fn csv(path: &Path, branch: &Branch) -> Outcome<()> {
+    let mut text = String::from("frequency_hz,amplitude,slip_fraction,harmonics");
+    if branch.mode().is_some() {
+        text += ",log10_amplitude,damping_ratio";
+    }
+    text += "\n";
+    for point in 0..branch.points() {
+        let slip = branch.slip_fraction_at(point).unwrap_or(&[]);
+        let _ = write!(
+            text,
+            "{:.16e},{:.16e},{:.6},{}",
+            branch.omega()[point] / TAU,
+            branch.amplitude()[point],
+            slip.iter().copied().fold(0.0, f64::max),
+            branch.harmonics_used()[point]
+        );
+        if let Some(mode) = branch.mode_at(point) {
+            let _ = write!(text, ",{:.16e},{:.16e}", mode.log10_amplitude, mode.damping_ratio);
+        }
+        text += "\n";
+    }
+    fs::write(path, text).map_err(|e| e.to_string())
+}
+
+fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
+    let points = branch.points();
+    let said = |e: std::io::Error| e.to_string();
+    let mut npz = Npz::new(BufWriter::new(File::create(path).map_err(said)?));
+    let mut real = |name: &str, shape: &[usize], values: &[f64]| npz.real(name, shape, values).map_err(said);
+    real("omega", &[points], &branch.omega()[..points])?;
+    real("amplitude", &[points], &branch.amplitude()[..points])?;
+    real("residual", &[points], &branch.residual()[..points])?;
+    let contacts = branch.contacts();
+    let slip: Vec<f64> = (0..points)
+        .flat_map(|p| branch.slip_fraction_at(p).unwrap_or(&[]))
+        .copied()
+        .collect();
+    if slip.len() == points * contacts {
+        real("slip_fraction", &[points, contacts], &slip)?;
+    }
+    for (name, special) in [("peaks", branch.peaks()), ("folds", branch.folds())] {
+        let pairs: Vec<f64> = special.iter().flat_map(|s| [s.omega, s.amplitude]).collect();
+        real(name, &[special.len(), 2], &pairs)?;
+    }
+    if branch.mode().is_some() {
+        let mode: Vec<_> = (0..points).filter_map(|p| branch.mode_at(p)).collect();
+        let of = |f: fn(&hbvib::ModePoint) -> f64| mode.iter().map(f).collect::<Vec<f64>>();
+        real("log10_amplitude", &[mode.len()], &of(|m| m.log10_amplitude))?;
+        real("damping_ratio", &[mode.len()], &of(|m| m.damping_ratio))?;
+    }
+    let (rows, ndof) = (branch.harmonics() + 1, branch.ndof());
+    let mut all = vec![Complex64::ZERO; points * rows * ndof];
+    for (point, x) in all.chunks_exact_mut(rows * ndof).enumerate() {
+        branch.harmonics_at(point, x).map_err(|e| e.to_string())?;
+    }
+    npz.complex("harmonics", &[points, rows, ndof], &all).map_err(said)?;
+    npz.finish().map_err(said)
+}
+
+/// Amplitude over frequency.
+fn figure(path: &Path, branch: &Branch) -> Outcome<()> {
+    let curve: Vec<(f64, f64)> = (0..branch.points())
+        .map(|p| (branch.omega()[p] / TAU, branch.amplitude()[p]))
+        .collect();
+    let bounds = |values: &mut dyn Iterator<Item = f64>| {
+        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let room = 0.04 * (high - low).max(1e-9 * high.abs().max(f64::MIN_POSITIVE));
+        (low - room)..(high + room)
+    };
+    let x = bounds(&mut curve.iter().map(|p| p.0));
+    let y = bounds(&mut curve.iter().map(|p| p.1));
+    let mut text = String::new();
+    {
+        let area = SVGBackend::with_string(&mut text, (900, 600)).into_drawing_area();
+        let draw = || -> Result<(), Box<dyn std::error::Error>> {
+            area.fill(&WHITE)?;
+            let mut chart = ChartBuilder::on(&area)
+                .margin(16)
+                .x_label_area_size(44)
+                .y_label_area_size(90)
+                .build_cartesian_2d(x, y)?;
+            let mesh = &mut chart.configure_mesh();
+            mesh.x_desc("frequency, Hz").y_desc("amplitude");
+            mesh.y_label_formatter(&|v| format!("{v:.2e}")).draw()?;
+            chart.draw_series(LineSeries::new(curve.iter().copied(), &BLUE))?;
+            area.present()?;
+            Ok(())
+        };
+        draw().map_err(|e| e.to_string())?;
+    }
+    fs::write(path, text).map_err(|e| e.to_string())
+}
+
+/// Summary of a branch.
+pub fn summary(branch: &Branch) -> String {
+    let mut text = String::new();
+    let _ = writeln!(
+        text,
+        "{} points, {:.6} to {:.6} Hz, response degree of freedom {}",
+        branch.points(),
+        branch.omega().first().map_or(f64::NAN, |w| w / TAU),
+        branch.omega().last().map_or(f64::NAN, |w| w / TAU),
+        branch.response_dof()
+    );
+    let list = |text: &mut String, name: &str, special: &[Special]| {
+        for s in special {
+            let _ = writeln!(text, "{name:<6} {:>14.6} Hz {:>14.6e}", s.omega / TAU, s.amplitude);
+        }
+    };
+    list(&mut text, "peak", branch.peaks());
+    list(&mut text, "fold", branch.folds());
+    list(
+        &mut text,
+        "at",
+        &(0..).map_while(|i| branch.at(i).first().copied()).collect::<Vec<_>>(),
+    );
+    let removed = branch.reduction();
+    let _ = writeln!(
+        text,
+        "{} unknowns from {} degrees of freedom of {} sectors; {} of {} contacts never slip, {} have no force; even harmonics {}",
+        removed.unknowns,
+        removed.degrees_of_freedom,
+        removed.sectors,
+        removed.never_slipping,
+        removed.contacts,
+        removed.inert,
+        if removed.even_removed { "removed" } else { "carried" }
+    );
+    text
+}

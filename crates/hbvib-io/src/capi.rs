@@ -1,0 +1,164 @@
+//! The C interface, declared in `include/hbvib_io.h`.
+
+use crate::matrix::{Dof, Matrices, Matrix, Symmetry};
+use std::cell::RefCell;
+use std::ffi::{CStr, CString, c_char};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
+
+thread_local! {
+    static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
+}
+
+/// What a file holds.
+pub struct HbvibIoFile(Matrices);
+
+/// A matrix as the caller sees it; the arrays belong to the file.
+#[repr(C)]
+pub struct HbvibIoMatrix {
+    rows: i64,
+    columns: i64,
+    entries: i64,
+    is_complex: i32,
+    symmetry: i32,
+    row: *const u32,
+    column: *const u32,
+    values: *const f64,
+}
+
+const OK: i32 = 0;
+const ABSENT: i32 = 1;
+const FAILED: i32 = -1;
+
+fn report(sentence: &str) -> i32 {
+    LAST_ERROR.with(|last| *last.borrow_mut() = CString::new(sentence.replace('\0', " ")).unwrap_or_default());
+    FAILED
+}
+
+/// Runs `body`; a panic becomes a status.
+fn guarded(body: impl FnOnce() -> i32) -> i32 {
+    catch_unwind(AssertUnwindSafe(body)).unwrap_or_else(|_| report("internal error: the reader panicked"))
+}
+
+/// The sentence of the last error of this thread.
+#[unsafe(no_mangle)]
+pub extern "C" fn hbvib_io_last_error() -> *const c_char {
+    LAST_ERROR.with(|last| last.borrow().as_ptr())
+}
+
+/// Reads a file; `path` ends with a zero byte.
+///
+/// # Safety
+/// `path` is NULL or such a string, `out` NULL or writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_io_read(path: *const c_char, out: *mut *mut HbvibIoFile) -> i32 {
+    guarded(|| {
+        if path.is_null() || out.is_null() {
+            return report("hbvib_io_read: path or out is NULL");
+        }
+        let bytes = unsafe { CStr::from_ptr(path) }.to_bytes();
+        match crate::read(&path_of(bytes)) {
+            Ok(matrices) => {
+                unsafe { out.write(Box::into_raw(Box::new(HbvibIoFile(matrices)))) };
+                OK
+            }
+            Err(error) => report(&error.to_string()),
+        }
+    })
+}
+
+#[cfg(unix)]
+fn path_of(bytes: &[u8]) -> PathBuf {
+    use std::os::unix::ffi::OsStrExt;
+    PathBuf::from(std::ffi::OsStr::from_bytes(bytes))
+}
+
+#[cfg(not(unix))]
+fn path_of(bytes: &[u8]) -> PathBuf {
+    PathBuf::from(String::from_utf8_lossy(bytes).into_owned())
+}
+
+/// Fills `out` with the mass (0), damping (1) or stiffness (2) of a file; 1 if there is none.
+///
+/// # Safety
+/// `file` is NULL or comes from [`hbvib_io_read`], `out` NULL or writable.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_io_matrix_of(file: *const HbvibIoFile, which: i32, out: *mut HbvibIoMatrix) -> i32 {
+    guarded(|| {
+        let Some(HbvibIoFile(found)) = (unsafe { file.as_ref() }) else {
+            return report("hbvib_io_matrix_of: file is NULL");
+        };
+        if out.is_null() {
+            return report("hbvib_io_matrix_of: out is NULL");
+        }
+        let matrix = match which {
+            0 => &found.mass,
+            1 => &found.damping,
+            2 => &found.stiffness,
+            _ => return report("hbvib_io_matrix_of: which needs 0 (mass), 1 (damping) or 2 (stiffness)"),
+        };
+        let Some(matrix) = matrix else { return ABSENT };
+        unsafe { out.write(view(matrix)) };
+        OK
+    })
+}
+
+fn view(matrix: &Matrix) -> HbvibIoMatrix {
+    HbvibIoMatrix {
+        rows: matrix.rows as i64,
+        columns: matrix.columns as i64,
+        entries: matrix.entries() as i64,
+        is_complex: i32::from(matrix.is_complex),
+        symmetry: match matrix.symmetry {
+            Symmetry::General => 0,
+            Symmetry::Symmetric => 1,
+            Symmetry::Hermitian => 2,
+            Symmetry::Skew => 3,
+        },
+        row: matrix.row.as_ptr(),
+        column: matrix.column.as_ptr(),
+        values: matrix.values.as_ptr(),
+    }
+}
+
+/// Number of degrees of freedom that the file names.
+///
+/// # Safety
+/// `file` is NULL or comes from [`hbvib_io_read`].
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_io_dofs(file: *const HbvibIoFile) -> i64 {
+    unsafe { file.as_ref() }.map_or(-1, |file| file.0.dofs.len() as i64)
+}
+
+/// Copies node and direction of each degree of freedom, two numbers each.
+///
+/// # Safety
+/// `file` is NULL or comes from [`hbvib_io_read`]; `table` has room for 2 [`hbvib_io_dofs`] numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_io_dof_table(file: *const HbvibIoFile, table: *mut i64) -> i32 {
+    let Some(file) = (unsafe { file.as_ref() }) else {
+        return report("hbvib_io_dof_table: file is NULL");
+    };
+    if table.is_null() {
+        return report("hbvib_io_dof_table: table is NULL");
+    }
+    let dofs: &[Dof] = &file.0.dofs;
+    for (i, (node, direction)) in dofs.iter().enumerate() {
+        unsafe {
+            table.add(2 * i).write(*node);
+            table.add(2 * i + 1).write(*direction);
+        }
+    }
+    OK
+}
+
+/// Frees a file; NULL does nothing.
+///
+/// # Safety
+/// `file` is NULL or comes from [`hbvib_io_read`], once.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_io_free(file: *mut HbvibIoFile) {
+    if !file.is_null() {
+        drop(unsafe { Box::from_raw(file) });
+    }
+}

@@ -1,0 +1,120 @@
+//! The lines of a text file with their numbers; gzipped files are unpacked as they are read.
+
+use crate::Result;
+use crate::error::Error;
+use flate2::read::MultiGzDecoder;
+use std::fmt::Display;
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read};
+use std::path::{Path, PathBuf};
+
+/// Longest accepted line in bytes; no format has longer ones.
+const LONGEST: u64 = 1 << 16;
+
+/// First bytes of a gzipped file.
+const GZIP: [u8; 2] = [0x1f, 0x8b];
+
+/// A text file, read line by line.
+pub(crate) struct Lines {
+    path: PathBuf,
+    reader: Box<dyn BufRead>,
+    length: u64,
+    number: usize,
+    line: String,
+    again: bool,
+}
+
+impl Lines {
+    /// Opens a file.
+    ///
+    /// # Errors
+    /// The reason of the system.
+    pub fn open(path: &Path) -> Result<Self> {
+        let failed = |error: std::io::Error| Error::new(path, 0, format_args!("cannot be read: {error}"));
+        let mut file = BufReader::new(File::open(path).map_err(failed)?);
+        let length = file.get_ref().metadata().map_err(failed)?.len();
+        let gzipped = file.fill_buf().map_err(failed)?.starts_with(&GZIP);
+        let reader: Box<dyn BufRead> = if gzipped {
+            Box::new(BufReader::new(MultiGzDecoder::new(file)))
+        } else {
+            Box::new(file)
+        };
+        Ok(Self {
+            path: path.to_owned(),
+            reader,
+            // Text of numbers shrinks to a third or less, seldom to a tenth.
+            length: if gzipped { length.saturating_mul(16) } else { length },
+            number: 0,
+            line: String::new(),
+            again: false,
+        })
+    }
+
+    /// Bytes of the file, of its text if it is gzipped.
+    pub fn length(&self) -> usize {
+        usize::try_from(self.length).unwrap_or(usize::MAX)
+    }
+
+    /// Reads the next line; `false` at the end.
+    ///
+    /// # Errors
+    /// A line that is too long or is no text.
+    pub fn advance(&mut self) -> Result<bool> {
+        if core::mem::take(&mut self.again) {
+            return Ok(true);
+        }
+        let mut bytes = core::mem::take(&mut self.line).into_bytes();
+        bytes.clear();
+        self.number += 1;
+        let mut limited = (&mut self.reader).take(LONGEST);
+        match limited.read_until(b'\n', &mut bytes) {
+            Ok(0) => {
+                self.number -= 1;
+                return Ok(false);
+            }
+            Ok(count) if count as u64 == LONGEST => return self.fail("longer than 65536 characters"),
+            Ok(_) => {}
+            Err(error) => return self.fail(format_args!("cannot be read: {error}")),
+        }
+        while matches!(bytes.last(), Some(b'\n' | b'\r')) {
+            bytes.pop();
+        }
+        match String::from_utf8(bytes) {
+            Ok(line) if !line.contains(|c: char| c.is_control() && c != '\t') => {
+                self.line = line;
+                Ok(true)
+            }
+            _ => self.fail("holds bytes that are no text"),
+        }
+    }
+
+    /// Reads the next line, which must be there.
+    ///
+    /// # Errors
+    /// As [`Self::advance`], and for the end of the file.
+    pub fn expect(&mut self, needed: &str) -> Result<()> {
+        if self.advance()? {
+            return Ok(());
+        }
+        self.number += 1;
+        self.fail(format_args!("the file ends where {needed} is needed"))
+    }
+
+    /// Lets [`Self::advance`] return the present line once more.
+    pub fn repeat(&mut self) {
+        self.again = true;
+    }
+
+    /// The present line.
+    pub fn text(&self) -> &str {
+        &self.line
+    }
+
+    /// An error at the present line.
+    ///
+    /// # Errors
+    /// Always.
+    pub fn fail<T>(&self, reason: impl Display) -> Result<T> {
+        Err(Error::new(&self.path, self.number, reason))
+    }
+}

@@ -1,0 +1,130 @@
+//! Matrix Market files: `coordinate` and `array`; real, integer or complex; general, symmetric, Hermitian, skew.
+
+use crate::Result;
+use crate::lines::Lines;
+use crate::matrix::{Matrix, Symmetry};
+use crate::numbers::{count, index, real};
+
+/// First word of a file.
+pub(crate) const BANNER: &str = "%%MatrixMarket";
+
+/// The matrix of a file whose first line is the present one.
+///
+/// # Errors
+/// The line and reason.
+pub(crate) fn matrix(lines: &mut Lines) -> Result<Matrix> {
+    let banner = lines.text().to_ascii_lowercase();
+    let words: Vec<&str> = banner.split_whitespace().collect();
+    let [_, "matrix", format, field, symmetry] = words[..] else {
+        return lines.fail("the banner needs five words: %%MatrixMarket matrix coordinate real symmetric");
+    };
+    let is_complex = match field {
+        "real" | "integer" | "double" => false,
+        "complex" => true,
+        other => return lines.fail(format_args!("entries are {other:?}, needs real, integer or complex")),
+    };
+    let symmetry = match symmetry {
+        "general" => Symmetry::General,
+        "symmetric" => Symmetry::Symmetric,
+        "hermitian" => Symmetry::Hermitian,
+        "skew-symmetric" => Symmetry::Skew,
+        other => {
+            return lines.fail(format_args!(
+                "symmetry is {other:?}, needs general, symmetric, hermitian or skew-symmetric"
+            ));
+        }
+    };
+    let dense = match format {
+        "coordinate" => false,
+        "array" => true,
+        other => return lines.fail(format_args!("format is {other:?}, needs coordinate or array")),
+    };
+    expect_data(lines, "the size of the matrix")?;
+    let mut words = lines.text().split_whitespace();
+    let (rows, columns) = (
+        count(lines, words.next(), "rows")?,
+        count(lines, words.next(), "columns")?,
+    );
+    let entries = if dense {
+        let all = rows.saturating_mul(columns);
+        if symmetry == Symmetry::General {
+            all
+        } else {
+            all / 2 + rows / 2
+        }
+    } else {
+        count(lines, words.next(), "number of entries")?
+    };
+    refuse_more(lines, words.next())?;
+    let mut matrix = Matrix::new(lines, (rows, columns), symmetry, (entries, is_complex))?;
+    if dense {
+        array(lines, &mut matrix)?;
+    } else {
+        for _ in 0..entries {
+            expect_data(lines, "an entry")?;
+            let mut words = lines.text().split_whitespace();
+            let row = index(lines, words.next(), rows, "row")?;
+            let column = index(lines, words.next(), columns, "column")?;
+            let value = value(lines, &mut words, is_complex)?;
+            refuse_more(lines, words.next())?;
+            if symmetry != Symmetry::General && row < column {
+                return lines.fail("an entry above the diagonal, needs the lower triangle of a symmetric matrix");
+            }
+            matrix.push(lines, row, column, value)?;
+        }
+    }
+    while lines.advance()? {
+        if !is_comment(lines.text()) {
+            return lines.fail("more entries than the file announces");
+        }
+    }
+    Ok(matrix.finished())
+}
+
+/// Column after column, of a symmetric matrix the lower triangle.
+fn array(lines: &mut Lines, matrix: &mut Matrix) -> Result<()> {
+    for column in 0..matrix.columns {
+        let first = match matrix.symmetry {
+            Symmetry::General => 0,
+            Symmetry::Skew => column + 1,
+            _ => column,
+        };
+        for row in first..matrix.rows {
+            expect_data(lines, "an entry")?;
+            let mut words = lines.text().split_whitespace();
+            let value = value(lines, &mut words, matrix.is_complex)?;
+            refuse_more(lines, words.next())?;
+            matrix.push(lines, row as u32, column as u32, value)?;
+        }
+    }
+    Ok(())
+}
+
+fn value<'a>(lines: &Lines, words: &mut impl Iterator<Item = &'a str>, is_complex: bool) -> Result<(f64, f64)> {
+    let re = real(lines, words.next(), "value")?;
+    let im = if is_complex {
+        real(lines, words.next(), "imaginary part")?
+    } else {
+        0.0
+    };
+    Ok((re, im))
+}
+
+fn refuse_more(lines: &Lines, word: Option<&str>) -> Result<()> {
+    match word {
+        None => Ok(()),
+        Some(word) => lines.fail(format_args!("{word:?} is one word too many")),
+    }
+}
+
+fn is_comment(line: &str) -> bool {
+    line.trim().is_empty() || line.starts_with('%')
+}
+
+fn expect_data(lines: &mut Lines, needed: &str) -> Result<()> {
+    lines.expect(needed)?;
+    while is_comment(lines.text()) {
+        lines.expect(needed)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,81 @@
+//! Reading a file of any format, which its name and first line tell.
+
+use crate::error::Error;
+use crate::lines::Lines;
+use crate::matrix::{Matrices, Matrix};
+use crate::{Result, abaqus, calculix, harwell_boeing, matrix_market, op4};
+use std::path::Path;
+
+/// Reads the matrices of a file.
+///
+/// | format | recognised by | holds |
+/// |---|---|---|
+/// | Matrix Market, also gzipped | `%%MatrixMarket` | one matrix |
+/// | CalculiX | `.sti`, `.mas`, `.dof`: all files of the job | stiffness, mass, degrees of freedom |
+/// | Nastran OP4 text | `.op4`, or the head of a matrix | matrices whose names begin with K, M, B |
+/// | Abaqus | `.mtx` | one matrix: MASS or DMP in the name of the file tell which |
+/// | Harwell-Boeing text | else | one matrix |
+///
+/// One matrix of an unknown kind is returned as stiffness.
+///
+/// # Errors
+/// File, line and reason.
+pub fn read(path: &Path) -> Result<Matrices> {
+    let extension = path
+        .extension()
+        .and_then(|e| e.to_str())
+        .unwrap_or("")
+        .to_ascii_lowercase();
+    if calculix::EXTENSIONS.contains(&extension.as_str()) {
+        return calculix::matrices(path);
+    }
+    let mut lines = Lines::open(path)?;
+    lines.expect("a matrix")?;
+    if lines.text().starts_with(matrix_market::BANNER) {
+        return Ok(one(matrix_market::matrix(&mut lines)?));
+    }
+    if extension == "op4" || op4::is_head(lines.text()) {
+        return op4::matrices(&mut lines);
+    }
+    if extension == "mtx" {
+        lines.repeat();
+        return abaqus_matrix(path, &mut lines);
+    }
+    if lines.text().starts_with(['*', '%']) {
+        return Err(Error::new(
+            path,
+            1,
+            "the format is unknown: Matrix Market, Abaqus .mtx, CalculiX .sti, Harwell-Boeing or OP4 are read",
+        ));
+    }
+    Ok(one(harwell_boeing::matrix(&mut lines)?))
+}
+
+fn one(matrix: Matrix) -> Matrices {
+    Matrices {
+        stiffness: Some(matrix),
+        ..Matrices::default()
+    }
+}
+
+/// Abaqus calls its files job_STIF1.mtx, job_MASS1.mtx, job_DMPV1.mtx (viscous damping).
+fn abaqus_matrix(path: &Path, lines: &mut Lines) -> Result<Matrices> {
+    let (matrix, dofs) = abaqus::matrix(lines)?;
+    let name = path
+        .file_stem()
+        .and_then(|name| name.to_str())
+        .unwrap_or("")
+        .to_ascii_uppercase();
+    let mut found = Matrices {
+        dofs,
+        ..Matrices::default()
+    };
+    if name.contains("_MASS") {
+        found.mass = Some(matrix);
+    } else if name.contains("_DMP") {
+        found.damping = Some(matrix);
+    } else {
+        found.stiffness = Some(matrix);
+    }
+    Ok(found)
+}

@@ -1,0 +1,71 @@
+"""Wrote the files of this folder that come from scipy and pyNastran; `values.json` holds their matrices.
+
+The others: sector.sti, sector.mas, sector.dof are those of CalculiX 2.20 (Debian calculix-ccx) for sector.inp, a clamped
+sector of two C3D8 elements with SOLVER=MATRIXSTORAGE. wheel_STIF1.mtx and wheel_coordinate.mtx are written here in the
+layout of Abaqus' *MATRIX OUTPUT, FORMAT=MATRIX INPUT and COORDINATE: no Abaqus was at hand."""
+
+import gzip
+import json
+import shutil
+
+import numpy as np
+import scipy.io
+import scipy.sparse as sp
+from pyNastran.op4.op4 import OP4
+
+rng = np.random.default_rng(18)
+n = 7
+a = sp.random(n, n, 0.4, random_state=rng).toarray() * np.exp(rng.normal(0, 5, (n, n)))
+symmetric = a + a.T + np.diag(rng.uniform(1, 2, n)) * 1e3
+complex_ = a + 1j * np.where(a != 0, rng.normal(size=(n, n)), 0)
+hermitian = complex_ + complex_.conj().T
+rectangular = sp.random(5, 3, 0.5, random_state=rng).toarray()
+values = {}
+
+
+def keep(name, matrix):
+    matrix = np.asarray(matrix)
+    values[name] = dict(re=matrix.real.tolist(), im=matrix.imag.tolist())
+
+
+for name, matrix, options in (
+    ("general.mtx", sp.coo_matrix(a), dict(symmetry="general")),
+    ("symmetric.mtx", sp.coo_matrix(symmetric), dict(symmetry="symmetric")),
+    ("hermitian.mtx", sp.coo_matrix(hermitian), dict(symmetry="hermitian")),
+    ("complex.mtx", sp.coo_matrix(complex_), dict(symmetry="general")),
+    ("skew.mtx", sp.coo_matrix(a - a.T), dict(symmetry="skew-symmetric")),
+    ("rectangular.mtx", sp.coo_matrix(rectangular), {}),
+    ("array.mtx", symmetric, dict(symmetry="symmetric")),
+):
+    with open(name, "wb") as file:
+        scipy.io.mmwrite(file, matrix, precision=17, **options)
+    keep(name, matrix.toarray() if sp.issparse(matrix) else matrix)
+with open("symmetric.mtx", "rb") as plain, gzip.GzipFile("symmetric.mtx.gz", "wb", mtime=0) as packed:
+    shutil.copyfileobj(plain, packed)
+keep("symmetric.mtx.gz", symmetric)
+scipy.io.hb_write("general.rua", sp.csc_matrix(a))
+keep("general.rua", a)
+# scipy writes the type RUA alone: the lower triangle, with the type of a symmetric matrix as HBMAT of Ansys has it.
+scipy.io.hb_write("symmetric.rsa", sp.csc_matrix(np.tril(symmetric)))
+text = open("symmetric.rsa").read()
+open("symmetric.rsa", "w").write(text.replace("RUA", "RSA", 1))
+keep("symmetric.rsa", symmetric)
+# pyNastran 1.4 writes wrong lengths where a sparse column has several strings: bands have one a column.
+band = np.triu(np.tril(symmetric + 0.25, 1), -1)
+for name, store, k, c in (("dense.op4", np.asarray, symmetric, a), ("sparse.op4", sp.coo_matrix, band, np.tril(band))):
+    matrices = {"KAA": (6, store(k)), "MAA": (6, store(np.diag(np.arange(1.0, n + 1)))), "BAA": (1, store(c))}
+    OP4().write_op4(name, matrices, is_binary=False, precision="double")
+    keep(name, k)
+    keep(name + " damping", c)
+values["mass"] = np.arange(1.0, n + 1).tolist()
+lower = np.tril(symmetric)
+with open("wheel_STIF1.mtx", "w") as file:
+    file.write("** Assembled nodal stiffness\n")
+    for i, j in zip(*np.nonzero(lower)):
+        file.write(f"{10 + i // 3},{i % 3 + 1}, {10 + j // 3},{j % 3 + 1}, {lower[i, j]:.15e}\n")
+keep("wheel_STIF1.mtx", symmetric)
+with open("wheel_coordinate.mtx", "w") as file:
+    for i, j in zip(*np.nonzero(symmetric)):
+        file.write(f"{i + 1:8d} {j + 1:8d} {symmetric[i, j]:.15e}\n")
+keep("wheel_coordinate.mtx", symmetric)
+json.dump(values, open("values.json", "w"), indent=0)

@@ -1,0 +1,73 @@
+/* Readers of matrices that finite-element programs write: Matrix Market (also gzipped), Abaqus
+ * *MATRIX GENERATE, CalculiX matrix storage, Harwell-Boeing text, Nastran OP4 text. A library of its
+ * own, libhbvib_io: `cargo build --release -p hbvib-io`.
+ *
+ *   hbvib_io_file *file = NULL;
+ *   hbvib_io_matrix k;
+ *   if (hbvib_io_read("wheel.sti", &file) != 0) return puts(hbvib_io_last_error());
+ *   if (hbvib_io_matrix_of(file, HBVIB_IO_STIFFNESS, &k) == 0) use(k.rows, k.row, k.column, k.values);
+ *   hbvib_io_free(file);
+ */
+#ifndef HBVIB_IO_H
+#define HBVIB_IO_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a file holds. */
+typedef struct HbvibIoFile hbvib_io_file;
+
+/* Kinds of matrices, as hbvib_matrix_kind. */
+enum { HBVIB_IO_MASS = 0, HBVIB_IO_DAMPING = 1, HBVIB_IO_STIFFNESS = 2 };
+
+/* Relation of an entry off the diagonal to its mirror image. */
+enum {
+  HBVIB_IO_GENERAL = 0,   /* all entries are listed */
+  HBVIB_IO_SYMMETRIC = 1, /* the entry stands for its mirror image as well */
+  HBVIB_IO_HERMITIAN = 2, /* the mirror image is the conjugate */
+  HBVIB_IO_SKEW = 3       /* the mirror image has the other sign */
+};
+
+/* A sparse matrix; its arrays belong to the file. Entries at the same place add up. */
+typedef struct {
+  int64_t rows;
+  int64_t columns;
+  int64_t entries;
+  int32_t is_complex;     /* values are pairs of real and imaginary part */
+  int32_t symmetry;       /* HBVIB_IO_GENERAL, ... */
+  const uint32_t *row;    /* from 0, entries numbers */
+  const uint32_t *column; /* from 0, entries numbers */
+  const double *values;   /* entries numbers, or twice as many */
+} hbvib_io_matrix;
+
+/* Reads a file. Of CalculiX, any file of a job reads all of them. A format that does not say what it
+ * holds has its matrix as stiffness.
+ *
+ * path  ends with a zero byte.
+ * out   receives the file; untouched on error. Free it by hbvib_io_free.
+ * Returns 0, or -1 with a sentence of file, line and reason in hbvib_io_last_error. Threads: any. */
+int32_t hbvib_io_read(const char *path, hbvib_io_file **out);
+
+/* Fills out with a matrix of a file. Returns 0; 1 if the file does not hold it; -1 on error. */
+int32_t hbvib_io_matrix_of(const hbvib_io_file *file, int32_t which, hbvib_io_matrix *out);
+
+/* Number of degrees of freedom whose nodes the file names, 0 if it names none; -1 for NULL. */
+int64_t hbvib_io_dofs(const hbvib_io_file *file);
+
+/* Copies node number and direction of each degree of freedom, two numbers each. Returns 0 or -1. */
+int32_t hbvib_io_dof_table(const hbvib_io_file *file, int64_t *table);
+
+/* Frees a file; NULL does nothing. Its matrices are gone with it. */
+void hbvib_io_free(hbvib_io_file *file);
+
+/* The sentence of the last error of this thread, until its next call. */
+const char *hbvib_io_last_error(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

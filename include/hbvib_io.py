@@ -1,0 +1,104 @@
+"""Matrices of finite-element programs as scipy matrices: hbvib.io.read(path).
+
+Matrix Market (also gzipped), Abaqus *MATRIX GENERATE (.mtx), CalculiX (.sti, .mas, .dof), Harwell-Boeing text, Nastran
+OP4 text. Needs scipy and the library libhbvib_io (cargo build --release -p hbvib-io), named by HBVIB_IO_LIBRARY, or in
+the places where hbvib looks."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+import sys
+from collections import namedtuple
+from typing import Any
+
+import numpy as np
+
+__all__ = ["Matrices", "ReadError", "read"]
+
+#: What a file holds: sparse matrices or None, and dofs, an array (n, 2) of node and direction, or None.
+Matrices = namedtuple("Matrices", "stiffness mass damping dofs")
+
+_HERE = os.path.dirname(os.path.abspath(__file__))
+_FOLDERS = ("", "../target/release", "../target/debug", "../../lib", "../lib")
+
+
+class ReadError(ValueError):
+    """A file that is not understood; the sentence names file, line and reason."""
+
+
+class _Matrix(ctypes.Structure):
+    _fields_ = [(name, ctypes.c_int64) for name in ("rows", "columns", "entries")] + [
+        (name, ctypes.c_int32) for name in ("is_complex", "symmetry")] + [
+        (name, ctypes.c_void_p) for name in ("row", "column", "values")]
+
+
+def _load() -> ctypes.CDLL:
+    name = dict(win32="hbvib_io.dll", darwin="libhbvib_io.dylib").get(sys.platform, "libhbvib_io.so")
+    named = os.environ.get("HBVIB_IO_LIBRARY")
+    places = [named] if named else [os.path.normpath(os.path.join(_HERE, folder, name)) for folder in _FOLDERS]
+    if not named and os.path.dirname(os.environ.get("HBVIB_LIBRARY", "")):
+        places.insert(0, os.path.join(os.path.dirname(os.environ["HBVIB_LIBRARY"]), name))
+    for place in places:
+        if os.path.exists(place):
+            lib = ctypes.CDLL(place)
+            break
+    else:
+        raise ImportError(f"no {name} in " + ", ".join(os.path.dirname(place) for place in places)
+                          + "; build it by `cargo build --release -p hbvib-io`, or name it by HBVIB_IO_LIBRARY")
+    pointer = ctypes.POINTER(ctypes.c_void_p)
+    lib.hbvib_io_read.argtypes = [ctypes.c_char_p, pointer]
+    lib.hbvib_io_matrix_of.argtypes = [ctypes.c_void_p, ctypes.c_int32, ctypes.POINTER(_Matrix)]
+    lib.hbvib_io_dofs.argtypes, lib.hbvib_io_dofs.restype = [ctypes.c_void_p], ctypes.c_int64
+    lib.hbvib_io_dof_table.argtypes = [ctypes.c_void_p, ctypes.c_void_p]
+    lib.hbvib_io_free.argtypes, lib.hbvib_io_free.restype = [ctypes.c_void_p], None
+    lib.hbvib_io_last_error.restype = ctypes.c_char_p
+    return lib
+
+
+_lib = _load()
+
+
+def _array(address: int, count: int, kind: Any) -> np.ndarray:
+    """A copy of numbers of the library."""
+    if count == 0:
+        return np.empty(0, kind)
+    size = count * np.dtype(kind).itemsize
+    return np.frombuffer((ctypes.c_char * size).from_address(address), kind).copy()
+
+
+def _sparse(matrix: _Matrix) -> Any:
+    from scipy import sparse
+    row, column = (_array(address, matrix.entries, np.uint32).astype(np.int64) for address in (matrix.row, matrix.column))
+    kind = np.complex128 if matrix.is_complex else np.float64
+    values = _array(matrix.values, matrix.entries, kind)
+    if matrix.symmetry:
+        off = row != column
+        mirror = values[off]
+        mirror = {1: mirror, 2: mirror.conj(), 3: -mirror}[matrix.symmetry]
+        row, column = np.concatenate([row, column[off]]), np.concatenate([column, row[off]])
+        values = np.concatenate([values, mirror])
+    return sparse.csc_matrix((values, (row, column)), shape=(matrix.rows, matrix.columns))
+
+
+def read(path: Any) -> Matrices:
+    """(stiffness, mass, damping, dofs) of a file; what it does not hold is None.
+
+    Any file of a CalculiX job reads all of them. A format that does not say what it holds, as Matrix Market and
+    Harwell-Boeing, has its matrix as stiffness. dofs is an array (n, 2) of node and direction. ReadError names file, line
+    and reason."""
+    handle = ctypes.c_void_p()
+    if _lib.hbvib_io_read(os.fsencode(os.fspath(path)), ctypes.byref(handle)) != 0:
+        raise ReadError(_lib.hbvib_io_last_error().decode(errors="replace"))
+    try:
+        found = {}
+        for which, name in enumerate(("mass", "damping", "stiffness")):
+            matrix = _Matrix()
+            absent = _lib.hbvib_io_matrix_of(handle, which, ctypes.byref(matrix))
+            found[name] = None if absent else _sparse(matrix)
+        count = _lib.hbvib_io_dofs(handle)
+        table = np.empty((count, 2), np.int64)
+        _lib.hbvib_io_dof_table(handle, table.ctypes.data)
+        return Matrices(dofs=table if count else None, **found)
+    finally:
+        _lib.hbvib_io_free(handle)

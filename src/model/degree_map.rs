@@ -1,0 +1,225 @@
+//! Degrees of freedom as the caller numbers them, and the independent ones that are solved for.
+//!
+//! A fixed degree of freedom does not move; one on the right face of a sector is the turned image of the left face of
+//! the next sector. With the independent motion q_s of sector s, all degrees of freedom are u_s = T₀ q_s + T₁ q_{s+1};
+//! a row of T₀ or T₁ is the image of a degree of freedom.
+
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
+use crate::model::sector_faces::{Faces, Place};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+const CONTEXT: &str = "the map of the degrees of freedom";
+
+/// The map from the caller's degrees of freedom to the independent ones. A copy shares its tables.
+#[derive(Clone, Debug)]
+pub struct DegreeMap {
+    given: usize,
+    /// `None`: every degree of freedom is independent.
+    images: Option<Arc<Images>>,
+}
+
+/// Rows of T₀ and T₁, each with entries in one of them only.
+#[derive(Debug)]
+struct Images {
+    /// Offsets of the rows in `terms`, one more than degrees of freedom.
+    start: Vec<usize>,
+    /// Independent degree of freedom and coefficient.
+    terms: Vec<(usize, f64)>,
+    /// The entries of the row lie in T₁.
+    next: Vec<bool>,
+    /// The caller's number of each independent degree of freedom.
+    origin: Vec<usize>,
+    fixed: Vec<bool>,
+    faces: Option<Faces>,
+}
+
+impl DegreeMap {
+    /// The map of `given` independent degrees of freedom.
+    pub(super) fn identity(given: usize) -> Self {
+        Self { given, images: None }
+    }
+
+    /// The map with fixed degrees of freedom and, for a sector, its faces.
+    ///
+    /// # Errors
+    /// `Argument` for a pair that is fixed on one side only, and where all are fixed; `OutOfMemory`.
+    fn new(fixed: Vec<bool>, faces: Option<Faces>) -> Result<Self> {
+        let given = fixed.len();
+        let mut place = try_vec(given, Place::Interior, CONTEXT)?;
+        if let Some(faces) = &faces {
+            faces.check_fixed(&fixed)?;
+            faces.places(&mut place);
+        }
+        let mut number = try_vec(given, usize::MAX, CONTEXT)?;
+        let mut origin = Vec::new();
+        for (dof, place) in place.iter().enumerate() {
+            if !fixed[dof] && !matches!(place, Place::Right { .. }) {
+                number[dof] = origin.len();
+                try_push(&mut origin, dof, CONTEXT)?;
+            }
+        }
+        if origin.is_empty() {
+            return fail!(Argument, "all degrees of freedom are fixed: nothing can move");
+        }
+        let mut start = try_vec(1, 0, CONTEXT)?;
+        let mut terms = Vec::new();
+        let mut next = try_vec(given, false, CONTEXT)?;
+        for (dof, place) in place.iter().enumerate() {
+            if number[dof] != usize::MAX {
+                try_push(&mut terms, (number[dof], 1.0), CONTEXT)?;
+            } else if let (Place::Right { row, component }, Some(faces), false) = (place, &faces, fixed[dof]) {
+                next[dof] = true;
+                for (left, coefficient) in faces.image(*row, *component) {
+                    if number[left] != usize::MAX {
+                        try_push(&mut terms, (number[left], coefficient), CONTEXT)?;
+                    }
+                }
+            }
+            try_push(&mut start, terms.len(), CONTEXT)?;
+        }
+        Ok(Self {
+            given,
+            images: Some(Arc::new(Images {
+                start,
+                terms,
+                next,
+                origin,
+                fixed,
+                faces,
+            })),
+        })
+    }
+
+    /// The map of a sector with faces, and with degrees of freedom that are fixed.
+    ///
+    /// # Errors
+    /// As [`Self::fixing`].
+    pub(super) fn of_sector(given: usize, faces: Faces, fixed: &[usize]) -> Result<Self> {
+        Self::new(marked(try_vec(given, false, CONTEXT)?, fixed)?, Some(faces))
+    }
+
+    /// The same map with more degrees of freedom fixed.
+    ///
+    /// # Errors
+    /// `Index`; `Argument` for a pair of the faces that is fixed on one side only, and where all are fixed.
+    pub(super) fn fixing(&self, dofs: &[usize]) -> Result<Self> {
+        let (fixed, faces) = match self.images.as_deref() {
+            None => (try_vec(self.given, false, CONTEXT)?, None),
+            Some(images) => (
+                try_copy(&images.fixed, CONTEXT)?,
+                images.faces.as_ref().map(Faces::try_clone).transpose()?,
+            ),
+        };
+        Self::new(marked(fixed, dofs)?, faces)
+    }
+
+    /// Degrees of freedom as the caller numbers them.
+    #[must_use]
+    pub fn given(&self) -> usize {
+        self.given
+    }
+
+    /// Independent degrees of freedom.
+    #[must_use]
+    pub fn independent(&self) -> usize {
+        self.images.as_ref().map_or(self.given, |images| images.origin.len())
+    }
+
+    /// Whether every degree of freedom is independent.
+    #[must_use]
+    pub fn is_identity(&self) -> bool {
+        self.images.is_none()
+    }
+
+    /// The faces of a sector.
+    pub(super) fn faces(&self) -> Option<&Faces> {
+        self.images.as_ref()?.faces.as_ref()
+    }
+
+    /// Image of a degree of freedom: the sector of the independent ones that move it, counted from its own, and their
+    /// numbers and coefficients. Empty for a fixed one.
+    pub fn image(&self, dof: usize) -> (i64, impl Iterator<Item = (usize, f64)> + '_) {
+        let (sector, own, terms) = match self.images.as_deref() {
+            None => (0, Some((dof, 1.0)), &[][..]),
+            Some(images) => (
+                i64::from(images.next[dof]),
+                None,
+                &images.terms[images.start[dof]..images.start[dof + 1]],
+            ),
+        };
+        (sector, own.into_iter().chain(terms.iter().copied()))
+    }
+
+    /// Whether a degree of freedom does not move.
+    #[must_use]
+    pub fn is_fixed(&self, dof: usize) -> bool {
+        self.images.as_ref().is_some_and(|images| images.fixed[dof])
+    }
+
+    /// The number of a degree of freedom among the independent ones; `None` for a fixed one and for one on the right
+    /// face.
+    #[must_use]
+    pub fn number(&self, dof: usize) -> Option<usize> {
+        match self.images.as_deref() {
+            None => Some(dof),
+            Some(images) if images.next[dof] || images.fixed[dof] => None,
+            Some(images) => images.terms.get(images.start[dof]).map(|&(number, _)| number),
+        }
+    }
+
+    /// The caller's number of an independent degree of freedom.
+    #[must_use]
+    pub fn origin(&self, independent: usize) -> usize {
+        match self.images.as_deref() {
+            None => independent,
+            Some(images) => images.origin[independent],
+        }
+    }
+
+    /// The motion of all degrees of freedom from that of the independent ones, where the next sector moves `next`
+    /// times as this one.
+    pub fn expand(&self, next: Complex64, independent: &[Complex64], all: &mut [Complex64]) {
+        let Some(images) = self.images.as_deref() else {
+            all.copy_from_slice(independent);
+            return;
+        };
+        for (dof, x) in all.iter_mut().enumerate() {
+            let terms = &images.terms[images.start[dof]..images.start[dof + 1]];
+            let motion: Complex64 = terms.iter().map(|&(j, c)| c * independent[j]).sum();
+            *x = if images.next[dof] { next * motion } else { motion };
+        }
+    }
+
+    /// The same in time, from the motions of this sector and the next one.
+    pub fn expand_in_time(&self, own: &[f64], next: &[f64], all: &mut [f64]) {
+        let Some(images) = self.images.as_deref() else {
+            all.copy_from_slice(own);
+            return;
+        };
+        for (dof, x) in all.iter_mut().enumerate() {
+            let terms = &images.terms[images.start[dof]..images.start[dof + 1]];
+            let from = if images.next[dof] { next } else { own };
+            *x = terms.iter().map(|&(j, c)| c * from[j]).sum();
+        }
+    }
+
+    /// The motion of the independent degrees of freedom out of that of all; those that depend on them are not read.
+    pub fn restrict(&self, all: &[Complex64], independent: &mut [Complex64]) {
+        for (j, x) in independent.iter_mut().enumerate() {
+            *x = all[self.origin(j)];
+        }
+    }
+}
+
+/// Marks degrees of freedom as fixed.
+fn marked(mut fixed: Vec<bool>, dofs: &[usize]) -> Result<Vec<bool>> {
+    let n = fixed.len();
+    for (i, &dof) in dofs.iter().enumerate() {
+        match fixed.get_mut(dof) {
+            Some(mark) => *mark = true,
+            None => return fail!(Index, "fixed[{i}] = {dof}, needs 0 .. {}", n - 1),
+        }
+    }
+    Ok(fixed)
+}

@@ -1,0 +1,132 @@
+//! Matrices on the independent degrees of freedom: K₀ = T₀ᵀ K T₀ + T₁ᵀ K T₁, K₁ = T₀ᵀ K T₁, K₋₁ = T₁ᵀ K T₀.
+
+use crate::error::{Error, Result};
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::blocks::Blocks;
+use crate::model::degree_map::DegreeMap;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the matrices of the sector";
+
+type Entries = Vec<(usize, usize, Complex64)>;
+
+/// The blocks of a matrix of the sector. Where it is `hermitian`, so is its own block, exactly.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn blocks(map: &DegreeMap, a: &Csc, hermitian: bool) -> Result<Blocks> {
+    // A block per pair of sectors: rows and columns in the same one, in this and the next, in the next and this.
+    let which = |row: i64, column: i64| match (row, column) {
+        (0, 1) => 1,
+        (1, 0) => 2,
+        _ => 0,
+    };
+    let mut counts = [0; 3];
+    visit(map, a, |(row, _), (column, _), _| counts[which(row, column)] += 1);
+    let mut entries: [Entries; 3] = Default::default();
+    for (entries, &count) in entries.iter_mut().zip(&counts) {
+        entries
+            .try_reserve_exact(count)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+    }
+    let mut complex = false;
+    visit(map, a, |(row, p), (column, q), v| {
+        let block = which(row, column);
+        complex |= v.im != 0.0;
+        // One triangle decides, so that rounding leaves the block symmetric.
+        if !(hermitian && (block == 2 || (block == 0 && p > q))) {
+            entries[block].push((p, q, v));
+        }
+    });
+    let n = map.independent();
+    let [own, next, previous] = entries;
+    let own = Csc::from_triplets(n, n, own)?;
+    let own = if hermitian { mirrored(&own)? } else { own };
+    let next = Csc::from_triplets(n, n, next)?;
+    let previous = match hermitian {
+        false => Some(Csc::from_triplets(n, n, previous)?),
+        true if complex => Some(adjoint(&next)?),
+        // The transpose of the coupling to the next sector.
+        true => None,
+    };
+    let coupled = map.faces().is_some();
+    Ok(Blocks {
+        own: Some(own),
+        next: coupled.then_some(next),
+        previous: previous.filter(|_| coupled),
+        diameters: Vec::new(),
+    })
+}
+
+/// Calls `take` with (sector, number) of row and column, and the value, for all terms.
+fn visit(map: &DegreeMap, a: &Csc, mut take: impl FnMut((i64, usize), (i64, usize), Complex64)) {
+    for j in 0..a.cols {
+        let (column, terms) = map.image(j);
+        for (q, d) in terms {
+            for (i, v) in a.column(j) {
+                let (row, terms) = map.image(i);
+                for (p, c) in terms {
+                    take((row, p), (column, q), v * (c * d));
+                }
+            }
+        }
+    }
+}
+
+/// The Hermitian matrix of an upper triangle.
+fn mirrored(upper: &Csc) -> Result<Csc> {
+    let n = upper.cols;
+    let mut entries = Vec::new();
+    let count = 2 * upper.values.len();
+    entries
+        .try_reserve_exact(count)
+        .map_err(|_| Error::out_of_memory(CONTEXT))?;
+    for j in 0..n {
+        for (i, v) in upper.column(j) {
+            if i == j {
+                entries.push((i, j, v.re.into()));
+            } else {
+                entries.extend([(i, j, v), (j, i, v.conj())]);
+            }
+        }
+    }
+    Csc::from_triplets(n, n, entries)
+}
+
+/// Aᴴ
+fn adjoint(a: &Csc) -> Result<Csc> {
+    let mut transposed = Csc::sum(a.rows, &[(Complex64::ONE, a, Form::Transposed)])?;
+    for v in &mut transposed.values {
+        *v = v.conj();
+    }
+    Ok(transposed)
+}
+
+/// Rows and columns of a matrix on the independent degrees of freedom of `old` that are independent in `new`, too.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn restricted(old: &DegreeMap, new: &DegreeMap, a: &Csc) -> Result<Csc> {
+    let n = new.independent();
+    let number = |p: usize| new.number(old.origin(p));
+    let mut entries = Vec::new();
+    entries
+        .try_reserve_exact(a.values.len())
+        .map_err(|_| Error::out_of_memory(CONTEXT))?;
+    for j in 0..a.cols {
+        let Some(column) = number(j) else { continue };
+        entries.extend(a.column(j).filter_map(|(i, v)| number(i).map(|row| (row, column, v))));
+    }
+    Csc::from_triplets(n, n, entries)
+}
+
+/// Rows and columns of the independent degrees of freedom of a matrix that is given for all.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(super) fn of_independent(map: &DegreeMap, a: Csc) -> Result<Csc> {
+    if map.is_identity() {
+        return Ok(a);
+    }
+    restricted(&DegreeMap::identity(map.given()), map, &a)
+}

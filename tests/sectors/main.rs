@@ -1,0 +1,9 @@
+//! Sectors with degrees of freedom on both faces: natural frequencies, contacts across the faces, refusals.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod boundary_sector;
+mod sector_contacts;
+mod sector_frequencies;
+mod sector_refusals;
