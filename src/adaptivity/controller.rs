@@ -137,8 +137,8 @@ impl AdaptivityController {
         if self.is_predicted(equations, &point, signs)? {
             return done(point);
         }
-        // Whether the errors before the last refinement were unknown, and the refinement changed nothing.
-        let mut settled = false;
+        // The point before the last refinement, where its error was unknown and the refinement changed nothing.
+        let mut settled: Option<(Point, usize)> = None;
         for refinements in 0..=MOST_REFINEMENTS {
             let level = equations.resolution();
             let Some(found) = self.estimate(equations, &point, signs)? else {
@@ -150,8 +150,11 @@ impl AdaptivityController {
             if !accepted {
                 self.note_miss(found.error, level);
             }
-            if found.error.is_nan() && settled {
-                return done(point);
+            if let Some((fewer, below)) = settled.take().filter(|_| found.error.is_nan()) {
+                // More harmonics would tell no more, and each later point would pay for them.
+                equations.select(below)?;
+                self.floor = (below, 0);
+                return done(fewer);
             }
             let drops = accepted && self.may_drop(found.error);
             let next = if found.error.is_nan() {
@@ -176,8 +179,9 @@ impl AdaptivityController {
                 });
             };
             let before = equations.transfer(&point, level)?;
-            settled = found.error.is_nan() && self.is_same(&before, &better);
-            point = better;
+            let same = found.error.is_nan() && self.is_same(&before, &better);
+            let left = core::mem::replace(&mut point, better);
+            settled = same.then_some((left, level));
             signs = Signs::of(&point, equations.share_of_highest(&point));
         }
         done(point)

@@ -5,6 +5,7 @@
 
 use crate::error::{Result, check_memory, try_vec};
 use crate::fourier::HarmonicSet;
+use crate::linalg::dot;
 use num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::TAU;
@@ -217,19 +218,6 @@ fn smooth_number(n: usize) -> usize {
     };
     let power = n.max(2).next_power_of_two();
     (n.max(2)..power).find(|&n| n % 2 == 0 && smooth(n)).unwrap_or(power)
-}
-
-/// Σ aⱼ bⱼ in eight partial sums, which the processor adds in parallel.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (left, right) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = left.remainder().iter().zip(right.remainder()).map(|(a, b)| a * b).sum();
-    for (a, b) in left.zip(right) {
-        for ((s, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *s += a * b;
-        }
-    }
-    sums.iter().sum::<f64>() + rest
 }
 
 #[cfg(test)]

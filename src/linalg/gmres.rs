@@ -2,7 +2,7 @@
 //! only by its products with vectors.
 
 use crate::error::{Result, try_push, try_vec};
-use crate::linalg::norm;
+use crate::linalg::{dot, norm};
 
 const CONTEXT: &str = "an iterative linear solution";
 
@@ -136,19 +136,6 @@ fn combine(basis: &[Vec<f64>], triangle: &[Vec<f64>], g: &mut [f64], x: &mut [f6
             *x += g * q;
         }
     }
-}
-
-/// Eight sums side by side, which one loop of the processor adds at a time.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest: f64 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
-    for (a, b) in a.zip(b) {
-        for ((sum, a), b) in sums.iter_mut().zip(a).zip(b) {
-            *sum += a * b;
-        }
-    }
-    sums.iter().sum::<f64>() + rest
 }
 
 #[cfg(test)]
