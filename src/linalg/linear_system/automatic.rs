@@ -19,6 +19,9 @@ const BLOCK: usize = 300;
 /// Most products of an iteration.
 const MOST_PRODUCTS: usize = 240;
 
+/// Least relative residual that is asked of an iteration: a tangent of this error predicts as well.
+const FINEST: f64 = 1e-10;
+
 /// Updates for which the solution is direct after an iteration that did not converge.
 const PATIENCE: usize = 16;
 
@@ -71,6 +74,14 @@ impl AutomaticSystem {
         (part < group && operator.coupled() > DIRECT_UP_TO).then_some((group, part))
     }
 
+    fn attainable(&self, tolerance: f64) -> f64 {
+        if self.iterates {
+            tolerance.max(FINEST)
+        } else {
+            tolerance
+        }
+    }
+
     fn backend(&mut self) -> Result<&mut dyn LinearSystem> {
         if self.iterates
             && let Some(krylov) = &mut self.krylov
@@ -112,6 +123,7 @@ impl LinearSystem for AutomaticSystem {
         b: &mut [f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
+        let tolerance = self.attainable(tolerance);
         self.backend()?.solve(jacobian, tolerance, b, interrupt)
     }
 
@@ -129,6 +141,7 @@ impl LinearSystem for AutomaticSystem {
         if self.factored != Some(self.iterates) {
             return Ok(false);
         }
+        let tolerance = self.attainable(tolerance);
         self.backend()?
             .solve_by_earlier_factors(jacobian, tolerance, b, interrupt)
     }

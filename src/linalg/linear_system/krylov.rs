@@ -14,9 +14,6 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the linear system";
 
-/// Least relative residual that is asked of an iteration: rounding may leave more than a smaller one.
-const FINEST: f64 = 1e-10;
-
 /// Products beyond those with its own factors up to which a solution with the factors of an earlier matrix is quicker
 /// than new factors.
 const SPARED: usize = 12;
@@ -188,7 +185,7 @@ impl KrylovSystem {
         if !is_direct {
             let border = (&self.column[..], self.scales, &self.row[..]);
             let (preconditioned, scaled) = (&mut self.product, &mut self.scaled);
-            let solved = self.memory.solve(b, tolerance.max(FINEST), most, |v, out| {
+            let solved = self.memory.solve(b, tolerance, most, |v, out| {
                 interrupt.check()?;
                 preconditioned.copy_from_slice(v);
                 Self::precondition((&mut *factors.0, &mut *factors.1), lengths, reduced, preconditioned);
@@ -275,7 +272,7 @@ impl LinearSystem for KrylovSystem {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let solved = self.iterate(jacobian, (tolerance, self.most_products), b, interrupt)?;
-        self.of_own_factors = self.products as f64 / -tolerance.max(FINEST).log10();
+        self.of_own_factors = self.products as f64 / -tolerance.log10();
         Ok(solved)
     }
 
@@ -290,7 +287,7 @@ impl LinearSystem for KrylovSystem {
             return Ok(false);
         }
         // An iteration converges linearly in the products.
-        let digits = -tolerance.max(FINEST).log10();
+        let digits = -tolerance.log10();
         let most = (self.of_own_factors * digits) as usize + SPARED;
         self.iterate(jacobian, (tolerance, most.min(self.most_products)), b, interrupt)
     }
