@@ -28,13 +28,14 @@ const LAYERS: [(&str, u8); 19] = [
     ("lib", 10),
 ];
 
-/// Imports inside one layer, (from, to): options and interrupts report errors, hooks hold an interrupt, and a model has
-/// contacts.
-const SAME_LAYER: [(&str, &str); 5] = [
+/// Imports inside one layer, (from, to): options and interrupts report errors, hooks hold an interrupt, transforms are
+/// products of vectors, and a model has contacts.
+const SAME_LAYER: [(&str, &str); 6] = [
     ("options", "error"),
     ("interrupt", "error"),
     ("hooks", "error"),
     ("hooks", "interrupt"),
+    ("fourier", "linalg"),
     ("model", "contact"),
 ];
 
