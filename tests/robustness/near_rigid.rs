@@ -280,5 +280,6 @@ fn a_tolerance_with_nearly_rigid_contacts_ends_soon() {
         }
     }
     println!("{answers} answers of 24, at most {most} Newton steps");
-    assert!(answers >= 6 && most <= 1000.0);
+    // A first point that misses the tolerance is sought up to three times, with up to 700 steps each here.
+    assert!(answers >= 12 && most <= 2100.0);
 }
