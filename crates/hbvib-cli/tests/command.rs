@@ -109,19 +109,25 @@ fn the_ring_damper_has_the_peaks_of_the_library() {
     read_by_numpy(folder, branch.points());
 }
 
-/// The archive as numpy sees it, where there is a numpy.
+/// The archive as numpy sees it.
 fn read_by_numpy(folder: &Path, points: usize) {
+    let program = "print(*f['harmonics'].shape, abs(abs(f['harmonics'][:, 1, 0]) / f['amplitude'] - 1).max() < 1e-12, \
+                   len(f['peaks']) > 0)";
+    read_by_numpy_with(folder, program, &format!("{points} 10 4 True True"));
+}
+
+/// Runs a program on the archive `f` and compares what it prints.
+fn read_by_numpy_with(folder: &Path, program: &str, expected: &str) {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../.venv/bin/python");
     let python = if own.exists() { own } else { "python3".into() };
-    let program = "import numpy as np; f = np.load('response.npz'); print(*f['harmonics'].shape, \
-                   abs(abs(f['harmonics'][:, 1, 0]) / f['amplitude'] - 1).max() < 1e-12, len(f['peaks']) > 0)";
+    let program = format!("import numpy as np; f = np.load('response.npz'); {program}");
     let output = Command::new(python)
-        .args(["-c", program])
+        .args(["-c", &program])
         .current_dir(folder)
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", printed(&output.stderr));
-    assert_eq!(printed(&output.stdout), format!("{points} 10 4 True True\n"));
+    assert_eq!(printed(&output.stdout).trim_end(), expected);
 }
 
 #[test]
@@ -227,12 +233,17 @@ fn a_nonlinear_mode_is_a_job_too() {
     assert!(csv.lines().count() > 10);
 }
 
-/// Ended by SIGINT, the run keeps what it found.
+/// Ended by SIGINT, the run keeps what it found: rows of whole numbers, and an archive with as many points.
 #[cfg(unix)]
 #[test]
 fn ctrl_c_leaves_a_readable_result() {
+    // Minutes of work.
+    let at: Vec<String> = (0..100_000)
+        .map(|i| format!("{:.6}", 207.0 + 4e-5 * f64::from(i)))
+        .collect();
     let path = job("interrupted", |text| {
-        text.replace("harmonics = 9", "harmonics = 255\nestimate_error = true")
+        let harmonics = format!("harmonics = 255\nat_hz = [{}]", at.join(", "));
+        text.replace("harmonics = 9", &harmonics)
     });
     let child = Command::new(env!("CARGO_BIN_EXE_hbvib"))
         .arg("run")
@@ -241,7 +252,7 @@ fn ctrl_c_leaves_a_readable_result() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(1500));
+    std::thread::sleep(std::time::Duration::from_millis(1000));
     let sent = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
         .status()
@@ -250,8 +261,25 @@ fn ctrl_c_leaves_a_readable_result() {
     let output = child.wait_with_output().unwrap();
     let errors = printed(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{errors}");
-    assert!(errors.contains("ended early"), "{errors}");
+    // No progress in a pipe.
+    assert!(
+        errors.starts_with("hbvib: the run ended early, StoppedByCaller"),
+        "{errors}"
+    );
     let csv = std::fs::read_to_string(path.with_file_name("response.csv")).unwrap();
-    assert!(csv.starts_with("frequency_hz,amplitude"));
-    assert!(path.with_file_name("response.npz").exists());
+    let rows: Vec<Vec<f64>> = csv
+        .lines()
+        .skip(1)
+        .map(|row| row.split(',').map(|x| x.parse().unwrap()).collect())
+        .collect();
+    assert!(
+        rows.iter()
+            .all(|row| row.len() == 4 && row.iter().all(|x| x.is_finite()))
+    );
+    assert!(rows.len() > 1 && (207.0 - 1e-9..211.0).contains(&rows[rows.len() - 1][0]));
+    read_by_numpy_with(
+        path.parent().unwrap(),
+        "print(len(f['omega']), len(f['harmonics']))",
+        &format!("{0} {0}", rows.len()),
+    );
 }
