@@ -1,10 +1,12 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
+use crate::nearest_name::hint;
+use schemars::JsonSchema;
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// A job.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Job {
     pub model: ModelPart,
@@ -22,7 +24,7 @@ pub struct Job {
 }
 
 /// Matrices and symmetry.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModelPart {
     /// One file with all matrices (CalculiX, OP4).
@@ -45,7 +47,7 @@ pub struct ModelPart {
 }
 
 /// Faces of a sector.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FacesPart {
     /// Degrees of freedom of each node, -1 where one is missing.
@@ -62,7 +64,7 @@ pub struct FacesPart {
 }
 
 /// Frame of the faces.
-#[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "lowercase")]
 pub enum FrameName {
     #[default]
@@ -71,7 +73,7 @@ pub enum FrameName {
 }
 
 /// Law of a contact.
-#[derive(Clone, Copy, Debug, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub enum KindName {
     Jenkins,
@@ -85,7 +87,7 @@ pub enum KindName {
 }
 
 /// A contact, or one for each pair of two lists.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactPart {
     pub kind: KindName,
@@ -115,7 +117,7 @@ pub struct ContactPart {
 }
 
 /// A force Re(value exp(i harmonic omega t)).
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForcePart {
     pub dof: usize,
@@ -125,7 +127,7 @@ pub struct ForcePart {
 }
 
 /// A real number or [re, im].
-#[derive(Clone, Copy, Debug, Deserialize)]
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum Amplitude {
     Real(f64),
@@ -133,7 +135,7 @@ pub enum Amplitude {
 }
 
 /// A forced response.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForcedPart {
     pub from_hz: f64,
@@ -149,7 +151,7 @@ pub struct ForcedPart {
 }
 
 /// A nonlinear mode.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ModePart {
     #[serde(default)]
@@ -164,7 +166,7 @@ pub struct ModePart {
 }
 
 /// Files that are written.
-#[derive(Debug, Default, Deserialize)]
+#[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct OutputPart {
     pub csv: Option<PathBuf>,
@@ -213,48 +215,5 @@ impl Job {
     /// A path of the job.
     pub fn path(&self, path: &Path) -> PathBuf {
         self.folder.join(path)
-    }
-}
-
-/// The nearest of the names that a message of serde lists.
-fn hint(message: &str) -> String {
-    let mut names = message.split('`').skip(1).step_by(2);
-    let Some(unknown) = names.next().filter(|_| message.starts_with("unknown")) else {
-        return String::new();
-    };
-    match names.min_by_key(|name| distance(unknown, name)) {
-        Some(nearest) if distance(unknown, nearest) <= unknown.len().max(3) / 2 + 1 => {
-            format!("\ndid you mean `{nearest}`?")
-        }
-        _ => String::new(),
-    }
-}
-
-/// Edits between two words (Levenshtein).
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != *y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{distance, hint};
-
-    #[test]
-    fn the_nearest_name_is_found() {
-        assert_eq!(distance("kitten", "sitting"), 3);
-        assert_eq!(distance("", "abc"), 3);
-        assert!(hint("unknown field `stifness`, expected one of `mass`, `stiffness`").contains("`stiffness`"));
-        assert!(hint("missing field `model`").is_empty());
     }
 }

@@ -4,10 +4,12 @@
 //! hbvib run job.toml     solves and writes what the job names
 //! hbvib check job.toml   reads the job and its files, and builds the model
 //! hbvib modes job.toml   natural frequencies, with free and with stuck contacts
+//! hbvib schema           the JSON schema of a job
 //! ```
 
 mod build;
 mod job;
+mod nearest_name;
 mod npz;
 mod output;
 
@@ -25,7 +27,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-const USAGE: &str = "usage: hbvib run|check|modes job.toml";
+const USAGE: &str = "usage: hbvib run|check|modes job.toml, or hbvib schema";
 
 /// Exit code of a run that was stopped early and kept its points.
 const STOPPED: u8 = 2;
@@ -36,6 +38,7 @@ fn main() -> ExitCode {
         ["run", path] => run(Path::new(path)),
         ["check", path] => check(Path::new(path)),
         ["modes", path] => modes(Path::new(path)),
+        ["schema"] => schema(),
         ["--help" | "-h"] => print(&format!("{USAGE}\n")).map(|()| ExitCode::SUCCESS),
         _ => Err(USAGE.into()),
     };
@@ -49,6 +52,13 @@ fn print(text: &str) -> Outcome<()> {
     std::io::stdout()
         .write_all(text.as_bytes())
         .map_err(|e| format!("standard output: {e}"))
+}
+
+/// The JSON schema of a job, from the same structs that read one.
+fn schema() -> Outcome<ExitCode> {
+    let schema = serde_json::to_string_pretty(&schemars::schema_for!(Job)).map_err(|e| e.to_string())?;
+    print(&format!("{schema}\n"))?;
+    Ok(ExitCode::SUCCESS)
 }
 
 fn check(path: &Path) -> Outcome<ExitCode> {
