@@ -1,10 +1,10 @@
 //! The model of a job.
 
-use crate::job::{Amplitude, ContactPart, FacesPart, FrameName, Job, KindName};
-use hbvib::{
-    Contact, ContactKind, Frame, MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Storage, Values,
-};
-use hbvib_io::{Matrix, Symmetry};
+use crate::contacts::contacts;
+use crate::job::{Amplitude, FacesPart, FrameName, Job};
+use crate::node_table::node_dofs;
+use hbvib::{MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Storage, Values};
+use hbvib_io::{Dof, Matrix, Symmetry};
 use num_complex::Complex64;
 use std::path::Path;
 
@@ -15,6 +15,8 @@ pub type Outcome<T> = Result<T, String>;
 struct Given {
     own: Vec<(MatrixKind, Matrix)>,
     next: Vec<(MatrixKind, Matrix)>,
+    /// Node and direction of each degree of freedom, where a file names them.
+    dofs: Vec<Dof>,
 }
 
 /// The model with its contacts and forces.
@@ -42,8 +44,9 @@ pub fn model(job: &Job) -> Outcome<Model> {
     if let Some([alpha, beta]) = part.rayleigh {
         model.set_rayleigh(alpha, beta).map_err(|e| format!("[model]: {e}"))?;
     }
+    let table = node_dofs(&given.dofs);
     for (i, contact) in job.contact.iter().enumerate() {
-        for contact in contacts(contact).map_err(|e| format!("[[contact]] {}: {e}", i + 1))? {
+        for contact in contacts(job, contact, &table).map_err(|e| format!("[[contact]] {}: {e}", i + 1))? {
             model
                 .add_contact(&contact)
                 .map_err(|e| format!("[[contact]] {}: {e}", i + 1))?;
@@ -78,6 +81,7 @@ fn matrices(job: &Job) -> Outcome<Given> {
     let mut given = Given {
         own: Vec::new(),
         next: Vec::new(),
+        dofs: Vec::new(),
     };
     if let Some(path) = &part.matrices {
         let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
@@ -85,6 +89,7 @@ fn matrices(job: &Job) -> Outcome<Given> {
         for (kind, matrix) in kinds.into_iter().zip([found.stiffness, found.mass, found.damping]) {
             given.own.extend(matrix.map(|matrix| (kind, matrix)));
         }
+        given.dofs = found.dofs;
     }
     for (kind, path) in [
         (MatrixKind::Stiffness, &part.stiffness),
@@ -207,72 +212,4 @@ fn from_faces(job: &Job, faces: &FacesPart, ndof: usize) -> Outcome<Model> {
         coordinates,
     })
     .map_err(|e| format!("[model.faces]: {e}"))
-}
-
-/// The contacts of an entry: one, or for laws of one direction one for each pair of degrees of freedom.
-fn contacts(part: &ContactPart) -> Outcome<Vec<Contact>> {
-    let places: &[usize] = match (part.kind, part.normal) {
-        (KindName::Unilateral, None) => &[2],
-        (KindName::Friction2d, None) => &[0, 2],
-        (KindName::Friction3d, None) if part.a.len() == 2 => &[0, 1],
-        (_, Some(_)) | (KindName::Friction3d, None) => &[0, 1, 2],
-        _ => &[0],
-    };
-    let width = places.len();
-    if part.a.is_empty() || !part.a.len().is_multiple_of(width) {
-        return Err(format!("a has {} numbers, needs a multiple of {width}", part.a.len()));
-    }
-    if !part.b.is_empty() && part.b.len() != part.a.len() {
-        return Err(format!(
-            "b has {} numbers, needs as many as a has, {}, or none for the ground",
-            part.b.len(),
-            part.a.len()
-        ));
-    }
-    let frame = match part.normal {
-        Some(normal) => Some(Frame::new(normal, part.tangent).map_err(|e| e.to_string())?),
-        None if part.tangent.is_some() => return Err("tangent without normal".into()),
-        None => None,
-    };
-    let side = |dofs: &[i64]| -> Outcome<[Option<usize>; 3]> {
-        let mut side = [None; 3];
-        for (&place, &dof) in places.iter().zip(dofs) {
-            side[place] = match dof {
-                -1 => None,
-                dof => Some(usize::try_from(dof).map_err(|_| format!("names degree of freedom {dof}"))?),
-            };
-        }
-        Ok(side)
-    };
-    let ground = vec![-1; part.a.len()];
-    let b = if part.b.is_empty() { &ground } else { &part.b };
-    let kind = match part.kind {
-        KindName::Jenkins => ContactKind::Jenkins,
-        KindName::Friction2d => ContactKind::Friction2d,
-        KindName::Friction3d => ContactKind::Friction3d,
-        KindName::Unilateral => ContactKind::Unilateral,
-        KindName::Cubic => ContactKind::Cubic,
-        KindName::Regularised => ContactKind::Regularised,
-    };
-    part.a
-        .chunks_exact(width)
-        .zip(b.chunks_exact(width))
-        .map(|(a, b)| {
-            Ok(Contact {
-                kind: kind.clone(),
-                dof_a: side(a)?,
-                dof_b: side(b)?,
-                frame,
-                sector_offset: part.sector_offset,
-                kt: part.kt,
-                kn: part.kn,
-                mu: part.mu,
-                preload: part.preload,
-                gap: part.gap,
-                cubic: part.cubic,
-                velocity: part.velocity,
-                dofs: Vec::new(),
-            })
-        })
-        .collect()
 }

@@ -92,10 +92,13 @@ pub enum KindName {
 pub struct ContactPart {
     pub kind: KindName,
     /// Degrees of freedom of side a: one number, those of the directions, or a list of them, one for each pair.
+    #[serde(default)]
     pub a: Vec<i64>,
     /// Those of side b; -1 is the ground.
     #[serde(default)]
     pub b: Vec<i64>,
+    /// Instead of a and b: two lists of nodes that are matched by their distance.
+    pub nodes: Option<NodesPart>,
     #[serde(default)]
     pub sector_offset: i64,
     #[serde(default)]
@@ -114,6 +117,34 @@ pub struct ContactPart {
     pub velocity: f64,
     pub normal: Option<[f64; 3]>,
     pub tangent: Option<[f64; 3]>,
+}
+
+/// Two lists of nodes, each node of a matched with the nearest one of b.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct NodesPart {
+    pub a: Vec<Node>,
+    pub b: Vec<Node>,
+    /// x, y, z of each node of a.
+    #[serde(default)]
+    pub a_coordinates: Vec<[f64; 3]>,
+    #[serde(default)]
+    pub b_coordinates: Vec<[f64; 3]>,
+    /// File with number, x, y, z of each node: lines of numbers, or an Abaqus or CalculiX mesh with *NODE.
+    pub coordinates: Option<PathBuf>,
+    /// Largest distance of a pair.
+    pub largest_distance: f64,
+    /// Area of each node of a, or one for all: kt, kn and cubic are then given per area, and preload is a pressure.
+    #[serde(default)]
+    pub areas: Vec<f64>,
+}
+
+/// The number of a node in the files of the job, or its degrees of freedom in the directions of the law.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum Node {
+    Number(i64),
+    Dofs(Vec<i64>),
 }
 
 /// A force Re(value exp(i harmonic omega t)).

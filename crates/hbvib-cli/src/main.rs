@@ -8,8 +8,11 @@
 //! ```
 
 mod build;
+mod contacts;
 mod job;
 mod nearest_name;
+mod node_match;
+mod node_table;
 mod npz;
 mod output;
 
