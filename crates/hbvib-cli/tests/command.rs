@@ -252,7 +252,7 @@ fn ctrl_c_leaves_a_readable_result() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    std::thread::sleep(std::time::Duration::from_millis(1000));
+    std::thread::sleep(std::time::Duration::from_secs(1));
     let sent = Command::new("kill")
         .args(["-INT", &child.id().to_string()])
         .status()
