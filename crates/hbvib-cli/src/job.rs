@@ -16,6 +16,7 @@ pub struct Job {
     pub force: Vec<ForcePart>,
     pub forced: Option<ForcedPart>,
     pub mode: Option<ModePart>,
+    pub verify: Option<VerifyPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
@@ -196,6 +197,43 @@ pub struct ModePart {
     pub estimate_error: bool,
 }
 
+/// Points of a branch.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum PointsName {
+    /// The highest peak, or the highest point where there is no peak.
+    #[default]
+    HighestPeak,
+    Peaks,
+    /// The solutions at at_hz.
+    Requested,
+}
+
+/// Method that finds a steady state in time.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum MethodName {
+    #[default]
+    Shooting,
+    Marching,
+}
+
+/// Comparison of points of the forced response with integration in time.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct VerifyPart {
+    #[serde(default)]
+    pub points: PointsName,
+    #[serde(default)]
+    pub method: MethodName,
+    /// Largest change of a steady state over one period, relative.
+    pub tolerance: Option<f64>,
+    pub max_periods: Option<usize>,
+    /// Largest distance, relative to the motion in time, at which both are the same solution.
+    pub same_within: Option<f64>,
+    pub csv: Option<PathBuf>,
+}
+
 /// Files that are written.
 #[derive(Debug, Default, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
@@ -239,6 +277,9 @@ impl Job {
                 "{}: names two analyses: needs one of [forced] and [mode]",
                 path.display()
             ));
+        }
+        if job.verify.is_some() && job.forced.is_none() {
+            return Err(format!("{}: [verify] needs [forced]", path.display()));
         }
         Ok(job)
     }

@@ -15,13 +15,15 @@ mod node_match;
 mod node_table;
 mod npz;
 mod output;
+mod points;
+mod verification;
 
 use build::Outcome;
 use hbvib::{
     Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status,
     forced_response, nonlinear_mode,
 };
-use job::{ForcedPart, Job, ModePart};
+use job::{ForcedPart, Job, ModePart, VerifyPart};
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::io::{IsTerminal, Write};
@@ -34,6 +36,9 @@ const USAGE: &str = "usage: hbvib run|check|modes job.toml, or hbvib schema";
 
 /// Exit code of a run that was stopped early and kept its points.
 const STOPPED: u8 = 2;
+
+/// Exit code of a run one of whose points is another solution than integration in time finds.
+const DIFFERENT: u8 = 3;
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -114,8 +119,16 @@ fn run(path: &Path) -> Outcome<ExitCode> {
     for path in written {
         print(&format!("wrote {}\n", path.display()))?;
     }
+    let same = match &job.verify {
+        Some(part) => verified(&job, part, (&model, &branch), &stop)?,
+        None => true,
+    };
     if branch.status() == Status::Ok {
-        return Ok(ExitCode::SUCCESS);
+        return Ok(match (stop.load(Ordering::Relaxed), same) {
+            (true, _) => ExitCode::from(STOPPED),
+            (false, true) => ExitCode::SUCCESS,
+            (false, false) => ExitCode::from(DIFFERENT),
+        });
     }
     let reason = branch.reason().map_or(String::new(), |e| format!(": {e}"));
     let _ = writeln!(
@@ -124,6 +137,22 @@ fn run(path: &Path) -> Outcome<ExitCode> {
         branch.status()
     );
     Ok(ExitCode::from(STOPPED))
+}
+
+/// Compares points with integration in time, and returns whether all are the same solution.
+fn verified(job: &Job, part: &VerifyPart, (model, branch): (&Model, &Branch), stop: &AtomicBool) -> Outcome<bool> {
+    if stop.load(Ordering::Relaxed) {
+        return Ok(true);
+    }
+    let cancelled = || stop.load(Ordering::Relaxed);
+    let mut hooks = Hooks {
+        cancelled: Some(&cancelled),
+        ..Hooks::default()
+    };
+    let all = verification::compare(part, model, branch, &mut hooks)?;
+    print(&verification::summary(&all))?;
+    print(&verification::write(job, part, &all)?)?;
+    Ok(all.iter().all(|(_, found)| found.same))
 }
 
 fn solve(job: &Job, model: &Model, stop: &AtomicBool) -> Outcome<Branch> {
