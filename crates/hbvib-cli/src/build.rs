@@ -6,6 +6,8 @@ use crate::node_table::node_dofs;
 use hbvib::{MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Storage, Values};
 use hbvib_io::{Dof, Matrix, Symmetry};
 use num_complex::Complex64;
+use std::fmt::Display;
+use std::ops::Range;
 use std::path::Path;
 
 /// A sentence.
@@ -19,11 +21,22 @@ struct Given {
     dofs: Vec<Dof>,
 }
 
+/// Numbers of the model's contacts for each entry of the job: its name, and a range.
+pub type Names = Vec<(String, Range<usize>)>;
+
 /// The model with its contacts and forces.
 ///
 /// # Errors
-/// A sentence that names the file, contact or force.
+/// As [`named_model`].
 pub fn model(job: &Job) -> Outcome<Model> {
+    named_model(job).map(|(model, _)| model)
+}
+
+/// The model and its contacts' names. An entry without a name has its number, from 1.
+///
+/// # Errors
+/// A sentence that names the file, contact or force.
+pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
     let given = matrices(job)?;
     let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
     let part = &job.model;
@@ -45,12 +58,21 @@ pub fn model(job: &Job) -> Outcome<Model> {
         model.set_rayleigh(alpha, beta).map_err(|e| format!("[model]: {e}"))?;
     }
     let table = node_dofs(&given.dofs);
-    for (i, contact) in job.contact.iter().enumerate() {
-        for contact in contacts(job, contact, &table).map_err(|e| format!("[[contact]] {}: {e}", i + 1))? {
-            model
-                .add_contact(&contact)
-                .map_err(|e| format!("[[contact]] {}: {e}", i + 1))?;
+    let mut names = Names::new();
+    for (i, part) in job.contact.iter().enumerate() {
+        let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
+        let first = model.contacts().len();
+        for contact in contacts(job, part, &table).map_err(|e| said(&e))? {
+            model.add_contact(&contact).map_err(|e| said(&e))?;
         }
+        let name = part.name.clone().unwrap_or_else(|| (i + 1).to_string());
+        if names.iter().any(|(other, _)| *other == name) {
+            return Err(said(&format!("name = \"{name}\" is that of another one")));
+        }
+        names.push((name, first..model.contacts().len()));
+    }
+    for one in &job.output.hysteresis {
+        one.contact(&names)?;
     }
     for (i, force) in job.force.iter().enumerate() {
         let value = match force.value {
@@ -61,7 +83,7 @@ pub fn model(job: &Job) -> Outcome<Model> {
             .add_force(force.dof, force.harmonic, value)
             .map_err(|e| format!("[[force]] {}: {e}", i + 1))?;
     }
-    Ok(model)
+    Ok((model, names))
 }
 
 fn matrices(job: &Job) -> Outcome<Given> {

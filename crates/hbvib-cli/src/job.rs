@@ -91,6 +91,8 @@ pub enum KindName {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ContactPart {
+    /// Name for the outputs.
+    pub name: Option<String>,
     pub kind: KindName,
     /// Degrees of freedom of side a: one number, those of the directions, or a list of them, one for each pair.
     #[serde(default)]
@@ -242,6 +244,31 @@ pub struct OutputPart {
     pub npz: Option<PathBuf>,
     /// SVG
     pub figure: Option<PathBuf>,
+    /// Slip fraction of each contact over frequency, CSV.
+    pub slip_csv: Option<PathBuf>,
+    /// The same as SVG, a row for each contact.
+    pub slip_figure: Option<PathBuf>,
+    #[serde(default)]
+    pub hysteresis: Vec<HysteresisPart>,
+}
+
+/// Hysteresis loops of one contact.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct HysteresisPart {
+    /// Name of a contact; without a name its number, from 1.
+    pub contact: String,
+    /// Number of the pair, from 0, where the contact has several.
+    #[serde(default)]
+    pub pair: usize,
+    #[serde(default)]
+    pub points: PointsName,
+    /// Times of a period.
+    #[serde(default = "samples")]
+    pub samples: usize,
+    pub csv: Option<PathBuf>,
+    /// SVG
+    pub figure: Option<PathBuf>,
 }
 
 fn one() -> usize {
@@ -250,6 +277,10 @@ fn one() -> usize {
 
 fn z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
+}
+
+fn samples() -> usize {
+    256
 }
 
 fn forward() -> i64 {

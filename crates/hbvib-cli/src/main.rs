@@ -8,6 +8,8 @@
 //! ```
 
 mod build;
+mod contact_figures;
+mod contact_tables;
 mod contacts;
 mod job;
 mod nearest_name;
@@ -16,6 +18,7 @@ mod node_table;
 mod npz;
 mod output;
 mod points;
+mod svg;
 mod verification;
 
 use build::Outcome;
@@ -109,26 +112,25 @@ fn modes(path: &Path) -> Outcome<ExitCode> {
 
 fn run(path: &Path) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
-    let model = build::model(&job)?;
+    let (model, names) = build::named_model(&job)?;
     let stop = Arc::new(AtomicBool::new(false));
     let handler = Arc::clone(&stop);
     ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed)).map_err(|e| format!("Ctrl-C: {e}"))?;
     let branch = solve(&job, &model, &stop)?;
-    let written = output::write(&job, &branch)?;
+    let mut written = output::write(&job, &branch)?;
+    written.extend(contact_tables::write(&job, &branch, &names)?);
     print(&output::summary(&branch))?;
     for path in written {
         print(&format!("wrote {}\n", path.display()))?;
     }
-    let same = match &job.verify {
-        Some(part) => verified(&job, part, (&model, &branch), &stop)?,
-        None => true,
-    };
     if branch.status() == Status::Ok {
-        return Ok(match (stop.load(Ordering::Relaxed), same) {
-            (true, _) => ExitCode::from(STOPPED),
-            (false, true) => ExitCode::SUCCESS,
-            (false, false) => ExitCode::from(DIFFERENT),
-        });
+        return match &job.verify {
+            Some(part) => verified(&job, part, (&model, &branch), &stop),
+            None => Ok(ExitCode::SUCCESS),
+        };
+    }
+    if let Some(part) = job.verify.as_ref().filter(|_| !stop.load(Ordering::Relaxed)) {
+        verified(&job, part, (&model, &branch), &stop)?;
     }
     let reason = branch.reason().map_or(String::new(), |e| format!(": {e}"));
     let _ = writeln!(
@@ -139,20 +141,24 @@ fn run(path: &Path) -> Outcome<ExitCode> {
     Ok(ExitCode::from(STOPPED))
 }
 
-/// Compares points with integration in time, and returns whether all are the same solution.
-fn verified(job: &Job, part: &VerifyPart, (model, branch): (&Model, &Branch), stop: &AtomicBool) -> Outcome<bool> {
-    if stop.load(Ordering::Relaxed) {
-        return Ok(true);
-    }
+/// Compares points with integration in time, and returns the code of the run.
+fn verified(job: &Job, part: &VerifyPart, (model, branch): (&Model, &Branch), stop: &AtomicBool) -> Outcome<ExitCode> {
     let cancelled = || stop.load(Ordering::Relaxed);
     let mut hooks = Hooks {
         cancelled: Some(&cancelled),
         ..Hooks::default()
     };
     let all = verification::compare(part, model, branch, &mut hooks)?;
-    print(&verification::summary(&all))?;
-    print(&verification::write(job, part, &all)?)?;
-    Ok(all.iter().all(|(_, found)| found.same))
+    print(&verification::summary(&all.compared))?;
+    print(&verification::write(job, part, &all.compared)?)?;
+    if !all.complete {
+        let _ = writeln!(std::io::stderr(), "hbvib: the verification ended early");
+        return Ok(ExitCode::from(STOPPED));
+    }
+    Ok(match all.compared.iter().all(|(_, found)| found.same) {
+        true => ExitCode::SUCCESS,
+        false => ExitCode::from(DIFFERENT),
+    })
 }
 
 fn solve(job: &Job, model: &Model, stop: &AtomicBool) -> Outcome<Branch> {

@@ -3,10 +3,11 @@
 use crate::build::Outcome;
 use crate::job::Job;
 use crate::npz::Npz;
+use crate::svg::{bounds, draw};
 use hbvib::{Branch, Special};
 use num_complex::Complex64;
-use plotters::prelude::{ChartBuilder, IntoDrawingArea, LineSeries, SVGBackend};
-use plotters::style::{BLUE, WHITE};
+use plotters::prelude::{ChartBuilder, LineSeries};
+use plotters::style::BLUE;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::fs::{self, File};
@@ -97,33 +98,20 @@ fn figure(path: &Path, branch: &Branch) -> Outcome<()> {
     let curve: Vec<(f64, f64)> = (0..branch.points())
         .map(|p| (branch.omega()[p] / TAU, branch.amplitude()[p]))
         .collect();
-    let bounds = |values: &mut dyn Iterator<Item = f64>| {
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-        let room = 0.04 * (high - low).max(1e-9 * high.abs().max(f64::MIN_POSITIVE));
-        (low - room)..(high + room)
-    };
-    let x = bounds(&mut curve.iter().map(|p| p.0));
-    let y = bounds(&mut curve.iter().map(|p| p.1));
-    let mut text = String::new();
-    {
-        let area = SVGBackend::with_string(&mut text, (900, 600)).into_drawing_area();
-        let draw = || -> Result<(), Box<dyn std::error::Error>> {
-            area.fill(&WHITE)?;
-            let mut chart = ChartBuilder::on(&area)
-                .margin(16)
-                .x_label_area_size(44)
-                .y_label_area_size(90)
-                .build_cartesian_2d(x, y)?;
-            let mesh = &mut chart.configure_mesh();
-            mesh.x_desc("frequency, Hz").y_desc("amplitude");
-            mesh.y_label_formatter(&|v| format!("{v:.2e}")).draw()?;
-            chart.draw_series(LineSeries::new(curve.iter().copied(), &BLUE))?;
-            area.present()?;
-            Ok(())
-        };
-        draw().map_err(|e| e.to_string())?;
-    }
-    fs::write(path, text).map_err(|e| e.to_string())
+    let x = bounds(curve.iter().map(|p| p.0));
+    let y = bounds(curve.iter().map(|p| p.1));
+    draw(path, |area| {
+        let mut chart = ChartBuilder::on(area)
+            .margin(16)
+            .x_label_area_size(44)
+            .y_label_area_size(90)
+            .build_cartesian_2d(x, y)?;
+        let mesh = &mut chart.configure_mesh();
+        mesh.x_desc("frequency, Hz").y_desc("amplitude");
+        mesh.y_label_formatter(&|v| format!("{v:.2e}")).draw()?;
+        chart.draw_series(LineSeries::new(curve.iter().copied(), &BLUE))?;
+        Ok(())
+    })
 }
 
 /// Summary of a branch.

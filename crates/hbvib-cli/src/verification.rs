@@ -11,11 +11,18 @@ use std::fs;
 /// A point and its comparison.
 pub type Compared = (Special, Verification);
 
+/// Comparisons of a job.
+pub struct Comparisons {
+    pub compared: Vec<Compared>,
+    /// False if the caller stopped before the last one.
+    pub complete: bool,
+}
+
 /// Compares the points that the job names, until the caller stops.
 ///
 /// # Errors
 /// A sentence that names the frequency; none to compare.
-pub fn compare(part: &VerifyPart, model: &Model, branch: &Branch, hooks: &mut Hooks<'_>) -> Outcome<Vec<Compared>> {
+pub fn compare(part: &VerifyPart, model: &Model, branch: &Branch, hooks: &mut Hooks<'_>) -> Outcome<Comparisons> {
     let defaults = VerifyOptions::default();
     let options = VerifyOptions {
         method: match part.method {
@@ -30,16 +37,18 @@ pub fn compare(part: &VerifyPart, model: &Model, branch: &Branch, hooks: &mut Ho
     if points.is_empty() {
         return Err("[verify]: the branch has none of the named points".into());
     }
-    let mut all = Vec::new();
+    let mut compared = Vec::new();
+    let mut complete = true;
     for point in points {
         let found = verify(model, branch, point.point, &options, hooks)
             .map_err(|e| format!("[verify], {:.6} Hz: {e}", point.omega / TAU))?;
         if found.status == Status::StoppedByCaller {
+            complete = false;
             break;
         }
-        all.push((point, found));
+        compared.push((point, found));
     }
-    Ok(all)
+    Ok(Comparisons { compared, complete })
 }
 
 /// Lines of the summary.

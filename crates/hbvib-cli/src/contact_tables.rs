@@ -1,0 +1,132 @@
+//! Hysteresis loops and slip fractions of contacts as CSV, and the figures beside them.
+
+use crate::build::{Names, Outcome};
+use crate::contact_figures::{loops_figure, slip_figure};
+use crate::job::{HysteresisPart, Job};
+use crate::points::chosen;
+use hbvib::{Branch, ContactLoop, Special, State};
+use std::f64::consts::TAU;
+use std::fmt::Write as _;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Writes what the job names.
+///
+/// # Errors
+/// A sentence that names the file or the contact.
+pub fn write(job: &Job, branch: &Branch, names: &Names) -> Outcome<Vec<PathBuf>> {
+    let mut written = Vec::new();
+    let mut each = |path: &Option<PathBuf>, write: &dyn Fn(&Path) -> Outcome<()>| -> Outcome<()> {
+        let Some(path) = path else { return Ok(()) };
+        let path = job.path(path);
+        write(&path).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
+        written.push(path);
+        Ok(())
+    };
+    let labels = labels(names);
+    each(&job.output.slip_csv, &|path| slip_table(path, branch, &labels))?;
+    each(&job.output.slip_figure, &|path| slip_figure(path, branch, &labels))?;
+    for part in &job.output.hysteresis {
+        let contact = part.contact(names)?;
+        let loops = loops(part, branch, contact)?;
+        each(&part.csv, &|path| loops_table(path, &loops))?;
+        each(&part.figure, &|path| loops_figure(path, &labels[contact], &loops))?;
+    }
+    Ok(written)
+}
+
+impl HysteresisPart {
+    /// Number of the contact in the model.
+    ///
+    /// # Errors
+    /// A sentence: an unknown name, no such pair.
+    pub fn contact(&self, names: &Names) -> Outcome<usize> {
+        let Some((_, range)) = names.iter().find(|(name, _)| *name == self.contact) else {
+            let known: Vec<&str> = names.iter().map(|(name, _)| name.as_str()).collect();
+            return Err(format!(
+                "[[output.hysteresis]]: contact = \"{}\" is none of {}",
+                self.contact,
+                known.join(", ")
+            ));
+        };
+        if self.pair >= range.len() {
+            return Err(format!(
+                "[[output.hysteresis]]: pair = {}, needs 0 .. {} of contact \"{}\"",
+                self.pair,
+                range.len(),
+                self.contact
+            ));
+        }
+        Ok(range.start + self.pair)
+    }
+}
+
+/// Name of each contact: that of its entry, with the number of the pair where there are several.
+fn labels(names: &Names) -> Vec<String> {
+    let of = |(name, range): &(String, std::ops::Range<usize>)| -> Vec<String> {
+        match range.len() {
+            1 => vec![name.clone()],
+            pairs => (0..pairs).map(|pair| format!("{name}[{pair}]")).collect(),
+        }
+    };
+    names.iter().flat_map(of).collect()
+}
+
+fn loops(part: &HysteresisPart, branch: &Branch, contact: usize) -> Outcome<Vec<(Special, ContactLoop)>> {
+    let points = chosen(branch, part.points);
+    let one = |point: Special| {
+        let found = branch.contact_loop(point.point, contact, part.samples);
+        found
+            .map(|found| (point, found))
+            .map_err(|e| format!("[[output.hysteresis]], contact \"{}\": {e}", part.contact))
+    };
+    points.into_iter().map(one).collect()
+}
+
+/// A row for each time of each point; motions and forces in all directions of the contact.
+fn loops_table(path: &Path, loops: &[(Special, ContactLoop)]) -> Outcome<()> {
+    let directions = loops.first().map_or(1, |(_, one)| one.directions);
+    let mut text = String::from("frequency_hz,angle");
+    for quantity in ["motion", "force"] {
+        for d in 0..directions {
+            let _ = write!(text, ",{quantity}_{d}");
+        }
+    }
+    text += ",state\n";
+    for (point, one) in loops {
+        let rows = one
+            .motion
+            .chunks_exact(directions)
+            .zip(one.force.chunks_exact(directions));
+        for (j, ((motion, force), state)) in rows.zip(&one.state).enumerate() {
+            let angle = TAU * j as f64 / one.state.len() as f64;
+            let _ = write!(text, "{:.16e},{angle:.16e}", point.omega / TAU);
+            for value in motion.iter().chain(force) {
+                let _ = write!(text, ",{value:.16e}");
+            }
+            text += match state {
+                State::Stick => ",stick\n",
+                State::Slip => ",slip\n",
+                State::Open => ",open\n",
+            };
+        }
+    }
+    fs::write(path, text).map_err(|e| e.to_string())
+}
+
+/// A row for each point of the curve, a column for each contact.
+fn slip_table(path: &Path, branch: &Branch, labels: &[String]) -> Outcome<()> {
+    let mut text = String::from("frequency_hz");
+    for label in labels {
+        let _ = write!(text, ",\"{}\"", label.replace('"', "\"\""));
+    }
+    text += "\n";
+    for point in 0..branch.points() {
+        let _ = write!(text, "{:.16e}", branch.omega()[point] / TAU);
+        for slip in branch.slip_fraction_at(point).unwrap_or(&[]) {
+            let _ = write!(text, ",{slip:.10e}");
+        }
+        text += "\n";
+    }
+    fs::write(path, text).map_err(|e| e.to_string())
+}
