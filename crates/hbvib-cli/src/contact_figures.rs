@@ -81,15 +81,20 @@ pub fn slip_figure(path: &Path, branch: &Branch, labels: &[String]) -> Outcome<(
             .margin(16)
             .x_label_area_size(44)
             .y_label_area_size(110)
-            .build_cartesian_2d(bounds(hertz()), 0.0..contacts)?;
+            .build_cartesian_2d(bounds(hertz()), -0.5..contacts - 0.5)?;
         chart.draw_series(stretches.iter().map(|s| {
             let row = s.contact as f64;
-            Rectangle::new([(s.from, row), (s.to, row + 1.0)], colour(s.level).filled())
+            Rectangle::new([(s.from, row - 0.5), (s.to, row + 0.5)], colour(s.level).filled())
         }))?;
-        let name = |row: &f64| labels.get(row.floor() as usize).cloned().unwrap_or_default();
+        // Rows are centred at whole numbers.
+        let name = |row: &f64| {
+            let whole = (row - row.round()).abs() < 1e-6;
+            let label = labels.get(row.round() as usize).filter(|_| whole && *row > -0.5);
+            label.cloned().unwrap_or_default()
+        };
         let mesh = &mut chart.configure_mesh();
         mesh.x_desc("frequency, Hz").y_desc("contact");
-        mesh.y_labels(labels.len().clamp(1, 20)).y_label_formatter(&name);
+        mesh.y_labels((labels.len() + 2).clamp(3, 20)).y_label_formatter(&name);
         mesh.disable_mesh().draw()?;
         Ok(())
     })

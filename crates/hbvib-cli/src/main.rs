@@ -155,9 +155,11 @@ fn verified(job: &Job, part: &VerifyPart, (model, branch): (&Model, &Branch), st
         let _ = writeln!(std::io::stderr(), "hbvib: the verification ended early");
         return Ok(ExitCode::from(STOPPED));
     }
-    Ok(match all.compared.iter().all(|(_, found)| found.same) {
-        true => ExitCode::SUCCESS,
-        false => ExitCode::from(DIFFERENT),
+    let same = all.compared.iter().all(|(_, found)| found.same);
+    Ok(if same {
+        ExitCode::SUCCESS
+    } else {
+        ExitCode::from(DIFFERENT)
     })
 }
 

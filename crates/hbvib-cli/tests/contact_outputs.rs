@@ -120,6 +120,10 @@ fn several_points_and_pairs_have_their_own_rows_and_columns() {
         read(&folder.join("slip.csv"))[0],
         ["frequency_hz", "\"ring\"", "\"2[0]\"", "\"2[1]\""]
     );
+    let map = std::fs::read_to_string(folder.join("slip.svg")).unwrap();
+    for label in ["ring", "2[0]", "2[1]"] {
+        assert_eq!(map.lines().filter(|line| line.trim() == label).count(), 1, "{label}");
+    }
     let table = read(&folder.join("loop.csv"));
     assert!(table.len() > 1 && (table.len() - 1).is_multiple_of(8));
     // It never slips: f = −kt x or kt x at each time.
