@@ -18,6 +18,7 @@ mod node_table;
 mod npz;
 mod output;
 mod points;
+mod progress;
 mod svg;
 mod verification;
 
@@ -27,9 +28,10 @@ use hbvib::{
     forced_response, nonlinear_mode,
 };
 use job::{ForcedPart, Job, ModePart, VerifyPart};
+use progress::Bar;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
-use std::io::{IsTerminal, Write};
+use std::io::Write;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -164,33 +166,22 @@ fn verified(job: &Job, part: &VerifyPart, (model, branch): (&Model, &Branch), st
 }
 
 fn solve(job: &Job, model: &Model, stop: &AtomicBool) -> Outcome<Branch> {
-    let terminal = std::io::stderr().is_terminal();
-    let mut bar = |progress: &Progress| {
-        if terminal {
-            let _ = write!(
-                std::io::stderr(),
-                "\r{:3.0} %  {} points  ",
-                100.0 * progress.fraction_done,
-                progress.point
-            );
-        }
+    let bar = Bar::new();
+    let mut progress = |progress: &Progress| {
+        bar.show(progress);
         false
     };
     let cancelled = || stop.load(Ordering::Relaxed);
     let mut hooks = Hooks {
-        progress: Some(&mut bar),
+        progress: Some(&mut progress),
         cancelled: Some(&cancelled),
         ..Hooks::default()
     };
-    let branch = match (&job.forced, &job.mode) {
+    match (&job.forced, &job.mode) {
         (Some(part), _) => forced(part, model, &mut hooks),
         (None, Some(part)) => mode(part, model, &mut hooks),
         (None, None) => Err("names no analysis".into()),
-    };
-    if terminal {
-        let _ = writeln!(std::io::stderr());
     }
-    branch
 }
 
 /// A number of harmonics is that number and no other, unless a tolerance is named as well.

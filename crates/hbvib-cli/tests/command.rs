@@ -233,6 +233,22 @@ fn a_nonlinear_mode_is_a_job_too() {
     assert!(csv.lines().count() > 10);
 }
 
+/// Runs the command on a terminal of its own, which `script` of util-linux opens; other tests have pipes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_terminal_has_a_progress_bar() {
+    let path = job("terminal", |text| text);
+    let command = format!("{} run {}", env!("CARGO_BIN_EXE_hbvib"), path.display());
+    let output = Command::new("script").args(["-qec", &command, "/dev/null"]).output();
+    let Ok(output) = output else {
+        return eprintln!("no `script` here: not tested");
+    };
+    let text = printed(&output.stdout);
+    assert!(output.status.success(), "{text}");
+    assert!(text.contains("\r[#") && text.contains("] 100 %"), "{text}");
+    assert!(text.contains("\npeak "), "{text}");
+}
+
 /// Ended by SIGINT, the run keeps what it found: rows of whole numbers, and an archive with as many points.
 #[cfg(unix)]
 #[test]
