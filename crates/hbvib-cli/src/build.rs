@@ -88,12 +88,12 @@ pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
 
 fn matrices(job: &Job) -> Outcome<Given> {
     let part = &job.model;
-    let one = |path: &Path| -> Outcome<Matrix> {
+    let one = |path: &Path| -> Outcome<(Matrix, Vec<Dof>)> {
         let found = hbvib_io::read(&job.path(path)).map_err(|e| e.to_string())?;
         let held = [found.stiffness, found.mass, found.damping];
         let mut held = held.into_iter().flatten();
         match (held.next(), held.next()) {
-            (Some(matrix), None) => Ok(matrix),
+            (Some(matrix), None) => Ok((matrix, found.dofs)),
             _ => Err(format!(
                 "{}: holds several matrices; name it as `matrices`",
                 path.display()
@@ -120,7 +120,16 @@ fn matrices(job: &Job) -> Outcome<Given> {
     ] {
         if let Some(path) = path {
             given.own.retain(|(other, _)| *other != kind);
-            given.own.push((kind, one(path)?));
+            let (matrix, dofs) = one(path)?;
+            if given.dofs.is_empty() {
+                given.dofs = dofs;
+            } else if !dofs.is_empty() && dofs != given.dofs {
+                return Err(format!(
+                    "{}: names other nodes and directions than the matrices before it",
+                    path.display()
+                ));
+            }
+            given.own.push((kind, matrix));
         }
     }
     for (kind, path) in [
@@ -128,7 +137,7 @@ fn matrices(job: &Job) -> Outcome<Given> {
         (MatrixKind::Mass, &part.coupling_mass),
     ] {
         if let Some(path) = path {
-            given.next.push((kind, one(path)?));
+            given.next.push((kind, one(path)?.0));
         }
     }
     if given.own.is_empty() {

@@ -94,3 +94,34 @@ fn numbers_of_a_finite_element_mesh_name_the_nodes() {
         }
     }
 }
+
+#[test]
+fn separate_files_name_the_nodes_and_must_agree() {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("node_lists");
+    std::fs::create_dir_all(&folder).unwrap();
+    let matrix = |name: &str, nodes: [i64; 2]| {
+        let rows: Vec<String> = (0..6)
+            .map(|i| format!("{0},{1}, {0},{1}, 2.0", nodes[i / 3], i % 3 + 1))
+            .collect();
+        let path = folder.join(name);
+        std::fs::write(&path, rows.join("\n") + "\n").unwrap();
+        path.display().to_string()
+    };
+    let stiffness = matrix("two_STIF1.mtx", [10, 11]);
+    let job = |mass: &str| {
+        format!(
+            "model.stiffness = '{stiffness}'\nmodel.mass = '{mass}'\n\
+             [[contact]]\nkind = 'friction_3d'\nnormal = [0, 1, 0]\nkt = 1.0\nkn = 1.0\nmu = 0.3\npreload = 1.0\n\
+             [contact.nodes]\na = [10]\nb = [11]\na_coordinates = [[0, 0, 0]]\nb_coordinates = [[0, 1e-3, 0]]\n\
+             largest_distance = 1e-2\n[forced]\nfrom_hz = 1.0\nto_hz = 2.0\n"
+        )
+    };
+    let output = hbvib("check", "agree", &job(&matrix("two_MASS1.mtx", [11, 10])));
+    assert!(output.status.success(), "{}", printed(&output.stderr));
+    assert!(
+        printed(&output.stdout).contains("6 degrees of freedom") && printed(&output.stdout).contains(" 1 contacts")
+    );
+    let output = hbvib("check", "differ", &job(&matrix("other_MASS1.mtx", [10, 12])));
+    assert_eq!(output.status.code(), Some(1));
+    assert!(printed(&output.stderr).contains("other_MASS1.mtx: names other nodes"));
+}
