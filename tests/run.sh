@@ -31,6 +31,7 @@ need cmake cmake --version
 need pkg-config pkg-config --version
 need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
+need bsdutils script --version
 
 # Python with numpy, scipy, matplotlib, pip and what builds the wheel: the system's, or one of our own. All that comes from
 # the network comes here; the tests work without it.

@@ -1,5 +1,5 @@
 //! A job that compares its peak with integration in time: with enough harmonics both are the same, and with few, which
-//! miss the ring's resonance at the 31st harmonic, the peak is further away.
+//! miss the resonances of the light ring among the high ones, the peak is further away.
 
 use std::path::Path;
 use std::process::{Command, Output};
