@@ -212,6 +212,7 @@ fn peaks_agree_at(force: f64) {
 }
 
 #[test]
+#[ignore = "a minute long; tests/deep.sh runs it"]
 fn peaks_of_the_full_and_the_reduced_sector_agree_at_a_fifth_of_a_newton() {
     peaks_agree_at(0.2);
 }
