@@ -9,7 +9,7 @@
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::least_squares::LeastSquares;
 use crate::model::spring::along;
@@ -49,7 +49,7 @@ pub fn correct(
     let mut system = LeastSquares::new(order, interrupt)?;
     let mut lambda = try_vec(order, 0.0, CONTEXT)?;
     let mut last = f64::INFINITY;
-    let mut before = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    let mut before = try_copy(x, CONTEXT)?;
     for _ in 0..=CORRECTIONS {
         let mut size = 0.0;
         for (lambda, &c) in lambda.chunks_exact_mut(2).zip(&rigid) {

@@ -53,8 +53,8 @@ pub struct WaveCache {
 
 impl WaveCache {
     /// Number of waves with modes.
-    #[must_use]
-    pub fn count(&self) -> usize {
+    #[cfg(test)]
+    pub(super) fn count(&self) -> usize {
         self.waves.len()
     }
 

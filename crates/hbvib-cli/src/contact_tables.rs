@@ -3,6 +3,7 @@
 use crate::build::{Names, Outcome};
 use crate::contact_figures::{loops_figure, slip_figure};
 use crate::job::{HysteresisPart, Job};
+use crate::output::Files;
 use crate::points::chosen;
 use hbvib::{Branch, ContactLoop, Special, State};
 use std::f64::consts::TAU;
@@ -15,24 +16,23 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// A sentence that names the file or the contact.
 pub fn write(job: &Job, branch: &Branch, names: &Names) -> Outcome<Vec<PathBuf>> {
-    let mut written = Vec::new();
-    let mut each = |path: &Option<PathBuf>, write: &dyn Fn(&Path) -> Outcome<()>| -> Outcome<()> {
-        let Some(path) = path else { return Ok(()) };
-        let path = job.path(path);
-        write(&path).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
-        written.push(path);
-        Ok(())
-    };
+    let mut files = Files::of(job);
     let labels = labels(names);
-    each(&job.output.slip_csv, &|path| slip_table(path, branch, &labels))?;
-    each(&job.output.slip_figure, &|path| slip_figure(path, branch, &labels))?;
+    files.write(job.output.slip_csv.as_deref(), &|path| {
+        slip_table(path, branch, &labels)
+    })?;
+    files.write(job.output.slip_figure.as_deref(), &|path| {
+        slip_figure(path, branch, &labels)
+    })?;
     for part in &job.output.hysteresis {
         let contact = part.contact(names)?;
         let loops = loops(part, branch, contact)?;
-        each(&part.csv, &|path| loops_table(path, &loops))?;
-        each(&part.figure, &|path| loops_figure(path, &labels[contact], &loops))?;
+        files.write(part.csv.as_deref(), &|path| loops_table(path, &loops))?;
+        files.write(part.figure.as_deref(), &|path| {
+            loops_figure(path, &labels[contact], &loops)
+        })?;
     }
-    Ok(written)
+    Ok(files.written)
 }
 
 impl HysteresisPart {

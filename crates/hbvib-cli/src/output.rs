@@ -14,23 +14,45 @@ use std::fs::{self, File};
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
+/// Files of a job that were written.
+pub struct Files<'a> {
+    job: &'a Job,
+    /// Their paths.
+    pub written: Vec<PathBuf>,
+}
+
+impl<'a> Files<'a> {
+    /// None yet.
+    pub fn of(job: &'a Job) -> Self {
+        Self {
+            job,
+            written: Vec::new(),
+        }
+    }
+
+    /// Writes a file that the job names, relative to its folder.
+    ///
+    /// # Errors
+    /// A sentence that names the file.
+    pub fn write(&mut self, path: Option<&Path>, write: &dyn Fn(&Path) -> Outcome<()>) -> Outcome<()> {
+        let Some(path) = path else { return Ok(()) };
+        let path = self.job.path(path);
+        write(&path).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
+        self.written.push(path);
+        Ok(())
+    }
+}
+
 /// Writes all files of a job.
 ///
 /// # Errors
 /// A sentence that names the file.
 pub fn write(job: &Job, branch: &Branch) -> Outcome<Vec<PathBuf>> {
-    let mut written = Vec::new();
-    let mut each = |path: &Option<PathBuf>, write: &dyn Fn(&Path) -> Outcome<()>| -> Outcome<()> {
-        let Some(path) = path else { return Ok(()) };
-        let path = job.path(path);
-        write(&path).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
-        written.push(path);
-        Ok(())
-    };
-    each(&job.output.csv, &|path| csv(path, branch))?;
-    each(&job.output.npz, &|path| npz(path, branch))?;
-    each(&job.output.figure, &|path| figure(path, branch))?;
-    Ok(written)
+    let mut files = Files::of(job);
+    files.write(job.output.csv.as_deref(), &|path| csv(path, branch))?;
+    files.write(job.output.npz.as_deref(), &|path| npz(path, branch))?;
+    files.write(job.output.figure.as_deref(), &|path| figure(path, branch))?;
+    Ok(files.written)
 }
 
 /// Columns of the curve: a mode has its amplitude and damping ratio, too.

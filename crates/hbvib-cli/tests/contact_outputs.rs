@@ -1,38 +1,24 @@
 //! Hysteresis loops and slip fractions of a job, against the closed form of a Jenkins contact under a sine.
 
+mod common;
+
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 const KT: f64 = 5e7;
 const LIMIT: f64 = 0.3 * 488.0;
 
 /// Runs the ring damper with one harmonic, with more contacts and outputs.
 fn run(name: &str, contacts: &str, outputs: &str) -> (Output, PathBuf) {
-    let files = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/jobs/ring_damper");
-    let files = files.display();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join("contact_outputs")
-        .join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
     let job = format!(
-        "model.stiffness = '{files}/stiffness.mtx'\nmodel.mass = '{files}/mass.mtx'\n\
-         model.coupling_stiffness = '{files}/coupling.mtx'\nmodel.rayleigh = [0.0, 1.5e-6]\n\
-         model.sectors = 24\nmodel.engine_order = 2\n\
-         [[contact]]\nname = 'ring'\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = {KT:?}\nmu = 0.3\npreload = 488.0\n{contacts}\n\
+        "{}[[contact]]\nname = 'ring'\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = {KT:?}\nmu = 0.3\npreload = 488.0\n{contacts}\n\
          [[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n\
          [forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = 1\n\
-         [output]\ncsv = 'response.csv'\n{outputs}\n"
+         [output]\ncsv = 'response.csv'\n{outputs}\n",
+        common::ring_damper()
     );
-    let path = folder.join("job.toml");
-    std::fs::write(&path, job).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_hbvib"))
-        .arg("run")
-        .arg(&path)
-        .output()
-        .unwrap();
-    (output, folder)
+    common::hbvib("run", ("contact_outputs", name), &job)
 }
 
 fn errors(output: &Output) -> String {

@@ -1,23 +1,16 @@
 //! Contacts from two lists of nodes give those of the same pairs by hand, and nodes that do not match are named.
 
+mod common;
+
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../hbvib-io/tests/data")
 }
 
-/// Writes a job and runs a command on it.
 fn hbvib(verb: &str, name: &str, job: &str) -> Output {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("node_lists").join(name);
-    std::fs::create_dir_all(&folder).unwrap();
-    let path = folder.join("job.toml");
-    std::fs::write(&path, job).unwrap();
-    Command::new(env!("CARGO_BIN_EXE_hbvib"))
-        .arg(verb)
-        .arg(&path)
-        .output()
-        .unwrap()
+    common::hbvib(verb, ("node_lists", name), job).0
 }
 
 fn printed(bytes: &[u8]) -> String {
@@ -26,13 +19,9 @@ fn printed(bytes: &[u8]) -> String {
 
 /// The ring damper with these contacts instead of its own.
 fn ring_damper(contacts: &str) -> String {
-    let files = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/jobs/ring_damper");
-    let files = files.display();
+    let model = common::ring_damper();
     format!(
-        "model.stiffness = '{files}/stiffness.mtx'\nmodel.mass = '{files}/mass.mtx'\n\
-         model.coupling_stiffness = '{files}/coupling.mtx'\nmodel.rayleigh = [0.0, 1.5e-6]\n\
-         model.sectors = 24\nmodel.engine_order = 2\n\
-         {contacts}\n[[force]]\ndof = 0\nvalue = 5.0\n[forced]\nfrom_hz = 205.0\nto_hz = 225.0\nharmonics = 5\n"
+        "{model}{contacts}\n[[force]]\ndof = 0\nvalue = 5.0\n[forced]\nfrom_hz = 205.0\nto_hz = 225.0\nharmonics = 5\n"
     )
 }
 

@@ -1,8 +1,9 @@
 //! A job that compares its peak with integration in time: with enough harmonics both are the same, and with few, which
 //! miss the resonances of the light ring among the high ones, the peak is further away.
 
-use std::path::Path;
-use std::process::{Command, Output};
+mod common;
+
+use std::process::Output;
 
 fn printed(bytes: &[u8]) -> String {
     String::from_utf8(bytes.to_vec()).unwrap()
@@ -10,27 +11,14 @@ fn printed(bytes: &[u8]) -> String {
 
 /// Runs the ring damper with a number of harmonics.
 fn run(name: &str, harmonics: usize, more: &str) -> (Output, String) {
-    let files = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/jobs/ring_damper");
-    let files = files.display();
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("verify").join(name);
-    let _ = std::fs::remove_dir_all(&folder);
-    std::fs::create_dir_all(&folder).unwrap();
     let job = format!(
-        "model.stiffness = '{files}/stiffness.mtx'\nmodel.mass = '{files}/mass.mtx'\n\
-         model.coupling_stiffness = '{files}/coupling.mtx'\nmodel.rayleigh = [0.0, 1.5e-6]\n\
-         model.sectors = 24\nmodel.engine_order = 2\n\
-         [[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5454178539233\n\
+        "{}[[contact]]\nkind = 'jenkins'\na = [2]\nb = [3]\nkt = 5e7\nmu = 0.3\npreload = 488.5454178539233\n\
          [[force]]\ndof = 0\nvalue = 5.0\n[[force]]\ndof = 1\nvalue = 5.0\n\
          [forced]\nfrom_hz = 207.0\nto_hz = 211.0\nharmonics = {harmonics}\n\
-         [verify]\ncsv = 'verify.csv'\n{more}\n"
+         [verify]\ncsv = 'verify.csv'\n{more}\n",
+        common::ring_damper()
     );
-    let path = folder.join("job.toml");
-    std::fs::write(&path, job).unwrap();
-    let output = Command::new(env!("CARGO_BIN_EXE_hbvib"))
-        .arg("run")
-        .arg(&path)
-        .output()
-        .unwrap();
+    let (output, folder) = common::hbvib("run", ("verify", name), &job);
     let csv = std::fs::read_to_string(folder.join("verify.csv")).unwrap_or_default();
     (output, csv)
 }
