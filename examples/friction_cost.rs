@@ -29,9 +29,10 @@ fn cost(law: &dyn Law, set: &HarmonicSet, motion: &[f64]) -> Result<f64> {
     let mut evaluator = Evaluator::new(set, 0, core::iter::once(law))?;
     let mut out = Evaluation::new(set, law.directions())?;
     let mut best = f64::INFINITY;
-    for _ in 0..5 {
+    // Many short runs: other programs interrupt long ones.
+    for _ in 0..100 {
         let start = Instant::now();
-        let repeats = 20;
+        let repeats = 2;
         for _ in 0..repeats {
             evaluator.evaluate(law, set, motion, 1.0, &mut out, &Interrupt::none())?;
         }

@@ -10,6 +10,7 @@ use common::{BASE, harmonics};
 use hbvib::aft::Evaluation;
 use hbvib::aft::hysteretic::HystereticEvaluator;
 use hbvib::aft::memoryless::MemorylessEvaluator;
+use hbvib::aft::plane_friction::PlaneFrictionEvaluator;
 use hbvib::condense::{Condensed, Reference};
 use hbvib::contact::Contact;
 use hbvib::contact::law::Memoryless;
@@ -402,9 +403,9 @@ fn a_law_marched_over_samples_asks_for_no_memory() {
             has_normal: true,
         };
         let motion: Vec<f64> = (0..33).map(|i| (0.7 + f64::from(i)).sin()).collect();
-        let mut way = HystereticEvaluator::new(&set, &law, 128).unwrap();
+        let mut way = PlaneFrictionEvaluator::new(&set, &law).unwrap();
         let mut out = Evaluation::new(&set, 3).unwrap();
-        let (count, result) = allocations(|| way.evaluate(&law, 1.0, &motion, &mut out, &Interrupt::none()));
+        let (count, result) = allocations(|| way.evaluate(&law, &set, &motion, &mut out, &Interrupt::none()));
         result.unwrap();
         assert_eq!(count, 0, "load {load}");
         assert_eq!(out.open_fraction > 0.0, load < 1.0);

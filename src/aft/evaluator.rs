@@ -6,6 +6,7 @@ use crate::aft::jacobian_assembly::Assembly;
 use crate::aft::memoryless::MemorylessEvaluator;
 use crate::aft::piecewise_exact::Exact;
 use crate::aft::piecewise_sampled::Sampled;
+use crate::aft::plane_friction::PlaneFrictionEvaluator;
 use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use crate::contact::law::{Form, Law};
 use crate::error::{Result, fail, try_push};
@@ -19,6 +20,8 @@ pub struct Evaluator {
     smooth: Assembly,
     /// Friction under a varying normal load.
     varying_load: Option<Box<VaryingNormalLoadEvaluator>>,
+    /// Friction in a plane, under constant and under varying loads.
+    plane: Vec<PlaneFrictionEvaluator>,
     /// Laws with states, by their directions, states and samples.
     hysteretic: Vec<HystereticEvaluator>,
     /// Laws without memory, by their directions and samples.
@@ -112,6 +115,7 @@ impl Evaluator {
         let mut memoryless: Vec<MemorylessEvaluator> = Vec::new();
         let mut most_pieces = 0;
         let mut varying_load = None;
+        let mut plane = Vec::new();
         let mut hysteretic: Vec<HystereticEvaluator> = Vec::new();
         for law in laws {
             match law.form() {
@@ -120,6 +124,11 @@ impl Evaluator {
                     varying_load = Some(Box::new(VaryingNormalLoadEvaluator::new(set)?));
                 }
                 Form::VaryingNormalLoad(_) | Form::Spectral(_) => {}
+                Form::PlaneFriction(law) => {
+                    if !plane.iter().any(|e: &PlaneFrictionEvaluator| e.suits(law)) {
+                        try_push(&mut plane, PlaneFrictionEvaluator::new(set, law)?, "the contact laws")?;
+                    }
+                }
                 Form::Hysteretic(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
                     if !hysteretic.iter().any(|e| e.suits(law, requested)) {
@@ -145,6 +154,7 @@ impl Evaluator {
             },
             smooth: Assembly::new(set)?,
             varying_load,
+            plane,
             hysteretic,
             memoryless,
             sampling,
@@ -191,6 +201,12 @@ impl Evaluator {
                 };
                 evaluator.evaluate(law, set, motion, out, interrupt)?;
             }
+            (Form::PlaneFriction(law), _) => {
+                let Some(evaluator) = self.plane.iter_mut().find(|e| e.suits(law)) else {
+                    return fail!(Internal, "no memory for the path of a contact law");
+                };
+                return evaluator.evaluate(law, set, motion, out, interrupt);
+            }
             (Form::Hysteretic(law), _) => {
                 let highest = set.highest_reduced();
                 let requested = self.sampling.of(law.samples(highest, self.sampling.requested), highest);
@@ -216,7 +232,7 @@ impl Evaluator {
     pub fn samples(&self, law: &dyn Law) -> bool {
         match law.form() {
             Form::PiecewiseLinear(_) => self.sampling.requested > 0,
-            Form::Spectral(_) | Form::VaryingNormalLoad(_) => false,
+            Form::Spectral(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) => false,
             Form::Hysteretic(_) => true,
             Form::Memoryless(law) => !law.is_alias_free(),
         }
@@ -233,7 +249,7 @@ impl Evaluator {
         };
         match law.form() {
             Form::PiecewiseLinear(_) => requested,
-            Form::Spectral(_) | Form::VaryingNormalLoad(_) => 0,
+            Form::Spectral(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) => 0,
             Form::Hysteretic(law) => sampling.of(law.samples(highest, requested), highest),
             Form::Memoryless(law) => sampling.of(law.samples(highest, requested), highest),
         }

@@ -1,11 +1,10 @@
 //! Harmonics of a law with states, marched over samples: periodic states, force, and the exact derivative of the
 //! discrete force.
 //!
-//! The states at the start of the period are those that return after it. A law that can stick through the period
-//! selects one of many. Other states follow by Newton's method, from a near state that the law provides or from the
-//! virgin one, loaded from rest straight to the motion of the last sample, so that the result depends on the motion
-//! alone. If a law does not provide such a state, and its slip ends, the marched state is kept. With the basis bⱼ at
-//! sample j the derivatives of the states follow from those of the steps,
+//! The states at the start of the period are those that return after it. They follow by Newton's method from the
+//! virgin ones, loaded from rest straight to the motion of the last sample, so that the result depends on the motion
+//! alone. If a law keeps states to which it was marched, these are taken. With the basis bⱼ at sample j the
+//! derivatives of the states follow from those of the steps,
 //! > Sⱼ = Aⱼ Sⱼ₋₁ + Bⱼ⁻ bⱼ₋₁ + Bⱼ bⱼ,  ∂F/∂X = Σ w ⊗ bⱼ ⊗ (∂f/∂z Sⱼ + ∂f/∂u bⱼ)
 //!
 //! (velocities alike), starting with the derivative of the periodic start; see periodic_state.rs. Force and
@@ -13,10 +12,9 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::hysteretic_derivatives::{Sensitivity, Signals};
-use crate::aft::normal_force::Normal;
 use crate::aft::periodic_state::{ReturnMap, largest};
 use crate::contact::law::Hysteretic;
-use crate::contact::march::{March, Sticking, StuckState};
+use crate::contact::march::March;
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -26,9 +24,6 @@ const NEWTON_MARCHES: usize = 100;
 
 /// Largest number of marches; those beyond [`NEWTON_MARCHES`] start where the previous march ended.
 const MARCHES: usize = 300;
-
-/// Marches from a stuck state, which returns up to round-off.
-const STUCK_MARCHES: usize = 4;
 
 /// Tables and memory for marching one law over motions of one harmonic set.
 pub struct HystereticEvaluator {
@@ -42,12 +37,8 @@ pub struct HystereticEvaluator {
     load_u: Vec<f64>,
     load_v: Vec<f64>,
     march: March,
-    stuck: StuckState,
-    /// Whether the last start was a stuck state.
-    starts_stuck: bool,
     map: ReturnMap,
     sensitivity: Sensitivity,
-    normal: Option<Normal>,
     /// Initial states of each march.
     starts: Vec<f64>,
     /// Whether the start after each march is from Newton's method.
@@ -82,11 +73,8 @@ impl HystereticEvaluator {
             load_u: memory(2 * d)?,
             load_v: memory(if law.uses_velocity() { 2 * d } else { 0 })?,
             march: March::new(d, s, samples)?,
-            stuck: StuckState::new(d, s, samples)?,
-            starts_stuck: false,
             map: ReturnMap::new(s)?,
-            sensitivity: Sensitivity::new(d, s, d - usize::from(law.normal().is_some()), set.packed_len())?,
-            normal: law.normal().map(|_| Normal::new(set)).transpose()?,
+            sensitivity: Sensitivity::new(d, s, set.packed_len())?,
             starts: memory(s.saturating_mul(MARCHES))?,
             by_newton: try_vec(MARCHES, false, "a march over samples")?,
             step: memory(s)?,
@@ -100,7 +88,6 @@ impl HystereticEvaluator {
         self.signals.directions == law.directions()
             && self.states == law.states()
             && self.load_v.is_empty() != law.uses_velocity()
-            && self.normal.is_some() == law.normal().is_some()
             && self.signals.samples == samples
     }
 
@@ -130,7 +117,7 @@ impl HystereticEvaluator {
         out: &mut Evaluation,
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let virgin = self.find_periodic_states(law, omega, motion, interrupt)?;
+        self.find_periodic_states(law, omega, motion, interrupt)?;
         let omega = self.base * omega;
         self.differentiate(law, omega, interrupt)?;
         for sums in [&mut out.force, &mut out.jacobian, &mut out.by_omega] {
@@ -138,19 +125,13 @@ impl HystereticEvaluator {
         }
         self.sensitivity.add_to(&self.march, &self.signals, out);
         self.finish(motion, out);
-        if let (Some(normal), Some(law)) = (&mut self.normal, law.normal()) {
-            normal.evaluate(law, motion, out, interrupt)?;
-        }
-        let n = self.signals.samples as f64;
-        out.slip_fraction = self.march.slip.iter().sum::<f64>() / n;
-        out.open_fraction = self.march.open.iter().sum::<f64>() / n;
-        out.stuck = law.sticks() && virgin && out.slip_fraction == 0.0 && out.open_fraction == 0.0;
-        out.linear = out.stuck;
+        (out.slip_fraction, out.open_fraction) = (0.0, 0.0);
+        (out.stuck, out.linear) = (false, false);
         Ok(())
     }
 
     /// Finds the periodic states alone, the first step of [`Self::evaluate`]; [`Self::march`] then has the forces and
-    /// states. Returns `true` if the law is in its state after the load from rest.
+    /// states.
     ///
     /// # Errors
     /// Those of [`Self::evaluate`].
@@ -160,7 +141,7 @@ impl HystereticEvaluator {
         omega: f64,
         motion: &[f64],
         interrupt: &Interrupt<'_>,
-    ) -> Result<bool> {
+    ) -> Result<()> {
         // The period of the law is 2π/(gω), that of the set.
         let omega = self.base * omega;
         self.signals.fill(omega, motion);
@@ -196,8 +177,7 @@ impl HystereticEvaluator {
     }
 
     /// Loads the virgin law from rest straight to the motion of the last sample: the first start and its derivative.
-    /// Returns `true` if the law neither slipped nor was open during the load.
-    fn load(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<bool> {
+    fn load(&mut self, law: &dyn Hysteretic, omega: f64) -> Result<()> {
         let Signals {
             samples,
             directions,
@@ -214,36 +194,18 @@ impl HystereticEvaluator {
         law.march(omega, 2, &self.load_u, &self.load_v, &self.step, &mut self.march)?;
         self.starts[..self.states].copy_from_slice(&self.march.z[..self.states]);
         self.sensitivity.load(&self.march, &self.signals, omega);
-        Ok(self.march.slip[0] == 0.0 && self.march.open[0] == 0.0)
+        Ok(())
     }
 
-    /// Finds states that return. Returns `true` if the law is in its state after the load.
+    /// Finds states that return.
     ///
-    /// Some laws cannot decide whether they can stick ([`Sticking::Unknown`]). If such a law keeps a state to which
-    /// slip led, this state lies on the border of those without slip; its place there depends on the slip of the
-    /// earlier marches, which a step of Newton's method does not follow. The law is then marched from the load on, if
-    /// that takes no more than [`MARCHES`].
-    fn find_period(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
-        let Signals { samples, u, .. } = &self.signals;
-        let sticking = law.stuck_state(*samples, u, &mut self.stuck);
-        self.starts_stuck = sticking == Sticking::Here;
-        if self.starts_stuck || sticking == Sticking::Nearly {
-            self.starts[..self.states].copy_from_slice(&self.stuck.z);
-            self.sensitivity.stuck(&self.stuck, &self.signals, omega);
-            let defect = if self.starts_stuck {
-                self.search(law, omega, (0, STUCK_MARCHES), interrupt)?
-            } else {
-                self.search(law, omega, (NEWTON_MARCHES, NEWTON_MARCHES), interrupt)?
-            };
-            if defect == 0.0 {
-                return Ok(self.starts_stuck && self.stuck.virgin);
-            }
-            self.starts_stuck = false;
-        }
-        let virgin = self.load(law, omega)?;
+    /// If a law keeps a state to which slip led, this state lies on the border of those without slip; its place there
+    /// depends on the slip of the earlier marches, which a step of Newton's method does not follow. The law is then
+    /// marched from the load on, if that takes no more than [`MARCHES`].
+    fn find_period(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.load(law, omega)?;
         let mut defect = self.search(law, omega, (NEWTON_MARCHES, MARCHES), interrupt)?;
-        // A law that cannot stick slips, and has one periodic state, for every method.
-        let guessed = sticking == Sticking::Unknown && self.by_newton[..self.marches - 1].contains(&true);
+        let guessed = self.by_newton[..self.marches - 1].contains(&true);
         if defect == 0.0 && self.map.has_kept && guessed && self.search(law, omega, (0, MARCHES), interrupt)? > 0.0 {
             defect = self.search(law, omega, (NEWTON_MARCHES, MARCHES), interrupt)?;
         }
@@ -256,7 +218,7 @@ impl HystereticEvaluator {
             )
             .recoverable());
         }
-        Ok(virgin && self.marches == 1)
+        Ok(())
     }
 
     /// Marches from the first start until the states return up to round-off, with Newton's method up to the march
@@ -316,17 +278,11 @@ impl HystereticEvaluator {
         Ok(0.0)
     }
 
-    /// Whether the march had the force of a linear spring throughout.
-    fn is_spring(&self, law: &dyn Hysteretic) -> bool {
-        let none = |share: &[f64]| share[..self.signals.samples].iter().all(|x| *x == 0.0);
-        law.sticks() && none(&self.march.slip) && none(&self.march.open)
-    }
-
     /// Derivatives of the force by the motion and ω, those of the periodic start included. Only a start that is kept in
     /// part depends on the earlier marches; their derivatives are then followed from the load on.
     fn differentiate(&mut self, law: &dyn Hysteretic, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let last = self.marches - 1;
-        if !self.starts_stuck && self.map.has_kept && last > 0 {
+        if self.map.has_kept && last > 0 {
             for k in 0..last {
                 interrupt.check()?;
                 self.march_from(law, omega, k)?;
@@ -342,15 +298,8 @@ impl HystereticEvaluator {
             self.march_from(law, omega, last)?;
             self.map.form(&self.march, self.signals.samples, interrupt)?;
         }
-        if self.starts_stuck && self.is_spring(law) {
-            self.sensitivity.pass_stuck(&self.march, &self.signals);
-            return Ok(());
-        }
         self.sensitivity
             .pass(&self.march, &self.signals, omega, true, interrupt)?;
-        if self.starts_stuck {
-            return Ok(());
-        }
         if self.map.is_regular {
             self.sensitivity.periodic(&self.map);
         } else {

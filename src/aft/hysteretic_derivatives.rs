@@ -3,7 +3,7 @@
 
 use crate::aft::evaluation::Evaluation;
 use crate::aft::periodic_state::ReturnMap;
-use crate::contact::march::{March, StuckState};
+use crate::contact::march::March;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -19,7 +19,6 @@ pub(super) struct Signals {
     pub directions: usize,
     /// Packed length m of one signal.
     length: usize,
-    has_mean: bool,
     /// bⱼ, samples × m.
     basis: Vec<f64>,
     /// dbⱼ/dτ, samples × m; empty without velocities.
@@ -59,7 +58,6 @@ impl Signals {
             samples,
             directions,
             length: m,
-            has_mean: set.has_mean(),
             basis,
             rate,
             u,
@@ -116,8 +114,8 @@ fn axpy(a: f64, x: &[f64], y: &mut [f64]) {
 /// derivatives by the start. Rows have d·m + 1 numbers for (X, ω), and s for the start.
 pub(super) struct Sensitivity {
     states: usize,
-    /// Number of directions whose forces are differentiated: the first ones.
-    forces: usize,
+    /// Directions d.
+    directions: usize,
     /// d·m + 1
     width: usize,
     /// Derivatives of the states at the start of the period by (X, ω), rows of d·m + 1.
@@ -135,22 +133,22 @@ pub(super) struct Sensitivity {
 }
 
 impl Sensitivity {
-    pub fn new(directions: usize, states: usize, forces: usize, length: usize) -> Result<Self> {
+    pub fn new(directions: usize, states: usize, length: usize) -> Result<Self> {
         let width = directions.saturating_mul(length).saturating_add(1);
         let memory = |n: usize| try_vec(n, 0.0, "a march over samples");
         let start = || memory(states.saturating_mul(width));
         let row = width.saturating_add(states);
         let rows = |n: usize| memory(n.saturating_mul(row));
         let (force, mut sums) = (
-            rows(forces.saturating_mul(BATCH))?,
-            rows(forces.saturating_mul(length))?,
+            rows(directions.saturating_mul(BATCH))?,
+            rows(directions.saturating_mul(length))?,
         );
         // The first product of a thread asks for memory; those of an iteration must not.
-        let (basis, columns) = (memory(BATCH.saturating_mul(length))?, forces.saturating_mul(row));
+        let (basis, columns) = (memory(BATCH.saturating_mul(length))?, directions.saturating_mul(row));
         add_outer_products((&basis, length), (&force, columns, columns), BATCH, &mut sums);
         Ok(Self {
             states,
-            forces,
+            directions,
             width,
             start: start()?,
             before: start()?,
@@ -175,18 +173,6 @@ impl Sensitivity {
             let block = a * d..(a + 1) * d;
             signals.add(last, omega, &march.dz_du[block.clone()], &march.dz_dv[block], row);
             row[self.width - 1] += march.dz_domega[a];
-        }
-    }
-
-    /// Sets the start of a law that sticks.
-    pub fn stuck(&mut self, stuck: &StuckState, signals: &Signals, omega: f64) {
-        self.start.fill(0.0);
-        let d = signals.directions;
-        for j in 0..signals.samples {
-            for (a, row) in self.start.chunks_exact_mut(self.width).enumerate() {
-                let by_u = &stuck.dz_du[(j * self.states + a) * d..][..d];
-                signals.add(j, omega, by_u, &[], row);
-            }
         }
     }
 
@@ -235,7 +221,7 @@ impl Sensitivity {
         }
         for j in 0..n {
             if j % BATCH == 0 {
-                interrupt.check_before((BATCH * row * (s * s + self.forces * signals.length)) as u64)?;
+                interrupt.check_before((BATCH * row * (s * s + self.directions * signals.length)) as u64)?;
             }
             let before = if j == 0 { n - 1 } else { j - 1 };
             for a in 0..s {
@@ -262,7 +248,7 @@ impl Sensitivity {
                 self.force_at(march, signals, omega, j);
                 if (j + 1) % BATCH == 0 || j + 1 == n {
                     let batch = j - j % BATCH..j + 1;
-                    let columns = self.forces * row;
+                    let columns = self.directions * row;
                     add_outer_products(
                         (
                             &signals.basis[batch.start * signals.length..batch.end * signals.length],
@@ -278,44 +264,12 @@ impl Sensitivity {
         Ok(())
     }
 
-    /// The sums of [`Self::pass`] in closed form for a law that sticks through the period: every step is the same spring,
-    /// zⱼ = z + B (uⱼ − u_last) with the start z, and the force is C zⱼ.
-    pub fn pass_stuck(&mut self, march: &March, signals: &Signals) {
-        let (d, s, n, m, row) = (
-            signals.directions,
-            self.states,
-            signals.samples,
-            signals.length,
-            self.row(),
-        );
-        let (count, means) = (n as f64, usize::from(signals.has_mean));
-        let last = signals.basis(n - 1);
-        self.sums.fill(0.0);
-        for i in 0..self.forces {
-            let by_state = &march.df_dz[i * s..(i + 1) * s];
-            let sums = &mut self.sums[i * row * m..(i + 1) * row * m];
-            for k in 0..d {
-                let spring: f64 = (0..s).map(|a| by_state[a] * march.dz_du[a * d + k]).sum();
-                for q in 0..m {
-                    let column = &mut sums[(k * m + q) * m..(k * m + q + 1) * m];
-                    column[q] += spring * if q < means { count } else { 0.5 * count };
-                    for mean in &mut column[..means] {
-                        *mean -= spring * count * last[q];
-                    }
-                }
-            }
-            for (column, factor) in sums[self.width * m..].chunks_exact_mut(m.max(1)).zip(by_state) {
-                column[..means].fill(count * factor);
-            }
-        }
-    }
-
     /// Evaluates the derivatives of the force at sample j.
     fn force_at(&mut self, march: &March, signals: &Signals, omega: f64, j: usize) {
         let (d, s, row) = (signals.directions, self.states, self.row());
         let slot = j % BATCH;
-        for i in 0..self.forces {
-            let to = &mut self.force[(slot * self.forces + i) * row..(slot * self.forces + i + 1) * row];
+        for i in 0..self.directions {
+            let to = &mut self.force[(slot * self.directions + i) * row..(slot * self.directions + i + 1) * row];
             to.fill(0.0);
             let by_state = &march.df_dz[(j * d + i) * s..(j * d + i + 1) * s];
             for (factor, state) in by_state.iter().zip(self.now.chunks_exact(row)) {
@@ -333,11 +287,11 @@ impl Sensitivity {
         let (d, m, row, width) = (signals.directions, signals.length, self.row(), self.width);
         add_outer_products(
             (&signals.basis, m),
-            (&march.f[..signals.samples * d], self.forces, d),
+            (&march.f[..signals.samples * d], self.directions, d),
             signals.samples,
-            &mut out.force[..self.forces * m],
+            &mut out.force[..self.directions * m],
         );
-        for i in 0..self.forces {
+        for i in 0..self.directions {
             let sums = &mut self.sums[i * row * m..(i + 1) * row * m];
             let (fixed, by_start) = sums.split_at_mut(width * m);
             for (start, by_start) in self.start.chunks_exact(width).zip(by_start.chunks_exact(m.max(1))) {

@@ -8,6 +8,7 @@
 use crate::aft::evaluation::Evaluation;
 use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use crate::contact::law::VaryingNormalLoad;
+use crate::contact::piece::Piece;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -27,6 +28,16 @@ impl Normal {
             evaluator: VaryingNormalLoadEvaluator::new(set)?,
             found: Evaluation::new(set, 2)?,
         })
+    }
+
+    /// The pieces of the force evaluated last.
+    pub fn pieces(&self) -> &[Piece] {
+        self.evaluator.normal()
+    }
+
+    /// Share of the period without force at the last evaluation.
+    pub fn open_fraction(&self) -> f64 {
+        self.found.open_fraction
     }
 
     /// Writes force, Jacobian and offset of the last of several motions.

@@ -10,12 +10,14 @@ use crate::contact::constants::Role;
 use crate::contact::contact_state::State;
 use crate::contact::coupled_search::CoupledSearch;
 use crate::contact::linearisation::Range;
-use crate::contact::march::{March, Sticking, StuckState};
+use crate::contact::march::March;
 use crate::contact::piece::{CoupledPiece, Piece};
+use crate::contact::plane_path::PlanePath;
 use crate::contact::samples::Samples;
 use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros};
 use crate::error::Result;
 use crate::fourier::{Extremum, HarmonicSet};
+use crate::interrupt::Interrupt;
 use core::fmt::Debug;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -156,6 +158,8 @@ pub enum Form<'a> {
     Spectral(&'a dyn Spectral),
     /// Friction in one direction under a normal load that varies: exact.
     VaryingNormalLoad(&'a dyn VaryingNormalLoad),
+    /// Friction in a plane, whose force turns in slip: exact.
+    PlaneFriction(&'a dyn PlaneFriction),
     /// Force, states and the derivatives of their steps, marched over equidistant times.
     Hysteretic(&'a dyn Hysteretic),
     /// Force and tangents at equidistant times, without memory.
@@ -220,6 +224,26 @@ pub trait VaryingNormalLoad {
     fn load_at(&self, y: f64) -> f64;
 }
 
+/// A law on two tangential motions and, if its load varies, a normal one: friction in a plane, with the spring kt of a
+/// slider and the limit a + b·y of the tangential force.
+pub trait PlaneFriction: Law {
+    /// Finds the path of the tangential force over one turn of a packed motion. `normal` has the pieces of the normal
+    /// force, none under a constant load.
+    ///
+    /// # Errors
+    /// `NoConvergence` for a motion whose path cannot be followed; `StoppedByCaller`.
+    fn path(&self, motion: &[f64], normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()>;
+
+    /// kt
+    fn stiffness(&self) -> f64;
+
+    /// a and b
+    fn limit(&self) -> [f64; 2];
+
+    /// The normal force, where the load varies.
+    fn normal(&self) -> Option<&dyn VaryingNormalLoad>;
+}
+
 /// A law with internal states over d directions, stepped from sample to sample of a period. Where nothing
 /// moves and nothing has moved before, the states are zero.
 pub trait Hysteretic: Law {
@@ -228,26 +252,6 @@ pub trait Hysteretic: Law {
 
     /// Whether the law depends on velocities; if not, they need not be given.
     fn uses_velocity(&self) -> bool;
-
-    /// Whether a march without slip and opening has the force of a linear spring.
-    fn sticks(&self) -> bool {
-        false
-    }
-
-    /// Whether the law can stick through the period of the motion `u`, samples × d row-major. Where
-    /// it can, any of many states may be periodic: the one that counts is then in `out`, and does not jump as
-    /// the motion changes. A start that is nearly periodic is in `out` likewise; all of its first `samples`
-    /// blocks are written.
-    fn stuck_state(&self, samples: usize, u: &[f64], out: &mut StuckState) -> Sticking {
-        let _ = (samples, u, out);
-        Sticking::Unknown
-    }
-
-    /// The force along the last motion, a normal one, where it depends on that motion alone: then its
-    /// harmonics are exact, from located closings and openings.
-    fn normal(&self) -> Option<&dyn VaryingNormalLoad> {
-        None
-    }
 
     /// Samples per period for motions up to the reduced harmonic `highest`, where the caller requested
     /// `requested`, or with 0 the number that suits the law.

@@ -1,47 +1,6 @@
-//! Data of a march: forces, states and derivatives of a law with states at equidistant samples of a period,
-//! and the state of a law that sticks through the period.
+//! Data of a march: forces, states and derivatives of a law with states at equidistant samples of a period.
 
-use crate::contact::contact_state::State;
 use crate::error::{Result, try_vec};
-
-/// Knowledge of a law about sticking through a period.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Sticking {
-    /// Unknown to the law; the result of a march from rest counts.
-    Unknown,
-    /// It sticks in a known state.
-    Here,
-    /// It slips, so that it has one periodic state; that is near a known one.
-    Nearly,
-    /// It slips, and nothing is known of its one periodic state.
-    Nowhere,
-}
-
-/// The state of a law that sticks through the period, before sample 0.
-#[derive(Clone, Debug)]
-pub struct StuckState {
-    /// States, s.
-    pub z: Vec<f64>,
-    /// Their derivatives by the motion at each sample, s × d per sample.
-    pub dz_du: Vec<f64>,
-    /// Whether nothing has ever slipped.
-    pub virgin: bool,
-}
-
-impl StuckState {
-    /// Memory for `samples` samples of a law with d directions and s states.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(directions: usize, states: usize, samples: usize) -> Result<Self> {
-        let block = directions.saturating_mul(states);
-        Ok(Self {
-            z: try_vec(states, 0.0, "a march over samples")?,
-            dz_du: try_vec(block.saturating_mul(samples), 0.0, "a march over samples")?,
-            virgin: false,
-        })
-    }
-}
 
 /// Results of a march at each sample j: force, states, and the derivatives of the step that led to
 /// it. Blocks are row-major and follow each other.
@@ -74,12 +33,6 @@ pub struct March {
     pub df_du: Vec<f64>,
     /// ∂fⱼ/∂vⱼ at given zⱼ, d × d per sample.
     pub df_dv: Vec<f64>,
-    /// Share of the step before each sample that is spent slipping.
-    pub slip: Vec<f64>,
-    /// Share of the step before each sample that is spent open.
-    pub open: Vec<f64>,
-    /// State of the contact at each sample; a law without stick and slip always sticks.
-    pub state: Vec<State>,
     /// Memory for the law's own use, 2·d per sample.
     pub scratch: Vec<f64>,
 }
@@ -106,14 +59,11 @@ impl March {
             df_dz: memory(d.saturating_mul(s))?,
             df_du: memory(d.saturating_mul(d))?,
             df_dv: memory(d.saturating_mul(d))?,
-            slip: memory(1)?,
-            open: memory(1)?,
-            state: try_vec(samples, State::Stick, "a march over samples")?,
             scratch: memory(d.saturating_mul(2))?,
         })
     }
 
-    /// Sets the first `samples` blocks to zero, and to sticking; a law then writes the entries that differ.
+    /// Sets the first `samples` blocks to zero; a law then writes the entries that differ.
     pub fn clear(&mut self, samples: usize) {
         let (d, s) = (self.directions, self.states);
         for (values, size) in [
@@ -128,11 +78,8 @@ impl March {
             (&mut self.df_dz, d * s),
             (&mut self.df_du, d * d),
             (&mut self.df_dv, d * d),
-            (&mut self.slip, 1),
-            (&mut self.open, 1),
         ] {
             values[..samples * size].fill(0.0);
         }
-        self.state[..samples].fill(State::Stick);
     }
 }

@@ -12,6 +12,8 @@ pub mod linearisation;
 pub mod march;
 pub mod patch;
 pub mod piece;
+pub mod plane_path;
+pub mod radau;
 pub mod relative_motion;
 pub mod samples;
 pub mod time_piece;

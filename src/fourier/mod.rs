@@ -6,5 +6,5 @@ pub mod transform;
 mod turning_points;
 
 pub use harmonic_set::{HarmonicSet, gcd};
-pub use series::{Jet, crossing, jet};
+pub use series::{Jet, crossing, jet, safe_newton};
 pub use turning_points::{Extremum, TurningPoints};

@@ -54,7 +54,8 @@ const EVENT_TOLERANCE: f64 = 1e-9;
 
 /// Newton's method inside a bracket, with bisection where a step leaves it or does not converge.
 /// The last evaluation of `f` is within the tolerance of the returned root.
-pub(super) fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
+#[must_use]
+pub fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
     let (mut low, mut high) = if fa < 0.0 { (a, b) } else { (b, a) };
     // The secant step; equal end values give NaN or infinity, and then the middle is taken.
     let mut tau = a - fa * (b - a) / (fb - fa);

@@ -15,4 +15,6 @@ pub mod quadratic;
 pub mod sparse;
 mod vectors;
 
-pub use vectors::{add_outer_products, add_product, dot, inner, norm, power_of_two, transposed_products};
+pub use vectors::{
+    add_outer_products, add_outer_products_to, add_product, dot, inner, norm, power_of_two, transposed_products,
+};

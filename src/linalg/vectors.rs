@@ -72,6 +72,25 @@ pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
     }
 }
 
+/// The first `rows` numbers of each column of a column-major matrix += Σⱼ aⱼ bⱼᵀ, over rows aⱼ of `rows` numbers and rows bⱼ that are as
+/// long as the matrix has columns; columns are `stride` apart.
+pub fn add_outer_products_to(
+    (a, rows): (&[f64], usize),
+    (b, columns): (&[f64], usize),
+    stride: usize,
+    matrix: &mut [f64],
+) {
+    let count = a.len() / rows.max(1);
+    matmul(
+        MatMut::from_column_major_slice_with_stride_mut(matrix, rows, columns, stride),
+        Accum::Add,
+        MatRef::from_column_major_slice(a, rows, count),
+        MatRef::from_row_major_slice(b, count, columns),
+        1.0,
+        Par::Seq,
+    );
+}
+
 /// out += Σⱼ aⱼ bⱼᵀ over `count` rows aⱼ of `rows` numbers and the first `columns` numbers of rows bⱼ that are `stride`
 /// apart; `out` is column-major.
 pub fn add_outer_products(

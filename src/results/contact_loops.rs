@@ -14,6 +14,7 @@
 pub mod from_samples;
 pub mod one_motion;
 mod period;
+mod plane_motion;
 pub mod two_motions;
 
 use crate::aft::{Evaluation, Evaluator};
@@ -133,6 +134,7 @@ impl<'a> Orbit<'a> {
                     *state = found.1;
                 }
             }
+            Form::PlaneFriction(law) => plane_motion::followed(&self.motion, law, &mut out, interrupt)?,
             Form::Hysteretic(law) => from_samples::marched(&self.motion, law, self.samples, &mut out, interrupt)?,
             Form::Memoryless(law) => from_samples::pointwise(&self.motion, law, &mut out)?,
         }
@@ -153,7 +155,9 @@ impl<'a> Orbit<'a> {
             Form::PiecewiseLinear(_) | Form::Spectral(_) => Ok(ScalarOrbit::new(set, packed, law)?.account()),
             // A force that follows from one motion alone has a potential.
             Form::Memoryless(law) if law.directions() == 1 && !law.uses_velocity() => Ok(Account::default()),
-            Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::Hysteretic(_) => self.evaluated(law, interrupt),
+            Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) | Form::Hysteretic(_) => {
+                self.evaluated(law, interrupt)
+            }
         }
     }
 
@@ -171,8 +175,7 @@ impl<'a> Orbit<'a> {
         let (slip, open) = (found.slip_fraction, found.open_fraction);
         let takes_nothing = match law.form() {
             // Stick stores work, and a contact that opens has slipped before, as its limit fell to zero.
-            Form::VaryingNormalLoad(_) => slip == 0.0,
-            Form::Hysteretic(law) => law.sticks() && slip == 0.0 && open == 0.0,
+            Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) => slip == 0.0,
             _ => false,
         };
         let mut work = 0.0;

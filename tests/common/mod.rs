@@ -14,6 +14,7 @@ pub mod mode_cases;
 pub mod modes;
 pub mod peers;
 pub mod plane;
+pub mod plane_step;
 pub mod pointwise;
 pub mod programs;
 pub mod refusal;

@@ -3,7 +3,7 @@
 use hbvib::interrupt::Interrupt;
 
 use hbvib::aft::Evaluation;
-use hbvib::aft::hysteretic::HystereticEvaluator;
+use hbvib::aft::plane_friction::PlaneFrictionEvaluator;
 use hbvib::contact::law::Law;
 use hbvib::contact::laws::friction_3d::Friction3d;
 use hbvib::fourier::HarmonicSet;
@@ -49,15 +49,10 @@ pub fn law(load: f64, has_normal: bool) -> Friction3d {
     }
 }
 
-pub fn evaluate(
-    law: &Friction3d,
-    set: &HarmonicSet,
-    samples: usize,
-    motion: &[f64],
-) -> (Evaluation, HystereticEvaluator) {
+pub fn evaluate(law: &Friction3d, set: &HarmonicSet, motion: &[f64]) -> (Evaluation, PlaneFrictionEvaluator) {
     let mut out = Evaluation::new(set, law.directions()).unwrap();
-    let mut way = HystereticEvaluator::new(set, law, samples).unwrap();
-    way.evaluate(law, OMEGA, motion, &mut out, &Interrupt::none()).unwrap();
+    let mut way = PlaneFrictionEvaluator::new(set, law).unwrap();
+    way.evaluate(law, set, motion, &mut out, &Interrupt::none()).unwrap();
     (out, way)
 }
 

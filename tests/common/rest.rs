@@ -10,7 +10,7 @@ pub fn outside(w: [f64; 2], (x, radius): Disc) -> f64 {
 }
 
 /// The point of all `discs` nearest to 0, to within `tolerance`.
-pub fn nearest(discs: &[Disc], tolerance: f64) -> Option<[f64; 2]> {
+fn nearest(discs: &[Disc], tolerance: f64) -> Option<[f64; 2]> {
     let mut best: Option<[f64; 2]> = None;
     let size = |w: [f64; 2]| w[0].hypot(w[1]);
     let mut consider = |w: [f64; 2]| {

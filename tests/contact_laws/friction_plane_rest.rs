@@ -2,10 +2,11 @@
 //! candidates; the exact harmonics of its normal force.
 
 use crate::common::plane::{Random, evaluate, gap, largest, law};
-use crate::common::rest::{Disc, nearest, nearest_of_many, outside};
-use hbvib::aft::hysteretic::HystereticEvaluator;
+use crate::common::rest::{Disc, nearest_of_many, outside};
+use hbvib::aft::plane_friction::PlaneFrictionEvaluator;
 use hbvib::contact::law::Law;
 use hbvib::contact::laws::friction_3d::Friction3d;
+use hbvib::contact::plane_path::Repetition;
 use hbvib::fourier::HarmonicSet;
 use std::f64::consts::TAU;
 
@@ -26,19 +27,20 @@ fn discs(law: &Friction3d, set: &HarmonicSet, samples: usize, motion: &[f64]) ->
     (0..samples).map(of).collect()
 }
 
-/// Where the slider is at a sample, from its force there.
-fn slider(law: &Friction3d, way: &HystereticEvaluator, x: [f64; 2], j: usize) -> [f64; 2] {
-    let z = &way.march().z[2 * j..];
-    [x[0] - z[0] / law.kt, x[1] - z[1] / law.kt]
+/// Where a slider at rest is, from the force at τ = 0.
+fn slider(law: &Friction3d, way: &PlaneFrictionEvaluator, x: [f64; 2]) -> [f64; 2] {
+    let f = way.path().force(0.0).0;
+    [x[0] - f[0] / law.kt, x[1] - f[1] / law.kt]
 }
 
 #[test]
 fn a_slider_that_can_rest_is_at_the_admissible_point_nearest_to_its_virgin_place() {
     let set = HarmonicSet::all(3).unwrap();
-    let n = 24;
+    // A slider held back by fewer times lies nearer to 0, by as little as these times are apart, squared.
+    let n = 2000;
     let mut random = Random(2);
     let (mut kinds, mut worst) = ([0; 4], 0.0_f64);
-    for round in 0..2000 {
+    for round in 0..400 {
         let law = law(1.2 + 0.5 * random.next(), round % 2 == 0);
         let size = [0.3, 0.8, 2.0][round % 3];
         let motion = random.motion(&set, law.directions(), size);
@@ -46,47 +48,53 @@ fn a_slider_that_can_rest_is_at_the_admissible_point_nearest_to_its_virgin_place
         if discs.iter().any(|(_, radius)| *radius <= 0.0) {
             continue;
         }
-        let (out, way) = evaluate(&law, &set, n, &motion);
-        let Some(exact) = nearest(&discs, 1e-12) else {
+        let (out, way) = evaluate(&law, &set, &motion);
+        let Some(exact) = nearest_of_many(&discs, 1e-12) else {
             // No place to rest: it slips.
             kinds[3] += 1;
             assert!(out.slip_fraction > 0.0 && !out.stuck);
             continue;
         };
-        assert!(nearest_of_many(&discs, 1e-12).is_some());
-        for (j, (x, _)) in discs.iter().enumerate() {
-            worst = worst.max(gap(&slider(&law, &way, *x, j), &exact));
+        if out.slip_fraction > 0.0 {
+            // A place to rest at these times, but at none between them.
+            continue;
         }
-        let held = discs.iter().filter(|disc| outside(exact, **disc) > -1e-10).count();
+        let place = slider(&law, &way, discs[0].0);
+        let most = discs.iter().map(|disc| outside(place, *disc)).fold(f64::MIN, f64::max);
+        assert!(most < 1e-12, "{most:.1e} outside");
+        worst = worst.max((place[0].hypot(place[1]) - exact[0].hypot(exact[1])).abs());
+        let Repetition::Rests(holds) = &way.path().repetition else {
+            panic!("it rests")
+        };
+        let held = holds.iter().flatten().count();
         let virgin = largest(&exact) == 0.0;
         kinds[if virgin { 0 } else { held.min(2) }] += 1;
         assert_eq!(out.stuck, virgin);
     }
     println!("virgin, on one circle, in a corner, slipping: {kinds:?}; largest gap {worst:.1e}");
-    assert!(kinds.iter().all(|k| *k > 20) && worst < 1e-10);
+    assert!(kinds.iter().all(|k| *k > 4) && worst < 2e-5);
 }
 
 #[test]
 fn what_rests_does_not_depend_on_where_the_period_begins() {
     let set = HarmonicSet::all(3).unwrap();
     let m = set.packed_len();
-    let n = 64;
     let mut random = Random(8);
     let (mut worst, mut dragged) = (0.0_f64, 0);
     for _ in 0..600 {
         let law = law(1.0 + 0.3 * random.next(), true);
         let motion = random.motion(&set, 3, 0.7);
-        let (out, _) = evaluate(&law, &set, n, &motion);
+        let (out, _) = evaluate(&law, &set, &motion);
         // A third of a period later: X_h turns by e^{ihθ}.
         let mut later = motion.clone();
         for signal in later.chunks_exact_mut(m) {
             for (h, pair) in signal[1..].chunks_exact_mut(2).enumerate() {
-                let (sin, cos) = (TAU * (h + 1) as f64 * 21.0 / n as f64).sin_cos();
+                let (sin, cos) = (2.1 * (h + 1) as f64).sin_cos();
                 (pair[0], pair[1]) = (cos * pair[0] - sin * pair[1], sin * pair[0] + cos * pair[1]);
             }
         }
-        let (other, _) = evaluate(&law, &set, n, &later);
-        if out.open_fraction > 0.0 || out.slip_fraction > 1e-3 {
+        let (other, _) = evaluate(&law, &set, &later);
+        if out.open_fraction > 0.0 {
             continue;
         }
         dragged += usize::from(!out.stuck);
@@ -110,11 +118,8 @@ fn the_force_is_continuous_where_slip_begins() {
         let motion = random.motion(&set, law.directions(), 1.5);
         let at = |scale: f64| -> (Vec<f64>, bool) {
             let scaled: Vec<f64> = motion.iter().map(|x| scale * x).collect();
-            let (out, _) = evaluate(&law, &set, 64, &scaled);
-            (
-                out.force,
-                nearest_of_many(&discs(&law, &set, 64, &scaled), 1e-13).is_some(),
-            )
+            let (out, _) = evaluate(&law, &set, &scaled);
+            (out.force, out.slip_fraction == 0.0)
         };
         let (mut low, mut high) = (0.0, 2.0);
         if at(high).1 {
@@ -135,7 +140,7 @@ fn the_force_is_continuous_where_slip_begins() {
 }
 
 #[test]
-fn the_normal_force_has_exact_harmonics_however_few_the_samples() {
+fn the_normal_force_has_exact_harmonics() {
     // Against those of max(n₀ − kn·y, 0) at very many times.
     let set = HarmonicSet::all(5).unwrap();
     let m = set.packed_len();
@@ -146,7 +151,7 @@ fn the_normal_force_has_exact_harmonics_however_few_the_samples() {
     for _ in 0..20 {
         let law = law(0.5 + 0.6 * random.next(), true);
         let motion = random.motion(&set, 3, 4.0);
-        let (out, _) = evaluate(&law, &set, 24, &motion);
+        let (out, _) = evaluate(&law, &set, &motion);
         opened += usize::from(out.open_fraction > 0.0);
         let (mut force, mut tangent) = (vec![0.0; m], vec![0.0; m * m]);
         for j in 0..many {

@@ -13,18 +13,16 @@
 //! friction_3d_stuck.rs. The normal force, which has no memory, has exact harmonics.
 
 use crate::contact::constants::{Constants, Role, needs_stiffness};
-use crate::contact::contact_state::State;
 use crate::contact::coupled_search::CoupledSearch;
-use crate::contact::law::{ContactLaw, Form, Hysteretic, Law, LawInTime, VaryingNormalLoad};
+use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PlaneFriction, VaryingNormalLoad};
 use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness};
-use crate::contact::laws::friction_3d_step::{NO_LOAD, step};
-use crate::contact::laws::friction_3d_stuck::{Disc, stuck_slider};
+use crate::contact::laws::friction_3d_period;
 use crate::contact::linearisation::Range;
-use crate::contact::march::{March, Sticking, StuckState};
 use crate::contact::piece::{CoupledPiece, Piece};
-use crate::contact::samples::automatic_samples;
+use crate::contact::plane_path::{PlanePath, Repetition};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
+use crate::interrupt::Interrupt;
 use std::sync::Arc;
 
 /// Friction in a plane of the caller.
@@ -172,20 +170,6 @@ pub struct Friction3d {
     pub has_normal: bool,
 }
 
-impl Friction3d {
-    /// n₀ − kn·y, the normal load where it is positive.
-    fn pressure(&self, motion: &[f64]) -> f64 {
-        if self.has_normal && self.kn > 0.0 {
-            self.load - self.kn * motion[2]
-        } else {
-            self.load
-        }
-    }
-}
-
-/// Finer sampling than that of a law of unknown form: the error falls with the square.
-const REFINEMENT: usize = 4;
-
 impl Law for Friction3d {
     fn directions(&self) -> usize {
         if self.has_normal { 3 } else { 2 }
@@ -196,7 +180,7 @@ impl Law for Friction3d {
     }
 
     fn form(&self) -> Form<'_> {
-        Form::Hysteretic(self)
+        Form::PlaneFriction(self)
     }
 
     /// Under a constant load as for one direction, the diagonal of both for the plane; with a gap at
@@ -209,119 +193,27 @@ impl Law for Friction3d {
     }
 }
 
-impl Hysteretic for Friction3d {
-    fn states(&self) -> usize {
-        2
-    }
-
-    fn uses_velocity(&self) -> bool {
-        false
-    }
-
-    fn samples(&self, highest: usize, requested: usize) -> usize {
-        match requested {
-            0 => automatic_samples(highest).saturating_mul(REFINEMENT),
-            n => n,
+impl PlaneFriction for Friction3d {
+    fn path(&self, motion: &[f64], normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
+        path.load(self.kt, self.limit(), motion);
+        if self.kt == 0.0 || self.mu == 0.0 {
+            path.repetition = Repetition::FromNothing;
+            return Ok(());
         }
+        friction_3d_period::find(normal, path, interrupt)
     }
 
-    fn sticks(&self) -> bool {
-        self.kt > 0.0 && self.mu > 0.0
+    fn stiffness(&self) -> f64 {
+        self.kt
+    }
+
+    fn limit(&self) -> [f64; 2] {
+        let by_y = if self.has_normal { -self.mu * self.kn } else { 0.0 };
+        [self.mu * self.load, by_y]
     }
 
     fn normal(&self) -> Option<&dyn VaryingNormalLoad> {
         if self.has_normal { Some(self) } else { None }
-    }
-
-    fn stuck_state(&self, samples: usize, u: &[f64], out: &mut StuckState) -> Sticking {
-        let d = self.directions();
-        let motion = |j: usize| &u[j * d..(j + 1) * d];
-        if !self.sticks() {
-            return Sticking::Nowhere;
-        }
-        let (mut least, mut most) = (f64::INFINITY, 0.0_f64);
-        for motion in u[..samples * d].chunks_exact(d) {
-            let load = self.pressure(motion);
-            (least, most) = (least.min(load), most.max(load));
-        }
-        if least <= NO_LOAD * most.min(f64::MAX) {
-            return Sticking::Nowhere;
-        }
-        // ρ = μN/kt
-        let disc = |j: usize| Disc {
-            centre: [motion(j)[0], motion(j)[1]],
-            radius: self.mu * self.pressure(motion(j)) / self.kt,
-        };
-        let Some(found) = stuck_slider(samples, disc) else {
-            return Sticking::Nowhere;
-        };
-        let last = (samples - 1) * d;
-        out.dz_du[..samples * 2 * d].fill(0.0);
-        for i in 0..2 {
-            out.z[i] = self.kt * (u[last + i] - found.at[i]);
-            out.dz_du[2 * last + i * d + i] = self.kt;
-        }
-        for held in found.holding.iter().flatten() {
-            for i in 0..2 {
-                let row = &mut out.dz_du[(2 * held.disc + i) * d..][..d];
-                for (entry, by_centre) in row.iter_mut().zip(held.by_centre[i]) {
-                    *entry -= self.kt * by_centre;
-                }
-                if self.has_normal {
-                    row[2] += self.mu * self.kn * held.by_radius[i];
-                }
-            }
-        }
-        out.virgin = found.holding[0].is_none();
-        if found.is_common {
-            Sticking::Here
-        } else {
-            Sticking::Nearly
-        }
-    }
-
-    fn march(&self, _omega: f64, samples: usize, u: &[f64], _v: &[f64], z0: &[f64], out: &mut March) -> Result<()> {
-        out.clear(samples);
-        let d = self.directions();
-        let mut force = [z0[0], z0[1]];
-        let mut before = &u[(samples - 1) * d..samples * d];
-        let mut load_before = self.pressure(before);
-        for (j, motion) in u[..samples * d].chunks_exact(d).enumerate() {
-            let load = self.pressure(motion);
-            let travel = [motion[0] - before[0], motion[1] - before[1]];
-            let step = step(self.kt, self.mu, force, travel, load_before, load);
-            for i in 0..2 {
-                out.z[2 * j + i] = step.force[i];
-                out.f[d * j + i] = step.force[i];
-                out.df_dz[2 * (d * j + i) + i] = 1.0;
-                let row = d * (2 * j + i);
-                for k in 0..2 {
-                    out.dz_dz[4 * j + 2 * i + k] = step.by_force[i][k];
-                    out.dz_du[row + k] = step.by_travel[i][k];
-                    out.dz_du_before[row + k] = -step.by_travel[i][k];
-                }
-                if self.has_normal {
-                    out.dz_du_before[row + 2] = -self.kn * step.by_load_before[i];
-                    out.dz_du[row + 2] = -self.kn * step.by_load[i];
-                }
-            }
-            if self.has_normal && load > 0.0 {
-                out.f[d * j + 2] = -load;
-                out.df_du[d * d * j + 8] = self.kn;
-            }
-            out.slip[j] = step.slip;
-            out.open[j] = step.open;
-            // Slip, once begun, lasts to the end of a step.
-            out.state[j] = if load <= 0.0 {
-                State::Open
-            } else if step.slip > 0.0 {
-                State::Slip
-            } else {
-                State::Stick
-            };
-            (force, before, load_before) = (step.force, motion, load);
-        }
-        Ok(())
     }
 }
 

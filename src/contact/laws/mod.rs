@@ -3,7 +3,9 @@
 
 mod friction_2d_events;
 mod friction_2d_slider;
-mod friction_3d_step;
+mod friction_3d_path;
+mod friction_3d_period;
+mod friction_3d_slip;
 mod friction_3d_stuck;
 pub mod iwan;
 mod polynomial_terms;

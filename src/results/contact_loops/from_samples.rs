@@ -36,7 +36,7 @@ pub(super) fn pointwise(motion: &PeriodicMotion<'_>, law: &dyn Memoryless, out: 
     law.evaluate(motion.omega, n, &out.motion, &v, samples)
 }
 
-/// Forces and states of a law with states, marched over a multiple of the n times that is no less than
+/// Forces of a law with states, marched over a multiple of the n times that is no less than
 /// the samples which the law takes in the solution, where `requested` were.
 ///
 /// # Errors
@@ -55,10 +55,9 @@ pub(super) fn marched(
     let mut way = HystereticEvaluator::new(motion.set, law, stride.saturating_mul(n))?;
     way.find_periodic_states(law, motion.omega, motion.packed, interrupt)?;
     let march = way.march();
-    for (j, (force, state)) in out.force.chunks_exact_mut(d.max(1)).zip(&mut out.state).enumerate() {
+    for (j, force) in out.force.chunks_exact_mut(d.max(1)).enumerate() {
         let at = stride * sample(motion.set, j, n);
         force.copy_from_slice(&march.f[at * d..(at + 1) * d]);
-        *state = march.state[at];
     }
     Ok(())
 }

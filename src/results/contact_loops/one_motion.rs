@@ -56,7 +56,7 @@ impl<'a> ScalarOrbit<'a> {
         let known = match self.law.form() {
             Form::PiecewiseLinear(law) => law.at(x),
             Form::Spectral(law) => Some((law.at(x), State::Stick)),
-            Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::Hysteretic(_) => None,
+            Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::PlaneFriction(_) | Form::Hysteretic(_) => None,
         };
         known.unwrap_or_else(|| self.remembered(tau, x))
     }
@@ -81,7 +81,11 @@ impl<'a> ScalarOrbit<'a> {
     fn state(&self, piece: &Piece) -> State {
         match self.law.form() {
             Form::PiecewiseLinear(law) => law.state(piece),
-            Form::Spectral(_) | Form::Memoryless(_) | Form::VaryingNormalLoad(_) | Form::Hysteretic(_) => State::Stick,
+            Form::Spectral(_)
+            | Form::Memoryless(_)
+            | Form::VaryingNormalLoad(_)
+            | Form::PlaneFriction(_)
+            | Form::Hysteretic(_) => State::Stick,
         }
     }
 
