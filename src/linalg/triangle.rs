@@ -1,0 +1,187 @@
+//! Hermitian sparse matrices by their lower triangles, in real numbers where they are real: half the entries, and half
+//! the memory of each.
+
+use crate::error::{Error, Result, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::sparse::Csc;
+use faer::traits::ComplexField;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "a Hermitian matrix";
+
+/// Operations of a product between two checks.
+const BETWEEN_CHECKS: usize = 1 << 22;
+
+/// A real or complex number.
+pub trait Entry: ComplexField + Copy + Send + Sync + core::ops::AddAssign + core::ops::Mul<Output = Self> + 'static {
+    /// Zero.
+    const NONE: Self;
+    /// The number, without its imaginary part where it has none.
+    fn of(z: Complex64) -> Self;
+    /// The number as a complex one.
+    fn complex(self) -> Complex64;
+    /// The complex conjugate.
+    fn conjugate(self) -> Self;
+    /// The number times a real one.
+    fn scaled(self, factor: f64) -> Self;
+}
+
+impl Entry for f64 {
+    const NONE: Self = 0.0;
+
+    fn of(z: Complex64) -> Self {
+        z.re
+    }
+
+    fn complex(self) -> Complex64 {
+        self.into()
+    }
+
+    fn conjugate(self) -> Self {
+        self
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
+    }
+}
+
+impl Entry for Complex64 {
+    const NONE: Self = Self::ZERO;
+
+    fn of(z: Complex64) -> Self {
+        z
+    }
+
+    fn complex(self) -> Complex64 {
+        self
+    }
+
+    fn conjugate(self) -> Self {
+        self.conj()
+    }
+
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
+    }
+}
+
+/// The lower triangle of a Hermitian matrix, column by column.
+#[derive(Clone, Debug)]
+pub struct Triangle<T> {
+    /// Order of the matrix.
+    pub n: usize,
+    /// Start of each column, and the end of the last.
+    pub col_ptr: Vec<usize>,
+    /// Row of each entry, ascending in a column.
+    pub row_idx: Vec<usize>,
+    /// Value of each entry.
+    pub values: Vec<T>,
+}
+
+impl<T: Entry> Triangle<T> {
+    /// The lower triangle of K + σM, without copies of the whole.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn sum(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Self> {
+        let n = k.rows;
+        let below = |a: &Csc, j: usize| {
+            let column = &a.row_idx[a.col_ptr[j]..a.col_ptr[j + 1]];
+            a.col_ptr[j] + column.partition_point(|&i| i < j)
+        };
+        // First the size, so that nothing is allocated twice.
+        let mut count = 0;
+        let mut col_ptr = try_vec(n + 1, 0, CONTEXT)?;
+        for j in 0..n {
+            merge((k, below(k, j), j), (m, below(m, j)), |_, _, _| count += 1);
+            col_ptr[j + 1] = count;
+        }
+        let mut row_idx = Vec::new();
+        let mut values = Vec::new();
+        row_idx
+            .try_reserve_exact(count)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        values
+            .try_reserve_exact(count)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        for j in 0..n {
+            if j % 1024 == 0 {
+                interrupt.check()?;
+            }
+            merge((k, below(k, j), j), (m, below(m, j)), |i, a, b| {
+                let mut value = a + shift * b;
+                if i == j {
+                    value.im = 0.0;
+                }
+                row_idx.push(i);
+                values.push(T::of(value));
+            });
+        }
+        Ok(Self {
+            n,
+            col_ptr,
+            row_idx,
+            values,
+        })
+    }
+
+    /// Y = A X for column-major X and Y.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn multiply(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.n.max(1);
+        let columns = BETWEEN_CHECKS / self.values.len().max(1) + 1;
+        for (x, y) in x.chunks(columns * n).zip(y.chunks_mut(columns * n)) {
+            interrupt.check_before(2 * (x.len() / n * self.values.len()) as u64)?;
+            for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
+                y.fill(T::NONE);
+                for (j, &xj) in x.iter().enumerate() {
+                    let mut above = T::NONE;
+                    let range = self.col_ptr[j]..self.col_ptr[j + 1];
+                    for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
+                        y[i] += a * xj;
+                        if i != j {
+                            above += a.conjugate() * x[i];
+                        }
+                    }
+                    y[j] += above;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The diagonal.
+    pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.n).map(|j| match self.row_idx.get(self.col_ptr[j]) {
+            Some(&i) if i == j && self.col_ptr[j] < self.col_ptr[j + 1] => self.values[self.col_ptr[j]].complex().re,
+            _ => 0.0,
+        })
+    }
+}
+
+/// Calls `take` with (row, entry of the first, entry of the second) for the rows of a column of either matrix.
+fn merge(
+    (a, mut p, column): (&Csc, usize, usize),
+    (b, mut q): (&Csc, usize),
+    mut take: impl FnMut(usize, Complex64, Complex64),
+) {
+    let (a_end, b_end) = (a.col_ptr[column + 1], b.col_ptr[column + 1]);
+    while p < a_end || q < b_end {
+        let i = if p < a_end { a.row_idx[p] } else { usize::MAX };
+        let k = if q < b_end { b.row_idx[q] } else { usize::MAX };
+        let row = i.min(k);
+        let (mut x, mut y) = (Complex64::ZERO, Complex64::ZERO);
+        if i == row {
+            x = a.values[p];
+            p += 1;
+        }
+        if k == row {
+            y = b.values[q];
+            q += 1;
+        }
+        take(row, x, y);
+    }
+}
