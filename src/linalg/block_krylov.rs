@@ -114,21 +114,14 @@ impl<T: Entry> BlockKrylov<T> {
         &self.gram
     }
 
-    /// Entries of the factor.
-    pub fn factor_entries(&self) -> usize {
-        self.factor.entries()
+    /// The basis, column after column, which [`Self::give_basis`] returns before more blocks are asked for.
+    pub fn take_basis(&mut self) -> Vec<T> {
+        core::mem::take(&mut self.basis)
     }
 
-    /// Vᴴ b
-    pub fn coordinates(&self, b: &SparseVector) -> impl Iterator<Item = Complex64> + '_ {
-        let entries = b.clone();
-        let columns = self.basis.chunks_exact(self.a.n.max(1));
-        columns.map(move |v| entries.iter().map(|&(p, x)| v[p].complex().conj() * x).sum())
-    }
-
-    /// The basis, column after column.
-    pub fn into_basis(self) -> Vec<T> {
-        self.basis
+    /// The basis as it was taken.
+    pub fn give_basis(&mut self, basis: Vec<T>) {
+        self.basis = basis;
     }
 
     /// The first block, of A⁻¹ times the given vectors.
@@ -191,7 +184,10 @@ impl<T: Entry> BlockKrylov<T> {
         for (o, image) in rest.chunks_exact_mut(block.len().max(1)).enumerate() {
             let operator = &self.operators[o];
             let mut reduced = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
-            for (to, from) in reduced.chunks_exact_mut(order).zip(self.reduced[o].chunks_exact(first.max(1))) {
+            for (to, from) in reduced
+                .chunks_exact_mut(order)
+                .zip(self.reduced[o].chunks_exact(first.max(1)))
+            {
                 to[..first].copy_from_slice(from);
             }
             operator.multiply(false, &block, image, interrupt)?;

@@ -85,12 +85,6 @@ impl<T: Entry> Cholesky<T> {
         }))
     }
 
-    /// Number of stored entries of L.
-    #[must_use]
-    pub fn entries(&self) -> usize {
-        self.values.len()
-    }
-
     /// Solves A X = B in place for the columns of `b`.
     ///
     /// # Errors

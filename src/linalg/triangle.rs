@@ -13,7 +13,9 @@ const CONTEXT: &str = "a Hermitian matrix";
 const BETWEEN_CHECKS: usize = 1 << 22;
 
 /// A real or complex number.
-pub trait Entry: ComplexField + Copy + Send + Sync + core::ops::AddAssign + core::ops::Mul<Output = Self> + 'static {
+pub trait Entry:
+    ComplexField + Copy + Send + Sync + core::ops::AddAssign + core::ops::Mul<Output = Self> + 'static
+{
     /// Zero.
     const NONE: Self;
     /// The number, without its imaginary part where it has none.
