@@ -33,7 +33,9 @@ fn used() -> (f64, f64, f64) {
     let status = read("/proc/self/status");
     let memory = |name: &str| {
         let line = status.lines().find(|line| line.starts_with(name));
-        let number = line.and_then(|line| line.split_whitespace().nth(1)).and_then(|x| x.parse::<f64>().ok());
+        let number = line
+            .and_then(|line| line.split_whitespace().nth(1))
+            .and_then(|x| x.parse::<f64>().ok());
         number.unwrap_or(f64::NAN) / 1024.0
     };
     (fields.iter().sum::<f64>() / 100.0, memory("VmRSS:"), memory("VmHWM:"))
@@ -41,7 +43,10 @@ fn used() -> (f64, f64, f64) {
 
 fn step(name: &str, last: &mut f64) {
     let (cpu, now, most) = used();
-    println!("{name:40} {:8.2} s CPU {now:8.0} MB, at most {most:8.0} MB", cpu - *last);
+    println!(
+        "{name:40} {:8.2} s CPU {now:8.0} MB, at most {most:8.0} MB",
+        cpu - *last
+    );
     *last = cpu;
 }
 
@@ -55,7 +60,10 @@ fn run(arguments: &[String]) -> Result<()> {
         _ => Flexibility::Automatic,
     };
     let mut last = 0.0;
-    println!("{} degrees of freedom, {sliders} sliders, H = {harmonics}", plate.ndof());
+    println!(
+        "{} degrees of freedom, {sliders} sliders, H = {harmonics}",
+        plate.ndof()
+    );
     let model = plate.with_sliders(sliders, 2e5, 0.05)?;
     step("model", &mut last);
     let modes = model.lowest_modes(0, ContactState::Stuck, 3)?;
@@ -69,7 +77,11 @@ fn run(arguments: &[String]) -> Result<()> {
         flexibility,
         ..SolverOptions::default()
     };
-    for (name, from, to) in [("sweep", 0.8, 1.2), ("the same sweep", 0.8, 1.2), ("sweep further up", 1.1, 1.4)] {
+    for (name, from, to) in [
+        ("sweep", 0.8, 1.2),
+        ("the same sweep", 0.8, 1.2),
+        ("sweep further up", 1.1, 1.4),
+    ] {
         let range = ForcedOptions {
             omega_start: from * omega,
             omega_stop: to * omega,

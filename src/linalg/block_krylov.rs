@@ -8,7 +8,7 @@
 //! With Galerkin coefficients q the residual of A⁻¹Z V q = A⁻¹b lies in the part E of the last images that the basis does
 //! not hold, so that its norm at any frequency follows from the Gram matrix EᴴAE.
 
-use crate::error::{Error, Result, try_vec};
+use crate::error::{Error, Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::sparse::Csc;
@@ -45,9 +45,9 @@ impl<T: Entry> Operator<T> {
             for j in 0..a.cols {
                 for (i, v) in a.column(j) {
                     if adjoint {
-                        y[j] += T::of(v.conj()) * x[i];
+                        y[j].add_product(T::of(v.conj()), x[i]);
                     } else {
-                        y[i] += T::of(v) * x[j];
+                        y[i].add_product(T::of(v), x[j]);
                     }
                 }
             }
@@ -69,6 +69,8 @@ pub struct BlockKrylov<T> {
     reduced: Vec<Vec<Complex64>>,
     /// Parts of the images of the last block that the basis does not hold: n numbers per column, operator after operator.
     rest: Vec<T>,
+    /// Norms of the images.
+    sizes: Vec<f64>,
     /// Their Gram matrix in the inner product of A.
     gram: Vec<Complex64>,
 }
@@ -85,6 +87,7 @@ impl<T: Entry> BlockKrylov<T> {
             last: 0,
             reduced,
             rest: Vec::new(),
+            sizes: Vec::new(),
             gram: Vec::new(),
         }
     }
@@ -133,11 +136,14 @@ impl<T: Entry> BlockKrylov<T> {
         let mut b = try_vec(inputs.len().saturating_mul(n), T::NONE, CONTEXT)?;
         for (column, input) in b.chunks_exact_mut(n.max(1)).zip(inputs) {
             for &(p, x) in input {
-                column[p] += T::of(x);
+                column[p].add_product(T::of(x), T::of(Complex64::ONE));
             }
         }
-        self.factor.solve(&mut b, interrupt)?;
-        self.absorb(b, interrupt)
+        let mut block = try_copy(&b, CONTEXT)?;
+        self.factor.solve(&mut block, interrupt)?;
+        let sizes = norms(&block, &b, n);
+        drop(b);
+        self.absorb(block, &sizes, interrupt)
     }
 
     /// One more block; `false` where the basis holds all of the images.
@@ -147,24 +153,30 @@ impl<T: Entry> BlockKrylov<T> {
     pub fn grow(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
         let before = self.order();
         let candidates = core::mem::take(&mut self.rest);
-        self.absorb(candidates, interrupt)?;
+        let sizes = core::mem::take(&mut self.sizes);
+        self.absorb(candidates, &sizes, interrupt)?;
         Ok(self.order() > before)
     }
 
-    /// Appends what is new in the candidates, and computes the images of the new block.
-    fn absorb(&mut self, mut block: Vec<T>, interrupt: &Interrupt<'_>) -> Result<()> {
+    /// Appends what is new in the candidates, which came from images of the given sizes, and computes the images of the
+    /// new block.
+    fn absorb(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.a.n;
         let first = self.order();
         let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
-        for pass in 0..2 {
-            self.a.multiply(&block, &mut weighted, interrupt)?;
-            let sizes: Vec<f64> = norms(&block, &weighted, n);
-            self.project(&mut block, &weighted, interrupt)?;
-            self.a.multiply(&block, &mut weighted, interrupt)?;
-            let kept = orthonormalise((&mut block, &mut weighted), n, &sizes, pass == 0, interrupt)?;
+        self.a.multiply(&block, &mut weighted, interrupt)?;
+        let orthonormal = |block: &mut Vec<T>, weighted: &mut Vec<T>, drops| -> Result<()> {
+            let kept = orthonormalise((block, weighted), n, sizes, drops, interrupt)?;
             block.truncate(kept * n);
             weighted.truncate(kept * n);
-        }
+            Ok(())
+        };
+        orthonormal(&mut block, &mut weighted, true)?;
+        // What is left of a small part has lost the digits by which it was small.
+        self.a.multiply(&block, &mut weighted, interrupt)?;
+        self.project(&mut block, &weighted, interrupt)?;
+        self.a.multiply(&block, &mut weighted, interrupt)?;
+        orthonormal(&mut block, &mut weighted, false)?;
         self.basis
             .try_reserve_exact(block.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
@@ -181,6 +193,7 @@ impl<T: Entry> BlockKrylov<T> {
         let count = self.operators.len();
         let mut rest = try_vec(block.len() * count, T::NONE, CONTEXT)?;
         let mut product = try_vec(order * new, T::NONE, CONTEXT)?;
+        let mut coefficients = try_vec(order * new * count, T::NONE, CONTEXT)?;
         for (o, image) in rest.chunks_exact_mut(block.len().max(1)).enumerate() {
             let operator = &self.operators[o];
             let mut reduced = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
@@ -195,6 +208,9 @@ impl<T: Entry> BlockKrylov<T> {
             for (to, from) in reduced[first * order..].iter_mut().zip(&product) {
                 *to = from.complex();
             }
+            for (to, from) in coefficients[o * order * new..].iter_mut().zip(&product) {
+                *to = from.scaled(-1.0);
+            }
             if matches!(operator, Operator::General(_)) {
                 let mut back = try_vec(block.len(), T::NONE, CONTEXT)?;
                 operator.multiply(true, &block, &mut back, interrupt)?;
@@ -206,16 +222,24 @@ impl<T: Entry> BlockKrylov<T> {
                 }
             }
             self.reduced[o] = reduced;
-            self.factor.solve(image, interrupt)?;
         }
         drop(block);
-        // The coefficients are those of A⁻¹O V in the basis: VᴴA A⁻¹O V, up to rounding, which the next pass removes.
-        let mut weighted = try_vec(rest.len(), T::NONE, CONTEXT)?;
-        self.a.multiply(&rest, &mut weighted, interrupt)?;
-        self.project(&mut rest, &weighted, interrupt)?;
-        self.a.multiply(&rest, &mut weighted, interrupt)?;
+        let weighted = try_copy(&rest, CONTEXT)?;
+        self.factor.solve(&mut rest, interrupt)?;
+        self.sizes = norms(&rest, &weighted, n);
+        // VᴴA A⁻¹O V = VᴴO V: the part in the basis needs no other product.
+        interrupt.check_before((4 * order * rest.len()) as u64)?;
+        matmul(
+            MatMut::from_column_major_slice_mut(&mut rest, n, new * count),
+            Accum::Add,
+            MatRef::from_column_major_slice(&self.basis, n, order),
+            MatRef::from_column_major_slice(&coefficients, order, new * count),
+            T::of(Complex64::ONE),
+            Par::Seq,
+        );
         let columns = new * count;
         let mut gram = try_vec(columns * columns, T::NONE, CONTEXT)?;
+        // EᴴA V = 0, so that EᴴA E = EᴴA A⁻¹O V.
         adjoint_product(&rest, &weighted, n, &mut gram);
         self.gram.clear();
         self.gram.extend(gram.iter().map(|z| z.complex()));
@@ -274,7 +298,7 @@ fn norms<T: Entry>(block: &[T], weighted: &[T], n: usize) -> Vec<f64> {
 fn dot<T: Entry>(u: &[T], w: &[T]) -> Complex64 {
     let mut sum = T::NONE;
     for (&u, &w) in u.iter().zip(w) {
-        sum += u.conjugate() * w;
+        sum.add_conjugate_product(u, w);
     }
     sum.complex()
 }
@@ -324,8 +348,8 @@ fn orthonormalise<T: Entry>(
         for (x, y) in later.chunks_exact_mut(n).zip(later_weighted.chunks_exact_mut(n)) {
             let c = T::of(-dot(u, y));
             for ((x, &u), (y, &w)) in x.iter_mut().zip(&*u).zip(y.iter_mut().zip(&*w)) {
-                *x += c * u;
-                *y += c * w;
+                x.add_product(c, u);
+                y.add_product(c, w);
             }
         }
     }

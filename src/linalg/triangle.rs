@@ -9,8 +9,8 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "a Hermitian matrix";
 
-/// Operations of a product between two checks.
-const BETWEEN_CHECKS: usize = 1 << 22;
+/// Columns of a product that are computed together.
+const AT_ONCE: usize = 4;
 
 /// A real or complex number.
 pub trait Entry:
@@ -22,49 +22,71 @@ pub trait Entry:
     fn of(z: Complex64) -> Self;
     /// The number as a complex one.
     fn complex(self) -> Complex64;
-    /// The complex conjugate.
-    fn conjugate(self) -> Self;
     /// The number times a real one.
     fn scaled(self, factor: f64) -> Self;
+    /// self += a b
+    fn add_product(&mut self, a: Self, b: Self);
+    /// self += conj(a) b
+    fn add_conjugate_product(&mut self, a: Self, b: Self);
 }
 
 impl Entry for f64 {
     const NONE: Self = 0.0;
 
+    #[inline]
     fn of(z: Complex64) -> Self {
         z.re
     }
 
+    #[inline]
     fn complex(self) -> Complex64 {
-        self.into()
+        Complex64::new(self, 0.0)
     }
 
-    fn conjugate(self) -> Self {
-        self
-    }
-
+    #[inline]
     fn scaled(self, factor: f64) -> Self {
         self * factor
+    }
+
+    #[inline]
+    fn add_product(&mut self, a: Self, b: Self) {
+        *self += a * b;
+    }
+
+    #[inline]
+    fn add_conjugate_product(&mut self, a: Self, b: Self) {
+        *self += a * b;
     }
 }
 
 impl Entry for Complex64 {
     const NONE: Self = Self::ZERO;
 
+    #[inline]
     fn of(z: Complex64) -> Self {
         z
     }
 
+    #[inline]
     fn complex(self) -> Complex64 {
         self
     }
 
-    fn conjugate(self) -> Self {
-        self.conj()
+    #[inline]
+    fn scaled(self, factor: f64) -> Self {
+        Self::new(self.re * factor, self.im * factor)
     }
 
-    fn scaled(self, factor: f64) -> Self {
-        self * factor
+    #[inline]
+    fn add_product(&mut self, a: Self, b: Self) {
+        self.re += a.re * b.re - a.im * b.im;
+        self.im += a.re * b.im + a.im * b.re;
+    }
+
+    #[inline]
+    fn add_conjugate_product(&mut self, a: Self, b: Self) {
+        self.re += a.re * b.re + a.im * b.im;
+        self.im += a.re * b.im - a.im * b.re;
     }
 }
 
@@ -134,33 +156,55 @@ impl<T: Entry> Triangle<T> {
     /// `StoppedByCaller`.
     pub fn multiply(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n.max(1);
-        let columns = BETWEEN_CHECKS / self.values.len().max(1) + 1;
-        for (x, y) in x.chunks(columns * n).zip(y.chunks_mut(columns * n)) {
+        for (x, y) in x.chunks(AT_ONCE * n).zip(y.chunks_mut(AT_ONCE * n)) {
             interrupt.check_before(2 * (x.len() / n * self.values.len()) as u64)?;
-            for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
-                y.fill(T::NONE);
-                for (j, &xj) in x.iter().enumerate() {
-                    let mut above = T::NONE;
-                    let range = self.col_ptr[j]..self.col_ptr[j + 1];
-                    for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
-                        y[i] += a * xj;
-                        if i != j {
-                            above += a.conjugate() * x[i];
-                        }
-                    }
-                    y[j] += above;
+            y.fill(T::NONE);
+            if x.len() == AT_ONCE * n {
+                self.add_together(x, y);
+            } else {
+                for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
+                    self.add_one(x, y);
                 }
             }
         }
         Ok(())
     }
 
-    /// The diagonal.
-    pub fn diagonal(&self) -> impl Iterator<Item = f64> + '_ {
-        (0..self.n).map(|j| match self.row_idx.get(self.col_ptr[j]) {
-            Some(&i) if i == j && self.col_ptr[j] < self.col_ptr[j + 1] => self.values[self.col_ptr[j]].complex().re,
-            _ => 0.0,
-        })
+    fn add_one(&self, x: &[T], y: &mut [T]) {
+        for (j, &xj) in x.iter().enumerate() {
+            let mut above = T::NONE;
+            let range = self.col_ptr[j]..self.col_ptr[j + 1];
+            for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
+                y[i].add_product(a, xj);
+                if i != j {
+                    above.add_conjugate_product(a, x[i]);
+                }
+            }
+            y[j].add_product(above, T::of(Complex64::ONE));
+        }
+    }
+
+    /// Several columns with one pass over the matrix, which is what takes the time.
+    fn add_together(&self, x: &[T], y: &mut [T]) {
+        let n = self.n;
+        for j in 0..n {
+            let mut above = [T::NONE; AT_ONCE];
+            let xj: [T; AT_ONCE] = core::array::from_fn(|c| x[c * n + j]);
+            let range = self.col_ptr[j]..self.col_ptr[j + 1];
+            for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
+                for c in 0..AT_ONCE {
+                    y[c * n + i].add_product(a, xj[c]);
+                }
+                if i != j {
+                    for (c, above) in above.iter_mut().enumerate() {
+                        above.add_conjugate_product(a, x[c * n + i]);
+                    }
+                }
+            }
+            for (c, above) in above.into_iter().enumerate() {
+                y[c * n + j].add_product(above, T::of(Complex64::ONE));
+            }
+        }
     }
 }
 
