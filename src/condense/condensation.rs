@@ -13,6 +13,7 @@ use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
 use crate::condense::harmonic_block::{Artificial, harmonic_block};
+use crate::condense::memory_limit::within_directly;
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
@@ -236,10 +237,11 @@ impl Condensed {
         };
         let is_reduced = on_bases.is_some();
         let (mut blocks, certificate) = on_bases.unwrap_or_default();
-        for (i, &number) in set.numbers().iter().enumerate() {
-            if is_reduced {
-                break;
-            }
+        if !is_reduced {
+            within_directly(options.memory_limit, model, set.numbers())?;
+        }
+        let direct = if is_reduced { &[][..] } else { set.numbers() };
+        for (i, &number) in direct.iter().enumerate() {
             interrupt.part(Phase::Condensation, i, set.numbers().len())?;
             let contacts = (&contact_classes, &representatives[..]);
             let mut block = harmonic_block(model, number, contacts, |c| kappa(c, number), interrupt)?;

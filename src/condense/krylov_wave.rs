@@ -1,7 +1,8 @@
 //! The basis of one wave: its matrices, its factor, and blocks until the certificate is met.
 
+use crate::condense::memory_limit::within;
 use crate::condense::wave_modes::proportional;
-use crate::error::{Error, Result, Status, fail, try_vec};
+use crate::error::{Result, fail, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::block_krylov::{BlockKrylov, Operator, SparseVector};
 use crate::linalg::cholesky::Cholesky;
@@ -161,7 +162,7 @@ fn build<T: Entry>(
         return Ok(None);
     };
     krylov.start(&inputs, interrupt)?;
-    let most = MOST_COLUMNS.max(MOST_BLOCKS * inputs.len()).min(prepared.n);
+    let most = MOST_COLUMNS.max(MOST_BLOCKS * inputs.len());
     let mut wave = ReducedWave {
         key: matrices.key,
         inputs,
@@ -206,72 +207,64 @@ struct Prepared {
     n: usize,
 }
 
-/// The factor of K + σM at the first shift that makes it definite.
+/// The factor of K + σM at the first shift that makes it definite. The assembled matrices are freed before it is made, and
+/// assembled again for another shift.
 fn started<T: Entry>(
     matrices: &WaveMatrices<'_>,
     assembled: Assembled,
     inputs: &[SparseVector],
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(BlockKrylov<T>, Prepared)>> {
-    let Assembled {
-        stiffness,
-        mass,
-        damping,
-    } = assembled;
-    let n = stiffness.rows;
-    let trace = |a: &Csc| (0..n).map(|j| a.get(j, j).re).sum::<f64>();
-    let heavy = trace(&mass);
-    if heavy <= 0.0 {
-        return Ok(None);
-    }
-    let typical = SMALL * trace(&stiffness) / heavy;
-    let wanted = SHIFT * matrices.frequency * matrices.frequency;
-    let mut shift = if wanted > 0.0 { wanted } else { typical };
-    let none = Csc::from_triplets(n, n, Vec::new())?;
-    let mass_triangle = Triangle::<T>::sum(&mass, (0.0, &none), interrupt)?;
-    let held = matrices.model.kept().bytes();
-    let block = inputs.len() * n * size_of::<T>();
+    let mut next = Some(assembled);
+    let mut shift = SHIFT * matrices.frequency * matrices.frequency;
     for _ in 0..ATTEMPTS {
+        let ready = match next.take() {
+            Some(ready) => Some(ready),
+            None => matrices.assembled(interrupt)?,
+        };
+        let Some(Assembled {
+            stiffness,
+            mass,
+            damping,
+        }) = ready
+        else {
+            return Ok(None);
+        };
+        let n = stiffness.rows;
+        let trace = |a: &Csc| (0..n).map(|j| a.get(j, j).re).sum::<f64>();
+        let heavy = trace(&mass);
+        if heavy <= 0.0 {
+            return Ok(None);
+        }
+        if shift <= 0.0 {
+            shift = SMALL * trace(&stiffness).abs() / heavy;
+        }
         let a = Triangle::<T>::sum(&stiffness, (shift, &mass), interrupt)?;
-        let beside = (USUAL_BLOCKS + 3) * block + 2 * a.values.len() * (size_of::<T>() + size_of::<usize>()) + held;
+        drop(stiffness);
+        let none = Csc::from_triplets(n, n, Vec::new())?;
+        let mass_triangle = Triangle::<T>::sum(&mass, (0.0, &none), interrupt)?;
+        drop(mass);
+        let block = inputs.len() * n * size_of::<T>();
+        let beside = (USUAL_BLOCKS + 3) * block
+            + 2 * a.values.len() * (size_of::<T>() + size_of::<usize>())
+            + matrices.model.kept().bytes();
         let allow = |factor: usize| within(matrices.memory_limit, factor + beside);
         let Some(factor) = Cholesky::new(&a, allow, interrupt)? else {
             shift *= RAISED;
             continue;
         };
-        drop((stiffness, mass));
         let mut operators = vec![Operator::Hermitian(mass_triangle)];
-        let proportional = match damping {
+        let damping = match damping {
             Damping::Proportional(alpha, beta) => Some((alpha, beta)),
             Damping::General(c) => {
                 operators.push(Operator::General(c));
                 None
             }
         };
-        let prepared = Prepared {
-            shift,
-            damping: proportional,
-            n,
-        };
+        let prepared = Prepared { shift, damping, n };
         return Ok(Some((BlockKrylov::new(factor, a, operators), prepared)));
     }
     Ok(None)
-}
-
-/// Refuses what a limit of bytes does not allow; 0 is no limit.
-pub(super) fn within(limit: usize, need: usize) -> Result<()> {
-    if limit == 0 || need <= limit {
-        return Ok(());
-    }
-    let mega = |bytes: usize| bytes.div_ceil(1 << 20);
-    Err(Error::new(
-        Status::OutOfMemory,
-        format_args!(
-            "factors and basis of the structure need {} MB, but memory_limit = {limit} bytes is {} MB; raise it, or reduce the model",
-            mega(need),
-            limit >> 20
-        ),
-    ))
 }
 
 /// The matrices on the basis, with the basis rotated so that the mass is diagonal.

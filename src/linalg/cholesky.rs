@@ -22,6 +22,21 @@ const AT_ONCE: usize = 8;
 /// Operations per entry of the factors and right-hand side.
 const OF_ONE_ENTRY: u64 = 4;
 
+fn analysed(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<SymbolicCholesky<usize>> {
+    let parameters = CholeskySymbolicParams::default();
+    factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, parameters)
+        .map_err(|_| Error::out_of_memory(CONTEXT))
+}
+
+/// Number of entries of L for a matrix with the pattern of `a`.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn entries_of_factor(a: &Csc) -> Result<usize> {
+    let pattern = SymbolicSparseColMatRef::new_checked(a.rows, a.rows, &a.col_ptr, None, &a.row_idx);
+    Ok(analysed(pattern)?.len_val())
+}
+
 /// Factors of one matrix.
 pub struct Cholesky<T> {
     n: usize,
@@ -48,13 +63,7 @@ impl<T: Entry> Cholesky<T> {
         }
         interrupt.announce_factorisation()?;
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &a.row_idx);
-        let symbolic = factorize_symbolic_cholesky(
-            pattern,
-            Side::Lower,
-            SymmetricOrdering::Amd,
-            CholeskySymbolicParams::default(),
-        )
-        .map_err(|_| no_memory())?;
+        let symbolic = analysed(pattern)?;
         let need = symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, faer::Spec::default());
         allow(symbolic.len_val() * size_of::<T>() + need.unaligned_bytes_required())?;
         let mut values = try_vec(symbolic.len_val(), T::NONE, CONTEXT)?;
