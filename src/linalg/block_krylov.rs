@@ -181,14 +181,16 @@ impl<T: Entry> BlockKrylov<T> {
             .try_reserve_exact(block.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
         self.basis.extend_from_slice(&block);
-        drop(weighted);
-        self.images(first, block, interrupt)
+        drop((weighted, block));
+        self.images(first, interrupt)
     }
 
-    /// Images of the columns from `first` on, which are `block`.
-    fn images(&mut self, first: usize, block: Vec<T>, interrupt: &Interrupt<'_>) -> Result<()> {
+    /// Images of the columns from `first` on.
+    fn images(&mut self, first: usize, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.a.n;
-        let (order, new) = (self.order(), block.len() / n.max(1));
+        let order = self.order();
+        let new = order - first;
+        let block = &self.basis[first * n..];
         self.last = first;
         let count = self.operators.len();
         let mut rest = try_vec(block.len() * count, T::NONE, CONTEXT)?;
@@ -203,7 +205,7 @@ impl<T: Entry> BlockKrylov<T> {
             {
                 to[..first].copy_from_slice(from);
             }
-            operator.multiply(false, &block, image, interrupt)?;
+            operator.multiply(false, block, image, interrupt)?;
             adjoint_product(&self.basis, image, n, &mut product);
             for (to, from) in reduced[first * order..].iter_mut().zip(&product) {
                 *to = from.complex();
@@ -213,7 +215,7 @@ impl<T: Entry> BlockKrylov<T> {
             }
             if matches!(operator, Operator::General(_)) {
                 let mut back = try_vec(block.len(), T::NONE, CONTEXT)?;
-                operator.multiply(true, &block, &mut back, interrupt)?;
+                operator.multiply(true, block, &mut back, interrupt)?;
                 adjoint_product(&self.basis, &back, n, &mut product);
             }
             for j in 0..first {
@@ -223,7 +225,6 @@ impl<T: Entry> BlockKrylov<T> {
             }
             self.reduced[o] = reduced;
         }
-        drop(block);
         let weighted = try_copy(&rest, CONTEXT)?;
         self.factor.solve(&mut rest, interrupt)?;
         self.sizes = norms(&rest, &weighted, n);
