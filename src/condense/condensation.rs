@@ -12,7 +12,7 @@
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
-use crate::condense::harmonic_block::{Artificial, harmonic_block};
+use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block};
 use crate::condense::memory_limit::within_directly;
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
@@ -222,39 +222,25 @@ impl Condensed {
         let kappa = |c: usize, number: usize| {
             reference.kappa(reference_stiffness[c], number) * if number == 1 { share[c] } else { 1.0 }
         };
+        let request = Request {
+            model,
+            options,
+            numbers: set.numbers(),
+            contacts: (&contact_classes, &representatives),
+            sweep,
+        };
         let on_bases = match mode {
-            None => {
-                let request = Request {
-                    model,
-                    options,
-                    numbers: set.numbers(),
-                    contacts: (&contact_classes, &representatives),
-                    sweep,
-                };
-                reduced_blocks(&request, kappa, interrupt)?
-            }
+            None => reduced_blocks(&request, kappa, interrupt)?,
             Some(_) => None,
         };
         let is_reduced = on_bases.is_some();
-        let (mut blocks, certificate) = on_bases.unwrap_or_default();
-        if !is_reduced {
-            within_directly(options.memory_limit, model, set.numbers())?;
-        }
-        let direct = if is_reduced { &[][..] } else { set.numbers() };
-        for (i, &number) in direct.iter().enumerate() {
-            interrupt.part(Phase::Condensation, i, set.numbers().len())?;
-            let contacts = (&contact_classes, &representatives[..]);
-            let mut block = harmonic_block(model, number, contacts, |c| kappa(c, number), interrupt)?;
-            block.artificial = match mode {
-                None => Artificial::None,
-                Some((DampingForm::Mass, _)) => Artificial::Mass,
-                Some((DampingForm::Stiffness, _)) => {
-                    let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
-                    Artificial::Stiffness(structure.aligned(&block.reference)?)
-                }
-            };
-            try_push(&mut blocks, block, "the matrices per harmonic")?;
-        }
+        let (blocks, certificate) = match on_bases {
+            Some(found) => found,
+            None => (
+                direct_blocks(&request, mode.map(|(form, _)| form), kappa, interrupt)?,
+                0.0,
+            ),
+        };
         let condensed = Self {
             set,
             degrees: model.structure().degrees().clone(),
@@ -300,4 +286,30 @@ impl Condensed {
         }
         Ok(())
     }
+}
+
+/// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
+fn direct_blocks(
+    request: &Request<'_>,
+    mode: Option<DampingForm>,
+    kappa: impl Fn(usize, usize) -> Complex64,
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<HarmonicBlock>> {
+    let (model, numbers) = (request.model, request.numbers);
+    within_directly(request.options.memory_limit, model, numbers)?;
+    let mut blocks = Vec::new();
+    for (i, &number) in numbers.iter().enumerate() {
+        interrupt.part(Phase::Condensation, i, numbers.len())?;
+        let mut block = harmonic_block(model, number, request.contacts, |c| kappa(c, number), interrupt)?;
+        block.artificial = match mode {
+            None => Artificial::None,
+            Some(DampingForm::Mass) => Artificial::Mass,
+            Some(DampingForm::Stiffness) => {
+                let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
+                Artificial::Stiffness(structure.aligned(&block.reference)?)
+            }
+        };
+        try_push(&mut blocks, block, "the matrices per harmonic")?;
+    }
+    Ok(blocks)
 }

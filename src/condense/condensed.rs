@@ -110,13 +110,11 @@ impl Condensed {
     /// # Errors
     /// `OutOfMemory`.
     pub fn expand(&self, i: usize, q: &[Complex64], x: &mut [Complex64]) -> Result<()> {
-        match &self.blocks[i].view {
-            Some(view) => view.expand(q, x),
-            None => {
-                x.copy_from_slice(q);
-                Ok(())
-            }
+        if let Some(view) = &self.blocks[i].view {
+            return view.expand(q, x);
         }
+        x.copy_from_slice(q);
+        Ok(())
     }
 
     /// The map from the degrees of freedom of the caller to the independent ones.
@@ -126,7 +124,6 @@ impl Condensed {
     }
 
     /// Row of the motion of one of the caller's degrees of freedom in the i-th carried harmonic.
-    #[must_use]
     ///
     /// # Errors
     /// `OutOfMemory`.

@@ -2,7 +2,7 @@
 
 use crate::condense::memory_limit::within;
 use crate::condense::wave_modes::proportional;
-use crate::error::{Result, fail, try_vec};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::block_krylov::{BlockKrylov, Operator, SparseVector};
 use crate::linalg::cholesky::Cholesky;
@@ -149,13 +149,16 @@ pub(super) fn prepare(
     }
 }
 
+/// A basis from its columns, and back.
+type Wrapping<T> = (fn(Vec<T>) -> Basis, fn(Basis) -> Vec<T>);
+
 fn build<T: Entry>(
     matrices: &WaveMatrices<'_>,
     assembled: Assembled,
     inputs: Vec<SparseVector>,
     limit: f64,
     error: impl Fn(&Arc<ReducedWave>) -> Result<f64>,
-    (basis, back): (fn(Vec<T>) -> Basis, fn(Basis) -> Vec<T>),
+    (basis, back): Wrapping<T>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(Arc<ReducedWave>, f64)>> {
     let Some((mut krylov, prepared)) = started::<T>(matrices, assembled, &inputs, interrupt)? else {
@@ -253,11 +256,12 @@ fn started<T: Entry>(
             shift *= RAISED;
             continue;
         };
-        let mut operators = vec![Operator::Hermitian(mass_triangle)];
+        let mut operators = Vec::new();
+        try_push(&mut operators, Operator::Hermitian(mass_triangle), CONTEXT)?;
         let damping = match damping {
             Damping::Proportional(alpha, beta) => Some((alpha, beta)),
             Damping::General(c) => {
-                operators.push(Operator::General(c));
+                try_push(&mut operators, Operator::General(c), CONTEXT)?;
                 None
             }
         };
@@ -270,7 +274,7 @@ fn started<T: Entry>(
 /// The matrices on the basis, with the basis rotated so that the mass is diagonal.
 fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &Interrupt<'_>) -> Result<ReducedPencil> {
     let order = krylov.order();
-    let mut mass = krylov.reduced(0).to_vec();
+    let mut mass = try_copy(krylov.reduced(0), CONTEXT)?;
     for j in 0..order {
         for i in 0..j {
             let mean = 0.5 * (mass[j * order + i] + mass[i * order + j].conj());
@@ -290,7 +294,7 @@ fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &In
         damping,
         remainder: Remainder {
             last: krylov.last(),
-            gram: krylov.gram().to_vec(),
+            gram: try_copy(krylov.gram(), CONTEXT)?,
         },
     })
 }

@@ -3,7 +3,7 @@
 use crate::condense::HarmonicBlock;
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::harmonic_block::Artificial;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::reduced_wave::{MotionRow, ReducedView};
@@ -57,7 +57,7 @@ pub(super) fn reduced_block(
     for (force, motion, k) in &springs {
         add(&mut full, &view.row(force)?, &view.row(motion)?, (*k).into());
     }
-    let stiffness = full.values.clone();
+    let stiffness = try_copy(&full.values, CONTEXT)?;
     let rows_of = |contacts: &[(usize, usize)]| -> Result<(Vec<Row>, Vec<MotionRow>)> {
         let (mut structural, mut reduced) = (Vec::new(), Vec::new());
         for &(i, k) in contacts {

@@ -53,9 +53,8 @@ pub fn reduced_resonances(
         let damping = || on_pattern(try_copy(&block.damping, CONTEXT)?);
         match damped_frequencies(block.number, range, (&stiffness, &mass), damping, interrupt) {
             Ok(Some(own)) => try_extend(&mut found, &own, CONTEXT)?,
-            Ok(None) => return Ok(None),
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
-            Err(_) => return Ok(None),
+            Ok(None) | Err(_) => return Ok(None),
         }
     }
     found.sort_by(|a, b| a.omega.total_cmp(&b.omega));

@@ -10,7 +10,7 @@ use crate::condense::contact_classes::ContactClasses;
 use crate::condense::krylov_wave::{WaveMatrices, prepare};
 use crate::condense::reduced_block::reduced_block;
 use crate::condense::sweep::Sweep;
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;
 use crate::model::Model;
@@ -73,7 +73,7 @@ pub(super) fn reduced_blocks(
     if groups.iter().any(|group| group.inputs.is_empty()) || (!forced && groups.iter().any(small)) {
         return Ok(None);
     }
-    let mut views: Vec<Option<ReducedView>> = request.numbers.iter().map(|_| None).collect();
+    let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
     let mut worst = 0.0_f64;
     for group in &groups {
         let Some((wave, error)) = wave_of(request, group, &kappa, interrupt)? else {
@@ -121,7 +121,10 @@ fn wave_of(
 ) -> Result<Option<(Arc<ReducedWave>, f64)>> {
     let limit = request.options.certificate;
     let error = |wave: &Arc<ReducedWave>| certificate_of(request, group, wave, kappa, interrupt);
-    let mut inputs = group.inputs.clone();
+    let mut inputs = Vec::new();
+    for input in &group.inputs {
+        try_push(&mut inputs, try_copy(input, CONTEXT)?, CONTEXT)?;
+    }
     let kept = request.model.kept().find(group.key);
     if let Some(wave) = &kept {
         if inputs.iter().all(|input| wave.inputs.contains(input)) {
@@ -133,7 +136,7 @@ fn wave_of(
         // The new basis serves earlier calls, too.
         for input in &wave.inputs {
             if !inputs.contains(input) {
-                try_push(&mut inputs, input.clone(), CONTEXT)?;
+                try_push(&mut inputs, try_copy(input, CONTEXT)?, CONTEXT)?;
             }
         }
     }
@@ -265,7 +268,7 @@ fn inputs(request: &Request<'_>, number: usize) -> Result<Vec<SparseVector>> {
         add(&row)?;
     }
     if many {
-        let mut force = crate::error::try_vec(structure.ndof(), Complex64::ZERO, CONTEXT)?;
+        let mut force = try_vec(structure.ndof(), Complex64::ZERO, CONTEXT)?;
         let size = model.excitation().largest();
         model.add_forces_to(number, 1.0 / size, &mut force);
         let mut input = Vec::new();

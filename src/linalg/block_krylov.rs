@@ -77,6 +77,7 @@ pub struct BlockKrylov<T> {
 
 impl<T: Entry> BlockKrylov<T> {
     /// An empty basis about `a`, whose factors are given.
+    #[must_use]
     pub fn new(factor: Cholesky<T>, a: Triangle<T>, operators: Vec<Operator<T>>) -> Self {
         let reduced = operators.iter().map(|_| Vec::new()).collect();
         Self {
@@ -93,26 +94,31 @@ impl<T: Entry> BlockKrylov<T> {
     }
 
     /// Number of columns of the basis.
+    #[must_use]
     pub fn order(&self) -> usize {
         self.basis.len() / self.a.n.max(1)
     }
 
     /// First column of the last block.
+    #[must_use]
     pub fn last(&self) -> usize {
         self.last
     }
 
     /// Columns that the next block has at most.
+    #[must_use]
     pub fn next_columns(&self) -> usize {
         self.rest.len() / self.a.n.max(1)
     }
 
     /// Vᴴ O V of an operator, column after column.
+    #[must_use]
     pub fn reduced(&self, operator: usize) -> &[Complex64] {
         &self.reduced[operator]
     }
 
     /// EᴴAE of the images of the last block, operator after operator.
+    #[must_use]
     pub fn gram(&self) -> &[Complex64] {
         &self.gram
     }
@@ -315,14 +321,14 @@ fn orthonormalise<T: Entry>(
 ) -> Result<usize> {
     let n = n.max(1);
     let columns = block.len() / n;
-    let mut sizes = sizes.to_vec();
+    let mut sizes = try_copy(sizes, CONTEXT)?;
     for k in 0..columns {
         interrupt.check_before((8 * (columns - k) * n) as u64)?;
         // The largest share that is still new.
         let mut best = (k, -1.0);
-        for j in k..columns {
+        for (j, size) in sizes.iter().enumerate().take(columns).skip(k) {
             let at = j * n..(j + 1) * n;
-            let share = dot(&block[at.clone()], &weighted[at]).re.max(0.0).sqrt() / sizes[j].max(f64::MIN_POSITIVE);
+            let share = dot(&block[at.clone()], &weighted[at]).re.max(0.0).sqrt() / size.max(f64::MIN_POSITIVE);
             if share > best.1 {
                 best = (j, share);
             }

@@ -23,6 +23,7 @@ pub trait Entry:
     /// The number as a complex one.
     fn complex(self) -> Complex64;
     /// The number times a real one.
+    #[must_use]
     fn scaled(self, factor: f64) -> Self;
     /// self += a b
     fn add_product(&mut self, a: Self, b: Self);

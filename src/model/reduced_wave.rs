@@ -190,13 +190,13 @@ impl ReducedView {
         }
     }
 
-    /// Coordinates Σ conj(xₚ) Vₚ… of the row of a motion: row·x = result·q.
+    /// A row over the coordinates with the same motion as one over the degrees of freedom.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn row(&self, row: &Row) -> Result<MotionRow> {
         let mut terms = Vec::new();
-        for (k, z) in self.product(row.iter().flatten().copied())?.into_iter().enumerate() {
+        for (k, z) in self.product(&row.iter().flatten().copied())?.into_iter().enumerate() {
             try_push(&mut terms, (k, z), CONTEXT)?;
         }
         Ok(MotionRow(terms))
@@ -208,7 +208,7 @@ impl ReducedView {
     /// `OutOfMemory`.
     pub fn force(&self, f: &[Complex64]) -> Result<Vec<Complex64>> {
         let entries = f.iter().enumerate().filter(|(_, z)| **z != Complex64::ZERO);
-        let mut found = self.product(entries.map(|(p, z)| (p, z.conj())))?;
+        let mut found = self.product(&entries.map(|(p, z)| (p, z.conj())))?;
         for z in &mut found {
             *z = z.conj();
         }
@@ -220,7 +220,7 @@ impl ReducedView {
     /// # Errors
     /// `OutOfMemory`.
     pub fn coordinates(&self, input: &SparseVector) -> Result<Vec<Complex64>> {
-        let mut found = self.product(input.iter().map(|&(p, z)| (p, self.turned(z).conj())))?;
+        let mut found = self.product(&input.iter().map(|&(p, z)| (p, self.turned(z).conj())))?;
         for z in &mut found {
             *z = z.conj();
         }
@@ -228,7 +228,7 @@ impl ReducedView {
     }
 
     /// Σ aₚ (V Q)ₚ
-    fn product(&self, entries: impl Iterator<Item = (usize, Complex64)> + Clone) -> Result<Vec<Complex64>> {
+    fn product(&self, entries: &(impl Iterator<Item = (usize, Complex64)> + Clone)) -> Result<Vec<Complex64>> {
         let (order, n) = (self.pencil().order(), self.wave.n);
         let mut plain = try_vec(order, Complex64::ZERO, CONTEXT)?;
         for (k, z) in plain.iter_mut().enumerate() {

@@ -55,7 +55,10 @@ fn the_certificate_bounds_the_error_of_all_degrees_of_freedom() {
         let (x, exact) = (motion(&reduced, 0), motion(&direct, 0));
         let size = |x: &mut dyn Iterator<Item = Complex64>| x.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
         let off = size(&mut x.iter().zip(&exact).map(|(a, b)| a - b)) / size(&mut exact.iter().copied());
-        println!("{at:.3} rad/s: certificate {:.1e}, true {off:.1e}", reduction.certificate);
+        println!(
+            "{at:.3} rad/s: certificate {:.1e}, true {off:.1e}",
+            reduction.certificate
+        );
         assert!(off < 1e-8, "{off:e}");
         let (e, f) = (reduced.energy_at(0).unwrap(), direct.energy_at(0).unwrap());
         assert!((e.potential_peak / f.potential_peak - 1.0).abs() < 1e-7);
@@ -66,7 +69,13 @@ fn the_certificate_bounds_the_error_of_all_degrees_of_freedom() {
             direct.time_history(0, plate.corner(), 16).unwrap(),
         );
         let largest = history.1.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
-        assert!(history.0.iter().zip(&history.1).all(|(a, b)| (a - b).abs() < 1e-8 * largest));
+        assert!(
+            history
+                .0
+                .iter()
+                .zip(&history.1)
+                .all(|(a, b)| (a - b).abs() < 1e-8 * largest)
+        );
     }
 }
 
