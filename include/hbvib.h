@@ -1027,6 +1027,18 @@ hbvib_status hbvib_check_jacobian(const hbvib_model *model,
  * Solve: options, progress and cancellation, forced responses
  * ============================================================================================== */
 
+/// Ways to the flexibility of the structure at its contacts.
+typedef enum {
+  /// A basis for large structures where it holds, factors otherwise.
+  HBVIB_FLEXIBILITY_AUTOMATIC = 0,
+  /// Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that
+  /// is needed.
+  HBVIB_FLEXIBILITY_DIRECT = 1,
+  /// A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is
+  /// kept with the model until its matrices change; hbvib_branch_reduction has its certificate.
+  HBVIB_FLEXIBILITY_KRYLOV = 2,
+} hbvib_flexibility;
+
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
@@ -1080,18 +1092,6 @@ typedef struct {
   /// Reserved: must be 0.
   int32_t reserved;
 } hbvib_solver_options;
-
-/// Ways to the flexibility of the structure at its contacts.
-typedef enum {
-  /// A basis for large structures where it holds, factors otherwise.
-  HBVIB_FLEXIBILITY_AUTOMATIC = 0,
-  /// Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that
-  /// is needed.
-  HBVIB_FLEXIBILITY_DIRECT = 1,
-  /// A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is
-  /// kept with the model until its matrices change; hbvib_branch_reduction has its certificate.
-  HBVIB_FLEXIBILITY_KRYLOV = 2,
-} hbvib_flexibility;
 
 /// Fills solver options with their defaults: tolerance = 1e-3, from which the harmonics follow,
 /// exact events, automatic steps. For a fixed number of harmonics set tolerance = 0 and harmonics.

@@ -9,6 +9,20 @@ use super::versioned_struct::{VersionedStruct, init, load};
 use crate::error::{Result, fail};
 use crate::options::{Flexibility, SolverOptions};
 
+/// Ways to the flexibility of the structure at its contacts.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum hbvib_flexibility {
+    /// A basis for large structures where it holds, factors otherwise.
+    HBVIB_FLEXIBILITY_AUTOMATIC = 0,
+    /// Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that
+    /// is needed.
+    HBVIB_FLEXIBILITY_DIRECT = 1,
+    /// A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is
+    /// kept with the model until its matrices change; hbvib_branch_reduction has its certificate.
+    HBVIB_FLEXIBILITY_KRYLOV = 2,
+}
+
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
 #[repr(C)]
 #[derive(Clone, Copy)]
@@ -63,20 +77,6 @@ pub struct hbvib_solver_options {
     pub flexibility: i32,
     /// Reserved: must be 0.
     pub reserved: i32,
-}
-
-/// Ways to the flexibility of the structure at its contacts.
-#[repr(C)]
-#[derive(Clone, Copy)]
-pub enum hbvib_flexibility {
-    /// A basis for large structures where it holds, factors otherwise.
-    HBVIB_FLEXIBILITY_AUTOMATIC = 0,
-    /// Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that
-    /// is needed.
-    HBVIB_FLEXIBILITY_DIRECT = 1,
-    /// A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is
-    /// kept with the model until its matrices change; hbvib_branch_reduction has its certificate.
-    HBVIB_FLEXIBILITY_KRYLOV = 2,
 }
 
 unsafe impl VersionedStruct for hbvib_solver_options {
