@@ -1,7 +1,8 @@
 //! Forced response of large plates with sliders: CPU time and resident memory of each step.
 //!
-//! `cargo run --release --example large_plates -- [x y z [sliders [harmonics [automatic|direct|krylov]]]]`, with the
-//! numbers of bricks along the edges of the plate.
+//! `cargo run --release --example large_plates -- [x y z [sliders [harmonics [automatic|direct|krylov [frequency
+//! [memory_limit]]]]]]`, with the numbers of bricks along the edges of the plate. The sweep is about the frequency in Hz,
+//! or about the first natural one.
 
 #[path = "friction_patch/brick.rs"]
 mod brick;
@@ -66,15 +67,21 @@ fn run(arguments: &[String]) -> Result<()> {
     );
     let model = plate.with_sliders(sliders, 2e5, 0.05)?;
     step("model", &mut last);
-    let modes = model.lowest_modes(0, ContactState::Stuck, 3)?;
-    step("three natural modes", &mut last);
-    let omega = modes.omega[0];
-    println!("lowest frequency with stuck sliders {:.3} Hz", omega / TAU);
+    let given = arguments.get(6).and_then(|x| x.parse::<f64>().ok());
+    let omega = if let Some(frequency) = given {
+        TAU * frequency
+    } else {
+        let modes = model.lowest_modes(0, ContactState::Stuck, 3)?;
+        step("three natural modes", &mut last);
+        println!("lowest frequency with stuck sliders {:.3} Hz", modes.omega[0] / TAU);
+        modes.omega[0]
+    };
     let solver = SolverOptions {
         tolerance: 0.0,
         harmonics,
         response_dof: Some(plate.corner()),
         flexibility,
+        memory_limit: number(7, 0),
         ..SolverOptions::default()
     };
     for (name, from, to) in [
