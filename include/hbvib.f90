@@ -56,6 +56,9 @@ module hbvib
    ! hbvib_tangent
    integer(c_int32_t), parameter, public :: HBVIB_DF_DU = 0, HBVIB_DF_DV = 1, HBVIB_DF_DZ = 2, HBVIB_DZ_DZ = 3, &
       HBVIB_DZ_DU_BEFORE = 4, HBVIB_DZ_DU = 5, HBVIB_DZ_DV_BEFORE = 6, HBVIB_DZ_DV = 7, HBVIB_DZ_DOMEGA = 8
+   ! hbvib_flexibility
+   integer(c_int32_t), parameter, public :: HBVIB_FLEXIBILITY_AUTOMATIC = 0, HBVIB_FLEXIBILITY_DIRECT = 1, &
+      HBVIB_FLEXIBILITY_KRYLOV = 2
    ! hbvib_log_level
    integer(c_int32_t), parameter, public :: HBVIB_LOG_NONE = 0, HBVIB_LOG_WARN = 1, HBVIB_LOG_INFO = 2, HBVIB_LOG_DEBUG = 3
    ! hbvib_phase
@@ -144,12 +147,14 @@ module hbvib
 
    !> Options that every analysis shares.
    type, bind(c) :: hbvib_solver_options
-      integer(c_int32_t) :: struct_size = 104, num_threads = 0
+      integer(c_int32_t) :: struct_size = 120, num_threads = 0
       real(c_double) :: tolerance = 1e-3_c_double
       integer(c_int64_t) :: harmonics = 9, max_harmonics = 511, samples = 0
       real(c_double) :: step = 0, step_min = 0, step_max = 0, tol_residual = 1e-10_c_double
       integer(c_int64_t) :: max_newton = 25, max_points = 20000, response_dof = -1
       integer(c_int32_t) :: keep_even_harmonics = 0, estimate_error = 0
+      integer(c_int64_t) :: memory_limit = 0
+      integer(c_int32_t) :: flexibility = 0, reserved = 0
    end type hbvib_solver_options
 
    !> State of a solve, passed to the progress callback.
@@ -193,11 +198,12 @@ module hbvib
 
    !> Size of the problem that was solved, and the parts that were removed from it before.
    type, bind(c) :: hbvib_reduction
-      integer(c_int32_t) :: struct_size = 104, reserved = 0
+      integer(c_int32_t) :: struct_size = 120, reserved = 0
       integer(c_int64_t) :: sectors = 0, degrees_of_freedom = 0, coordinates = 0, contacts = 0, never_slipping = 0, inert = 0, &
          harmonics_asked = 0, harmonics_carried = 0, unknowns = 0, response_dof = 0
       integer(c_int32_t) :: mean_carried = 0, even_removed = 0
-      integer(c_int64_t) :: held_by_contacts = 0
+      integer(c_int64_t) :: held_by_contacts = 0, basis = 0
+      real(c_double) :: certificate = 0
    end type hbvib_reduction
 
    !> Energies and losses of one point, in the units of the caller.

@@ -1027,6 +1027,18 @@ hbvib_status hbvib_check_jacobian(const hbvib_model *model,
  * Solve: options, progress and cancellation, forced responses
  * ============================================================================================== */
 
+/// Ways to the flexibility of the structure at its contacts.
+typedef enum {
+  /// A basis for large structures where it holds, factors otherwise.
+  HBVIB_FLEXIBILITY_AUTOMATIC = 0,
+  /// Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that
+  /// is needed.
+  HBVIB_FLEXIBILITY_DIRECT = 1,
+  /// A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is
+  /// kept with the model until its matrices change; hbvib_branch_reduction has its certificate.
+  HBVIB_FLEXIBILITY_KRYLOV = 2,
+} hbvib_flexibility;
+
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
@@ -1070,6 +1082,15 @@ typedef struct {
   /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution
   /// with more harmonics at each point; 0 (default): do so only with a tolerance.
   int32_t estimate_error;
+  /// Largest number of bytes for factors and bases of the structure; 0 (default): no limit. What
+  /// needs more is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message has the
+  /// need and the limit.
+  int64_t memory_limit;
+  /// Way to the flexibility of the structure at its contacts in a forced response: a value of
+  /// enum hbvib_flexibility.
+  int32_t flexibility;
+  /// Reserved: must be 0.
+  int32_t reserved;
 } hbvib_solver_options;
 
 /// Fills solver options with their defaults: tolerance = 1e-3, from which the harmonics follow,
@@ -1512,6 +1533,13 @@ typedef struct {
   /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not
   /// carried.
   int64_t held_by_contacts;
+  /// Coordinates of each harmonic to which the structure was reduced, the largest number of all
+  /// points; 0 where all its degrees of freedom were kept.
+  int64_t basis;
+  /// Estimated relative error of the motion of the structure on its basis, under unit forces at
+  /// the contacts, the excitation and the response over the frequencies of the call, the largest
+  /// of all points; 0 without a basis.
+  double certificate;
 } hbvib_reduction;
 
 /// Fills a reduction with zeros.

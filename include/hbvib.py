@@ -147,6 +147,16 @@ class Tangent(enum.IntEnum):
     DZ_DOMEGA = 8  #: dz_domega
 
 
+class Flexibility(enum.IntEnum):
+    """Ways to the flexibility of the structure at its contacts."""
+    AUTOMATIC = 0  #: A basis for large structures where it holds, factors otherwise.
+    #: Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that is needed.
+    DIRECT = 1
+    #: A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is kept with the model
+    #: until its matrices change; hbvib_branch_reduction has its certificate.
+    KRYLOV = 2
+
+
 class LogLevel(enum.IntEnum):
     """Levels of log lines."""
     NONE = 0  #: No line at all.
@@ -260,7 +270,7 @@ user_force: uint32 struct_size; int32 uses_velocity is_odd reserved; pointer dof
 jacobian_gap: uint32 struct_size; int32 tangent; double gap; int64 sample row column; double given difference
 solver_options: uint32 struct_size; int32 num_threads; double tolerance; int64 harmonics max_harmonics samples; double
     step step_min step_max tol_residual; int64 max_newton max_points response_dof; int32 keep_even_harmonics
-    estimate_error
+    estimate_error; int64 memory_limit; int32 flexibility reserved
 progress: uint32 struct_size; int32 newton_iterations; int64 point; double parameter amplitude residual step
     fraction_done
 phase_report: uint32 struct_size; int32 phase; double share
@@ -271,7 +281,7 @@ forced_options: uint32 struct_size; int32 reserved; double omega_start omega_sto
 view: uint32 struct_size; int32 scalar rank reserved; pointer data; int64 shape[3] stride[3]
 reduction: uint32 struct_size; int32 reserved; int64 sectors degrees_of_freedom coordinates contacts never_slipping
     inert harmonics_asked harmonics_carried unknowns response_dof; int32 mean_carried even_removed; int64
-    held_by_contacts
+    held_by_contacts basis; double certificate
 energy: uint32 struct_size; int32 reserved; double twice_mean_kinetic kinetic_mean kinetic_peak potential_mean
     potential_peak wheel_kinetic_mean wheel_kinetic_peak wheel_potential_mean wheel_potential_peak structural_loss
     friction_loss
@@ -1472,6 +1482,8 @@ class Model(_Owner):
     def _solve(self, name: str, solver: dict, options: Any, hooks: tuple) -> Branch:
         if "harmonics" in solver:
             solver.setdefault("tolerance", 0.0)  # so many and no other, unless a tolerance is named as well
+        if "flexibility" in solver:
+            solver = dict(solver, flexibility=_member(Flexibility, solver["flexibility"]))
         settings = _options(name[6:], "hbvib_solver_options", solver)
         handle, kept = ctypes.c_void_p(), self._kept
         with _Guard() as guard:
@@ -1502,7 +1514,8 @@ class Model(_Owner):
         cancel    a CancelFlag.
         Others are the solver options of hbvib.h: tolerance, or harmonics for a fixed number, max_harmonics, samples,
         response_dof, step, step_min, step_max, tol_residual, max_newton, max_points, keep_even_harmonics,
-        estimate_error; num_threads is reserved and must be 0 or 1."""
+        estimate_error, flexibility ("automatic", "direct" or "krylov"), memory_limit; num_threads is reserved and must
+        be 0 or 1. `Branch.reduction` has the size of the basis of a large structure and its certificate."""
         start, stop = (omega, omega) if np.ndim(omega) == 0 else omega
         options = _new("hbvib_forced_options", omega_start=start, omega_stop=stop, **_counted_array("at", at),
                        **_counted_array("guess", guess, np.complex128, [None, self.ndof]))

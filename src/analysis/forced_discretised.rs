@@ -7,7 +7,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::point_error::observed;
-use crate::condense::{ModelCache, Reference};
+use crate::condense::{ModelCache, Reference, reduced_resonances};
 use crate::continuation::corrector::Corrector;
 use crate::continuation::resolve::{resolve, solve_linear};
 use crate::continuation::{Point, Settings};
@@ -315,6 +315,10 @@ impl Discretised for ForcedDiscretised<'_> {
     }
 
     fn resonances(&mut self, range: (f64, f64)) -> Result<Option<Vec<Resonance>>> {
+        let condensed = &self.resolutions.current.resolution.condensed;
+        if condensed.is_reduced() {
+            return reduced_resonances(self.model, condensed, range, self.interrupt);
+        }
         self.model.forced_resonances(range, ContactState::Stuck, self.interrupt)
     }
 
@@ -325,7 +329,7 @@ impl Discretised for ForcedDiscretised<'_> {
         let needed = condensed.coordinates() > 0
             && condensed.reference() == Reference::Complex
             && self.model.structure().is_damped();
-        let factorised = self.linear_response.accurate || self.model.ndof() <= FACTORISE_UP_TO;
+        let factorised = self.linear_response.accurate || condensed.ndof() <= FACTORISE_UP_TO;
         let own = self.linear_response.equations(needed, index, |resolution| {
             Equations::new(resolution, &self.settings, response, None, self.interrupt)
         });
@@ -430,7 +434,7 @@ pub(super) fn relative_motion(resolution: &Resolution, guess: &[Complex64]) -> R
             continue;
         };
         degrees.restrict(all, &mut x);
-        for (c, row) in block.rows.iter().enumerate() {
+        for (c, row) in block.structural_rows.iter().enumerate() {
             let y = along(row, &x);
             set.set(&mut packed[c * m..(c + 1) * m], i, y / condensed.length());
         }

@@ -20,7 +20,6 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::model::spring::along;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::Branch;
 use num_complex::Complex64;
@@ -75,13 +74,14 @@ fn follow(
     trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
+    let sweep = (range.omega_start, range.omega_stop);
     let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
-        Condensed::new(model, &options, range.omega_start, interrupt)
+        Condensed::new(model, &options, sweep, interrupt)
     })?;
     let stuck = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
-        Condensed::with_reference(model, &options, range.omega_start, Some(Reference::Stuck), interrupt)
+        Condensed::with_reference(model, &options, sweep, Some(Reference::Stuck), interrupt)
     })?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
     let level = if levels.is_automatic() && range.guess.is_none() {
@@ -249,7 +249,7 @@ fn forced_dof_with_largest_motion(
     let mut most = None;
     let moved = |dof| !model.structure().degrees().is_fixed(dof);
     for force in model.excitation().forces().iter().filter(|f| moved(f.dof)) {
-        let motion = along(&condensed.motion_row(observed, force.dof), &x).norm();
+        let motion = condensed.motion_row(observed, force.dof)?.along(&x).norm();
         if force.value != Complex64::ZERO && most.is_none_or(|most| motion > most) {
             best = force.dof;
             most = Some(motion);

@@ -6,7 +6,6 @@ use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
-use crate::model::spring::along;
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Problem, Residual};
 use crate::results::Resolution;
@@ -97,7 +96,7 @@ impl<'a> Equations<'a> {
         let condensed = &self.resolution.condensed;
         let harmonics = self.problem.shape().chunks_exact(condensed.ndof());
         for (i, (r, x)) in self.response.iter_mut().zip(harmonics).enumerate() {
-            *r = a * along(&condensed.motion_row(i, dof), x);
+            *r = a * condensed.motion_row(i, dof)?.along(x);
         }
         Ok(())
     }

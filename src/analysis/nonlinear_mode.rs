@@ -152,7 +152,7 @@ fn on_wave(
     let moved = condensed.blocks()[i]
         .rows
         .iter()
-        .map(|row| along(row, &linear.shape).norm());
+        .map(|row| row.along(&linear.shape).norm());
     let motion = moved.fold(0.0, f64::max);
     let largest = linear.shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
     if condensed.coordinates() == 0 || motion <= NODE * largest {

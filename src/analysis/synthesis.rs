@@ -131,7 +131,7 @@ pub fn synthesise_with(
         force,
         damping,
         ratio: options.damping_ratio,
-        response: fundamental.motion_row(fundamental.set().fundamental(), branch.response_dof()),
+        response: fundamental.motion_row(fundamental.set().fundamental(), branch.response_dof())?,
     };
     let mut states = Vec::new();
     let mut recovery = Recovery::at(branch, 0, interrupt)?;
@@ -139,7 +139,7 @@ pub fn synthesise_with(
     for point in 0..branch.points() {
         interrupt.part(Phase::Results, point, branch.points())?;
         recovery.go_to(point)?;
-        recovery.independent(branch.condensed_at(point).set().fundamental(), &mut x)?;
+        recovery.coordinates(branch.condensed_at(point).set().fundamental(), &mut x)?;
         let Some(numbers) = data.point(point) else {
             return fail!(Internal, "point {point} of the mode has no numbers");
         };

@@ -46,6 +46,13 @@ pub struct hbvib_reduction {
     /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not
     /// carried.
     pub held_by_contacts: i64,
+    /// Coordinates of each harmonic to which the structure was reduced, the largest number of all
+    /// points; 0 where all its degrees of freedom were kept.
+    pub basis: i64,
+    /// Estimated relative error of the motion of the structure on its basis, under unit forces at
+    /// the contacts, the excitation and the response over the frequencies of the call, the largest
+    /// of all points; 0 without a basis.
+    pub certificate: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_reduction {
@@ -69,6 +76,8 @@ unsafe impl VersionedStruct for hbvib_reduction {
             mean_carried: 0,
             even_removed: 0,
             held_by_contacts: 0,
+            basis: 0,
+            certificate: 0.0,
         }
     }
 }
@@ -111,6 +120,8 @@ pub unsafe extern "C" fn hbvib_branch_reduction(
             mean_carried: i32::from(r.mean_carried),
             even_removed: i32::from(r.even_removed),
             held_by_contacts: r.held_by_contacts as i64,
+            basis: r.basis as i64,
+            certificate: r.certificate,
             ..hbvib_reduction::defaults()
         };
         unsafe { fill_out(out, value) };

@@ -7,7 +7,21 @@ use super::indices::number;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::error::{Result, fail};
-use crate::options::SolverOptions;
+use crate::options::{Flexibility, SolverOptions};
+
+/// Ways to the flexibility of the structure at its contacts.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum hbvib_flexibility {
+    /// A basis for large structures where it holds, factors otherwise.
+    HBVIB_FLEXIBILITY_AUTOMATIC = 0,
+    /// Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that
+    /// is needed.
+    HBVIB_FLEXIBILITY_DIRECT = 1,
+    /// A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is
+    /// kept with the model until its matrices change; hbvib_branch_reduction has its certificate.
+    HBVIB_FLEXIBILITY_KRYLOV = 2,
+}
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
 #[repr(C)]
@@ -54,6 +68,15 @@ pub struct hbvib_solver_options {
     /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution
     /// with more harmonics at each point; 0 (default): do so only with a tolerance.
     pub estimate_error: i32,
+    /// Largest number of bytes for factors and bases of the structure; 0 (default): no limit. What
+    /// needs more is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message has the
+    /// need and the limit.
+    pub memory_limit: i64,
+    /// Way to the flexibility of the structure at its contacts in a forced response: a value of
+    /// enum hbvib_flexibility.
+    pub flexibility: i32,
+    /// Reserved: must be 0.
+    pub reserved: i32,
 }
 
 unsafe impl VersionedStruct for hbvib_solver_options {
@@ -78,6 +101,9 @@ unsafe impl VersionedStruct for hbvib_solver_options {
             response_dof: -1,
             keep_even_harmonics: i32::from(defaults.keep_even_harmonics),
             estimate_error: i32::from(defaults.estimate_error),
+            memory_limit: 0,
+            flexibility: hbvib_flexibility::HBVIB_FLEXIBILITY_AUTOMATIC as i32,
+            reserved: 0,
         }
     }
 }
@@ -121,6 +147,23 @@ pub(super) unsafe fn solver_options(p: *const hbvib_solver_options, ndof: usize)
     convert(&o, ndof).with_argument(2)
 }
 
+fn flexibility(value: i32) -> Result<Flexibility> {
+    use hbvib_flexibility as ways;
+    for (way, found) in [
+        (ways::HBVIB_FLEXIBILITY_AUTOMATIC, Flexibility::Automatic),
+        (ways::HBVIB_FLEXIBILITY_DIRECT, Flexibility::Direct),
+        (ways::HBVIB_FLEXIBILITY_KRYLOV, Flexibility::Krylov),
+    ] {
+        if value == way as i32 {
+            return Ok(found);
+        }
+    }
+    fail!(
+        Argument,
+        "flexibility = {value}, needs a value of enum hbvib_flexibility"
+    )
+}
+
 fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
     if !matches!(o.num_threads, 0 | 1) {
         return fail!(Argument, "num_threads = {}, needs 0 or 1 (reserved)", o.num_threads);
@@ -152,7 +195,13 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         response_dof,
         keep_even_harmonics: flag(o.keep_even_harmonics, "keep_even_harmonics")?,
         estimate_error: flag(o.estimate_error, "estimate_error")?,
+        flexibility: flexibility(o.flexibility)?,
+        certificate: SolverOptions::default().certificate,
+        memory_limit: number(o.memory_limit, "memory_limit")?,
     };
+    if o.reserved != 0 {
+        return fail!(Argument, "reserved = {}, needs 0", o.reserved);
+    }
     options.check()?;
     Ok(options)
 }

@@ -12,16 +12,18 @@
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
-use crate::condense::harmonic_block::{Artificial, harmonic_block};
+use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block};
+use crate::condense::memory_limit::within_directly;
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
+use crate::condense::sweep::Sweep;
+use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::power_of_two;
 use crate::model::Model;
-use crate::model::spring::along;
 use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, SolverOptions};
 use num_complex::Complex64;
@@ -30,14 +32,19 @@ use num_complex::Complex64;
 const STUCK_ABOVE: usize = 64;
 
 impl Condensed {
-    /// Condenses a model under its forces, with the motion scaled for frequency `omega`.
+    /// Condenses a model under its forces for a range of frequency, with the motion scaled for its start.
     ///
     /// # Errors
     /// `Argument` for a force beyond the carried harmonics, `Unsupported` or `Argument` for missing
     /// matrices, `Singular` when the start frequency is an undamped resonance, `OutOfMemory`;
     /// `StoppedByCaller`.
-    pub fn new(model: &Model, options: &SolverOptions, omega: f64, interrupt: &Interrupt<'_>) -> Result<Self> {
-        Self::with_reference(model, options, omega, None, interrupt)
+    pub fn new(
+        model: &Model,
+        options: &SolverOptions,
+        sweep: impl Into<Sweep>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Self> {
+        Self::with_reference(model, options, sweep, None, interrupt)
     }
 
     /// The same with a given reference stiffness, if any. With [`Reference::Stuck`] the response with stuck contacts is
@@ -48,10 +55,11 @@ impl Condensed {
     pub fn with_reference(
         model: &Model,
         options: &SolverOptions,
-        omega: f64,
+        sweep: impl Into<Sweep>,
         reference: Option<Reference>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
+        let sweep = sweep.into();
         let mut forced = Vec::new();
         for force in model
             .excitation()
@@ -68,23 +76,26 @@ impl Condensed {
             forced.push(usize::from(options.harmonics > 0));
         }
         let (mut condensed, assembled) =
-            Self::unscaled(model, options, (&forced, omega), (None, reference), interrupt)?;
+            Self::unscaled(model, options, (&forced, sweep), (None, reference), interrupt)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
         // underflows whatever the units.
-        let largest = model
-            .excitation()
-            .forces()
-            .iter()
-            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
-        let unit = power_of_two(largest);
+        let unit = power_of_two(model.excitation().largest());
+        let n = model.structure().ndof();
         for block in &mut condensed.blocks {
-            model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
+            if let Some(view) = &block.view {
+                let mut force = try_vec(n, Complex64::ZERO, "the forces")?;
+                model.add_forces_to(block.number, 1.0 / unit, &mut force);
+                let force = view.force(&force)?;
+                block.force[..force.len()].copy_from_slice(&force);
+            } else {
+                model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
+            }
         }
         let mut workspace = Workspace::new(&condensed, None)?;
         let mut motion = 0.0_f64;
         for i in 0..condensed.blocks.len() {
-            workspace.evaluate(&condensed, i, omega, false, interrupt)?;
-            motion = motion.max(workspace.largest_motion());
+            workspace.evaluate(&condensed, i, sweep.start, false, interrupt)?;
+            motion = motion.max(condensed.largest(i, workspace.excited())?);
         }
         let scale = power_of_two(motion);
         for block in &mut condensed.blocks {
@@ -110,11 +121,16 @@ impl Condensed {
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, f64)> {
         // A mode has a linear frequency, so that the stiffness of the structure alone sets the scale.
-        let (mut condensed, assembled) =
-            Self::unscaled(model, options, (&[1], 0.0), (Some((form, shape)), None), interrupt)?;
+        let (mut condensed, assembled) = Self::unscaled(
+            model,
+            options,
+            (&[1], 0.0.into()),
+            (Some((form, shape)), None),
+            interrupt,
+        )?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
-        let motion = rows.iter().fold(0.0_f64, |m, row| m.max(along(row, shape).norm()));
+        let motion = rows.iter().fold(0.0_f64, |m, row| m.max(row.along(shape).norm()));
         condensed.set_length(model, power_of_two(motion), &assembled)?;
         Ok((condensed, motion))
     }
@@ -127,6 +143,9 @@ impl Condensed {
         Ok(Self {
             set: HarmonicSet::all(0)?,
             degrees: model.structure().degrees().clone(),
+            order: model.structure().ndof(),
+            structure: None,
+            certificate: 0.0,
             length: 1.0,
             blocks: Vec::new(),
             laws: Vec::new(),
@@ -143,12 +162,12 @@ impl Condensed {
         })
     }
 
-    /// The condensed model without its scale of lengths: no forces and no laws yet; `omega` sets the size of
-    /// inertia. Also returns the coordinates of the active contacts.
+    /// The condensed model without its scale of lengths: no forces and no laws yet; the start of the sweep
+    /// sets the size of inertia. Also returns the coordinates of the active contacts.
     pub(super) fn unscaled(
         model: &Model,
         options: &SolverOptions,
-        (forced, omega): (&[usize], f64),
+        (forced, sweep): (&[usize], Sweep),
         (mode, reference): (Option<(DampingForm, &[Complex64])>, Option<Reference>),
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, Vec<AssembledDirection>)> {
@@ -176,7 +195,7 @@ impl Condensed {
         }
         let structural = structural_stiffness(
             model,
-            omega,
+            sweep.start,
             &set,
             &contact_classes.never_slipping,
             &assembled,
@@ -200,25 +219,36 @@ impl Condensed {
                 *share = (of_contact * (stiffness[c] / reference_stiffness[c].max(f64::MIN_POSITIVE))).min(1.0);
             }
         }
-        let mut blocks = Vec::new();
-        for (i, &number) in set.numbers().iter().enumerate() {
-            interrupt.part(Phase::Condensation, i, set.numbers().len())?;
-            let kappa =
-                |c: usize| reference.kappa(reference_stiffness[c], number) * if number == 1 { share[c] } else { 1.0 };
-            let mut block = harmonic_block(model, number, (&contact_classes, &representatives), kappa, interrupt)?;
-            block.artificial = match mode {
-                None => Artificial::None,
-                Some((DampingForm::Mass, _)) => Artificial::Mass,
-                Some((DampingForm::Stiffness, _)) => {
-                    let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
-                    Artificial::Stiffness(structure.aligned(&block.reference)?)
-                }
-            };
-            try_push(&mut blocks, block, "the matrices per harmonic")?;
-        }
+        let kappa = |c: usize, number: usize| {
+            reference.kappa(reference_stiffness[c], number) * if number == 1 { share[c] } else { 1.0 }
+        };
+        let request = Request {
+            model,
+            options,
+            numbers: set.numbers(),
+            contacts: (&contact_classes, &representatives),
+            sweep,
+        };
+        let on_bases = match mode {
+            None => reduced_blocks(&request, kappa, interrupt)?,
+            Some(_) => None,
+        };
+        let is_reduced = on_bases.is_some();
+        let (blocks, certificate) = match on_bases {
+            Some(found) => found,
+            None => (
+                direct_blocks(&request, mode.map(|(form, _)| form), kappa, interrupt)?,
+                0.0,
+            ),
+        };
         let condensed = Self {
             set,
             degrees: model.structure().degrees().clone(),
+            order: blocks
+                .first()
+                .map_or(model.structure().ndof(), |block| block.reference.rows),
+            structure: is_reduced.then(|| model.structure().clone()),
+            certificate,
             length: 1.0,
             blocks,
             laws: Vec::new(),
@@ -256,4 +286,30 @@ impl Condensed {
         }
         Ok(())
     }
+}
+
+/// The blocks of all carried harmonics on the degrees of freedom, with the artificial damping of a mode, if it is one.
+fn direct_blocks(
+    request: &Request<'_>,
+    mode: Option<DampingForm>,
+    kappa: impl Fn(usize, usize) -> Complex64,
+    interrupt: &Interrupt<'_>,
+) -> Result<Vec<HarmonicBlock>> {
+    let (model, numbers) = (request.model, request.numbers);
+    within_directly(request.options.memory_limit, model, numbers)?;
+    let mut blocks = Vec::new();
+    for (i, &number) in numbers.iter().enumerate() {
+        interrupt.part(Phase::Condensation, i, numbers.len())?;
+        let mut block = harmonic_block(model, number, request.contacts, |c| kappa(c, number), interrupt)?;
+        block.artificial = match mode {
+            None => Artificial::None,
+            Some(DampingForm::Mass) => Artificial::Mass,
+            Some(DampingForm::Stiffness) => {
+                let structure = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
+                Artificial::Stiffness(structure.aligned(&block.reference)?)
+            }
+        };
+        try_push(&mut blocks, block, "the matrices per harmonic")?;
+    }
+    Ok(blocks)
 }

@@ -3,9 +3,11 @@
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::harmonic_block::HarmonicBlock;
 use crate::contact::Law;
+use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::degree_map::DegreeMap;
-use crate::model::spring::Row;
+use crate::model::reduced_wave::MotionRow;
+use crate::model::structure::Structure;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -51,6 +53,12 @@ pub struct AssembledLaw {
 pub struct Condensed {
     pub(super) set: HarmonicSet,
     pub(super) degrees: DegreeMap,
+    /// Order of the matrices of a harmonic.
+    pub(super) order: usize,
+    /// The structure whose matrices are on a basis.
+    pub(super) structure: Option<Structure>,
+    /// Estimated relative error of the flexibility on the basis; 0 without one.
+    pub(super) certificate: f64,
     pub(super) length: f64,
     pub(super) blocks: Vec<HarmonicBlock>,
     pub(super) laws: Vec<AssembledLaw>,
@@ -78,10 +86,35 @@ impl Condensed {
         &self.set
     }
 
-    /// Independent degrees of freedom of the structure (one sector).
+    /// Coordinates of the matrices of a harmonic: the independent degrees of freedom of the structure (one sector), or
+    /// those of its basis.
     #[must_use]
     pub fn ndof(&self) -> usize {
-        self.degrees.independent()
+        self.order
+    }
+
+    /// The structure whose matrices are on a basis; `None` where all its degrees of freedom are kept.
+    #[must_use]
+    pub fn structure(&self) -> Option<&Structure> {
+        self.structure.as_ref()
+    }
+
+    /// Whether the structure is on a basis.
+    #[must_use]
+    pub fn is_reduced(&self) -> bool {
+        self.structure.is_some()
+    }
+
+    /// Motion of all independent degrees of freedom in the i-th carried harmonic from that of its coordinates.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn expand(&self, i: usize, q: &[Complex64], x: &mut [Complex64]) -> Result<()> {
+        if let Some(view) = &self.blocks[i].view {
+            return view.expand(q, x);
+        }
+        x.copy_from_slice(q);
+        Ok(())
     }
 
     /// The map from the degrees of freedom of the caller to the independent ones.
@@ -91,8 +124,10 @@ impl Condensed {
     }
 
     /// Row of the motion of one of the caller's degrees of freedom in the i-th carried harmonic.
-    #[must_use]
-    pub fn motion_row(&self, i: usize, dof: usize) -> Row {
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn motion_row(&self, i: usize, dof: usize) -> Result<MotionRow> {
         let (sector, terms) = self.degrees.image(dof);
         let turn = if sector == 0 {
             Complex64::ONE
@@ -103,7 +138,28 @@ impl Condensed {
         for (entry, (dof, c)) in row.iter_mut().zip(terms) {
             *entry = Some((dof, turn * c));
         }
-        row
+        self.blocks[i].row(&row)
+    }
+
+    /// Largest motion of a degree of freedom in the i-th carried harmonic.
+    pub(super) fn largest(&self, i: usize, q: &[Complex64]) -> Result<f64> {
+        let largest = |x: &[Complex64]| x.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
+        if !self.is_reduced() {
+            return Ok(largest(q));
+        }
+        let mut x = try_vec(
+            self.degrees.independent(),
+            Complex64::ZERO,
+            "the motion of the structure",
+        )?;
+        self.expand(i, q, &mut x)?;
+        Ok(largest(&x))
+    }
+
+    /// Estimated relative error of the motion of the structure on a basis; 0 where all its degrees of freedom are kept.
+    #[must_use]
+    pub fn certificate(&self) -> f64 {
+        self.certificate
     }
 
     /// Unit of all lengths in the solver, in the caller's unit.

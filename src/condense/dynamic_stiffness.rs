@@ -10,7 +10,6 @@ use crate::interrupt::Interrupt;
 use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::{self, ComplexSum};
 use crate::linalg::sparse::Csc;
-use crate::model::spring::along;
 use num_complex::Complex64;
 
 /// Variable of a derivative of Z_κ.
@@ -157,8 +156,8 @@ impl DynamicStiffness {
         solved.map_err(|e| at_harmonic(e, block, at.0))?;
         let mut change = (0.0_f64, 0.0_f64);
         for row in &block.rows {
-            change.0 = change.0.max(along(row, &self.remainder).norm());
-            change.1 = change.1.max(along(row, x).norm());
+            change.0 = change.0.max(row.along(&self.remainder).norm());
+            change.1 = change.1.max(row.along(x).norm());
         }
         for (x, d) in x.iter_mut().zip(&self.remainder) {
             *x += *d;

@@ -6,9 +6,9 @@
 
 use crate::condense::Condensed;
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, product};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
-use crate::model::spring::along;
+use crate::model::reduced_wave::MotionRow;
 use num_complex::Complex64;
 
 /// H and ∂H/∂ω of one harmonic: (coordinates + 1)² tables, column-major. Column j < coordinates is
@@ -40,7 +40,8 @@ impl Table {
 pub struct Workspace {
     dynamic: DynamicStiffness,
     damping: f64,
-    response: Option<usize>,
+    /// Row of the response degree of freedom per harmonic, empty without one.
+    responses: Vec<MotionRow>,
     /// Z⁻¹ B, ndof rows.
     columns: Vec<Complex64>,
     /// Z⁻ᵀ Rᵀ, ndof rows.
@@ -58,10 +59,15 @@ impl Workspace {
     pub fn new(condensed: &Condensed, response: Option<usize>) -> Result<Self> {
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
+        let mut responses = Vec::new();
+        for i in 0..condensed.blocks().len() {
+            let row = response.map_or(Ok(MotionRow::default()), |dof| condensed.motion_row(i, dof));
+            try_push(&mut responses, row?, "the contact flexibility")?;
+        }
         Ok(Self {
             dynamic: DynamicStiffness::new(condensed, outputs)?,
             damping: 0.0,
-            response,
+            responses,
             columns: try_vec(n.saturating_mul(outputs), Complex64::ZERO, "the contact flexibility")?,
             rows: Vec::new(),
             product: try_vec(n, Complex64::ZERO, "the contact flexibility")?,
@@ -137,7 +143,7 @@ impl Workspace {
         let coordinates = condensed.coordinates();
         self.columns.fill(Complex64::ZERO);
         for (column, row) in self.columns.chunks_exact_mut(n).zip(&block.rows) {
-            for &(p, a) in row.iter().flatten() {
+            for &(p, a) in row.terms() {
                 column[p] += a.conj();
             }
         }
@@ -179,15 +185,14 @@ impl Workspace {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
-        let response = self.response.map_or([None; 6], |dof| condensed.motion_row(i, dof));
-        let rows = block.rows.iter().chain(core::iter::once(&response));
+        let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
         for (column, table) in self
             .columns
             .chunks_exact(n)
             .zip(self.table.value.chunks_exact_mut(outputs))
         {
             for (value, row) in table.iter_mut().zip(rows.clone()) {
-                *value = along(row, column);
+                *value = row.along(column);
             }
         }
         if !slopes {
@@ -199,7 +204,7 @@ impl Workspace {
         }
         self.rows.fill(Complex64::ZERO);
         for (column, row) in self.rows.chunks_exact_mut(n).zip(rows) {
-            for &(p, a) in row.iter().flatten() {
+            for &(p, a) in row.terms() {
                 column[p] += a;
             }
         }
@@ -222,12 +227,9 @@ impl Workspace {
         Ok(&self.table)
     }
 
-    /// Largest motion of a degree of freedom under the excitation, after [`Self::evaluate`].
-    #[must_use]
-    pub fn largest_motion(&self) -> f64 {
-        let n = self.product.len();
-        let excited = &self.columns[self.columns.len() - n..];
-        excited.iter().fold(0.0, |m, z| m.max(z.norm()))
+    /// Motion under the excitation, after [`Self::evaluate`].
+    pub(super) fn excited(&self) -> &[Complex64] {
+        &self.columns[self.columns.len() - self.product.len()..]
     }
 
     /// Motion of all degrees of freedom in the i-th carried harmonic, x = Z_κ⁻¹(F − Wᴴ w), where
@@ -249,7 +251,7 @@ impl Workspace {
         let block = &condensed.blocks()[i];
         self.load.copy_from_slice(&block.force);
         for (row, w) in block.rows.iter().zip(contact_force) {
-            for &(p, a) in row.iter().flatten() {
+            for &(p, a) in row.terms() {
                 self.load[p] -= a.conj() * w;
             }
         }

@@ -5,6 +5,7 @@ use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
+use crate::model::reduced_wave::{MotionRow, ReducedView};
 use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
@@ -41,12 +42,50 @@ pub struct HarmonicBlock {
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Rows of W, one per relative coordinate.
-    pub rows: Vec<Row>,
+    pub rows: Vec<MotionRow>,
+    /// The same over the independent degrees of freedom.
+    pub structural_rows: Vec<Row>,
     /// Rows of the relative motions of linear contacts, which are no coordinates.
-    pub linear_rows: Vec<Row>,
+    pub linear_rows: Vec<MotionRow>,
+    /// On a basis, the linear springs: rows of force and motion over the independent degrees of freedom, stiffness.
+    pub springs: Vec<(Row, Row, f64)>,
+    /// The basis on which the matrices are; `None`: they are on the independent degrees of freedom.
+    pub view: Option<ReducedView>,
 }
 
 impl HarmonicBlock {
+    /// A row over the independent degrees of freedom as one over the coordinates.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn row(&self, row: &Row) -> Result<MotionRow> {
+        match &self.view {
+            Some(view) => view.row(row),
+            None => MotionRow::new(row),
+        }
+    }
+
+    /// K_h of the structure itself, without any spring, at the entries of the pattern.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn own_stiffness(&self, model: &Model) -> Result<Vec<Complex64>> {
+        let Some(view) = &self.view else {
+            let structure = model.structure().wave_matrix(MatrixKind::Stiffness, self.number)?;
+            return structure.aligned(&self.reference);
+        };
+        let n = self.reference.rows;
+        let mut own = try_vec(
+            self.reference.values.len(),
+            Complex64::ZERO,
+            "the matrices per harmonic",
+        )?;
+        for k in 0..n {
+            own[k * n + k] = view.pencil().stiffness(k).into();
+        }
+        Ok(own)
+    }
+
     /// y = M x
     pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
         y.fill(Complex64::ZERO);
@@ -116,7 +155,19 @@ pub(super) fn harmonic_block(
         reference,
         artificial: Artificial::None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
-        rows,
-        linear_rows: rows_of(&contact_classes.linear)?,
+        rows: over_dofs(&rows)?,
+        structural_rows: rows,
+        linear_rows: over_dofs(&rows_of(&contact_classes.linear)?)?,
+        springs: Vec::new(),
+        view: None,
     })
+}
+
+/// Rows as those of matrices on the degrees of freedom.
+fn over_dofs(rows: &[Row]) -> Result<Vec<MotionRow>> {
+    let mut found = Vec::new();
+    for row in rows {
+        try_push(&mut found, MotionRow::new(row)?, "the contacts")?;
+    }
+    Ok(found)
 }

@@ -1,5 +1,6 @@
 //! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
 
+mod certificate;
 mod condensation;
 mod condensed;
 pub mod contact_classes;
@@ -8,19 +9,27 @@ pub mod flexibility;
 pub mod frequency_cache;
 pub mod frequency_interpolation;
 pub mod harmonic_block;
+mod krylov_wave;
+mod memory_limit;
 pub mod modal_flexibility;
 pub mod modal_table;
 mod model_cache;
 pub mod near_rigid_motion;
+mod reduced_block;
+mod reduced_resonances;
 mod reduction;
 mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
+mod sweep;
 pub mod wave_modes;
+mod wave_reduction;
 
 pub use condensed::{Condensed, Reference};
 pub use harmonic_block::{Artificial, HarmonicBlock};
 pub use model_cache::ModelCache;
+pub use reduced_resonances::reduced_resonances;
 pub use reduction::Reduction;
 pub use resolution::Resolution;
+pub use sweep::Sweep;

@@ -57,7 +57,7 @@ impl Modal {
         self.dynamic.factor(condensed, i, omega.into(), damping, interrupt)?;
         self.columns.fill(Complex64::ZERO);
         for (column, row) in self.columns.chunks_exact_mut(n).zip(rows) {
-            for &(p, a) in row.iter().flatten() {
+            for &(p, a) in row.terms() {
                 column[p] += a.conj();
             }
         }
@@ -72,7 +72,7 @@ impl Modal {
         // On stiff structures Newton's method would not get below the rounding of an unrefined solution.
         self.by_damping.fill(Complex64::ZERO);
         for (row, w) in rows.iter().zip(w) {
-            for &(p, a) in row.iter().flatten() {
+            for &(p, a) in row.terms() {
                 self.by_damping[p] -= a.conj() * w;
             }
         }

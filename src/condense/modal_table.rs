@@ -14,7 +14,6 @@ use crate::condense::wave_modes::WaveModes;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
-use crate::model::spring::along;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
@@ -60,15 +59,15 @@ impl ModalTable {
         let (outputs, rows) = (coordinates + 1, coordinates + 1 + springs.len());
         let mut left = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
         let mut right = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
-        let observed = condensed.motion_row(i, response);
+        let observed = condensed.motion_row(i, response)?;
         for (mode, shape) in modes.vectors.chunks_exact(n).enumerate() {
             let column = &mut left[mode * rows..(mode + 1) * rows];
             for (to, row) in column.iter_mut().zip(&block.rows) {
-                *to = along(row, shape);
+                *to = row.along(shape);
             }
-            column[coordinates] = along(&observed, shape);
+            column[coordinates] = observed.along(shape);
             for (to, (row, _)) in column[outputs..].iter_mut().zip(springs) {
-                *to = along(row, shape);
+                *to = row.along(shape);
             }
             for (r, l) in column.iter().enumerate() {
                 right[r * n + mode] = l.conj();

@@ -12,7 +12,6 @@ use crate::condense::flexibility::Workspace;
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::least_squares::LeastSquares;
-use crate::model::spring::along;
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the motion of near-rigid contacts";
@@ -53,7 +52,7 @@ pub fn correct(
     for _ in 0..=CORRECTIONS {
         let mut size = 0.0;
         for (lambda, &c) in lambda.chunks_exact_mut(2).zip(&rigid) {
-            let missing = y[c] - along(&rows[c], x);
+            let missing = y[c] - rows[c].along(x);
             lambda.copy_from_slice(&[missing.re, missing.im]);
             size += missing.norm_sqr();
         }
@@ -69,7 +68,7 @@ pub fn correct(
         before.copy_from_slice(x);
         for (k, &column) in rigid.iter().enumerate() {
             for (j, &row) in rigid.iter().enumerate() {
-                let g = along(&rows[row], &columns[column * n..(column + 1) * n]);
+                let g = rows[row].along(&columns[column * n..(column + 1) * n]);
                 let (re, im) = (2 * k * order + 2 * j, (2 * k + 1) * order + 2 * j);
                 system.matrix()[re..re + 2].copy_from_slice(&[g.re, g.im]);
                 system.matrix()[im..im + 2].copy_from_slice(&[-g.im, g.re]);

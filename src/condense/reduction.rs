@@ -7,7 +7,7 @@ use crate::model::Model;
 use crate::options::SolverOptions;
 
 /// The parts of the problem that the condensation removed, for the user.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reduction {
     /// Number of sectors of the wheel; all but one are removed.
     pub sectors: usize,
@@ -34,6 +34,10 @@ pub struct Reduction {
     pub unknowns: usize,
     /// Rigid-body modes of the mean motion that contacts alone hold; 0 where the mean is not carried.
     pub held_by_contacts: usize,
+    /// Coordinates of each harmonic on its basis, the largest number over the points; 0 without a basis.
+    pub basis: usize,
+    /// Estimated relative error of the motion of the structure on a basis, the largest over the points; 0 without one.
+    pub certificate: f64,
 }
 
 impl Condensed {
@@ -66,6 +70,8 @@ impl Condensed {
             even_removed: self.set.is_odd(),
             unknowns: self.unknowns(),
             held_by_contacts,
+            basis: if self.is_reduced() { self.ndof() } else { 0 },
+            certificate: self.certificate(),
         }
     }
 }

@@ -9,8 +9,10 @@ use crate::condense::relative_coordinates::AssembledDirection;
 use crate::error::{Result, try_copy, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::model::Model;
+use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
 
 /// Stiffness of a contact over that of the structure above which it is near-rigid.
 const NEAR_RIGID: f64 = 1e3;
@@ -34,14 +36,29 @@ pub(super) fn structural_stiffness(
     }
     let lowest = set.numbers().first().copied().unwrap_or(0);
     let stuck = never_slipping.iter().map(|&i| &model.contacts()[i]);
-    let k = model.sprung_stiffness(Wave::Harmonic(lowest), stuck)?;
-    let m = model.structure().wave_matrix(MatrixKind::Mass, lowest)?;
+    let structure = model.structure();
+    let springs = model.spring_rows(Wave::Harmonic(lowest), stuck)?;
+    let entry = |row: &Row, p: usize| {
+        row.iter()
+            .flatten()
+            .filter(|t| t.0 == p)
+            .map(|t| t.1)
+            .sum::<Complex64>()
+    };
+    let sprung = |p: usize| {
+        let own = structure.wave_diagonal(MatrixKind::Stiffness, lowest, p);
+        let added = springs
+            .iter()
+            .map(|(force, motion, k)| entry(force, p).conj() * entry(motion, p) * k);
+        own + added.sum::<Complex64>()
+    };
     for at in assembled {
         let motion = model
             .structure()
             .contact_motion(&model.contacts()[at.contact], at.direction);
         for p in motion.terms().map(|term| term.dof) {
-            let size = k.get(p, p).norm().max(omega * omega * m.get(p, p).norm());
+            let mass = structure.wave_diagonal(MatrixKind::Mass, lowest, p);
+            let size = sprung(p).norm().max(omega * omega * mass.norm());
             structural[at.coordinate] = structural[at.coordinate].max(size);
         }
     }

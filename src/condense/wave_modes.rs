@@ -13,9 +13,8 @@ use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
-use crate::model::spring::Row;
+use crate::model::reduced_wave::MotionRow;
 use crate::model::spring_stiffness::Wave;
-use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::rc::Rc;
@@ -40,7 +39,7 @@ pub struct WaveModes {
     /// α and β
     pub(super) proportional: (f64, f64),
     /// Rows of B beyond those of the relative coordinates, with their stiffness.
-    pub(super) springs: Vec<(Row, f64)>,
+    pub(super) springs: Vec<(MotionRow, f64)>,
 }
 
 /// The waves met so far; `None` for one whose flexibility is no such sum.
@@ -101,12 +100,11 @@ impl WaveModes {
         if n > MOST || !matches!(block.artificial, Artificial::None) {
             return Ok(None);
         }
-        let structure = model.structure().wave_matrix(MatrixKind::Stiffness, block.number)?;
-        let own = structure.aligned(&block.reference)?;
-        let Some(proportional) = proportional(block, &own) else {
+        let own = block.own_stiffness(model)?;
+        let Some(proportional) = proportional([&block.mass, &own, &block.damping]) else {
             return Ok(None);
         };
-        let Some(springs) = springs(model, condensed, block.number)? else {
+        let Some(springs) = springs(model, condensed, block)? else {
             return Ok(None);
         };
         interrupt.check()?;
@@ -152,9 +150,8 @@ impl WaveModes {
     }
 }
 
-/// α and β of C = αM + βK by least squares; `None` where C is not of this form.
-fn proportional(block: &HarmonicBlock, own: &[Complex64]) -> Option<(f64, f64)> {
-    let (m, k, c) = (&block.mass[..], own, &block.damping[..]);
+/// α and β of C = αM + βK, the matrices M, K and C on one pattern, by least squares; `None` where C is not of this form.
+pub(super) fn proportional([m, k, c]: [&[Complex64]; 3]) -> Option<(f64, f64)> {
     let inner = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| (a.conj() * b).re).sum::<f64>();
     let largest = |a: &[Complex64]| a.iter().fold(0.0_f64, |s, z| s.max(z.norm()));
     let (size_m, size_k, size_c) = (largest(m), largest(k), largest(c));
@@ -178,11 +175,11 @@ fn proportional(block: &HarmonicBlock, own: &[Complex64]) -> Option<(f64, f64)> 
 }
 
 /// Rows of the linear springs and stuck contacts with their stiffness; `None` where one couples its directions.
-fn springs(model: &Model, condensed: &Condensed, number: usize) -> Result<Option<Vec<(Row, f64)>>> {
-    let structure = model.structure();
+fn springs(model: &Model, condensed: &Condensed, block: &HarmonicBlock) -> Result<Option<Vec<(MotionRow, f64)>>> {
+    let (structure, number) = (model.structure(), block.number);
     let mut rows = Vec::new();
     for s in model.springs() {
-        let row = structure.row(&structure.spring_motion(s), Wave::Harmonic(number));
+        let row = block.row(&structure.row(&structure.spring_motion(s), Wave::Harmonic(number)))?;
         try_push(&mut rows, (row, s.stiffness), CONTEXT)?;
     }
     for &i in &condensed.contact_classes().never_slipping {
@@ -192,7 +189,7 @@ fn springs(model: &Model, condensed: &Condensed, number: usize) -> Result<Option
             if (0..contact.directions()).any(|l| couples(&l)) {
                 return Ok(None);
             }
-            let row = structure.contact_row(contact, k, number);
+            let row = block.row(&structure.contact_row(contact, k, number))?;
             try_push(&mut rows, (row, contact.stiffness_at_small_motion(k, k)), CONTEXT)?;
         }
     }

@@ -198,6 +198,9 @@ pub(super) fn has_converged_tail(tail: &[(usize, f64)], change: f64) -> bool {
     beyond <= CONVERGED_TAIL * change
 }
 
+/// Error of the structure on a basis that an estimate of an error may have.
+const CERTIFICATE: f64 = 1e-3;
+
 /// Options of the extended problem. Samples grow faster than the harmonics, so that the estimate includes the
 /// sampling error of the point.
 pub(super) fn extended_options(options: &SolverOptions, highest: usize) -> SolverOptions {
@@ -208,6 +211,7 @@ pub(super) fn extended_options(options: &SolverOptions, highest: usize) -> Solve
     SolverOptions {
         harmonics: highest,
         samples,
+        certificate: options.certificate.max(CERTIFICATE),
         ..*options
     }
 }

@@ -15,7 +15,6 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::norm;
 use crate::model::Model;
-use crate::model::spring::along;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use num_complex::Complex64;
@@ -162,8 +161,8 @@ impl<'a> ModeEstimator<'a> {
         let (omega1, damping1) = Epmc::frequency_and_damping(self.linear, &extended.at);
         let unit = a * condensed.length();
         let (i, dofs) = (set.fundamental(), condensed.ndof());
-        let row = condensed.motion_row(i, self.response);
-        let response = |shape: &[Complex64]| along(&row, &shape[i * dofs..(i + 1) * dofs]) * unit;
+        let row = condensed.motion_row(i, self.response)?;
+        let response = |shape: &[Complex64]| row.along(&shape[i * dofs..(i + 1) * dofs]) * unit;
         let before = response(system.problem.shape());
         if !system.evaluate(&z)? {
             return Ok(None);

@@ -3,6 +3,7 @@
 
 use crate::error::{Error, Result, Status, fail, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::cholesky;
 use crate::linalg::lu::Lu;
 use crate::linalg::sparse::Csc;
 use faer::dyn_stack::{MemBuffer, MemStack};
@@ -52,8 +53,7 @@ impl Factor {
     /// `OutOfMemory`.
     pub fn new(a: &Csc, columns: usize) -> Result<Self> {
         let n = a.rows;
-        let full = a.values.len() as f64 > DENSE_FILL * (n as f64) * (n as f64);
-        let kind = if n <= DENSE_UP_TO || full {
+        let kind = if is_dense(a) {
             Kind::Dense(Lu::new(n, columns)?)
         } else {
             Kind::Sparse(Box::new(Sparse {
@@ -69,6 +69,20 @@ impl Factor {
             }))
         };
         Ok(Self { kind })
+    }
+
+    /// About the bytes of the factors of a matrix with the pattern of `a`, which should be symmetric: pivots may add
+    /// more.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn bytes(a: &Csc) -> Result<usize> {
+        let entries = if is_dense(a) {
+            a.rows * a.rows
+        } else {
+            2 * cholesky::entries_of_factor(a)?
+        };
+        Ok(entries * size_of::<Complex64>())
     }
 
     /// Factors `a`.
@@ -111,6 +125,12 @@ impl Factor {
         }
         Ok(())
     }
+}
+
+/// Whether a matrix is treated as dense.
+fn is_dense(a: &Csc) -> bool {
+    let n = a.rows as f64;
+    a.rows <= DENSE_UP_TO || a.values.len() as f64 > DENSE_FILL * n * n
 }
 
 impl Sparse {

@@ -7,6 +7,7 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
+use crate::linalg::cholesky::Definite;
 use crate::linalg::eigen::Pairs;
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
@@ -38,15 +39,12 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     // A shift far below the typical stiffness per mass makes K + σM regular for rigid bodies and leaves the lowest
     // eigenvalues well separated from the rest.
     let shift = 1e-7 * stiff / heavy;
-    let shifted = Csc::sum(n, &[(Complex64::ONE, k, Form::Plain), (shift.into(), m, Form::Plain)])?;
-    interrupt.check()?;
     let mut search = Search {
-        factor: Factor::new(&shifted, 1)?,
+        inverse: Inverse::new(k, (shift, m), interrupt)?,
         mass: m,
         found: Vec::new(),
         interrupt,
     };
-    search.factor.factor(&shifted, interrupt)?;
     for round in 0..=count {
         let before = search.smallest(count);
         let new = search.run(count, round)?;
@@ -67,8 +65,44 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
     })
 }
 
+/// Order up to which dense factors are quicker.
+const DENSE_UP_TO: usize = 200;
+
+/// Factors of K + σM.
+enum Inverse {
+    /// Definite, in half the memory and less.
+    Definite(Definite),
+    /// Small, or indefinite as with springs of negative stiffness.
+    General(Factor),
+}
+
+impl Inverse {
+    fn new(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Self> {
+        if k.rows > DENSE_UP_TO
+            && let Some(definite) = Definite::new(k, (shift, m), interrupt)?
+        {
+            return Ok(Self::Definite(definite));
+        }
+        let shifted = Csc::sum(
+            k.rows,
+            &[(Complex64::ONE, k, Form::Plain), (shift.into(), m, Form::Plain)],
+        )?;
+        interrupt.check()?;
+        let mut factor = Factor::new(&shifted, 1)?;
+        factor.factor(&shifted, interrupt)?;
+        Ok(Self::General(factor))
+    }
+
+    fn solve(&mut self, b: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
+        match self {
+            Self::Definite(factor) => factor.solve(b, interrupt),
+            Self::General(factor) => factor.solve(b, false, interrupt),
+        }
+    }
+}
+
 struct Search<'a> {
-    factor: Factor,
+    inverse: Inverse,
     mass: &'a Csc,
     interrupt: &'a Interrupt<'a>,
     /// Eigenvalues 1/(λ + σ) of the operator, their vectors φ, and M φ.
@@ -116,7 +150,7 @@ impl Search<'_> {
             }
             beta.push(norm);
             let mut next = mv.clone();
-            self.factor.solve(&mut next, false, self.interrupt)?;
+            self.inverse.solve(&mut next, self.interrupt)?;
             alpha.push(dot(&mv, &next).re);
             try_push(&mut basis, v, "the eigenvectors")?;
             try_push(&mut weighted, mv, "the eigenvectors")?;
@@ -224,7 +258,7 @@ impl Search<'_> {
     /// v ← (K + σM)⁻¹ M v
     fn apply(&mut self, v: &mut Vec<Complex64>) -> Result<()> {
         *v = self.times_mass(v)?;
-        self.factor.solve(v, false, self.interrupt)
+        self.inverse.solve(v, self.interrupt)
     }
 
     fn times_mass(&self, v: &[Complex64]) -> Result<Vec<Complex64>> {

@@ -1,6 +1,8 @@
 //! Linear algebra: matrix input, sparse storage, factorisations, iterative solution, eigenvalues.
 
+pub mod block_krylov;
 pub mod bordered;
+pub mod cholesky;
 pub mod definite;
 pub mod eigen;
 pub mod factor;
@@ -13,6 +15,7 @@ pub mod lu;
 pub mod matrix_view;
 pub mod quadratic;
 pub mod sparse;
+pub mod triangle;
 mod vectors;
 
 pub use vectors::{

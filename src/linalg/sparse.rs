@@ -222,6 +222,12 @@ impl Csc {
         self.values.is_empty()
     }
 
+    /// Whether every entry is real.
+    #[must_use]
+    pub fn is_real(&self) -> bool {
+        self.values.iter().all(|v| v.im == 0.0)
+    }
+
     /// Largest modulus of an entry.
     #[must_use]
     pub fn max_abs(&self) -> f64 {

@@ -7,6 +7,7 @@
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::part_of_turn::lag;
+use crate::model::reduced_wave::WaveKey;
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
 
@@ -28,6 +29,22 @@ impl Structure {
         } else {
             (n - residue, true)
         }
+    }
+
+    /// The wave of a harmonic as a key of equal matrices; `true` if they are the conjugates.
+    pub(crate) fn wave_key(&self, harmonic: usize) -> (WaveKey, bool) {
+        let mean = harmonic == 0;
+        let residue = self.residue(harmonic as i64);
+        let (diameter, backward) = self.fold(residue as i64);
+        if self.is_real() {
+            return (WaveKey { diameter, mean: false }, backward);
+        }
+        // Blocks that are complex themselves belong to one sense of travel.
+        let key = WaveKey {
+            diameter: residue,
+            mean,
+        };
+        (key, false)
     }
 
     /// Nodal diameter of a harmonic of the wave.
@@ -103,6 +120,27 @@ impl Structure {
                 (beta.into(), &stiffness, Form::Plain),
             ],
         )
+    }
+
+    /// Entry (p, p) of the matrix of a harmonic, without its assembly and without Rayleigh damping.
+    #[must_use]
+    pub fn wave_diagonal(&self, which: MatrixKind, harmonic: usize, p: usize) -> Complex64 {
+        let blocks = &self.blocks[which as usize];
+        let residue = self.residue(harmonic as i64);
+        let entry = |a: &Option<Csc>| a.as_ref().map_or(Complex64::ZERO, |a| a.get(p, p));
+        let sum = if blocks.diameters.is_empty() {
+            let lag = self.lag(residue);
+            let previous = if blocks.previous.is_some() {
+                &blocks.previous
+            } else {
+                &blocks.next
+            };
+            entry(&blocks.own) + lag * entry(&blocks.next) + lag.conj() * entry(previous)
+        } else {
+            let (diameter, _) = self.fold(residue as i64);
+            blocks.diameters.get(diameter).map_or(Complex64::ZERO, entry)
+        };
+        if harmonic == 0 { sum.re.into() } else { sum }
     }
 
     fn given(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {

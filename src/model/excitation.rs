@@ -51,6 +51,14 @@ impl Excitation {
         self.forces.clear();
     }
 
+    /// Largest real or imaginary part of a force.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        self.forces
+            .iter()
+            .fold(0.0, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()))
+    }
+
     /// The forces in the order in which they were added.
     #[must_use]
     pub fn forces(&self) -> &[Force] {

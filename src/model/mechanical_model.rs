@@ -7,6 +7,7 @@ use crate::contact::relative_motion::Direction;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
+use crate::model::reduced_wave::KeptWaves;
 use crate::model::sector_faces::SectorDescription;
 use crate::model::spring::Spring;
 use crate::model::structure::{MatrixKind, Structure};
@@ -34,6 +35,8 @@ pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
 #[derive(Clone, Debug)]
 pub struct Model {
     structure: Structure,
+    /// What was prepared for these matrices.
+    kept: KeptWaves,
     contacts: Vec<Contact>,
     springs: Vec<Spring>,
     excitation: Excitation,
@@ -55,6 +58,7 @@ impl Model {
     pub fn cyclic(ndof: usize, sectors: usize) -> Result<Self> {
         Ok(Self {
             structure: Structure::new(ndof, sectors)?,
+            kept: KeptWaves::default(),
             contacts: Vec::new(),
             springs: Vec::new(),
             excitation: Excitation::default(),
@@ -71,6 +75,7 @@ impl Model {
     pub fn sector(sector: &SectorDescription<'_>) -> Result<Self> {
         Ok(Self {
             structure: Structure::of_sector(sector)?,
+            kept: KeptWaves::default(),
             contacts: Vec::new(),
             springs: Vec::new(),
             excitation: Excitation::default(),
@@ -84,8 +89,8 @@ impl Model {
     /// `Index`; `Argument` for a pair of the faces that is fixed on one side only, if all degrees of freedom were
     /// fixed, or for a contact or spring both of whose sides were. Nothing has then changed.
     pub fn fix(&mut self, dofs: &[usize]) -> Result<()> {
-        let old = self.structure.fixing(dofs)?;
-        let old = core::mem::replace(&mut self.structure, old);
+        let new = self.structure.fixing(dofs)?;
+        let old = core::mem::replace(&mut self.structure, new);
         let checked = self
             .contacts
             .iter()
@@ -97,11 +102,24 @@ impl Model {
             });
         if checked.is_err() {
             self.structure = old;
+        } else {
+            self.kept = KeptWaves::default();
         }
         checked
     }
 
-    /// A copy, allocated fallibly.
+    /// The structure for a change of its matrices: nothing that was prepared for them is kept.
+    fn changed_structure(&mut self) -> &mut Structure {
+        self.kept = KeptWaves::default();
+        &mut self.structure
+    }
+
+    /// What was prepared for the matrices of the model.
+    pub(crate) fn kept(&self) -> &KeptWaves {
+        &self.kept
+    }
+
+    /// A copy, allocated fallibly. The matrices are shared until one of the models changes them.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -113,7 +131,8 @@ impl Model {
         let mut springs = Vec::new();
         try_extend(&mut springs, &self.springs, "the springs")?;
         Ok(Self {
-            structure: self.structure.try_clone()?,
+            structure: self.structure.clone(),
+            kept: self.kept.clone(),
             contacts,
             springs,
             excitation: self.excitation.try_clone()?,
@@ -127,7 +146,7 @@ impl Model {
     /// # Errors
     /// Those of [`MatrixView::copy_in`]; `NotPositiveDefinite` for a negative diagonal mass.
     pub fn set_matrix(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
-        self.structure.set_own(which, a)
+        self.changed_structure().set_own(which, a)
     }
 
     /// Adds α M + β K to the damping.
@@ -135,7 +154,7 @@ impl Model {
     /// # Errors
     /// `NotFinite`.
     pub fn set_rayleigh(&mut self, alpha_mass: f64, beta_stiffness: f64) -> Result<()> {
-        self.structure.set_rayleigh(alpha_mass, beta_stiffness)
+        self.changed_structure().set_rayleigh(alpha_mass, beta_stiffness)
     }
 
     /// Sets the coupling of a cyclic model's sector (rows) to the next one (columns). The coupling
@@ -144,7 +163,7 @@ impl Model {
     /// # Errors
     /// As [`Self::set_matrix`]; `Unsupported` for a plain structure.
     pub fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
-        self.structure.set_coupling(which, to_next)
+        self.changed_structure().set_coupling(which, to_next)
     }
 
     /// Sets the coupling of the sector (rows) to the previous one (columns), for damping and
@@ -153,7 +172,7 @@ impl Model {
     /// # Errors
     /// As [`Self::set_coupling`].
     pub fn set_coupling_previous(&mut self, which: MatrixKind, to_previous: &MatrixView<'_>) -> Result<()> {
-        self.structure.set_coupling_previous(which, to_previous)
+        self.changed_structure().set_coupling_previous(which, to_previous)
     }
 
     /// Sets the matrix of the wave in which sector s + 1 lags by 2π·diameter/N, 0 ≤ diameter ≤ N/2.
@@ -161,7 +180,7 @@ impl Model {
     /// # Errors
     /// As [`Self::set_matrix`]; `Argument` for a diameter out of range or a matrix that was given by sector blocks.
     pub fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
-        self.structure.set_diameter(which, diameter, a)
+        self.changed_structure().set_diameter(which, diameter, a)
     }
 
     /// Sets the engine order of the wave, of any sign and size.

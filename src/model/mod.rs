@@ -12,6 +12,7 @@ mod mechanical_model;
 pub mod mode_selection;
 mod model_checks;
 mod part_of_turn;
+pub mod reduced_wave;
 pub mod repeated_modes;
 pub mod resonances;
 pub mod sector_faces;

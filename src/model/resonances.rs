@@ -115,36 +115,56 @@ impl Model {
         let structure = self.structure();
         let stiffness = self.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
         let mass = structure.wave_matrix(MatrixKind::Mass, h)?;
-        let (hermitian, skew) = parts(&stiffness)?;
-        let number = h as f64;
-        let Some(modes) = modes_up_to(&hermitian, &mass, high * number, interrupt)? else {
-            return Ok(None);
-        };
-        let mut frequencies = Vec::new();
-        let mut shapes = Vec::new();
-        for (value, shape) in modes.values.iter().zip(modes.vectors.column_iter()) {
-            let omega = value.max(0.0).sqrt();
-            if omega >= low * number && omega <= high * number && omega > 0.0 {
-                try_push(&mut frequencies, omega, CONTEXT)?;
-                try_push(&mut shapes, try_copy(shape.as_slice(), CONTEXT)?, CONTEXT)?;
-            }
-        }
-        let damping = structure.wave_matrix(MatrixKind::Damping, h)?;
-        let widths = Widths { damping, skew };
-        let mut found = Vec::new();
-        let mut first = 0;
-        while first < frequencies.len() {
-            let mut next = first + 1;
-            while next < frequencies.len() && widths.couple(&frequencies, &shapes, next)? {
-                next += 1;
-            }
-            let group = first..next;
-            widths.poles(&frequencies[group.clone()], &shapes[group], number, &mut found)?;
-            first = next;
-        }
-        found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
-        Ok(Some(found))
+        damped_frequencies(
+            h,
+            (low, high),
+            (&stiffness, &mass),
+            || structure.wave_matrix(MatrixKind::Damping, h),
+            interrupt,
+        )
     }
+}
+
+/// The resonances of harmonic `h` for given matrices, see [`Model::resonances`].
+///
+/// # Errors
+/// Those of the eigensolvers.
+pub fn damped_frequencies(
+    h: usize,
+    (low, high): (f64, f64),
+    (stiffness, mass): (&Csc, &Csc),
+    damping: impl FnOnce() -> Result<Csc>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<Vec<Resonance>>> {
+    let (hermitian, skew) = parts(stiffness)?;
+    let number = h as f64;
+    let Some(modes) = modes_up_to(&hermitian, mass, high * number, interrupt)? else {
+        return Ok(None);
+    };
+    let mut frequencies = Vec::new();
+    let mut shapes = Vec::new();
+    for (value, shape) in modes.values.iter().zip(modes.vectors.column_iter()) {
+        let omega = value.max(0.0).sqrt();
+        if omega >= low * number && omega <= high * number && omega > 0.0 {
+            try_push(&mut frequencies, omega, CONTEXT)?;
+            try_push(&mut shapes, try_copy(shape.as_slice(), CONTEXT)?, CONTEXT)?;
+        }
+    }
+    let damping = damping()?;
+    let widths = Widths { damping, skew };
+    let mut found = Vec::new();
+    let mut first = 0;
+    while first < frequencies.len() {
+        let mut next = first + 1;
+        while next < frequencies.len() && widths.couple(&frequencies, &shapes, next)? {
+            next += 1;
+        }
+        let group = first..next;
+        widths.poles(&frequencies[group.clone()], &shapes[group], number, &mut found)?;
+        first = next;
+    }
+    found.sort_by(|a, b| a.omega.total_cmp(&b.omega));
+    Ok(Some(found))
 }
 
 /// The Hermitian part of K, and −i times the skew one.

@@ -18,6 +18,38 @@ pub enum Wave {
 }
 
 impl Model {
+    /// Rows of force and motion, and stiffness, of the springs of the model and of the `stuck` contacts in a wave.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn spring_rows<'c>(
+        &self,
+        wave: Wave,
+        stuck: impl Iterator<Item = &'c Contact>,
+    ) -> Result<Vec<(Row, Row, f64)>> {
+        let structure = self.structure();
+        let mut rows = Vec::new();
+        let mut add = |force: Row, motion: Row, stiffness: f64| -> Result<()> {
+            if stiffness == 0.0 {
+                return Ok(());
+            }
+            try_push(&mut rows, (force, motion, stiffness), "the springs")
+        };
+        for s in self.springs() {
+            let row = structure.row(&structure.spring_motion(s), wave);
+            add(row, row, s.stiffness)?;
+        }
+        for c in stuck {
+            let row = |k| structure.row(&structure.contact_motion(c, k), wave);
+            for k in 0..c.directions() {
+                for l in 0..c.directions() {
+                    add(row(k), row(l), c.stiffness_at_small_motion(k, l))?;
+                }
+            }
+        }
+        Ok(rows)
+    }
+
     /// K of a wave with the springs of the model and those of the `stuck` contacts.
     ///
     /// # Errors
@@ -30,26 +62,10 @@ impl Model {
             Wave::Diameter(d) => structure.diameter_matrix(MatrixKind::Stiffness, d)?,
         };
         let mut entries = Vec::new();
-        let mut add = |force: &Row, motion: &Row, stiffness: f64| -> Result<()> {
-            if stiffness == 0.0 {
-                return Ok(());
-            }
+        for (force, motion, stiffness) in self.spring_rows(wave, stuck)? {
             for (p, x) in force.iter().flatten() {
                 for (q, y) in motion.iter().flatten() {
                     try_push(&mut entries, (*p, *q, x.conj() * y * stiffness), "the springs")?;
-                }
-            }
-            Ok(())
-        };
-        for s in self.springs() {
-            let row = structure.row(&structure.spring_motion(s), wave);
-            add(&row, &row, s.stiffness)?;
-        }
-        for c in stuck {
-            let row = |k| structure.row(&structure.contact_motion(c, k), wave);
-            for k in 0..c.directions() {
-                for l in 0..c.directions() {
-                    add(&row(k), &row(l), c.stiffness_at_small_motion(k, l))?;
                 }
             }
         }

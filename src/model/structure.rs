@@ -8,6 +8,7 @@ use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
+use std::sync::Arc;
 
 /// Largest accepted number of degrees of freedom.
 pub const MAX_DOF: usize = 1 << 31;
@@ -42,8 +43,9 @@ pub struct Structure {
     degrees: DegreeMap,
     sectors: usize,
     engine_order: i64,
-    pub(super) blocks: [Blocks; 3],
-    pub(super) rayleigh: (f64, f64),
+    /// Shared with copies until one of them changes it.
+    pub(super) blocks: Arc<[Blocks; 3]>,
+    pub(crate) rayleigh: (f64, f64),
 }
 
 impl Structure {
@@ -58,7 +60,7 @@ impl Structure {
             degrees: DegreeMap::identity(ndof),
             sectors,
             engine_order: 0,
-            blocks: Default::default(),
+            blocks: Arc::default(),
             rayleigh: (0.0, 0.0),
         })
     }
@@ -75,20 +77,28 @@ impl Structure {
         self.parts(kind).next().is_some()
     }
 
+    /// Whether all blocks are real.
+    pub(super) fn is_real(&self) -> bool {
+        let kinds = [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness];
+        kinds.into_iter().flat_map(|kind| self.parts(kind)).all(Csc::is_real)
+    }
+
     /// The blocks of a matrix that were given.
     fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &Csc> {
         let b = &self.blocks[kind as usize];
         [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters).flatten()
     }
 
-    /// A copy, allocated fallibly.
-    pub(super) fn try_clone(&self) -> Result<Self> {
-        let [mass, damping, stiffness] = &self.blocks;
-        Ok(Self {
-            degrees: self.degrees.clone(),
-            blocks: [mass.try_clone()?, damping.try_clone()?, stiffness.try_clone()?],
-            ..*self
-        })
+    /// The blocks of a matrix for a change, copied where others use them.
+    fn blocks_mut(&mut self, which: MatrixKind) -> Result<&mut Blocks> {
+        if Arc::get_mut(&mut self.blocks).is_none() {
+            let [mass, damping, stiffness] = &*self.blocks;
+            self.blocks = Arc::new([mass.try_clone()?, damping.try_clone()?, stiffness.try_clone()?]);
+        }
+        match Arc::get_mut(&mut self.blocks) {
+            Some(blocks) => Ok(&mut blocks[which as usize]),
+            None => fail!(Internal, "the matrices of the structure are shared"),
+        }
     }
 
     /// Independent degrees of freedom of one sector, the order of its matrices.
@@ -119,7 +129,7 @@ impl Structure {
         let degrees = self.degrees.fixing(dofs)?;
         let keep = |a: &Option<Csc>| a.as_ref().map(|a| restricted(&self.degrees, &degrees, a)).transpose();
         let mut blocks: [Blocks; 3] = Default::default();
-        for (new, old) in blocks.iter_mut().zip(&self.blocks) {
+        for (new, old) in blocks.iter_mut().zip(&*self.blocks) {
             (new.own, new.next, new.previous) = (keep(&old.own)?, keep(&old.next)?, keep(&old.previous)?);
             for a in &old.diameters {
                 try_push(&mut new.diameters, keep(a)?, "the matrices per diameter")?;
@@ -127,7 +137,7 @@ impl Structure {
         }
         Ok(Self {
             degrees,
-            blocks,
+            blocks: Arc::new(blocks),
             ..*self
         })
     }
@@ -173,18 +183,19 @@ impl Structure {
                 own.get(i, i).re
             );
         }
-        let blocks = &mut self.blocks[which as usize];
         if self.degrees.faces().is_some() {
-            *blocks = sector_matrices::blocks(&self.degrees, &own, a.part != Part::General)?;
+            let blocks = sector_matrices::blocks(&self.degrees, &own, a.part != Part::General)?;
+            *self.blocks_mut(which)? = blocks;
         } else {
-            blocks.own = Some(of_independent(&self.degrees, own)?);
+            let own = of_independent(&self.degrees, own)?;
+            self.blocks_mut(which)?.own = Some(own);
         }
         Ok(())
     }
 
     pub(super) fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
         let next = self.coupling(which, to_next)?;
-        self.blocks[which as usize].next = Some(next);
+        self.blocks_mut(which)?.next = Some(next);
         Ok(())
     }
 
@@ -196,7 +207,7 @@ impl Structure {
             );
         }
         let previous = self.coupling(which, to_previous)?;
-        self.blocks[which as usize].previous = Some(previous);
+        self.blocks_mut(which)?.previous = Some(previous);
         Ok(())
     }
 
@@ -240,7 +251,7 @@ impl Structure {
         self.refuse_faces(which)?;
         let matrix = a.copy_in(which.name(), self.degrees.given())?;
         let matrix = of_independent(&self.degrees, matrix)?;
-        let blocks = &mut self.blocks[which as usize];
+        let blocks = self.blocks_mut(which)?;
         if blocks.diameters.is_empty() {
             blocks.diameters = try_vec(highest + 1, None, "the matrices per diameter")?;
         }

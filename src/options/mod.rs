@@ -8,6 +8,6 @@ mod time_options;
 
 pub use forced_options::ForcedOptions;
 pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
-pub use solver_options::{MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
+pub use solver_options::{Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
 pub use synthesis_options::SynthesisOptions;
 pub use time_options::{SteadyMethod, TimeOptions, VerifyOptions};

@@ -2,6 +2,18 @@
 
 use crate::error::{Result, fail};
 
+/// The way to the flexibility of the structure at the contacts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Flexibility {
+    /// A basis for large structures where it holds, factors otherwise.
+    #[default]
+    Automatic,
+    /// Complex LU factors of the dynamic stiffness of all degrees of freedom at each frequency that is needed.
+    Direct,
+    /// A block Krylov basis per nodal diameter from one real or Hermitian factorisation.
+    Krylov,
+}
+
 /// Options that every analysis shares.
 #[derive(Clone, Copy, Debug)]
 pub struct SolverOptions {
@@ -45,6 +57,13 @@ pub struct SolverOptions {
     /// time as a solution with more harmonics. Where the tolerance chooses the harmonics, the error is estimated in
     /// any case.
     pub estimate_error: bool,
+    /// The way to the flexibility of the structure at the contacts of a forced response.
+    pub flexibility: Flexibility,
+    /// Largest estimated relative error of the motion of the structure on a basis, up to which the basis grows.
+    pub certificate: f64,
+    /// Largest number of bytes for factors and bases of the structure; `0`: no limit. What needs more is refused before
+    /// it is allocated.
+    pub memory_limit: usize,
 }
 
 impl Default for SolverOptions {
@@ -64,6 +83,9 @@ impl Default for SolverOptions {
             response_dof: None,
             keep_even_harmonics: false,
             estimate_error: false,
+            flexibility: Flexibility::Automatic,
+            certificate: 1e-8,
+            memory_limit: 0,
         }
     }
 }

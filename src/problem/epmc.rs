@@ -178,7 +178,7 @@ impl<'a> Epmc<'a> {
         let phase = self.linear.shape[self.gauge.reference_dof];
         let turn = phase.conj() / (phase.norm() * self.condensed.length());
         for (c, row) in rows.iter().enumerate() {
-            let y = along(row, &self.linear.shape) * turn;
+            let y = row.along(&self.linear.shape) * turn;
             set.set(&mut u[c * m..(c + 1) * m], fundamental, y);
         }
     }
@@ -293,15 +293,15 @@ impl<'a> Epmc<'a> {
             largest = self.modal.x().iter().fold(largest, |m, z| m.max(z.norm()));
             for (r, row) in block.rows.iter().enumerate() {
                 let position = r * m + at;
-                put(&mut out.values, position, mean, -along(row, self.modal.x()));
+                put(&mut out.values, position, mean, -row.along(self.modal.x()));
                 for (column, rate, dx) in [
                     (&mut self.by_omega, rates.0, self.modal.by_omega()),
                     (&mut self.by_damping, rates.1, self.modal.by_damping()),
                 ] {
-                    put(column, position, mean, -rate * along(row, dx));
+                    put(column, position, mean, -rate * row.along(dx));
                 }
                 for c in 0..coordinates {
-                    let g = along(row, self.modal.column(c));
+                    let g = row.along(self.modal.column(c));
                     let lost = self.forces.rounding(c);
                     rounding += lost * lost * g.norm_sqr();
                     self.flexibility[(i * coordinates + c) * coordinates + r] = g;

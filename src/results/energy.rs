@@ -14,6 +14,8 @@ use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, TurningPoints};
 use crate::interrupt::Interrupt;
 use crate::linalg::quadratic::{ComplexSum, form, product};
+use crate::model::spring::along;
+use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -82,28 +84,57 @@ pub struct Peaks {
 /// `OutOfMemory`; `StoppedByCaller`.
 pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Peaks> {
     const CONTEXT: &str = "the energies";
-    let n = condensed.ndof();
-    let mut moved = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
-    let mut conjugate = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
+    let (order, n) = (condensed.ndof(), condensed.degrees().independent());
+    let size = n.saturating_mul(condensed.blocks().len());
+    let mut moved = try_vec(size, Complex64::ZERO, CONTEXT)?;
+    let mut conjugate = try_vec(size, Complex64::ZERO, CONTEXT)?;
     let mut sums = try_vec(n, ComplexSum::default(), CONTEXT)?;
     let mut series = Series::new(condensed.set())?;
     let mut largest = [[0.0; 2]; 2];
     for (kinetic, largest) in [true, false].into_iter().zip(&mut largest) {
         let rows = moved.chunks_exact_mut(n).zip(conjugate.chunks_exact_mut(n));
-        for ((block, x), (moved, conjugate)) in condensed.blocks().iter().zip(x.chunks_exact(n)).zip(rows) {
+        for (((i, block), q), (moved, conjugate)) in condensed
+            .blocks()
+            .iter()
+            .enumerate()
+            .zip(x.chunks_exact(order))
+            .zip(rows)
+        {
             interrupt.check()?;
-            let (factor, values) = if kinetic {
-                (Complex64::new(0.0, block.number as f64 * omega), &block.mass)
+            let factor = if kinetic {
+                Complex64::new(0.0, block.number as f64 * omega)
             } else {
-                (Complex64::ONE, &block.stiffness)
+                Complex64::ONE
             };
-            for (moved, x) in moved.iter_mut().zip(x) {
-                *moved = factor * x;
+            condensed.expand(i, q, moved)?;
+            for moved in moved.iter_mut() {
+                *moved *= factor;
             }
             sums.fill(ComplexSum::default());
-            product(&block.reference, values, moved, &mut sums);
+            match condensed.structure() {
+                None => {
+                    let values = if kinetic { &block.mass } else { &block.stiffness };
+                    product(&block.reference, values, moved, &mut sums);
+                }
+                // Harmonics on different bases meet in the degrees of freedom alone.
+                Some(structure) => {
+                    let kind = if kinetic {
+                        MatrixKind::Mass
+                    } else {
+                        MatrixKind::Stiffness
+                    };
+                    let matrix = structure.wave_matrix(kind, block.number)?;
+                    product(&matrix, &matrix.values, moved, &mut sums);
+                }
+            }
             for (conjugate, sum) in conjugate.iter_mut().zip(&sums) {
                 *conjugate = sum.total();
+            }
+            for (force, motion, k) in block.springs.iter().filter(|_| !kinetic) {
+                let pull = along(motion, moved) * k;
+                for &(p, a) in force.iter().flatten() {
+                    conjugate[p] += a.conj() * pull;
+                }
             }
         }
         series.set_half_product(condensed.set().numbers(), &moved, &conjugate, n, interrupt)?;

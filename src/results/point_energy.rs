@@ -57,7 +57,7 @@ impl Branch {
         let mut recovery = Recovery::at(self, point, interrupt)?;
         for (i, x) in x.chunks_exact_mut(n).enumerate() {
             interrupt.part(Phase::Results, i, carried)?;
-            recovery.independent(i, x)?;
+            recovery.coordinates(i, x)?;
             // In the units of the solver, whose scale is a power of two and costs no digit.
             for z in x {
                 *z /= length;

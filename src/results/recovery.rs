@@ -20,7 +20,7 @@ pub(crate) struct Recovery<'a> {
     point: usize,
     forces: ContactForces<'a>,
     w: Vec<Complex64>,
-    independent: Vec<Complex64>,
+    q: Vec<Complex64>,
 }
 
 const CONTEXT: &str = "the harmonics";
@@ -44,7 +44,7 @@ impl<'a> Recovery<'a> {
             point,
             forces: ContactForces::unchecked(condensed, *samples, interrupt)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
-            independent: Vec::new(),
+            q: Vec::new(),
         };
         recovery.go_to(point)?;
         Ok(recovery)
@@ -80,24 +80,33 @@ impl<'a> Recovery<'a> {
     /// `Singular` at an undamped resonance that moves no contact; `OutOfMemory`.
     pub fn harmonic(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
         let condensed = self.condensed;
-        if condensed.degrees().is_identity() {
-            return self.independent(i, x);
+        let degrees = condensed.degrees();
+        if degrees.is_identity() && !condensed.is_reduced() {
+            return self.coordinates(i, x);
         }
-        let mut independent = core::mem::take(&mut self.independent);
-        if independent.len() != condensed.ndof() {
-            independent = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
+        let mut q = core::mem::take(&mut self.q);
+        if q.len() != condensed.ndof() {
+            q = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;
         }
-        self.independent(i, &mut independent)?;
-        condensed.degrees().expand(condensed.blocks()[i].next, &independent, x);
-        self.independent = independent;
+        self.coordinates(i, &mut q)?;
+        if degrees.is_identity() {
+            condensed.expand(i, &q, x)?;
+        } else if condensed.is_reduced() {
+            let mut independent = try_vec(degrees.independent(), Complex64::ZERO, CONTEXT)?;
+            condensed.expand(i, &q, &mut independent)?;
+            degrees.expand(condensed.blocks()[i].next, &independent, x);
+        } else {
+            degrees.expand(condensed.blocks()[i].next, &q, x);
+        }
+        self.q = q;
         Ok(())
     }
 
-    /// The same for the independent degrees of freedom.
+    /// The same for the coordinates of the harmonic: the independent degrees of freedom, or those of its basis.
     ///
     /// # Errors
     /// As [`Self::harmonic`].
-    pub fn independent(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
+    pub fn coordinates(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
         let condensed = self.condensed;
         let set = condensed.set();
         let motion = self.motion();

@@ -6,7 +6,6 @@ use crate::error::{Result, fail, try_extend, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::jet;
 use crate::interrupt::{Interrupt, Phase};
-use crate::model::spring::along;
 use crate::results::contact_loops::Orbit;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
@@ -80,7 +79,7 @@ impl Branch {
         }
         check_times(n)?;
         let condensed = self.condensed_at(point);
-        let motion = |i, _, x: &[Complex64]| along(&condensed.motion_row(i, dof), x);
+        let motion = |i, _, x: &[Complex64]| Ok(condensed.motion_row(i, dof)?.along(x));
         let (set, packed) = self.recover(point, 1, motion, interrupt)?;
         let mut history = try_vec(n, 0.0, "a time history")?;
         for (j, x) in history.iter_mut().enumerate() {
@@ -215,7 +214,7 @@ impl Branch {
         if let Some(at) = contact_classes.linear(contact) {
             let kept = &contact_classes.contacts()[contact];
             let row = |i: usize, k: usize| &condensed.blocks()[i].linear_rows[at + k];
-            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| along(row(i, k), x), interrupt)?;
+            let (set, packed) = self.recover(point, kept.directions(), |i, k, x| Ok(row(i, k).along(x)), interrupt)?;
             let orbit = Orbit::spring(&set, &packed, kept.directions(), kept.stiffness_as_spring());
             return use_it(&orbit, 1.0);
         }
@@ -242,7 +241,7 @@ impl Branch {
         &self,
         point: usize,
         signals: usize,
-        of: impl Fn(usize, usize, &[Complex64]) -> Complex64,
+        of: impl Fn(usize, usize, &[Complex64]) -> Result<Complex64>,
         interrupt: &Interrupt<'_>,
     ) -> Result<(HarmonicSet, Vec<f64>)> {
         const CONTEXT: &str = "the harmonics";
@@ -256,9 +255,9 @@ impl Branch {
         let mut recovery = Recovery::at(self, point, interrupt)?;
         for (i, &h) in carried.iter().enumerate() {
             interrupt.part(Phase::Results, i, carried.len())?;
-            recovery.independent(i, &mut x)?;
+            recovery.coordinates(i, &mut x)?;
             for (k, signal) in packed.chunks_exact_mut(m).enumerate() {
-                set.set(signal, h, of(i, k, &x));
+                set.set(signal, h, of(i, k, &x)?);
             }
         }
         Ok((set, packed))

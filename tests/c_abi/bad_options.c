@@ -63,6 +63,9 @@ static void solver(void)
     BAD("39", response_dof, INT64_MAX, HBVIB_E_INDEX, "response_dof");
     BAD("68", estimate_error, 2, HBVIB_E_ARGUMENT, "estimate_error = 2");
     BAD("68", keep_even_harmonics, 2, HBVIB_E_ARGUMENT, "keep_even_harmonics = 2");
+    BAD("68", flexibility, 3, HBVIB_E_ARGUMENT, "flexibility = 3");
+    BAD("68", memory_limit, -1, HBVIB_E_ARGUMENT, "memory_limit = -1");
+    BAD("68", reserved, 1, HBVIB_E_ARGUMENT, "reserved = 1");
     BAD("83", num_threads, -1, HBVIB_E_ARGUMENT, "num_threads = -1, needs 0 or 1");
     BAD("83", num_threads, 2, HBVIB_E_ARGUMENT, "num_threads = 2, needs 0 or 1");
     s = solver_options();
@@ -122,7 +125,7 @@ static void struct_sizes(void)
     REFUSED("66", hbvib_forced_options_init(&o, 48), HBVIB_E_STRUCT_SIZE, 2, "needs 56");
     REFUSED("66", hbvib_hooks_init(&h, 32), HBVIB_E_STRUCT_SIZE, 2, "needs 48");
     REFUSED("66", hbvib_view_init(&view, 64), HBVIB_E_STRUCT_SIZE, 2, "needs 72");
-    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 104");
+    REFUSED("66", hbvib_reduction_init(&reduction, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 120");
     REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_point_init(&point, 80), HBVIB_E_STRUCT_SIZE, 2, "needs 88");

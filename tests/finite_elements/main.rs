@@ -15,6 +15,8 @@ mod flags;
 mod json;
 #[path = "../../examples/support/matrix_market.rs"]
 mod matrix_market;
+#[path = "../../examples/support/plate.rs"]
+mod plate;
 #[path = "../../examples/support/progress.rs"]
 mod progress;
 #[path = "../../examples/support/response.rs"]
@@ -32,3 +34,4 @@ mod fe_modes;
 mod fe_sector;
 mod fe_stops;
 mod friction_patch;
+mod large_plate;

@@ -13,6 +13,7 @@ mod folds;
 mod full_wheel;
 mod many_contacts;
 mod preload;
+mod reduced_structures;
 mod reference_point;
 mod reference_response;
 mod small_systems;

@@ -40,13 +40,13 @@ fn in_rust() -> String {
         hbvib_force_call { struct_size, reserved, omega, samples, n, states, u, v, z0, f, df_du, df_dv, z, dz_dz, dz_du_before, dz_du, dz_dv_before, dz_dv, dz_domega, df_dz }
         hbvib_user_force { struct_size, uses_velocity, is_odd, reserved, dofs, n, states, samples, force, user }
         hbvib_jacobian_gap { struct_size, tangent, gap, sample, row, column, given, difference }
-        hbvib_solver_options { struct_size, num_threads, tolerance, harmonics, max_harmonics, samples, step, step_min, step_max, tol_residual, max_newton, max_points, response_dof, keep_even_harmonics, estimate_error }
+        hbvib_solver_options { struct_size, num_threads, tolerance, harmonics, max_harmonics, samples, step, step_min, step_max, tol_residual, max_newton, max_points, response_dof, keep_even_harmonics, estimate_error, memory_limit, flexibility, reserved }
         hbvib_progress { struct_size, newton_iterations, point, parameter, amplitude, residual, step, fraction_done }
         hbvib_phase_report { struct_size, phase, share }
         hbvib_hooks { struct_size, log_level, user, progress, log, cancel, phase }
         hbvib_forced_options { struct_size, reserved, omega_start, omega_stop, at, at_len, guess, guess_len }
         hbvib_view { struct_size, scalar, rank, reserved, data, shape, stride }
-        hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts }
+        hbvib_reduction { struct_size, reserved, sectors, degrees_of_freedom, coordinates, contacts, never_slipping, inert, harmonics_asked, harmonics_carried, unknowns, response_dof, mean_carried, even_removed, held_by_contacts, basis, certificate }
         hbvib_energy { struct_size, reserved, twice_mean_kinetic, kinetic_mean, kinetic_peak, potential_mean, potential_peak, wheel_kinetic_mean, wheel_kinetic_peak, wheel_potential_mean, wheel_potential_peak, structural_loss, friction_loss }
         hbvib_contact_summary { struct_size, reserved, work, slip_share, open_share, half_range, motion_min, motion_max, load_min, load_max, directions, all_min, all_max }
         hbvib_mode_options { struct_size, damping_form, log10_start, log10_stop, diameter, mode_index, near_omega, shape, shape_len, amplitude_contact, at, at_len, reference_dof }

@@ -2,7 +2,7 @@
 
 use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
-use crate::model::spring::{Row, along};
+use crate::model::reduced_wave::MotionRow;
 use crate::results::mode_branch::ModePoint;
 use num_complex::Complex64;
 
@@ -27,7 +27,7 @@ pub(super) struct Load {
     pub damping: Option<Csc>,
     pub ratio: f64,
     /// Row of the response degree of freedom in the fundamental.
-    pub response: Row,
+    pub response: MotionRow,
 }
 
 /// The mode at one amplitude, reduced to an oscillator.
@@ -64,7 +64,7 @@ impl Load {
             damping,
             square,
             work: inner(x, &self.force),
-            response: along(&self.response, x),
+            response: self.response.along(x),
             log10: point.log10_amplitude,
             fundamental_share: point.fundamental_share,
         }

@@ -177,6 +177,9 @@ contains
       call field('response_dof', c_loc(s), c_loc(s%response_dof), c_sizeof(s%response_dof))
       call field('keep_even_harmonics', c_loc(s), c_loc(s%keep_even_harmonics), c_sizeof(s%keep_even_harmonics))
       call field('estimate_error', c_loc(s), c_loc(s%estimate_error), c_sizeof(s%estimate_error))
+      call field('memory_limit', c_loc(s), c_loc(s%memory_limit), c_sizeof(s%memory_limit))
+      call field('flexibility', c_loc(s), c_loc(s%flexibility), c_sizeof(s%flexibility))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
    end subroutine solver_options
 
    subroutine progress()
@@ -255,6 +258,8 @@ contains
       call field('mean_carried', c_loc(s), c_loc(s%mean_carried), c_sizeof(s%mean_carried))
       call field('even_removed', c_loc(s), c_loc(s%even_removed), c_sizeof(s%even_removed))
       call field('held_by_contacts', c_loc(s), c_loc(s%held_by_contacts), c_sizeof(s%held_by_contacts))
+      call field('basis', c_loc(s), c_loc(s%basis), c_sizeof(s%basis))
+      call field('certificate', c_loc(s), c_loc(s%certificate), c_sizeof(s%certificate))
    end subroutine reduction
 
    subroutine energy()

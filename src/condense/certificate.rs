@@ -1,0 +1,198 @@
+//! Certificate of a structure on a basis: the estimated relative error of its motion under a unit force at each contact,
+//! at the excitation and at the response, in the energy norm of A = K + σM.
+//!
+//! The residual b − Z V q has the norm ρ in A⁻¹, see [`crate::linalg::block_krylov`]. Motions that the basis lacks answer it
+//! about statically, which gives ρ/‖q‖. A motion that the basis holds to a share of about ρ/‖q‖ answers it as near its
+//! resonance as it is, which adds ‖Z⁻¹‖ (ρ/‖q‖)² with the inverse on the basis: near a resonance a small residual is an
+//! error that is 1/(2ζ) times larger.
+
+use crate::condense::HarmonicBlock;
+use crate::condense::sweep::Sweep;
+use crate::error::{Result, Status, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::block_krylov::SparseVector;
+use crate::linalg::hermitian;
+use crate::linalg::lu::Lu;
+use crate::model::reduced_wave::{ReducedView, WaveDamping};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the certificate of the flexibility";
+
+/// Largest number of resonances that are checked.
+const RESONANCES: usize = 6;
+
+/// Steps of the power iteration for ‖Z⁻¹‖, whose size alone matters.
+const STEPS: usize = 4;
+
+/// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it.
+///
+/// # Errors
+/// `OutOfMemory`; `StoppedByCaller`.
+pub(super) fn certificate(
+    block: &HarmonicBlock,
+    view: &ReducedView,
+    inputs: &[SparseVector],
+    sweep: Sweep,
+    interrupt: &Interrupt<'_>,
+) -> Result<f64> {
+    let order = view.pencil().order();
+    let n = block.reference.rows;
+    if order == 0 {
+        return Ok(f64::INFINITY);
+    }
+    let mut forces = try_vec(inputs.len() * n, Complex64::ZERO, CONTEXT)?;
+    for (to, input) in forces.chunks_exact_mut(n).zip(inputs) {
+        let mut dense = view.coordinates(input)?;
+        to[..order].swap_with_slice(&mut dense[..order]);
+    }
+    let mut frequencies = Vec::new();
+    for frequency in sweep.of_harmonic(block.number) {
+        if !frequencies.contains(&frequency) {
+            try_push(&mut frequencies, frequency, CONTEXT)?;
+        }
+    }
+    if sweep.start.to_bits() != sweep.stop.to_bits() && block.number > 0 {
+        resonances(block, view, sweep, &mut frequencies, interrupt)?;
+    }
+    let mut lu = Lu::new(n, inputs.len().max(1))?;
+    let mut worst = 0.0_f64;
+    let mut q = try_copy(&forces, CONTEXT)?;
+    for nu in frequencies {
+        let i_nu = Complex64::new(0.0, nu);
+        let matrix = lu.matrix();
+        for (at, z) in matrix.iter_mut().enumerate() {
+            *z = block.reference.values[at] + i_nu * block.damping[at] - nu * nu * block.mass[at];
+        }
+        match lu.factor(interrupt) {
+            Ok(()) => {}
+            Err(e) if e.status == Status::Singular => return Ok(f64::INFINITY),
+            Err(e) => return Err(e),
+        }
+        q.copy_from_slice(&forces);
+        lu.solve_columns(&mut q, false, interrupt)?;
+        let inverse = inverse_norm(&mut lu, n, interrupt)?;
+        for q in q.chunks_exact(n) {
+            let size = q[..order].iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+            if size == 0.0 {
+                continue;
+            }
+            let share = residual(view, nu, &q[..order])? / size;
+            worst = worst.max(share + inverse * share * share);
+        }
+    }
+    Ok(worst)
+}
+
+/// ρ of a motion of the coordinates at ν = hω.
+fn residual(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
+    let pencil = view.pencil();
+    let (order, last) = (pencil.order(), pencil.remainder.last);
+    let new = order - last;
+    let turned = |z: Complex64| if view.conjugated { z.conj() } else { z };
+    let mut end = try_vec(new, Complex64::ZERO, CONTEXT)?;
+    for (column, &z) in pencil.rotation.chunks_exact(order).zip(q) {
+        let z = turned(z);
+        for (to, r) in end.iter_mut().zip(&column[last..]) {
+            *to += r * z;
+        }
+    }
+    // Z = (1 + iνβ) A − s M + …, s = ν² − iνα + (1 + iνβ) σ
+    let (mass, damping) = match pencil.damping {
+        WaveDamping::Proportional(alpha, beta) => {
+            let i_nu = Complex64::new(0.0, nu);
+            (nu * nu - i_nu * alpha + (1.0 + i_nu * beta) * pencil.shift, None)
+        }
+        WaveDamping::General(_) => (
+            Complex64::from(nu * nu + pencil.shift),
+            Some(turned(Complex64::new(0.0, -nu))),
+        ),
+    };
+    let mut v = Vec::new();
+    for factor in [Some(turned(mass)), damping].into_iter().flatten() {
+        for z in &end {
+            try_push(&mut v, factor * z, CONTEXT)?;
+        }
+    }
+    let size = v.len();
+    let mut sum = Complex64::ZERO;
+    for (column, z) in pencil.remainder.gram.chunks_exact(size.max(1)).zip(&v) {
+        for (g, w) in column.iter().zip(&v) {
+            sum += w.conj() * g * z;
+        }
+    }
+    Ok(sum.re.max(0.0).sqrt())
+}
+
+/// ‖Z⁻¹‖ by power iteration on Z⁻¹Z⁻ᴴ.
+fn inverse_norm(lu: &mut Lu<Complex64>, n: usize, interrupt: &Interrupt<'_>) -> Result<f64> {
+    let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
+    for (k, x) in x.iter_mut().enumerate() {
+        *x = Complex64::cis(1.7 * k as f64);
+    }
+    let mut norm = 0.0;
+    for _ in 0..STEPS {
+        let size = x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        for x in &mut x {
+            *x = (*x / size).conj();
+        }
+        // conj(Z⁻ᵀ conj(x)) = Z⁻ᴴ x
+        lu.solve_columns(&mut x, true, interrupt)?;
+        for x in &mut x {
+            *x = x.conj();
+        }
+        norm = x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+        lu.solve_columns(&mut x, false, interrupt)?;
+    }
+    Ok(norm)
+}
+
+/// Appends natural frequencies, with the real part of the reference stiffness, within a sweep.
+fn resonances(
+    block: &HarmonicBlock,
+    view: &ReducedView,
+    sweep: Sweep,
+    frequencies: &mut Vec<f64>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let n = block.reference.rows;
+    let shift = view.pencil().shift;
+    // L Lᴴ = (K_κ + K_κᴴ)/2 + σM, and L⁻¹ M L⁻ᴴ has the eigenvalues 1/(λ + σ).
+    let values = &block.reference.values;
+    let mut l = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    for j in 0..n {
+        for i in 0..n {
+            l[j * n + i] = 0.5 * (values[j * n + i] + values[i * n + j].conj()) + shift * block.mass[j * n + i];
+        }
+    }
+    if !hermitian::cholesky(&mut l, n, interrupt)? {
+        return Ok(());
+    }
+    let mut a = try_copy(&block.mass, CONTEXT)?;
+    hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;
+    adjoint_in_place(&mut a, n);
+    hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;
+    let [low, _, high] = sweep.of_harmonic(block.number);
+    let (found, _) = hermitian::eigen(&mut a, n, interrupt)?;
+    let mut within = Vec::new();
+    for mu in found.into_iter().filter(|&mu| mu > 0.0) {
+        let omega = (1.0 / mu - shift).max(0.0).sqrt();
+        if low < omega && omega < high {
+            try_push(&mut within, omega, CONTEXT)?;
+        }
+    }
+    let step = within.len().div_ceil(RESONANCES).max(1);
+    for &omega in within.iter().step_by(step) {
+        try_push(frequencies, omega, CONTEXT)?;
+    }
+    Ok(())
+}
+
+fn adjoint_in_place(a: &mut [Complex64], n: usize) {
+    for j in 0..n {
+        for i in 0..=j {
+            let (x, y) = (a[j * n + i], a[i * n + j]);
+            a[j * n + i] = y.conj();
+            a[i * n + j] = x.conj();
+        }
+    }
+}

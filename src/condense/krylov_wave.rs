@@ -1,0 +1,319 @@
+//! The basis of one wave: its matrices, its factor, and blocks until the certificate is met.
+
+use crate::condense::memory_limit::within;
+use crate::condense::wave_modes::proportional;
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
+use crate::interrupt::{Interrupt, Phase};
+use crate::linalg::block_krylov::{BlockKrylov, Operator, SparseVector};
+use crate::linalg::cholesky::Cholesky;
+use crate::linalg::hermitian;
+use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::triangle::{Entry, Triangle};
+use crate::model::Model;
+use crate::model::reduced_wave::{Basis, ReducedPencil, ReducedWave, Remainder, WaveDamping, WaveKey};
+use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
+use std::sync::Arc;
+
+const CONTEXT: &str = "the reduced structure";
+
+/// Shift σ over the square of the lowest frequency of the sweep. It makes a structure that can move freely definite, and is
+/// so small that the basis finds the modes near the sweep first.
+const SHIFT: f64 = 0.01;
+
+/// The same over the typical stiffness per mass, for a wave that is needed at rest only.
+const SMALL: f64 = 1e-7;
+
+/// Factor between shifts of an indefinite stiffness, and the number that are tried.
+const RAISED: f64 = 100.0;
+const ATTEMPTS: usize = 5;
+
+/// Most columns of a basis, and most blocks where one block has many.
+const MOST_COLUMNS: usize = 600;
+const MOST_BLOCKS: usize = 12;
+
+/// Blocks that memory is counted for.
+const USUAL_BLOCKS: usize = 7;
+
+/// Relative deviation from a Hermitian matrix that is rounding.
+const HERMITIAN: f64 = 1e-10;
+
+/// The matrices of a wave and the reason for which they are reduced.
+pub(super) struct WaveMatrices<'a> {
+    pub model: &'a Model,
+    pub number: usize,
+    pub conjugated: bool,
+    pub key: WaveKey,
+    pub frequency: f64,
+    pub memory_limit: usize,
+}
+
+/// K, M and the damping of a wave.
+struct Assembled {
+    stiffness: Csc,
+    mass: Csc,
+    damping: Damping,
+}
+
+enum Damping {
+    Proportional(f64, f64),
+    General(Csc),
+}
+
+impl WaveMatrices<'_> {
+    fn matrix(&self, kind: MatrixKind) -> Result<Csc> {
+        let mut a = self.model.structure().wave_matrix(kind, self.number)?;
+        if self.conjugated {
+            for z in &mut a.values {
+                *z = z.conj();
+            }
+        }
+        Ok(a)
+    }
+
+    /// `None` where stiffness or mass is not Hermitian.
+    fn assembled(&self, interrupt: &Interrupt<'_>) -> Result<Option<Assembled>> {
+        let stiffness = self.matrix(MatrixKind::Stiffness)?;
+        interrupt.check()?;
+        let mass = self.matrix(MatrixKind::Mass)?;
+        for a in [&stiffness, &mass] {
+            interrupt.check()?;
+            if a.worst_hermitian_pair().2 > HERMITIAN * a.max_abs() {
+                return Ok(None);
+            }
+        }
+        let structure = self.model.structure();
+        let damping = if structure.has(MatrixKind::Damping) {
+            let c = self.matrix(MatrixKind::Damping)?;
+            let (none, n) = (Complex64::ZERO, c.rows);
+            let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));
+            let pattern = Csc::sum(n, &terms)?;
+            let aligned = [
+                mass.aligned(&pattern)?,
+                stiffness.aligned(&pattern)?,
+                c.aligned(&pattern)?,
+            ];
+            match proportional([&aligned[0], &aligned[1], &aligned[2]]) {
+                Some((alpha, beta)) => Damping::Proportional(alpha, beta),
+                None => Damping::General(c),
+            }
+        } else {
+            let (alpha, beta) = structure.rayleigh;
+            Damping::Proportional(alpha, beta)
+        };
+        Ok(Some(Assembled {
+            stiffness,
+            mass,
+            damping,
+        }))
+    }
+}
+
+/// Prepares a wave for `inputs` until its certificate, which `error` computes, is below `limit` or the basis may not grow;
+/// `None` where it has no definite matrix.
+pub(super) fn prepare(
+    matrices: &WaveMatrices<'_>,
+    inputs: Vec<SparseVector>,
+    limit: f64,
+    error: impl Fn(&Arc<ReducedWave>) -> Result<f64>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(Arc<ReducedWave>, f64)>> {
+    let Some(assembled) = matrices.assembled(interrupt)? else {
+        return Ok(None);
+    };
+    let mut real = assembled.stiffness.is_real() && assembled.mass.is_real();
+    real &= inputs.iter().flatten().all(|(_, z)| z.im == 0.0);
+    if let Damping::General(c) = &assembled.damping {
+        real &= c.is_real();
+    }
+    if real {
+        build::<f64>(
+            matrices,
+            assembled,
+            inputs,
+            limit,
+            error,
+            (Basis::Real, Basis::into_real),
+            interrupt,
+        )
+    } else {
+        build::<Complex64>(
+            matrices,
+            assembled,
+            inputs,
+            limit,
+            error,
+            (Basis::Complex, Basis::into_complex),
+            interrupt,
+        )
+    }
+}
+
+/// A basis from its columns, and back.
+type Wrapping<T> = (fn(Vec<T>) -> Basis, fn(Basis) -> Vec<T>);
+
+fn build<T: Entry>(
+    matrices: &WaveMatrices<'_>,
+    assembled: Assembled,
+    inputs: Vec<SparseVector>,
+    limit: f64,
+    error: impl Fn(&Arc<ReducedWave>) -> Result<f64>,
+    (basis, back): Wrapping<T>,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(Arc<ReducedWave>, f64)>> {
+    let Some((mut krylov, prepared)) = started::<T>(matrices, assembled, &inputs, interrupt)? else {
+        return Ok(None);
+    };
+    krylov.start(&inputs, interrupt)?;
+    let most = MOST_COLUMNS.max(MOST_BLOCKS * inputs.len());
+    let mut wave = ReducedWave {
+        key: matrices.key,
+        inputs,
+        pencil: pencil(&krylov, &prepared, interrupt)?,
+        basis: basis(krylov.take_basis()),
+        n: prepared.n,
+        exhausted: false,
+    };
+    loop {
+        interrupt.part(Phase::Condensation, wave.pencil.order(), most)?;
+        // The certificate uses the basis for the rows of the contacts.
+        let shared = Arc::new(wave);
+        let found = error(&shared)?;
+        wave = match Arc::try_unwrap(shared) {
+            Ok(wave) => wave,
+            Err(_) => return fail!(Internal, "a basis in preparation is shared"),
+        };
+        let order = wave.pencil.order();
+        let full = order + krylov.next_columns() > most || krylov.next_columns() == 0;
+        if found <= limit || full {
+            wave.exhausted = full && found > limit;
+            return Ok(Some((Arc::new(wave), found)));
+        }
+        krylov.give_basis(back(wave.basis));
+        let grown = krylov.grow(interrupt)?;
+        wave.pencil = pencil(&krylov, &prepared, interrupt)?;
+        wave.basis = basis(krylov.take_basis());
+        if !grown {
+            // Images and basis are the same space: there is nothing to add.
+            wave.exhausted = true;
+            let shared = Arc::new(wave);
+            let found = error(&shared)?;
+            return Ok(Some((shared, found)));
+        }
+    }
+}
+
+/// What a basis keeps of its matrices.
+struct Prepared {
+    shift: f64,
+    damping: Option<(f64, f64)>,
+    n: usize,
+}
+
+/// The factor of K + σM at the first shift that makes it definite. The assembled matrices are freed before it is made, and
+/// assembled again for another shift.
+fn started<T: Entry>(
+    matrices: &WaveMatrices<'_>,
+    assembled: Assembled,
+    inputs: &[SparseVector],
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(BlockKrylov<T>, Prepared)>> {
+    let mut next = Some(assembled);
+    let mut shift = SHIFT * matrices.frequency * matrices.frequency;
+    for _ in 0..ATTEMPTS {
+        let ready = match next.take() {
+            Some(ready) => Some(ready),
+            None => matrices.assembled(interrupt)?,
+        };
+        let Some(Assembled {
+            stiffness,
+            mass,
+            damping,
+        }) = ready
+        else {
+            return Ok(None);
+        };
+        let n = stiffness.rows;
+        let trace = |a: &Csc| (0..n).map(|j| a.get(j, j).re).sum::<f64>();
+        let heavy = trace(&mass);
+        if heavy <= 0.0 {
+            return Ok(None);
+        }
+        if shift <= 0.0 {
+            shift = SMALL * trace(&stiffness).abs() / heavy;
+        }
+        let a = Triangle::<T>::sum(&stiffness, (shift, &mass), interrupt)?;
+        drop(stiffness);
+        let none = Csc::from_triplets(n, n, Vec::new())?;
+        let mass_triangle = Triangle::<T>::sum(&mass, (0.0, &none), interrupt)?;
+        drop(mass);
+        let block = inputs.len() * n * size_of::<T>();
+        let beside = (USUAL_BLOCKS + 3) * block
+            + 2 * a.values.len() * (size_of::<T>() + size_of::<usize>())
+            + matrices.model.kept().bytes();
+        let allow = |factor: usize| within(matrices.memory_limit, factor + beside);
+        let Some(factor) = Cholesky::new(&a, allow, interrupt)? else {
+            shift *= RAISED;
+            continue;
+        };
+        let mut operators = Vec::new();
+        try_push(&mut operators, Operator::Hermitian(mass_triangle), CONTEXT)?;
+        let damping = match damping {
+            Damping::Proportional(alpha, beta) => Some((alpha, beta)),
+            Damping::General(c) => {
+                try_push(&mut operators, Operator::General(c), CONTEXT)?;
+                None
+            }
+        };
+        let prepared = Prepared { shift, damping, n };
+        return Ok(Some((BlockKrylov::new(factor, a, operators), prepared)));
+    }
+    Ok(None)
+}
+
+/// The matrices on the basis, with the basis rotated so that the mass is diagonal.
+fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &Interrupt<'_>) -> Result<ReducedPencil> {
+    let order = krylov.order();
+    let mut mass = try_copy(krylov.reduced(0), CONTEXT)?;
+    for j in 0..order {
+        for i in 0..j {
+            let mean = 0.5 * (mass[j * order + i] + mass[i * order + j].conj());
+            mass[j * order + i] = mean;
+            mass[i * order + j] = mean.conj();
+        }
+    }
+    let (values, rotation) = hermitian::eigen(&mut mass, order, interrupt)?;
+    let damping = match prepared.damping {
+        Some((alpha, beta)) => WaveDamping::Proportional(alpha, beta),
+        None => WaveDamping::General(rotated(krylov.reduced(1), &rotation, order)?),
+    };
+    Ok(ReducedPencil {
+        shift: prepared.shift,
+        values,
+        rotation,
+        damping,
+        remainder: Remainder {
+            last: krylov.last(),
+            gram: try_copy(krylov.gram(), CONTEXT)?,
+        },
+    })
+}
+
+/// Qᴴ C Q
+fn rotated(c: &[Complex64], q: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
+    let mut product = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    for (to, q) in product.chunks_exact_mut(n.max(1)).zip(q.chunks_exact(n.max(1))) {
+        for (c, q) in c.chunks_exact(n).zip(q) {
+            for (to, c) in to.iter_mut().zip(c) {
+                *to += c * q;
+            }
+        }
+    }
+    let mut found = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    for (to, p) in found.chunks_exact_mut(n.max(1)).zip(product.chunks_exact(n.max(1))) {
+        for (to, q) in to.iter_mut().zip(q.chunks_exact(n)) {
+            *to = crate::linalg::inner(q, p);
+        }
+    }
+    Ok(found)
+}

@@ -1,0 +1,36 @@
+//! The limit of memory that the caller sets: what needs more is refused before it is allocated.
+
+use crate::error::{Error, Result, Status};
+use crate::linalg::factor::Factor;
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
+
+/// Arrays of matrix entries that each harmonic has where no basis is used.
+const ARRAYS: usize = 5;
+
+/// Refuses what a limit of bytes does not allow; 0 is no limit.
+pub(super) fn within(limit: usize, need: usize) -> Result<()> {
+    if limit == 0 || need <= limit {
+        return Ok(());
+    }
+    let mega = |bytes: usize| bytes.div_ceil(1 << 20);
+    Err(Error::new(
+        Status::OutOfMemory,
+        format_args!(
+            "factors and matrices of the structure need about {} MB, more than memory_limit = {limit} bytes; raise it, or reduce the model",
+            mega(need)
+        ),
+    ))
+}
+
+/// Refuses a model whose matrices and complex LU factors would exceed the limit.
+pub(super) fn within_directly(limit: usize, model: &Model, numbers: &[usize]) -> Result<()> {
+    if limit == 0 {
+        return Ok(());
+    }
+    let number = numbers.first().copied().unwrap_or(0);
+    let k = model.structure().wave_matrix(MatrixKind::Stiffness, number)?;
+    let matrices = k.values.len() * (ARRAYS * size_of::<Complex64>() + size_of::<usize>());
+    within(limit, Factor::bytes(&k)? + numbers.len() * matrices)
+}

@@ -1,0 +1,99 @@
+//! One harmonic of the condensed model on the basis of its wave.
+
+use crate::condense::HarmonicBlock;
+use crate::condense::contact_classes::ContactClasses;
+use crate::condense::harmonic_block::Artificial;
+use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::linalg::sparse::Csc;
+use crate::model::Model;
+use crate::model::reduced_wave::{MotionRow, ReducedView};
+use crate::model::spring::Row;
+use crate::model::spring_stiffness::Wave;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the reduced structure";
+
+/// Coordinates beyond the basis, so that all harmonics have the same number, have this stiffness and no mass.
+const UNUSED: f64 = 1.0;
+
+/// The block of harmonic `number` on a basis, see [`super::harmonic_block::harmonic_block`], with `order` coordinates.
+pub(super) fn reduced_block(
+    model: &Model,
+    number: usize,
+    (contact_classes, representatives): (&ContactClasses, &[(usize, usize)]),
+    kappa: impl Fn(usize) -> Complex64,
+    (view, order): (ReducedView, usize),
+) -> Result<HarmonicBlock> {
+    let structure = model.structure();
+    let basis = view.pencil().order();
+    let n = order.max(basis);
+    let mut full = Csc {
+        rows: n,
+        cols: n,
+        col_ptr: try_vec(n + 1, 0, CONTEXT)?,
+        row_idx: try_vec(n * n, 0, CONTEXT)?,
+        values: try_vec(n * n, Complex64::ZERO, CONTEXT)?,
+    };
+    for (at, i) in full.row_idx.iter_mut().enumerate() {
+        *i = at % n;
+    }
+    for (j, start) in full.col_ptr.iter_mut().enumerate() {
+        *start = j * n;
+    }
+    let mut mass = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    let mut damping = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
+    for j in 0..n {
+        let stiffness = if j < basis { view.pencil().stiffness(j) } else { UNUSED };
+        full.values[j * n + j] = stiffness.into();
+        if j < basis {
+            mass[j * n + j] = view.pencil().values[j].into();
+            for i in 0..basis {
+                damping[j * n + i] = view.damping(i, j);
+            }
+        }
+    }
+    let stuck = contact_classes.never_slipping.iter().map(|&i| &model.contacts()[i]);
+    let springs = model.spring_rows(Wave::Harmonic(number), stuck)?;
+    for (force, motion, k) in &springs {
+        add(&mut full, &view.row(force)?, &view.row(motion)?, (*k).into());
+    }
+    let stiffness = try_copy(&full.values, CONTEXT)?;
+    let rows_of = |contacts: &[(usize, usize)]| -> Result<(Vec<Row>, Vec<MotionRow>)> {
+        let (mut structural, mut reduced) = (Vec::new(), Vec::new());
+        for &(i, k) in contacts {
+            let row = structure.contact_row(&model.contacts()[i], k, number);
+            try_push(&mut reduced, view.row(&row)?, CONTEXT)?;
+            try_push(&mut structural, row, CONTEXT)?;
+        }
+        Ok((structural, reduced))
+    };
+    let (structural_rows, rows) = rows_of(representatives)?;
+    for (c, row) in rows.iter().enumerate() {
+        add(&mut full, row, row, kappa(c));
+    }
+    Ok(HarmonicBlock {
+        number,
+        next: structure.phase(number, 1),
+        reference: full,
+        stiffness,
+        damping,
+        mass,
+        artificial: Artificial::None,
+        force: try_vec(n, Complex64::ZERO, "the forces")?,
+        rows,
+        structural_rows,
+        linear_rows: rows_of(&contact_classes.linear)?.1,
+        springs,
+        view: Some(view),
+    })
+}
+
+/// A ← A + forceᴴ k motion
+fn add(a: &mut Csc, force: &MotionRow, motion: &MotionRow, k: Complex64) {
+    let n = a.rows;
+    for &(j, y) in motion.terms() {
+        for &(i, x) in force.terms() {
+            a.values[j * n + i] += x.conj() * k * y;
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! The structure of each wave on a block Krylov basis: from what the model has kept, or prepared.
+//!
+//! One definite factorisation of K + σM serves all frequencies of a nodal diameter. The basis holds the motions under unit
+//! forces at every contact, spring and excited degree of freedom and at the response; since springs and contacts act
+//! through these, it does not depend on their constants.
+
+use crate::condense::HarmonicBlock;
+use crate::condense::certificate::certificate;
+use crate::condense::contact_classes::ContactClasses;
+use crate::condense::krylov_wave::{WaveMatrices, prepare};
+use crate::condense::reduced_block::reduced_block;
+use crate::condense::sweep::Sweep;
+use crate::error::{Result, fail, try_copy, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::block_krylov::SparseVector;
+use crate::model::Model;
+use crate::model::reduced_wave::{ReducedView, ReducedWave, WaveKey};
+use crate::model::spring::Row;
+use crate::model::spring_stiffness::Wave;
+use crate::options::{Flexibility, SolverOptions};
+use num_complex::Complex64;
+use std::sync::Arc;
+
+const CONTEXT: &str = "the reduced structure";
+
+/// Degrees of freedom from which a basis is quicker than factors at each frequency.
+const FROM: usize = 1000;
+
+/// Degrees of freedom over columns of the first block, below which a basis is no reduction.
+const SHARE: usize = 20;
+
+/// Degrees of freedom up to which a structure whose basis does not hold is treated directly.
+const DIRECT_UP_TO: usize = 20_000;
+
+/// Forces on more degrees of freedom than this in one harmonic count as one vector.
+const SEPARATE_FORCES: usize = 8;
+
+/// What a reduction is made for.
+pub(super) struct Request<'a> {
+    pub model: &'a Model,
+    pub options: &'a SolverOptions,
+    pub numbers: &'a [usize],
+    pub contacts: (&'a ContactClasses, &'a [(usize, usize)]),
+    pub sweep: Sweep,
+}
+
+/// A wave with the harmonics that belong to it.
+struct Group {
+    key: WaveKey,
+    /// Position among the carried harmonics, and whether its matrices are conjugated.
+    members: Vec<(usize, bool)>,
+    inputs: Vec<SparseVector>,
+}
+
+/// The blocks of all carried harmonics on the bases of their waves, and the largest certificate; `None` where the direct
+/// way is taken.
+///
+/// # Errors
+/// `Unsupported` where a basis was requested for a structure without one; `OutOfMemory`; `StoppedByCaller`.
+pub(super) fn reduced_blocks(
+    request: &Request<'_>,
+    kappa: impl Fn(usize, usize) -> Complex64,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(Vec<HarmonicBlock>, f64)>> {
+    let (model, options) = (request.model, request.options);
+    let n = model.structure().ndof();
+    if options.flexibility == Flexibility::Direct || (options.flexibility == Flexibility::Automatic && n < FROM) {
+        return Ok(None);
+    }
+    let forced = options.flexibility == Flexibility::Krylov;
+    let groups = groups(request)?;
+    let small = |group: &Group| SHARE * group.inputs.len() > n;
+    if groups.iter().any(|group| group.inputs.is_empty()) || (!forced && groups.iter().any(small)) {
+        return Ok(None);
+    }
+    let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
+    let mut worst = 0.0_f64;
+    for group in &groups {
+        let Some((wave, error)) = wave_of(request, group, &kappa, interrupt)? else {
+            return declined(forced);
+        };
+        worst = worst.max(error);
+        if !forced && error > options.certificate && n <= DIRECT_UP_TO {
+            return Ok(None);
+        }
+        for &(i, conjugated) in &group.members {
+            let wave = Arc::clone(&wave);
+            views[i] = Some(ReducedView { wave, conjugated });
+        }
+    }
+    let order = views
+        .iter()
+        .flatten()
+        .map(|view| view.pencil().order())
+        .max()
+        .unwrap_or(0);
+    let mut blocks = Vec::new();
+    for (view, &number) in views.into_iter().flatten().zip(request.numbers) {
+        let block = reduced_block(model, number, request.contacts, |c| kappa(c, number), (view, order))?;
+        try_push(&mut blocks, block, CONTEXT)?;
+    }
+    Ok(Some((blocks, worst)))
+}
+
+fn declined<T>(forced: bool) -> Result<Option<T>> {
+    if !forced {
+        return Ok(None);
+    }
+    fail!(
+        Unsupported,
+        "flexibility = krylov needs Hermitian stiffness and mass, and a mass by which K + shift M is positive definite"
+    )
+}
+
+/// The wave of a group with its certificate: as kept, or prepared; `None` where it has no definite matrix.
+fn wave_of(
+    request: &Request<'_>,
+    group: &Group,
+    kappa: &impl Fn(usize, usize) -> Complex64,
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(Arc<ReducedWave>, f64)>> {
+    let limit = request.options.certificate;
+    let error = |wave: &Arc<ReducedWave>| certificate_of(request, group, wave, kappa, interrupt);
+    let mut inputs = Vec::new();
+    for input in &group.inputs {
+        try_push(&mut inputs, try_copy(input, CONTEXT)?, CONTEXT)?;
+    }
+    let kept = request.model.kept().find(group.key);
+    if let Some(wave) = &kept {
+        if inputs.iter().all(|input| wave.inputs.contains(input)) {
+            let error = error(wave)?;
+            if error <= limit || wave.exhausted {
+                return Ok(Some((Arc::clone(wave), error)));
+            }
+        }
+        // The new basis serves earlier calls, too.
+        for input in &wave.inputs {
+            if !inputs.contains(input) {
+                try_push(&mut inputs, try_copy(input, CONTEXT)?, CONTEXT)?;
+            }
+        }
+    }
+    drop(kept);
+    let (first, conjugated) = group.members[0];
+    let matrices = WaveMatrices {
+        model: request.model,
+        number: request.numbers[first],
+        conjugated,
+        key: group.key,
+        frequency: reference_frequency(request, group),
+        memory_limit: request.options.memory_limit,
+    };
+    let Some((wave, error)) = prepare(&matrices, inputs, limit, error, interrupt)? else {
+        return Ok(None);
+    };
+    request.model.kept().keep(&wave)?;
+    Ok(Some((wave, error)))
+}
+
+/// Lowest angular frequency above zero at which the wave is needed.
+fn reference_frequency(request: &Request<'_>, group: &Group) -> f64 {
+    let numbers = group
+        .members
+        .iter()
+        .map(|&(i, _)| request.numbers[i])
+        .filter(|&h| h > 0);
+    let lowest = numbers.min().unwrap_or(1);
+    request.sweep.of_harmonic(lowest)[1]
+}
+
+/// The largest certificate of the harmonics of a group.
+fn certificate_of(
+    request: &Request<'_>,
+    group: &Group,
+    wave: &Arc<ReducedWave>,
+    kappa: &impl Fn(usize, usize) -> Complex64,
+    interrupt: &Interrupt<'_>,
+) -> Result<f64> {
+    let mut worst = 0.0_f64;
+    for &(i, conjugated) in &group.members {
+        let view = ReducedView {
+            wave: Arc::clone(wave),
+            conjugated,
+        };
+        let number = request.numbers[i];
+        let at = (view.clone(), 0);
+        let block = reduced_block(request.model, number, request.contacts, |c| kappa(c, number), at)?;
+        worst = worst.max(certificate(&block, &view, &group.inputs, request.sweep, interrupt)?);
+    }
+    Ok(worst)
+}
+
+/// The waves of the carried harmonics, with the vectors whose flexibility each must hold.
+fn groups(request: &Request<'_>) -> Result<Vec<Group>> {
+    let structure = request.model.structure();
+    let mut groups: Vec<Group> = Vec::new();
+    for (i, &number) in request.numbers.iter().enumerate() {
+        let (key, conjugated) = structure.wave_key(number);
+        let known = groups.iter().position(|group| group.key == key);
+        let at = known.unwrap_or(groups.len());
+        if known.is_none() {
+            let new = Group {
+                key,
+                members: Vec::new(),
+                inputs: Vec::new(),
+            };
+            try_push(&mut groups, new, CONTEXT)?;
+        }
+        let group = &mut groups[at];
+        try_push(&mut group.members, (i, conjugated), CONTEXT)?;
+        for mut input in inputs(request, number)? {
+            if conjugated {
+                for (_, z) in &mut input {
+                    *z = z.conj();
+                }
+            }
+            if !input.is_empty() && !group.inputs.contains(&input) {
+                try_push(&mut group.inputs, input, CONTEXT)?;
+            }
+        }
+    }
+    Ok(groups)
+}
+
+/// The force vectors of one harmonic: contacts and springs, excitation, and the response.
+fn inputs(request: &Request<'_>, number: usize) -> Result<Vec<SparseVector>> {
+    let model = request.model;
+    let structure = model.structure();
+    let mut found = Vec::new();
+    let mut add = |row: &Row| -> Result<()> {
+        let mut input = Vec::new();
+        for (p, z) in row.iter().flatten().filter(|(_, z)| *z != Complex64::ZERO) {
+            try_push(&mut input, (*p, z.conj()), CONTEXT)?;
+        }
+        try_push(&mut found, input, CONTEXT)
+    };
+    for contact in model.contacts() {
+        for k in 0..contact.directions() {
+            add(&structure.contact_row(contact, k, number))?;
+        }
+    }
+    for spring in model.springs() {
+        add(&structure.row(&structure.spring_motion(spring), Wave::Harmonic(number)))?;
+    }
+    let excited = model.excitation().forces().iter();
+    let mut dofs: Vec<usize> = Vec::new();
+    for force in excited.filter(|f| f.harmonic == number && f.value != Complex64::ZERO) {
+        if !dofs.contains(&force.dof) {
+            try_push(&mut dofs, force.dof, CONTEXT)?;
+        }
+    }
+    let many = dofs.len() > SEPARATE_FORCES;
+    if many {
+        dofs.clear();
+    }
+    if let Some(dof) = request.options.response_dof
+        && !dofs.contains(&dof)
+    {
+        try_push(&mut dofs, dof, CONTEXT)?;
+    }
+    for dof in dofs {
+        let (sector, terms) = structure.degrees().image(dof);
+        let turn = structure.phase(number, sector);
+        let mut row = [None; 6];
+        for (entry, (p, c)) in row.iter_mut().zip(terms) {
+            *entry = Some((p, turn * c));
+        }
+        add(&row)?;
+    }
+    if many {
+        let mut force = try_vec(structure.ndof(), Complex64::ZERO, CONTEXT)?;
+        let size = model.excitation().largest();
+        model.add_forces_to(number, 1.0 / size, &mut force);
+        let mut input = Vec::new();
+        for (p, z) in force.iter().enumerate().filter(|(_, z)| **z != Complex64::ZERO) {
+            try_push(&mut input, (p, *z), CONTEXT)?;
+        }
+        try_push(&mut found, input, CONTEXT)?;
+    }
+    Ok(found)
+}

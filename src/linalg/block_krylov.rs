@@ -1,0 +1,364 @@
+//! Block Krylov basis of a large structure about one definite matrix A = K + σM.
+//!
+//! From the columns A⁻¹B on, each block is the part of A⁻¹M V (and A⁻¹C V, where damping C is no combination of K and M)
+//! that the blocks before do not hold. The basis is orthonormal in the inner product of A, which massless degrees of
+//! freedom do not upset. r blocks match 2r moments of Bᴴ(K − ν²M)⁻¹B about ν² = −σ (Su & Craig 1991,
+//! doi:10.2514/3.20636; Bai 2002, doi:10.1016/S0168-9274(02)00116-2).
+//!
+//! With Galerkin coefficients q the residual of A⁻¹Z V q = A⁻¹b lies in the part E of the last images that the basis does
+//! not hold, so that its norm at any frequency follows from the Gram matrix EᴴAE.
+
+use crate::error::{Error, Result, try_copy, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::cholesky::Cholesky;
+use crate::linalg::sparse::Csc;
+use crate::linalg::triangle::{Entry, Triangle};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the reduced structure";
+
+/// Size of a new direction, relative to the image that it comes from, below which it is rounding.
+const EXHAUSTED: f64 = 1e-12;
+
+/// A vector by its entries.
+pub type SparseVector = Vec<(usize, Complex64)>;
+
+/// A matrix whose images extend the basis.
+pub enum Operator<T> {
+    /// A Hermitian one.
+    Hermitian(Triangle<T>),
+    /// Any other.
+    General(Csc),
+}
+
+impl<T: Entry> Operator<T> {
+    fn multiply(&self, adjoint: bool, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let a = match self {
+            Self::Hermitian(a) => return a.multiply(x, y, interrupt),
+            Self::General(a) => a,
+        };
+        for (x, y) in x.chunks_exact(a.rows).zip(y.chunks_exact_mut(a.rows)) {
+            interrupt.check_before(2 * a.values.len() as u64)?;
+            y.fill(T::NONE);
+            for j in 0..a.cols {
+                for (i, v) in a.column(j) {
+                    if adjoint {
+                        y[j].add_product(T::of(v.conj()), x[i]);
+                    } else {
+                        y[i].add_product(T::of(v), x[j]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A growing basis.
+pub struct BlockKrylov<T> {
+    factor: Cholesky<T>,
+    a: Triangle<T>,
+    operators: Vec<Operator<T>>,
+    /// Columns of n numbers.
+    basis: Vec<T>,
+    /// Start of the last block.
+    last: usize,
+    /// Vᴴ O V per operator, column after column, of the present order.
+    reduced: Vec<Vec<Complex64>>,
+    /// Parts of the images of the last block that the basis does not hold: n numbers per column, operator after operator.
+    rest: Vec<T>,
+    /// Norms of the images.
+    sizes: Vec<f64>,
+    /// Their Gram matrix in the inner product of A.
+    gram: Vec<Complex64>,
+}
+
+impl<T: Entry> BlockKrylov<T> {
+    /// An empty basis about `a`, whose factors are given.
+    #[must_use]
+    pub fn new(factor: Cholesky<T>, a: Triangle<T>, operators: Vec<Operator<T>>) -> Self {
+        let reduced = operators.iter().map(|_| Vec::new()).collect();
+        Self {
+            factor,
+            a,
+            operators,
+            basis: Vec::new(),
+            last: 0,
+            reduced,
+            rest: Vec::new(),
+            sizes: Vec::new(),
+            gram: Vec::new(),
+        }
+    }
+
+    /// Number of columns of the basis.
+    #[must_use]
+    pub fn order(&self) -> usize {
+        self.basis.len() / self.a.n.max(1)
+    }
+
+    /// First column of the last block.
+    #[must_use]
+    pub fn last(&self) -> usize {
+        self.last
+    }
+
+    /// Columns that the next block has at most.
+    #[must_use]
+    pub fn next_columns(&self) -> usize {
+        self.rest.len() / self.a.n.max(1)
+    }
+
+    /// Vᴴ O V of an operator, column after column.
+    #[must_use]
+    pub fn reduced(&self, operator: usize) -> &[Complex64] {
+        &self.reduced[operator]
+    }
+
+    /// EᴴAE of the images of the last block, operator after operator.
+    #[must_use]
+    pub fn gram(&self) -> &[Complex64] {
+        &self.gram
+    }
+
+    /// The basis, column after column, which [`Self::give_basis`] returns before more blocks are asked for.
+    pub fn take_basis(&mut self) -> Vec<T> {
+        core::mem::take(&mut self.basis)
+    }
+
+    /// The basis as it was taken.
+    pub fn give_basis(&mut self, basis: Vec<T>) {
+        self.basis = basis;
+    }
+
+    /// The first block, of A⁻¹ times the given vectors.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn start(&mut self, inputs: &[SparseVector], interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.a.n;
+        let mut b = try_vec(inputs.len().saturating_mul(n), T::NONE, CONTEXT)?;
+        for (column, input) in b.chunks_exact_mut(n.max(1)).zip(inputs) {
+            for &(p, x) in input {
+                column[p].add_product(T::of(x), T::of(Complex64::ONE));
+            }
+        }
+        let mut block = try_copy(&b, CONTEXT)?;
+        self.factor.solve(&mut block, interrupt)?;
+        let sizes = norms(&block, &b, n);
+        drop(b);
+        self.absorb(block, &sizes, interrupt)
+    }
+
+    /// One more block; `false` where the basis holds all of the images.
+    ///
+    /// # Errors
+    /// As [`Self::start`].
+    pub fn grow(&mut self, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let before = self.order();
+        let candidates = core::mem::take(&mut self.rest);
+        let sizes = core::mem::take(&mut self.sizes);
+        self.absorb(candidates, &sizes, interrupt)?;
+        Ok(self.order() > before)
+    }
+
+    /// Appends what is new in the candidates, which came from images of the given sizes, and computes the images of the
+    /// new block.
+    fn absorb(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.a.n;
+        let first = self.order();
+        let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
+        self.a.multiply(&block, &mut weighted, interrupt)?;
+        let orthonormal = |block: &mut Vec<T>, weighted: &mut Vec<T>, drops| -> Result<()> {
+            let kept = orthonormalise((block, weighted), n, sizes, drops, interrupt)?;
+            block.truncate(kept * n);
+            weighted.truncate(kept * n);
+            Ok(())
+        };
+        orthonormal(&mut block, &mut weighted, true)?;
+        // What is left of a small part has lost the digits by which it was small.
+        self.a.multiply(&block, &mut weighted, interrupt)?;
+        self.project(&mut block, &weighted, interrupt)?;
+        self.a.multiply(&block, &mut weighted, interrupt)?;
+        orthonormal(&mut block, &mut weighted, false)?;
+        self.basis
+            .try_reserve_exact(block.len())
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.basis.extend_from_slice(&block);
+        drop((weighted, block));
+        self.images(first, interrupt)
+    }
+
+    /// Images of the columns from `first` on.
+    fn images(&mut self, first: usize, interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.a.n;
+        let order = self.order();
+        let new = order - first;
+        let block = &self.basis[first * n..];
+        self.last = first;
+        let count = self.operators.len();
+        let mut rest = try_vec(block.len() * count, T::NONE, CONTEXT)?;
+        let mut product = try_vec(order * new, T::NONE, CONTEXT)?;
+        let mut coefficients = try_vec(order * new * count, T::NONE, CONTEXT)?;
+        for (o, image) in rest.chunks_exact_mut(block.len().max(1)).enumerate() {
+            let operator = &self.operators[o];
+            let mut reduced = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
+            for (to, from) in reduced
+                .chunks_exact_mut(order)
+                .zip(self.reduced[o].chunks_exact(first.max(1)))
+            {
+                to[..first].copy_from_slice(from);
+            }
+            operator.multiply(false, block, image, interrupt)?;
+            adjoint_product(&self.basis, image, n, &mut product);
+            for (to, from) in reduced[first * order..].iter_mut().zip(&product) {
+                *to = from.complex();
+            }
+            for (to, from) in coefficients[o * order * new..].iter_mut().zip(&product) {
+                *to = from.scaled(-1.0);
+            }
+            if matches!(operator, Operator::General(_)) {
+                let mut back = try_vec(block.len(), T::NONE, CONTEXT)?;
+                operator.multiply(true, block, &mut back, interrupt)?;
+                adjoint_product(&self.basis, &back, n, &mut product);
+            }
+            for j in 0..first {
+                for i in first..order {
+                    reduced[j * order + i] = product[(i - first) * order + j].complex().conj();
+                }
+            }
+            self.reduced[o] = reduced;
+        }
+        let weighted = try_copy(&rest, CONTEXT)?;
+        self.factor.solve(&mut rest, interrupt)?;
+        self.sizes = norms(&rest, &weighted, n);
+        // VᴴA A⁻¹O V = VᴴO V: the part in the basis needs no other product.
+        interrupt.check_before((4 * order * rest.len()) as u64)?;
+        matmul(
+            MatMut::from_column_major_slice_mut(&mut rest, n, new * count),
+            Accum::Add,
+            MatRef::from_column_major_slice(&self.basis, n, order),
+            MatRef::from_column_major_slice(&coefficients, order, new * count),
+            T::of(Complex64::ONE),
+            Par::Seq,
+        );
+        let columns = new * count;
+        let mut gram = try_vec(columns * columns, T::NONE, CONTEXT)?;
+        // EᴴA V = 0, so that EᴴA E = EᴴA A⁻¹O V.
+        adjoint_product(&rest, &weighted, n, &mut gram);
+        self.gram.clear();
+        self.gram.extend(gram.iter().map(|z| z.complex()));
+        self.rest = rest;
+        Ok(())
+    }
+
+    /// block ← block − V Vᴴ A block
+    fn project(&self, block: &mut [T], weighted: &[T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let (n, order) = (self.a.n, self.order());
+        let columns = block.len() / n.max(1);
+        if order == 0 || columns == 0 {
+            return Ok(());
+        }
+        let mut c = try_vec(order * columns, T::NONE, CONTEXT)?;
+        interrupt.check_before((4 * order * block.len()) as u64)?;
+        adjoint_product(&self.basis, weighted, n, &mut c);
+        for x in &mut c {
+            *x = x.scaled(-1.0);
+        }
+        interrupt.check()?;
+        matmul(
+            MatMut::from_column_major_slice_mut(block, n, columns),
+            Accum::Add,
+            MatRef::from_column_major_slice(&self.basis, n, order),
+            MatRef::from_column_major_slice(&c, order, columns),
+            T::of(Complex64::ONE),
+            Par::Seq,
+        );
+        Ok(())
+    }
+}
+
+/// out = Vᴴ X for columns of n numbers.
+fn adjoint_product<T: Entry>(v: &[T], x: &[T], n: usize, out: &mut [T]) {
+    let (rows, columns) = (v.len() / n.max(1), x.len() / n.max(1));
+    if rows == 0 || columns == 0 {
+        return;
+    }
+    matmul(
+        MatMut::from_column_major_slice_mut(out, rows, columns),
+        Accum::Replace,
+        MatRef::from_column_major_slice(v, n, rows).adjoint(),
+        MatRef::from_column_major_slice(x, n, columns),
+        T::of(Complex64::ONE),
+        Par::Seq,
+    );
+}
+
+/// Norms of columns whose products with A are given.
+fn norms<T: Entry>(block: &[T], weighted: &[T], n: usize) -> Vec<f64> {
+    let columns = block.chunks_exact(n.max(1)).zip(weighted.chunks_exact(n.max(1)));
+    columns.map(|(u, w)| dot(u, w).re.max(0.0).sqrt()).collect()
+}
+
+fn dot<T: Entry>(u: &[T], w: &[T]) -> Complex64 {
+    let mut sum = T::NONE;
+    for (&u, &w) in u.iter().zip(w) {
+        sum.add_conjugate_product(u, w);
+    }
+    sum.complex()
+}
+
+/// Orthonormalises columns among themselves, the largest first, and moves those that are kept to the front. Returns
+/// their number.
+fn orthonormalise<T: Entry>(
+    (block, weighted): (&mut [T], &mut [T]),
+    n: usize,
+    sizes: &[f64],
+    drops: bool,
+    interrupt: &Interrupt<'_>,
+) -> Result<usize> {
+    let n = n.max(1);
+    let columns = block.len() / n;
+    let mut sizes = try_copy(sizes, CONTEXT)?;
+    for k in 0..columns {
+        interrupt.check_before((8 * (columns - k) * n) as u64)?;
+        // The largest share that is still new.
+        let mut best = (k, -1.0);
+        for (j, size) in sizes.iter().enumerate().take(columns).skip(k) {
+            let at = j * n..(j + 1) * n;
+            let share = dot(&block[at.clone()], &weighted[at]).re.max(0.0).sqrt() / size.max(f64::MIN_POSITIVE);
+            if share > best.1 {
+                best = (j, share);
+            }
+        }
+        if drops && best.1 <= EXHAUSTED {
+            return Ok(k);
+        }
+        if best.0 != k {
+            for x in [&mut *block, &mut *weighted] {
+                let (left, right) = x.split_at_mut(best.0 * n);
+                left[k * n..(k + 1) * n].swap_with_slice(&mut right[..n]);
+            }
+            sizes.swap(k, best.0);
+        }
+        let (u, later) = block[k * n..].split_at_mut(n);
+        let (w, later_weighted) = weighted[k * n..].split_at_mut(n);
+        let norm = dot(u, w).re.max(0.0).sqrt();
+        if norm == 0.0 {
+            return Ok(k);
+        }
+        for x in u.iter_mut().chain(w.iter_mut()) {
+            *x = x.scaled(1.0 / norm);
+        }
+        for (x, y) in later.chunks_exact_mut(n).zip(later_weighted.chunks_exact_mut(n)) {
+            let c = T::of(-dot(u, y));
+            for ((x, &u), (y, &w)) in x.iter_mut().zip(&*u).zip(y.iter_mut().zip(&*w)) {
+                x.add_product(c, u);
+                y.add_product(c, w);
+            }
+        }
+    }
+    Ok(columns)
+}

@@ -1,0 +1,234 @@
+//! Hermitian sparse matrices by their lower triangles, in real numbers where they are real: half the entries, and half
+//! the memory of each.
+
+use crate::error::{Error, Result, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::sparse::Csc;
+use faer::traits::ComplexField;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "a Hermitian matrix";
+
+/// Columns of a product that are computed together.
+const AT_ONCE: usize = 4;
+
+/// A real or complex number.
+pub trait Entry:
+    ComplexField + Copy + Send + Sync + core::ops::AddAssign + core::ops::Mul<Output = Self> + 'static
+{
+    /// Zero.
+    const NONE: Self;
+    /// The number, without its imaginary part where it has none.
+    fn of(z: Complex64) -> Self;
+    /// The number as a complex one.
+    fn complex(self) -> Complex64;
+    /// The number times a real one.
+    #[must_use]
+    fn scaled(self, factor: f64) -> Self;
+    /// self += a b
+    fn add_product(&mut self, a: Self, b: Self);
+    /// self += conj(a) b
+    fn add_conjugate_product(&mut self, a: Self, b: Self);
+}
+
+impl Entry for f64 {
+    const NONE: Self = 0.0;
+
+    #[inline]
+    fn of(z: Complex64) -> Self {
+        z.re
+    }
+
+    #[inline]
+    fn complex(self) -> Complex64 {
+        Complex64::new(self, 0.0)
+    }
+
+    #[inline]
+    fn scaled(self, factor: f64) -> Self {
+        self * factor
+    }
+
+    #[inline]
+    fn add_product(&mut self, a: Self, b: Self) {
+        *self += a * b;
+    }
+
+    #[inline]
+    fn add_conjugate_product(&mut self, a: Self, b: Self) {
+        *self += a * b;
+    }
+}
+
+impl Entry for Complex64 {
+    const NONE: Self = Self::ZERO;
+
+    #[inline]
+    fn of(z: Complex64) -> Self {
+        z
+    }
+
+    #[inline]
+    fn complex(self) -> Complex64 {
+        self
+    }
+
+    #[inline]
+    fn scaled(self, factor: f64) -> Self {
+        Self::new(self.re * factor, self.im * factor)
+    }
+
+    #[inline]
+    fn add_product(&mut self, a: Self, b: Self) {
+        self.re += a.re * b.re - a.im * b.im;
+        self.im += a.re * b.im + a.im * b.re;
+    }
+
+    #[inline]
+    fn add_conjugate_product(&mut self, a: Self, b: Self) {
+        self.re += a.re * b.re + a.im * b.im;
+        self.im += a.re * b.im - a.im * b.re;
+    }
+}
+
+/// The lower triangle of a Hermitian matrix, column by column.
+#[derive(Clone, Debug)]
+pub struct Triangle<T> {
+    /// Order of the matrix.
+    pub n: usize,
+    /// Start of each column, and the end of the last.
+    pub col_ptr: Vec<usize>,
+    /// Row of each entry, ascending in a column.
+    pub row_idx: Vec<usize>,
+    /// Value of each entry.
+    pub values: Vec<T>,
+}
+
+impl<T: Entry> Triangle<T> {
+    /// The lower triangle of K + σM, without copies of the whole.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn sum(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Self> {
+        let n = k.rows;
+        let below = |a: &Csc, j: usize| {
+            let column = &a.row_idx[a.col_ptr[j]..a.col_ptr[j + 1]];
+            a.col_ptr[j] + column.partition_point(|&i| i < j)
+        };
+        // First the size, so that nothing is allocated twice.
+        let mut count = 0;
+        let mut col_ptr = try_vec(n + 1, 0, CONTEXT)?;
+        for j in 0..n {
+            merge((k, below(k, j), j), (m, below(m, j)), |_, _, _| count += 1);
+            col_ptr[j + 1] = count;
+        }
+        let mut row_idx = Vec::new();
+        let mut values = Vec::new();
+        row_idx
+            .try_reserve_exact(count)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        values
+            .try_reserve_exact(count)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        for j in 0..n {
+            if j % 1024 == 0 {
+                interrupt.check()?;
+            }
+            merge((k, below(k, j), j), (m, below(m, j)), |i, a, b| {
+                let mut value = a + shift * b;
+                if i == j {
+                    value.im = 0.0;
+                }
+                row_idx.push(i);
+                values.push(T::of(value));
+            });
+        }
+        Ok(Self {
+            n,
+            col_ptr,
+            row_idx,
+            values,
+        })
+    }
+
+    /// Y = A X for column-major X and Y.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    pub fn multiply(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let n = self.n.max(1);
+        for (x, y) in x.chunks(AT_ONCE * n).zip(y.chunks_mut(AT_ONCE * n)) {
+            interrupt.check_before(2 * (x.len() / n * self.values.len()) as u64)?;
+            y.fill(T::NONE);
+            if x.len() == AT_ONCE * n {
+                self.add_together(x, y);
+            } else {
+                for (x, y) in x.chunks_exact(n).zip(y.chunks_exact_mut(n)) {
+                    self.add_one(x, y);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn add_one(&self, x: &[T], y: &mut [T]) {
+        for (j, &xj) in x.iter().enumerate() {
+            let mut above = T::NONE;
+            let range = self.col_ptr[j]..self.col_ptr[j + 1];
+            for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
+                y[i].add_product(a, xj);
+                if i != j {
+                    above.add_conjugate_product(a, x[i]);
+                }
+            }
+            y[j].add_product(above, T::of(Complex64::ONE));
+        }
+    }
+
+    /// Several columns with one pass over the matrix, which is what takes the time.
+    fn add_together(&self, x: &[T], y: &mut [T]) {
+        let n = self.n;
+        for j in 0..n {
+            let mut above = [T::NONE; AT_ONCE];
+            let xj: [T; AT_ONCE] = core::array::from_fn(|c| x[c * n + j]);
+            let range = self.col_ptr[j]..self.col_ptr[j + 1];
+            for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
+                for c in 0..AT_ONCE {
+                    y[c * n + i].add_product(a, xj[c]);
+                }
+                if i != j {
+                    for (c, above) in above.iter_mut().enumerate() {
+                        above.add_conjugate_product(a, x[c * n + i]);
+                    }
+                }
+            }
+            for (c, above) in above.into_iter().enumerate() {
+                y[c * n + j].add_product(above, T::of(Complex64::ONE));
+            }
+        }
+    }
+}
+
+/// Calls `take` with (row, entry of the first, entry of the second) for the rows of a column of either matrix.
+fn merge(
+    (a, mut p, column): (&Csc, usize, usize),
+    (b, mut q): (&Csc, usize),
+    mut take: impl FnMut(usize, Complex64, Complex64),
+) {
+    let (a_end, b_end) = (a.col_ptr[column + 1], b.col_ptr[column + 1]);
+    while p < a_end || q < b_end {
+        let i = if p < a_end { a.row_idx[p] } else { usize::MAX };
+        let k = if q < b_end { b.row_idx[q] } else { usize::MAX };
+        let row = i.min(k);
+        let (mut x, mut y) = (Complex64::ZERO, Complex64::ZERO);
+        if i == row {
+            x = a.values[p];
+            p += 1;
+        }
+        if k == row {
+            y = b.values[q];
+            q += 1;
+        }
+        take(row, x, y);
+    }
+}

@@ -1,0 +1,110 @@
+//! A plate of 3,060 degrees of freedom on a basis: points by factors, a sweep with a tolerance, and how little is computed.
+
+use crate::plate::Plate;
+use hbvib::analysis::forced_response::forced_response;
+use hbvib::hooks::Hooks;
+use hbvib::model::Model;
+use hbvib::model::linear_modes::ContactState;
+use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
+use num_complex::Complex64;
+
+const PLATE: [usize; 3] = [20, 16, 2];
+
+fn plate() -> (Plate, Model, f64) {
+    let plate = Plate::new(PLATE);
+    let model = plate.with_sliders(8, 2e5, 0.05).unwrap();
+    let omega = model.lowest_modes(0, ContactState::Stuck, 1).unwrap().omega[0];
+    (plate, model, omega)
+}
+
+fn options(plate: &Plate, flexibility: Flexibility) -> SolverOptions {
+    SolverOptions {
+        tolerance: 0.0,
+        harmonics: 3,
+        response_dof: Some(plate.corner()),
+        flexibility,
+        ..SolverOptions::default()
+    }
+}
+
+fn solve(model: &Model, solver: &SolverOptions, range: (f64, f64)) -> Branch {
+    let range = ForcedOptions {
+        omega_start: range.0,
+        omega_stop: range.1,
+        ..ForcedOptions::default()
+    };
+    forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
+}
+
+fn motion(branch: &Branch, point: usize) -> Vec<Complex64> {
+    let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * branch.ndof()];
+    branch.harmonics_at(point, &mut x).unwrap();
+    x
+}
+
+#[test]
+fn the_certificate_bounds_the_error_of_all_degrees_of_freedom() {
+    let (plate, model, omega) = plate();
+    for at in [0.8 * omega, 1.02 * omega] {
+        let reduced = solve(&model, &options(&plate, Flexibility::Automatic), (at, at));
+        let direct = solve(&model, &options(&plate, Flexibility::Direct), (at, at));
+        let reduction = reduced.reduction();
+        assert!(reduction.basis > 0 && reduction.basis < 150, "{}", reduction.basis);
+        assert!(reduction.certificate > 0.0 && reduction.certificate < 1e-8);
+        let (x, exact) = (motion(&reduced, 0), motion(&direct, 0));
+        let size = |x: &mut dyn Iterator<Item = Complex64>| x.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+        let off = size(&mut x.iter().zip(&exact).map(|(a, b)| a - b)) / size(&mut exact.iter().copied());
+        println!(
+            "{at:.3} rad/s: certificate {:.1e}, true {off:.1e}",
+            reduction.certificate
+        );
+        assert!(off < 1e-8, "{off:e}");
+        let (e, f) = (reduced.energy_at(0).unwrap(), direct.energy_at(0).unwrap());
+        assert!((e.potential_peak / f.potential_peak - 1.0).abs() < 1e-7);
+        assert!((e.kinetic_peak / f.kinetic_peak - 1.0).abs() < 1e-7);
+        assert!((e.friction_loss / f.friction_loss - 1.0).abs() < 1e-6);
+        let history = (
+            reduced.time_history(0, plate.corner(), 16).unwrap(),
+            direct.time_history(0, plate.corner(), 16).unwrap(),
+        );
+        let largest = history.1.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        assert!(
+            history
+                .0
+                .iter()
+                .zip(&history.1)
+                .all(|(a, b)| (a - b).abs() < 1e-8 * largest)
+        );
+    }
+}
+
+#[test]
+fn a_sweep_with_a_tolerance_chooses_its_harmonics_on_the_basis() {
+    let (plate, model, omega) = plate();
+    let solver = SolverOptions {
+        tolerance: 1e-3,
+        ..options(&plate, Flexibility::Automatic)
+    };
+    let branch = solve(&model, &solver, (0.95 * omega, 1.05 * omega));
+    assert!(branch.status() as i32 == 0, "{:?}", branch.status());
+    let reduction = branch.reduction();
+    assert!(reduction.basis > 0 && branch.harmonics() >= 3);
+    println!(
+        "{} points with up to {} harmonics on {} coordinates, certificate {:.1e}",
+        branch.points(),
+        branch.harmonics(),
+        reduction.basis,
+        reduction.certificate
+    );
+    // The same frequency with many harmonics.
+    let middle = branch.points() / 2;
+    let at = branch.omega()[middle];
+    let many = SolverOptions {
+        harmonics: 31,
+        ..options(&plate, Flexibility::Automatic)
+    };
+    let exact = solve(&model, &many, (at, at)).amplitude()[0];
+    let error = (branch.amplitude()[middle] / exact - 1.0).abs();
+    assert!(error < 1e-3, "{error:e}");
+}

@@ -1,0 +1,359 @@
+//! A structure on a basis responds as by factors: random structures of every kind, and what forces other ways.
+
+use hbvib::analysis::forced_response::forced_response;
+use hbvib::contact::Contact;
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::interrupt::{Phase, PhaseReport};
+use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::model::Model;
+use hbvib::model::spring::Spring;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
+use hbvib::results::Branch;
+use num_complex::Complex64;
+use std::cell::Cell;
+
+/// Degrees of freedom of the random structures.
+const N: usize = 90;
+
+/// Numbers without pattern in −1 .. 1.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+    }
+}
+
+/// Matrices of a lattice of masses with random springs, some of them between distant masses.
+fn lattice(random: &mut Random, grounded: bool) -> (Vec<f64>, Vec<f64>) {
+    let (mut k, mut m) = (vec![0.0; N * N], vec![0.0; N * N]);
+    for i in 0..N {
+        m[i * N + i] = 1.0 + 0.5 * random.next();
+        if grounded && i % 15 == 0 {
+            k[i * N + i] += 30.0;
+        }
+        for step in [1, 7] {
+            if i >= step {
+                spring(&mut k, i, i - step, 200.0 * (1.5 + random.next()));
+                let shared = 0.1 * random.next();
+                m[i * N + i - step] += shared;
+                m[(i - step) * N + i] += shared;
+            }
+        }
+    }
+    (k, m)
+}
+
+fn spring(k: &mut [f64], i: usize, j: usize, stiffness: f64) {
+    k[i * N + i] += stiffness;
+    k[j * N + j] += stiffness;
+    k[i * N + j] -= stiffness;
+    k[j * N + i] -= stiffness;
+}
+
+fn set(model: &mut Model, kind: MatrixKind, values: &[f64]) {
+    let view = MatrixView::dense(N, values);
+    let view = if kind == MatrixKind::Mass {
+        view
+    } else {
+        view.part(Part::General)
+    };
+    model.set_matrix(kind, &view).unwrap();
+}
+
+fn with_contacts(model: &mut Model, offset: i64) {
+    for (i, (a, b, kt, limit)) in [
+        (3, Some(40), 25.0, 0.02),
+        (71, None, 60.0, 0.05),
+        (20, Some(85), 9.0, 0.01),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let mut contact = Contact::jenkins(a, b, kt, limit, 1.0);
+        contact.sector_offset = if i == 0 { offset } else { 0 };
+        model.add_contact(&contact).unwrap();
+    }
+    let never = Contact::jenkins(11, Some(66), 12.0, 0.3, f64::INFINITY);
+    model.add_contact(&never).unwrap();
+    let spring = Spring {
+        dof_a: Some(50),
+        dof_b: Some(8),
+        sector_offset: offset,
+        stiffness: 15.0,
+    };
+    model.add_spring(&spring).unwrap();
+    model.add_force(89, 1, Complex64::new(0.2, -0.1)).unwrap();
+    model.add_force(30, 1, Complex64::new(0.05, 0.02)).unwrap();
+}
+
+/// The kinds of structure, with the name of each.
+fn structures(seed: u64) -> Vec<(&'static str, Model)> {
+    let mut random = Random(0x9e37_79b9_7f4a_7c15 ^ seed);
+    let mut found = Vec::new();
+    let plain = |k: &[f64], m: &[f64]| {
+        let mut model = Model::new(N).unwrap();
+        set(&mut model, MatrixKind::Stiffness, k);
+        set(&mut model, MatrixKind::Mass, m);
+        model
+    };
+    let (k, m) = lattice(&mut random, true);
+    let mut model = plain(&k, &m);
+    model.set_rayleigh(0.01, 2e-4).unwrap();
+    found.push(("proportional damping", model));
+    let mut model = plain(&k, &m);
+    let mut c = vec![0.0; N * N];
+    for (i, j) in [(4, 33), (60, 12), (88, 2)] {
+        spring(&mut c, i, j, 0.8 + 0.5 * random.next());
+    }
+    set(&mut model, MatrixKind::Damping, &c);
+    found.push(("dashpots", model));
+    let mut massless = m.clone();
+    for p in [5, 6, 44, 70] {
+        for q in 0..N {
+            massless[p * N + q] = 0.0;
+            massless[q * N + p] = 0.0;
+        }
+    }
+    let mut model = plain(&k, &massless);
+    model.set_rayleigh(0.0, 2e-4).unwrap();
+    found.push(("massless degrees of freedom", model));
+    let (free, heavy) = lattice(&mut random, false);
+    let mut model = plain(&free, &heavy);
+    model.set_rayleigh(0.05, 1e-4).unwrap();
+    found.push(("free body", model));
+    let mut indefinite = k.clone();
+    for p in [17, 52] {
+        indefinite[p * N + p] -= 1400.0;
+    }
+    let mut model = plain(&indefinite, &m);
+    model.set_rayleigh(0.01, 1e-5).unwrap();
+    found.push(("indefinite stiffness", model));
+    for wave in [2, 22, 12] {
+        let mut model = Model::cyclic(N, 24).unwrap();
+        model.set_wave(wave);
+        set(&mut model, MatrixKind::Stiffness, &k);
+        set(&mut model, MatrixKind::Mass, &m);
+        let mut to_next = vec![0.0; N * N];
+        (to_next[3], to_next[55 * N + 4], to_next[88 * N + 89]) = (-11.0, -7.0, 5.0);
+        model
+            .set_coupling(
+                MatrixKind::Stiffness,
+                &MatrixView::dense(N, &to_next).part(Part::General),
+            )
+            .unwrap();
+        model.set_rayleigh(0.01, 2e-4).unwrap();
+        found.push(("sector", model));
+    }
+    for (_, model) in &mut found {
+        let offset = i64::from(model.structure().sectors() > 1);
+        with_contacts(model, offset);
+    }
+    found
+}
+
+fn options(flexibility: Flexibility, harmonics: usize) -> SolverOptions {
+    SolverOptions {
+        tolerance: 0.0,
+        harmonics,
+        flexibility,
+        response_dof: Some(89),
+        ..SolverOptions::default()
+    }
+}
+
+fn point(model: &Model, solver: &SolverOptions, omega: f64) -> Branch {
+    let range = ForcedOptions {
+        omega_start: omega,
+        omega_stop: omega,
+        ..ForcedOptions::default()
+    };
+    forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
+}
+
+/// Harmonics of all degrees of freedom at the first point.
+fn motion(branch: &Branch) -> Vec<Complex64> {
+    let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * branch.ndof()];
+    branch.harmonics_at(0, &mut x).unwrap();
+    x
+}
+
+fn size(x: &[Complex64]) -> f64 {
+    x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt()
+}
+
+#[test]
+fn every_kind_of_structure_responds_as_by_factors() {
+    for seed in 1..4 {
+        for (name, model) in structures(seed) {
+            for (omega, harmonics) in [(0.9, 3), (2.3, 5), (5.1, 1)] {
+                let direct = point(&model, &options(Flexibility::Direct, harmonics), omega);
+                let reduced = point(&model, &options(Flexibility::Krylov, harmonics), omega);
+                let reduction = reduced.reduction();
+                assert!(direct.reduction().basis == 0 && reduction.basis > 0 && reduction.basis <= N);
+                assert!(reduction.certificate <= 1e-8, "{name}: {:e}", reduction.certificate);
+                let (x, exact) = (motion(&reduced), motion(&direct));
+                let off: Vec<Complex64> = x.iter().zip(&exact).map(|(a, b)| a - b).collect();
+                let error = size(&off) / size(&exact);
+                assert!(
+                    error < 1e-7,
+                    "{name} at {omega}: {error:e}, {:e}",
+                    reduction.certificate
+                );
+                let (e, exact) = (reduced.energy_at(0).unwrap(), direct.energy_at(0).unwrap());
+                for (a, b) in [
+                    (e.kinetic_peak, exact.kinetic_peak),
+                    (e.potential_peak, exact.potential_peak),
+                    (e.kinetic_mean, exact.kinetic_mean),
+                    (e.potential_mean, exact.potential_mean),
+                    (e.friction_loss, exact.friction_loss),
+                    (e.structural_loss, exact.structural_loss),
+                ] {
+                    let scale = exact.kinetic_peak.abs().max(exact.potential_peak.abs());
+                    assert!((a - b).abs() <= 1e-6 * scale, "{name} at {omega}: {a} {b}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_static_load_on_a_free_body_is_held_by_its_contacts() {
+    let mut random = Random(77);
+    let (k, m) = lattice(&mut random, false);
+    let mut model = Model::new(N).unwrap();
+    set(&mut model, MatrixKind::Stiffness, &k);
+    set(&mut model, MatrixKind::Mass, &m);
+    model.set_rayleigh(0.05, 1e-4).unwrap();
+    with_contacts(&mut model, 0);
+    // One that can take the load, and sticks.
+    model.add_contact(&Contact::jenkins(60, None, 40.0, 5.0, 1.0)).unwrap();
+    model.add_force(40, 0, Complex64::new(0.01, 0.0)).unwrap();
+    let direct = point(&model, &options(Flexibility::Direct, 3), 1.4);
+    let reduced = point(&model, &options(Flexibility::Krylov, 3), 1.4);
+    assert!(reduced.reduction().mean_carried && reduced.reduction().held_by_contacts == 1);
+    let (x, exact) = (motion(&reduced), motion(&direct));
+    let off: Vec<Complex64> = x.iter().zip(&exact).map(|(a, b)| a - b).collect();
+    assert!(size(&off) < 1e-7 * size(&exact), "{:e}", size(&off) / size(&exact));
+}
+
+#[test]
+fn stiffness_without_symmetry_has_no_basis() {
+    let mut random = Random(5);
+    let (mut k, m) = lattice(&mut random, true);
+    k[7 * N + 30] += 20.0;
+    let mut model = Model::new(N).unwrap();
+    set(&mut model, MatrixKind::Stiffness, &k);
+    set(&mut model, MatrixKind::Mass, &m);
+    model.set_rayleigh(0.05, 1e-4).unwrap();
+    with_contacts(&mut model, 0);
+    assert_eq!(
+        point(&model, &options(Flexibility::Automatic, 3), 1.4)
+            .reduction()
+            .basis,
+        0
+    );
+    let range = ForcedOptions {
+        omega_start: 1.4,
+        omega_stop: 1.4,
+        ..ForcedOptions::default()
+    };
+    let solver = options(Flexibility::Krylov, 3);
+    let refused = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap_err();
+    assert_eq!(refused.status, Status::Unsupported);
+    assert!(refused.message().contains("Hermitian"), "{}", refused.message());
+}
+
+/// Number of factorisations of a sparse matrix in a solution.
+fn factorisations(model: &Model, solver: &SolverOptions, range: (f64, f64)) -> usize {
+    let count = Cell::new(0);
+    let sink = |report: &PhaseReport| {
+        count.set(count.get() + usize::from(report.phase == Phase::Factorisation));
+        false
+    };
+    let range = ForcedOptions {
+        omega_start: range.0,
+        omega_stop: range.1,
+        ..ForcedOptions::default()
+    };
+    let mut hooks = Hooks {
+        phase: Some(&sink),
+        ..Hooks::default()
+    };
+    forced_response(model, solver, &range, &mut hooks).unwrap();
+    count.get()
+}
+
+#[test]
+fn what_was_prepared_is_kept_until_a_matrix_changes() {
+    let (_, mut model) = structures(9).swap_remove(0);
+    let solver = options(Flexibility::Krylov, 3);
+    assert_eq!(factorisations(&model, &solver, (1.0, 1.2)), 1);
+    assert_eq!(factorisations(&model, &solver, (1.0, 1.2)), 0);
+    assert_eq!(factorisations(&model, &solver, (0.8, 1.1)), 0);
+    model.clear_forces();
+    model.add_force(89, 1, Complex64::new(-0.3, 0.7)).unwrap();
+    let copy = model.try_clone().unwrap();
+    assert_eq!(factorisations(&copy, &solver, (1.0, 1.2)), 0);
+    model.set_preload(1, 3.0).unwrap();
+    assert_eq!(factorisations(&model, &solver, (1.0, 1.2)), 0);
+    // A contact elsewhere needs its own flexibility.
+    model.add_contact(&Contact::jenkins(61, None, 5.0, 0.1, 1.0)).unwrap();
+    assert_eq!(factorisations(&model, &solver, (1.0, 1.2)), 1);
+    model.set_rayleigh(0.01, 3e-4).unwrap();
+    assert_eq!(factorisations(&model, &solver, (1.0, 1.2)), 1);
+    // A wheel: harmonics 1, 3, 5, 7 of engine order 3 have three diameters, one of them twice.
+    let mut wheel = structures(9).swap_remove(5).1;
+    wheel.set_wave(3);
+    assert_eq!(factorisations(&wheel, &options(Flexibility::Krylov, 7), (1.0, 1.2)), 2);
+}
+
+#[test]
+fn threads_that_solve_one_model_find_the_same() {
+    let (_, model) = structures(4).swap_remove(5);
+    let solver = options(Flexibility::Krylov, 5);
+    let alone = motion(&point(&model, &solver, 1.3));
+    let (_, fresh) = structures(4).swap_remove(5);
+    std::thread::scope(|scope| {
+        let all: Vec<_> = (0..4)
+            .map(|_| scope.spawn(|| motion(&point(&fresh, &solver, 1.3))))
+            .collect();
+        for found in all {
+            let off: Vec<Complex64> = found.join().unwrap().iter().zip(&alone).map(|(a, b)| a - b).collect();
+            assert!(size(&off) <= 1e-10 * size(&alone));
+        }
+    });
+}
+
+#[test]
+fn a_memory_limit_is_told_with_the_need_before_memory_is_asked_for() {
+    let (_, model) = structures(2).swap_remove(0);
+    let range = ForcedOptions {
+        omega_start: 1.0,
+        omega_stop: 1.1,
+        ..ForcedOptions::default()
+    };
+    for flexibility in [Flexibility::Krylov, Flexibility::Direct] {
+        let solver = SolverOptions {
+            memory_limit: 1000,
+            ..options(flexibility, 3)
+        };
+        let refused = forced_response(&model, &solver, &range, &mut Hooks::default()).unwrap_err();
+        assert_eq!(refused.status, Status::OutOfMemory);
+        let sentence = refused.message();
+        assert!(
+            sentence.contains("memory_limit = 1000") && sentence.contains("need"),
+            "{sentence}"
+        );
+        let enough = SolverOptions {
+            memory_limit: 1 << 30,
+            ..solver
+        };
+        forced_response(&model, &enough, &range, &mut Hooks::default()).unwrap();
+    }
+}
