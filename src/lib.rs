@@ -65,6 +65,8 @@ pub mod problem;
 #[doc(hidden)]
 pub mod results;
 #[doc(hidden)]
+pub mod stability;
+#[doc(hidden)]
 pub mod time_integration;
 
 // Models.
@@ -84,6 +86,7 @@ pub use model::structure::MatrixKind;
 
 // Analyses.
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use analysis::floquet::{Floquet, floquet};
 pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
@@ -96,8 +99,8 @@ pub use analysis::verify::{Verification, verify};
 pub use hooks::{Hooks, LogLevel, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport};
 pub use options::{
-    Amplitude, DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions,
-    TimeOptions, VerifyOptions,
+    Amplitude, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions,
+    TimeOptions, VerifyOptions, Waves,
 };
 
 // Results.
@@ -106,7 +109,8 @@ pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeInfo, ModePoint};
 pub use results::{Branch, ContactLoop, ContactSummary, Energy, Special};
-pub use time_integration::TimeResponse;
+pub use stability::{Multiplier, MultiplierClass};
+pub use time_integration::{Grazing, TimeResponse};
 
 #[doc = include_str!("../docs/statuses.md")]
 pub mod when_it_does_not_converge {}
