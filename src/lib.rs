@@ -99,18 +99,18 @@ pub use analysis::verify::{Verification, verify};
 pub use hooks::{Hooks, LogLevel, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport};
 pub use options::{
-    Amplitude, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions,
-    TimeOptions, VerifyOptions, Waves,
+    Amplitude, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod,
+    SynthesisOptions, TimeOptions, VerifyOptions, Waves,
 };
 
 // Results.
 pub use contact::contact_state::State;
+pub use contact::time_piece::Grazing;
 pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeInfo, ModePoint};
-pub use results::{Branch, ContactLoop, ContactSummary, Energy, Special};
-pub use stability::{Multiplier, MultiplierClass};
-pub use time_integration::{Grazing, TimeResponse};
+pub use results::{Branch, ContactLoop, ContactSummary, Energy, Multiplier, MultiplierClass, Special};
+pub use time_integration::TimeResponse;
 
 #[doc = include_str!("../docs/statuses.md")]
 pub mod when_it_does_not_converge {}

@@ -1,14 +1,15 @@
 //! Floquet multipliers of a stored point, by the variational equations along the motion in time.
 
 use crate::analysis::verify::check_model;
+use crate::contact::time_piece::Grazing;
 use crate::error::{Result, Status, fail, try_extend, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{FloquetOptions, TimeOptions};
-use crate::results::Branch;
-use crate::stability::{Blocks, Closure, Known, Multiplier, MultiplierClass, closures, multipliers_of};
-use crate::time_integration::{EventLoop, Grazing, HarmonicAnalysis, Observers, Search, State, System, state_of};
+use crate::results::{Branch, Multiplier, MultiplierClass};
+use crate::stability::{Blocks, Closure, Known, closures, multipliers_of};
+use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, Search, State, System, state_of};
 use num_complex::Complex64;
 
 /// Largest |D| of a point of a nonlinear mode that counts as a limit cycle.
@@ -109,12 +110,8 @@ impl Floquet {
         }
         multipliers.sort_by(|a, b| b.value.norm().total_cmp(&a.value.norm()));
         let ordinary = || multipliers.iter().filter(|m| m.class == MultiplierClass::Ordinary);
-        let neutral = |m: &&Multiplier| {
-            matches!(
-                m.class,
-                MultiplierClass::NeutralStuck | MultiplierClass::NeutralRigid
-            )
-        };
+        let neutral =
+            |m: &&Multiplier| matches!(m.class, MultiplierClass::NeutralStuck | MultiplierClass::NeutralRigid);
         let radius = ordinary().fold(0.0_f64, |r, m| r.max(m.value.norm()));
         Self {
             status: Status::Ok,
@@ -180,7 +177,13 @@ fn multipliers(
     hooks.log(LogLevel::Info, "the motion whose perturbations are integrated is found");
     let structure = model.structure();
     let blocks = closures(structure, options.waves, is_odd(&system, &state))?;
-    let mut found = through_a_lapse(model, &mut system, &mut event_loop, state, (&blocks, autonomous, highest))?;
+    let mut found = through_a_lapse(
+        model,
+        &mut system,
+        &mut event_loop,
+        state,
+        (&blocks, autonomous, highest),
+    )?;
     found.0.omega = system.omega;
     found.0.residual = residual;
     if options.refine {

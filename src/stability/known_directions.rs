@@ -51,7 +51,9 @@ impl Perturbations {
         let largest = svd.singular_values.max();
         let empty = DMatrix::zeros(ring.states(), 0);
         let Some(v) = svd.v_t else { return Ok(empty) };
-        let free: Vec<usize> = (0..n).filter(|&i| svd.singular_values[i] <= NO_STRAIN * largest).collect();
+        let free: Vec<usize> = (0..n)
+            .filter(|&i| svd.singular_values[i] <= NO_STRAIN * largest)
+            .collect();
         let mut found = DMatrix::zeros(ring.states(), free.len());
         for (c, &i) in free.iter().enumerate() {
             for dof in 0..n {

@@ -13,6 +13,5 @@ mod ring;
 mod variational_step;
 
 pub(crate) use closure::{Closure, closures};
-pub use multipliers::{Multiplier, MultiplierClass};
 pub(crate) use multipliers::{Known, multipliers_of};
 pub(crate) use perturbations::Blocks;

@@ -7,6 +7,7 @@
 
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::structure::Structure;
+use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
 use crate::time_integration::System;
 use nalgebra::{ColPivQR, DMatrix, DVector, Schur};
@@ -22,30 +23,6 @@ const INVARIANT: f64 = 1e-6;
 
 /// Iterations of the eigensolver, far above what converging cases need.
 const MOST_ITERATIONS: usize = 100_000;
-
-/// Reason of a multiplier.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum MultiplierClass {
-    /// Decides about stability.
-    Ordinary,
-    /// Zero, because a slider that slips forgets its place.
-    Memory,
-    /// One, because the slider of a contact that sticks for ever stays where it is put.
-    NeutralStuck,
-    /// One, because a rigid motion takes all sliders along.
-    NeutralRigid,
-    /// One, because an autonomous motion may begin at any time.
-    Trivial,
-}
-
-/// A multiplier of one period of the motion.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Multiplier {
-    /// μ
-    pub value: Complex64,
-    /// Reason of it.
-    pub class: MultiplierClass,
-}
 
 /// Facts about the motion from which multipliers are known.
 pub(crate) struct Known<'a> {

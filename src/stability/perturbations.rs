@@ -4,13 +4,14 @@
 //! of the sector whose motion it repeats, so that the map of a lapse, applied as often as the wave has lapses in a
 //! period, is the monodromy matrix of the period but for a known factor.
 
+use crate::contact::time_piece::Grazing;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::structure::Structure;
 use crate::stability::closure::Closure;
 use crate::stability::ring::{Ring, along};
 use crate::stability::variational_step::VariationalStep;
-use crate::time_integration::{Grazing, Interval, System, Variation};
+use crate::time_integration::{Interval, System, Variation};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the perturbations";

@@ -126,8 +126,7 @@ impl VariationalStep {
             interrupt.check_before((ring.stiffness.values.len() + ring.damping.values.len() + n) as u64)?;
             new.fill(Complex64::ZERO);
             ring.stiffness.multiply_add(-Complex64::ONE, this, new);
-            ring.damping
-                .multiply_add((-((k + 1) as f64) / h).into(), next, new);
+            ring.damping.multiply_add((-((k + 1) as f64) / h).into(), next, new);
             for element in &ring.elements {
                 let piece = &interval.pieces[element.source];
                 let mut y = [Complex64::ZERO; 2];
@@ -206,7 +205,9 @@ impl Implicit {
                         add(r, c, twice * k);
                     }
                 }
-                each_tangent(ring, interval, step, i, |r, c, by_x, by_v| add(r, c, twice * by_x + once * by_v));
+                each_tangent(ring, interval, step, i, |r, c, by_x, by_v| {
+                    add(r, c, twice * by_x + once * by_v)
+                });
             }
         }
         match self.lu.factor(interrupt) {

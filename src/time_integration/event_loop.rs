@@ -1,7 +1,7 @@
 //! Integration from event to event through one lapse: the part of the period after which the wave has moved on by
 //! some sectors.
 
-use crate::contact::time_piece::{Mode, TimePiece, Zeros};
+use crate::contact::time_piece::{Grazing, Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::time_integration::event_law::{Element, along};
@@ -10,7 +10,7 @@ use crate::time_integration::implicit_step::Implicit;
 use crate::time_integration::linear_step::Taylor;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial, first_fall};
 use crate::time_integration::unrolled_structure::System;
-use crate::time_integration::variation::{Collocation, Grazing, Interval, Variation};
+use crate::time_integration::variation::{Collocation, Interval, Variation};
 
 const CONTEXT: &str = "the motion in time";
 
@@ -235,7 +235,13 @@ impl EventLoop {
                 summary.update(state);
                 self.zeros.fill(Zeros::default());
             }
-            let happened = self.switch(system, state, sensitivity.as_deref_mut(), variation.as_deref_mut(), summary.largest.1);
+            let happened = self.switch(
+                system,
+                state,
+                sensitivity.as_deref_mut(),
+                variation.as_deref_mut(),
+                summary.largest.1,
+            );
             summary.events += happened;
             at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
             if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {

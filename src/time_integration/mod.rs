@@ -14,7 +14,6 @@ mod unrolled_structure;
 mod variation;
 
 pub use periodic_response::{TimeResponse, solve};
-pub use variation::Grazing;
 
 // The variational equations of the room `stability`.
 pub(crate) use event_loop::{EventLoop, Observers, State};

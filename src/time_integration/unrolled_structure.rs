@@ -121,7 +121,11 @@ impl<'s> System<'s> {
         for spring in model.springs() {
             let motion = structure.spring_motion(spring);
             for s in 0..sectors {
-                try_push(&mut springs, Spring::new(structure, motion, s, spring.stiffness), CONTEXT)?;
+                try_push(
+                    &mut springs,
+                    Spring::new(structure, motion, s, spring.stiffness),
+                    CONTEXT,
+                )?;
             }
         }
         unroll(structure, model.contacts(), &mut springs, &mut elements)?;

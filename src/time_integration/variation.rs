@@ -4,7 +4,7 @@
 //! Perturbations need not have the symmetry of the motion itself. The observer knows theirs; the integration reports
 //! the tangents of the motion only.
 
-use crate::contact::time_piece::TimePiece;
+use crate::contact::time_piece::{Grazing, TimePiece};
 use crate::error::Result;
 use crate::time_integration::gauss::GaussTables;
 use crate::time_integration::smooth_laws::Smooth;
@@ -22,15 +22,6 @@ pub(crate) trait Variation {
 
     /// The motion of an element touches an event without passing it: derivatives differ on both sides.
     fn graze(&mut self, element: usize, grazing: Grazing);
-}
-
-/// An event that is touched, not passed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Grazing {
-    /// The force of friction touches its limit.
-    SlipLimit,
-    /// The contact closes without normal speed.
-    Landing,
 }
 
 /// An interval in which no contact changes.

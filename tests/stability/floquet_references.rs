@@ -39,7 +39,10 @@ fn the_three_solutions_of_duffing_have_their_multipliers() {
     for (solution, (amplitude, pair)) in solutions.iter().zip(expected) {
         let found = multipliers(&model, &branch, solution.point, Waves::Wave);
         let mu = ordinary(&found);
-        println!("{} {mu:?} {:.1e} {:.1e}", solution.amplitude, found.orbit_change, found.residual);
+        println!(
+            "{} {mu:?} {:.1e} {:.1e}",
+            solution.amplitude, found.orbit_change, found.residual
+        );
         assert!((solution.amplitude - amplitude).abs() < 1e-8);
         for (mu, expected) in mu.iter().zip(pair) {
             assert!((mu - expected).norm() < 1e-7, "{mu} {expected}");
