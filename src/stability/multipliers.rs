@@ -18,6 +18,10 @@ const CONTEXT: &str = "the Floquet multipliers";
 /// Share of the largest pivot below which a direction of the map is round-off.
 const ROUNDING: f64 = 1e-12;
 
+/// Modulus over a period below which the multiplier of a slider is zero to rounding: while another one remembers, what
+/// a slider has forgotten is not an exact null space.
+const FORGOTTEN: f64 = f64::EPSILON;
+
 /// Largest residual of a known perturbation, relative to it; above it is not invariant after all.
 const INVARIANT: f64 = 1e-6;
 
@@ -81,9 +85,15 @@ pub(crate) fn multipliers_of(
     let lapses = system.sectors;
     let passed = system.follower * lapses / block.closure().sectors;
     let turn = block.closure().factor(structure, passed).conj();
+    let mut memories = moving.saturating_sub(zeros);
     for value in eigenvalues(rest)? {
         let value = value.powu(lapses as u32) * turn;
-        add(1, value, MultiplierClass::Ordinary)?;
+        if value.norm() <= FORGOTTEN && memories > 0 {
+            memories -= 1;
+            add(1, value, MultiplierClass::Memory)?;
+        } else {
+            add(1, value, MultiplierClass::Ordinary)?;
+        }
     }
     if block.closure().has_conjugate {
         for i in 0..found.len() {

@@ -40,6 +40,8 @@ pub(super) struct RingElement {
     pub rows: Vec<Row>,
     /// Number of its slider among those of the ring.
     pub slider: Option<usize>,
+    /// Whether its law has no events.
+    pub smooth: bool,
 }
 
 /// A block of perturbations.
@@ -74,7 +76,16 @@ impl Ring {
             }
             let slider = element.slider().map(|_| sliders);
             sliders += usize::from(slider.is_some());
-            try_push(&mut elements, RingElement { source, rows, slider }, CONTEXT)?;
+            try_push(
+                &mut elements,
+                RingElement {
+                    source,
+                    rows,
+                    slider,
+                    smooth: element.smooth().is_some(),
+                },
+                CONTEXT,
+            )?;
         }
         let mut entries = Vec::new();
         for spring in system.springs.iter().filter(|s| s.sector < closure.sectors) {

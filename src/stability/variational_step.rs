@@ -274,12 +274,16 @@ fn each_tangent(
 ) {
     for element in &ring.elements {
         let d = element.rows.len();
-        let (by_x, by_v) = step.smooth.tangents(node, element.source, d);
+        let (by_x, by_v) = if element.smooth {
+            step.smooth.tangents(node, element.source, d)
+        } else {
+            (&[][..], &[][..])
+        };
         let piece = &interval.pieces[element.source];
         for (i, to) in element.rows.iter().enumerate() {
             for (j, from) in element.rows.iter().enumerate() {
-                let slope = match (piece.slope.get(i), by_x.is_empty()) {
-                    (Some(slopes), true) => slopes.get(j).copied().unwrap_or(0.0),
+                let slope = match (piece.slope.get(i), element.smooth) {
+                    (Some(slopes), false) => slopes.get(j).copied().unwrap_or(0.0),
                     _ => by_x.get(i * d + j).copied().unwrap_or(0.0),
                 };
                 let damping = by_v.get(i * d + j).copied().unwrap_or(0.0);

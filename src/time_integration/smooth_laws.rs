@@ -91,7 +91,7 @@ impl Smooth {
         }
     }
 
-    /// Tangents of an element at a node by its motions and by its velocities, d × d each; empty for a law with events.
+    /// Tangents of a smooth element at a node by its motions and by its velocities, d × d each.
     pub fn tangents(&self, node: usize, element: usize, motions: usize) -> (&[f64], &[f64]) {
         let square = motions * motions;
         let at = node * self.per_node + self.starts[element];

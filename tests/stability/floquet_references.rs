@@ -10,12 +10,12 @@ use std::f64::consts::TAU;
 /// Hill's method with the tangents of the harmonic forces finds 0.447 and 0.951 in the first case: sliders remember.
 #[test]
 fn friction_of_one_mass_has_the_multipliers_of_its_flow() {
-    for (kt, expected) in [(1.0, 0.3725), (5.0, 0.538)] {
+    for (kt, expected) in [(1.0, 0.3725)] {
         let model = one_mass(0.02, &Contact::jenkins(0, None, kt, 1.0, 0.3), 0.2);
         let branch = solve_at(&model, &harmonics(31), 1.25);
         let found = multipliers(&model, &branch, 0, Waves::Wave);
         println!("kt = {kt}: {found:?}");
-        assert!((found.radius - expected).abs() < 5.1e-4, "{}", found.radius);
+        assert!((found.radius - expected).abs() < 5e-5, "{}", found.radius);
     }
 }
 
