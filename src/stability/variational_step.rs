@@ -206,7 +206,7 @@ impl Implicit {
                     }
                 }
                 each_tangent(ring, interval, step, i, |r, c, by_x, by_v| {
-                    add(r, c, twice * by_x + once * by_v)
+                    add(r, c, twice * by_x + once * by_v);
                 });
             }
         }

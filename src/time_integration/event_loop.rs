@@ -160,11 +160,11 @@ impl EventLoop {
     }
 
     /// Integrates a state from time 0 over one lapse, and with it what the observers request.
-    pub fn run<'v>(
+    pub fn run(
         &mut self,
         system: &mut System<'_>,
         state: &mut State,
-        observers: Observers<'_, 'v>,
+        observers: Observers<'_, '_>,
     ) -> Result<LapseSummary> {
         let Observers {
             mut sensitivity,
@@ -385,7 +385,9 @@ impl EventLoop {
         self.step(system, state, 0.0, system.lapse())?;
         let scale = 2.0 / self.polynomial.length.powi(2);
         let mut accelerations = try_copy(self.polynomial.term(2), CONTEXT)?;
-        accelerations.iter_mut().for_each(|a| *a *= scale);
+        for a in &mut accelerations {
+            *a *= scale;
+        }
         Ok((accelerations, speeds))
     }
 

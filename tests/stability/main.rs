@@ -16,7 +16,7 @@ use hbvib::{Floquet, MultiplierClass};
 use num_complex::Complex64;
 
 /// Multipliers of a point after shooting.
-pub fn multipliers(model: &Model, branch: &Branch, point: usize, waves: Waves) -> Floquet {
+pub(crate) fn multipliers(model: &Model, branch: &Branch, point: usize, waves: Waves) -> Floquet {
     let options = FloquetOptions {
         waves,
         ..FloquetOptions::default()
@@ -25,12 +25,12 @@ pub fn multipliers(model: &Model, branch: &Branch, point: usize, waves: Waves) -
 }
 
 /// The ordinary ones.
-pub fn ordinary(found: &Floquet) -> Vec<Complex64> {
+pub(crate) fn ordinary(found: &Floquet) -> Vec<Complex64> {
     of_class(found, MultiplierClass::Ordinary)
 }
 
 /// Those of a class.
-pub fn of_class(found: &Floquet, class: MultiplierClass) -> Vec<Complex64> {
+pub(crate) fn of_class(found: &Floquet, class: MultiplierClass) -> Vec<Complex64> {
     found
         .multipliers
         .iter()
