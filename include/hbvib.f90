@@ -1099,6 +1099,16 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_floquet
 
+      function hbvib_branch_limit_cycles(branch, capacity, omega, log10_amplitude, slope, point, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: omega(*), log10_amplitude(*), slope(*)
+         integer(c_int64_t), intent(inout), optional :: point(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_branch_limit_cycles
+
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)
          import
@@ -1233,6 +1243,7 @@ module hbvib
       procedure :: reduction => branch_reduction
       procedure :: peaks => branch_peaks
       procedure :: folds => branch_folds
+      procedure :: limit_cycles => branch_limit_cycles
       procedure :: at => branch_at
       procedure :: energy => branch_energy
       procedure :: time_history => branch_time_history
@@ -1270,7 +1281,7 @@ module hbvib
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
-   private :: branch_synthesis_peaks, model_verify, model_floquet
+   private :: branch_synthesis_peaks, model_verify, model_floquet, branch_limit_cycles
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -2567,6 +2578,27 @@ contains
       integer(i32) :: status
       status = special(self, -2_i64, omega, amplitude, point)
    end function branch_folds
+
+   !> Points of a nonlinear mode where its damping ratio is zero: motions of the model without forces.
+   function branch_limit_cycles(self, omega, log10_amplitude, slope, point) result(status)
+      class(hbvib_branch), intent(in) :: self
+      real(dp), allocatable, intent(inout), optional :: omega(:), log10_amplitude(:), slope(:)
+      integer, allocatable, intent(inout), optional :: point(:)
+      integer(i32) :: status
+      real(dp), allocatable :: w(:), a(:), s(:)
+      integer(i64), allocatable :: p(:)
+      integer(i64) :: n
+      n = 0
+      status = hbvib_branch_limit_cycles(self%handle, 0_i64, count=n)
+      if (status /= HBVIB_OK) return
+      allocate (w(n), a(n), s(n), p(n))
+      status = hbvib_branch_limit_cycles(self%handle, n, w, a, s, p, n)
+      if (status /= HBVIB_OK) return
+      if (present(omega)) omega = w
+      if (present(log10_amplitude)) log10_amplitude = a
+      if (present(slope)) slope = s
+      if (present(point)) point = int(p) + 1
+   end function branch_limit_cycles
 
    !> Solutions found at entry `wanted` of the array `at`.
    function branch_at(self, wanted, amplitude, point) result(status)

@@ -62,7 +62,7 @@
  *   Results             curve, fields, harmonics, special points, energies, contacts of a branch
  *   Modes               linear and nonlinear modes, responses synthesised from them
  *   Time                integration in time, and points of a branch compared with it
- *   Stability           Floquet multipliers of points
+ *   Stability           Floquet multipliers of points, limit cycles
  *   Low level           one contact law, the residual at a given motion, indices from 1
  */
 
@@ -2315,7 +2315,7 @@ hbvib_status hbvib_verify(const hbvib_model *model,
                           hbvib_verification *out);
 
 /* ==============================================================================================
- * Stability: Floquet multipliers of points
+ * Stability: Floquet multipliers of points, limit cycles
  * ============================================================================================== */
 
 /// Perturbations whose multipliers are computed.
@@ -2445,6 +2445,28 @@ hbvib_status hbvib_floquet(const hbvib_model *model,
                            int64_t *classes,
                            int64_t classes_len,
                            hbvib_floquet_info *out);
+
+/// Limit cycles on a nonlinear mode, where its damping ratio is zero: periodic motions of the model
+/// without forces. Refined on the solution, in the order of the branch. hbvib_floquet tells whether
+/// one is stable; with a negative slope it is not.
+///
+/// capacity         numbers that fit into each array.
+/// omega            receives their angular frequencies, or NULL.
+/// log10_amplitude  receives log10 of their amplitudes, the parameter of the mode, or NULL.
+/// slope            receives the derivatives of the damping ratio by log10 of the amplitude, or
+///                  NULL.
+/// point            receives their point numbers for hbvib_floquet and others, numbers, or NULL.
+/// count            receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned. A forced response has none.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch,
+                                       int64_t capacity,
+                                       double *omega,
+                                       double *log10_amplitude,
+                                       double *slope,
+                                       int64_t *point,
+                                       int64_t *count);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

@@ -721,6 +721,11 @@ struct Verification {
   /// Fundamental of the response degree of freedom in time.
   Complex response() const { return {info.response[0], info.response[1]}; }
 };
+/// A motion without forces: a point of a nonlinear mode where the damping ratio is zero, with its slope by log10_amplitude.
+struct LimitCycle {
+  double omega, log10_amplitude, slope;
+  Index point;
+};
 /// Multipliers of one period of a motion by falling modulus, and the reason of each.
 struct Floquet {
   hbvib_status status;
@@ -796,6 +801,17 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   }
   /// Turning points.
   std::vector<Peak> folds() const { return extremes(hbvib_branch_folds); }
+  /// Points of a nonlinear mode where its damping ratio is zero.
+  std::vector<LimitCycle> limit_cycles() const {
+    Index count = 0;
+    use(hbvib_branch_limit_cycles, 0, nullptr, nullptr, nullptr, nullptr, &count);
+    std::vector<double> omega(detail::extent(count)), amplitude(omega.size()), slope(omega.size());
+    std::vector<Index> point(omega.size());
+    use(hbvib_branch_limit_cycles, count, omega.data(), amplitude.data(), slope.data(), point.data(), &count);
+    std::vector<LimitCycle> out;
+    for (std::size_t i = 0; i < omega.size(); i++) out.push_back({omega[i], amplitude[i], slope[i], point[i]});
+    return out;
+  }
   /// Every solution at entry `wanted` of the requested frequencies or amplitudes.
   std::vector<Wanted> at(Index wanted) const {
     Index count = 0;

@@ -418,6 +418,7 @@ verify: h h l verify_options hooks p l p l verification
 floquet_options_init: floquet_options z
 floquet_info_init: floquet_info z
 floquet: h h l floquet_options hooks p l p l floquet_info
+branch_limit_cycles: h l p p p p p
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -549,6 +550,8 @@ if TYPE_CHECKING:
         def hbvib_floquet_info_init(self, i: Any, size_of_i: int) -> int: ...
         def hbvib_floquet(self, model: Any, branch: Any, point: int, options: Any, hooks: Any, multipliers: Any,
             multipliers_len: int, classes: Any, classes_len: int, out: Any) -> int: ...
+        def hbvib_branch_limit_cycles(self, branch: Any, capacity: int, omega: Any, log10_amplitude: Any, slope: Any,
+            point: Any, count: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,
@@ -929,6 +932,9 @@ Residual = namedtuple("Residual", "residual jacobian d_omega")
 ContactForce = namedtuple("ContactForce", "force jacobian")
 TimeResponse = namedtuple("TimeResponse", "harmonics samples info status")
 Verification = namedtuple("Verification", "harmonics errors info status")
+
+
+LimitCycles = namedtuple("LimitCycles", "omega log10_amplitude slope point")
 
 
 class Floquet(NamedTuple):
@@ -1887,6 +1893,11 @@ class Branch(_Owner):
     def folds(self) -> Points:
         """Turning points in frequency, in a nonlinear mode in amplitude: omega, amplitude, point number."""
         return Points(*self._listed("hbvib_branch_folds", (), [float, float, np.int64]))
+
+    def limit_cycles(self) -> LimitCycles:
+        """Points of a nonlinear mode where its damping ratio is zero, motions of the model without forces: omega, log10
+        of the amplitude, slope of the damping ratio by it, point number for Model.floquet and others."""
+        return LimitCycles(*self._listed("hbvib_branch_limit_cycles", (), [float, float, float, np.int64]))
 
     def at(self, wanted: int) -> Wanted:
         """Every solution at one entry of the solve's `at`: amplitude, point number."""

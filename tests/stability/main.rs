@@ -6,6 +6,7 @@ mod common;
 mod floquet_classes;
 mod floquet_references;
 mod floquet_wheel;
+mod limit_cycles;
 
 use hbvib::analysis::floquet;
 use hbvib::hooks::Hooks;

@@ -70,7 +70,7 @@ pub const SECTIONS: [Section; 12] = [
     },
     Section {
         title: "Stability",
-        about: "Floquet multipliers of points",
+        about: "Floquet multipliers of points, limit cycles",
         files: &["stability"],
     },
     Section {
