@@ -70,6 +70,37 @@ static void refuse(hbvib_branch *branch)
     EXPECT("hooks", i.count == 0 && i.radius != i.radius);
 }
 
+/* With negative damping, C = beta K - alpha M, the ring damper has two limit cycles. */
+static void limit_cycles(void)
+{
+    hbvib_solver_options s = solver_options();
+    hbvib_mode_options o;
+    hbvib_floquet_info i = floquet_info();
+    hbvib_model *model = ring_damper();
+    hbvib_branch *branch = NULL;
+    double omega[2], amplitude[2], slope[2];
+    int64_t point[2], count = -1;
+
+    WORKS("damping", hbvib_model_set_rayleigh(model, -7, 1.5e-6));
+    WORKS("options", hbvib_mode_options_init(&o, sizeof o));
+    o.log10_start = -6;
+    o.log10_stop = -1;
+    s.tolerance = 0;
+    s.harmonics = 31;
+    WORKS("mode", hbvib_nonlinear_mode(model, &s, &o, NULL, &branch));
+    WORKS("count", hbvib_branch_limit_cycles(branch, 0, NULL, NULL, NULL, NULL, &count));
+    EXPECT("count", count == 2);
+    WORKS("cycles", hbvib_branch_limit_cycles(branch, 2, omega, amplitude, slope, point, &count));
+    EXPECT("cycles", slope[0] > 0 && slope[1] < 0 && amplitude[0] < amplitude[1] && omega[0] > omega[1]);
+    WORKS("stability", hbvib_floquet(model, branch, point[0], NULL, NULL, NULL, 0, NULL, 0, &i));
+    EXPECT("stability", i.unstable > 0 && fabs(i.radius - 1.009943) < 1e-5 && fabs(i.omega / omega[0] - 1) < 1e-4);
+    EXPECT("room", hbvib_branch_limit_cycles(branch, 1, omega, NULL, NULL, NULL, &count) == HBVIB_E_DIMENSION && count == 2);
+    EXPECT("null", hbvib_branch_limit_cycles(branch, 2, omega, amplitude, slope, point, NULL) == HBVIB_E_NULL);
+    EXPECT("no cycle", hbvib_floquet(model, branch, 0, NULL, NULL, NULL, 0, NULL, 0, &i) == HBVIB_E_UNSUPPORTED);
+    WORKS("free", hbvib_branch_free(branch));
+    WORKS("free", hbvib_model_free(model));
+}
+
 int main(void)
 {
     hbvib_solver_options s = solver_options();
@@ -82,6 +113,7 @@ int main(void)
     WORKS("solve", hbvib_forced_response(the_model, &s, &o, NULL, &branch));
     are_those_of_the_reference(branch);
     refuse(branch);
+    limit_cycles();
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(the_model));
     return verdict(20);

@@ -9,7 +9,7 @@ use hbvib::contact::Contact;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{ModeOptions, Waves};
+use hbvib::options::{ModeChoice, ModeOptions, Waves};
 use hbvib::results::Branch;
 use num_complex::Complex64;
 
@@ -66,6 +66,30 @@ fn friction_limits_the_flutter_of_two_masses() {
         assert!((mu - expected).norm() < 1e-7, "{mu}");
     }
     assert_eq!(found.unstable, 0);
+}
+
+/// On the second mode, free of friction at large motions, the damping is negative again: beyond this cycle nothing limits
+/// the motion.
+#[test]
+fn the_outer_limit_cycle_of_two_masses_is_unstable() {
+    let model = two_masses();
+    let range = ModeOptions {
+        choice: ModeChoice::Index(1),
+        log10_start: -2.0,
+        log10_stop: 2.0,
+        ..ModeOptions::default()
+    };
+    let branch = follow(&model, &harmonics(31), &range);
+    let cycles = branch.limit_cycles().unwrap();
+    let outer = cycles.last().unwrap();
+    let found = multipliers(&model, &branch, outer.point, Waves::Wave);
+    println!(
+        "{cycles:?} {:?} omega {:.12} {:?}",
+        amplitudes(&branch, outer.point),
+        found.omega,
+        found.multipliers
+    );
+    assert!(outer.slope < 0.0 && found.unstable > 0 && found.residual <= 1e-12);
 }
 
 #[test]

@@ -128,6 +128,7 @@ void friction() {
   const auto stability = model.floquet(branch, peak.point);
   claim(stability.status == HBVIB_OK && stability.multipliers.size() == 3 && stability.classes.size() == 3, "the number of multipliers");
   claim(stability.info.radius < 1 && stability.info.unstable == 0 && stability.classes[2] == HBVIB_MULTIPLIER_MEMORY, "the point is stable");
+  claim(branch.limit_cycles().empty(), "a forced response has no limit cycles");
   near(stability.info.radius, std::abs(stability.multipliers[0]), 1e-15, "the radius is that of the largest");
 
   // The law alone, on the motion of the point.

@@ -314,6 +314,8 @@ contains
       call expect('two multipliers and a memory', size(mu) == 3 .and. all(classes == [HBVIB_MULTIPLIER_ORDINARY, &
                   HBVIB_MULTIPLIER_ORDINARY, HBVIB_MULTIPLIER_MEMORY]))
       call expect('the point is stable', close(stability%radius, abs(mu(1)), 1e-14_dp) .and. stability%radius < 1)
+      call works(branch%limit_cycles(amplitude), 'limit cycles')
+      call expect('a forced response has none', size(amplitude) == 0)
       call refused(model%floquet(branch, 0), HBVIB_E_INDEX, 'point = 0, needs 1', 'the stability of point 0')
       call refused(model%verify(branch, 0), HBVIB_E_INDEX, 'point = 0, needs 1', 'a check of point 0')
       call refused(model%verify(branch, point(1), errors=errors(1:)), HBVIB_E_DIMENSION, 'harmonics + 1 = 64', 'too few errors')
