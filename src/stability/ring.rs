@@ -3,7 +3,7 @@
 //! Between the sectors s and s′ of the ring lies A_{ss′} = 1/m Σ_δ A(δ) e^{−2πi(s − s′)δ/N}, the sum over the diameters
 //! δ of the block. A relative motion that reaches over the end of the ring has the factor c there.
 
-use crate::error::{Result, Status, fail, try_push};
+use crate::error::{Result, Status, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
@@ -44,13 +44,20 @@ pub(super) struct RingElement {
     pub smooth: bool,
 }
 
+/// Factors of the mass matrix of a ring.
+enum MassFactor {
+    /// 1/mᵢᵢ of a diagonal one.
+    Diagonal(Vec<Complex64>),
+    General(Box<Factor>),
+}
+
 /// A block of perturbations.
 pub(super) struct Ring {
     pub closure: Closure,
     /// Degrees of freedom of all its sectors.
     pub order: usize,
     pub mass: Csc,
-    pub mass_factor: Factor,
+    mass_factor: MassFactor,
     pub damping: Csc,
     pub stiffness: Csc,
     pub elements: Vec<RingElement>,
@@ -113,16 +120,37 @@ impl Ring {
         })
     }
 
+    /// a ← M⁻¹ a
+    pub fn accelerate(&mut self, a: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
+        match &mut self.mass_factor {
+            MassFactor::Diagonal(inverse) => {
+                for (a, m) in a.iter_mut().zip(inverse) {
+                    *a *= *m;
+                }
+                Ok(())
+            }
+            MassFactor::General(factor) => factor.solve(a, false, interrupt),
+        }
+    }
+
     /// Number of states of a perturbation: displacements, velocities and sliders.
     pub fn states(&self) -> usize {
         2 * self.order + self.sliders
     }
 }
 
-fn factored(mass: &Csc, interrupt: &Interrupt<'_>) -> Result<Factor> {
-    let mut factor = Factor::new(mass, 1)?;
+fn factored(mass: &Csc, interrupt: &Interrupt<'_>) -> Result<MassFactor> {
+    if (0..mass.cols).all(|j| mass.column(j).all(|(i, v)| i == j || v == Complex64::ZERO)) {
+        // The structure in time has refused degrees of freedom without mass.
+        let mut inverse = try_vec(mass.cols, Complex64::ZERO, CONTEXT)?;
+        for (i, d) in inverse.iter_mut().enumerate() {
+            *d = (1.0 / mass.get(i, i).re).into();
+        }
+        return Ok(MassFactor::Diagonal(inverse));
+    }
+    let mut factor = Box::new(Factor::new(mass, 1)?);
     match factor.factor(mass, interrupt) {
-        Ok(()) => Ok(factor),
+        Ok(()) => Ok(MassFactor::General(factor)),
         Err(e) if e.status == Status::Singular => fail!(
             Unsupported,
             "the mass matrix is singular: some motion in time has no differential equation; give it mass"

@@ -143,7 +143,7 @@ impl VariationalStep {
                     }
                 }
             }
-            ring.mass_factor.solve(new, false, interrupt)?;
+            ring.accelerate(new, interrupt)?;
             let scale = h * h / ((k + 1) * (k + 2)) as f64;
             let mut term = 0.0_f64;
             for ((new, x), v) in new.iter_mut().zip(&mut self.x).zip(&mut self.v) {
