@@ -84,6 +84,13 @@ module hbvib
       HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2, HBVIB_SYNTHESIS_FALLING = 4
    ! hbvib_steady_method
    integer(c_int32_t), parameter, public :: HBVIB_SHOOTING = 0, HBVIB_MARCHING = 1
+   ! hbvib_waves
+   integer(c_int32_t), parameter, public :: HBVIB_WAVES_WAVE = 0, HBVIB_WAVES_WHEEL = 1
+   ! hbvib_multiplier_class
+   integer(c_int32_t), parameter, public :: HBVIB_MULTIPLIER_ORDINARY = 0, HBVIB_MULTIPLIER_MEMORY = 1, &
+      HBVIB_MULTIPLIER_NEUTRAL_STUCK = 2, HBVIB_MULTIPLIER_NEUTRAL_RIGID = 3, HBVIB_MULTIPLIER_TRIVIAL = 4
+   ! hbvib_grazing
+   integer(c_int32_t), parameter, public :: HBVIB_GRAZING_NONE = 0, HBVIB_GRAZING_SLIP_LIMIT = 1, HBVIB_GRAZING_LANDING = 2
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -289,6 +296,21 @@ module hbvib
       real(c_double) :: response_error = 0, motion_error = 0, above = 0, distance = 0, peak = 0, peak_error = 0, residual = 0
       integer(c_int64_t) :: periods = 0, events = 0
    end type hbvib_verification
+
+   !> Options of hbvib_floquet.
+   type, bind(c) :: hbvib_floquet_options
+      integer(c_int32_t) :: struct_size = 32, waves = 0, refine = 1, reserved = 0
+      real(c_double) :: tolerance = 1e-11_c_double
+      integer(c_int64_t) :: max_periods = 10000
+   end type hbvib_floquet_options
+
+   !> Numbers of the stability of a point.
+   type, bind(c) :: hbvib_floquet_info
+      integer(c_int32_t) :: struct_size = 72, grazing = 0
+      real(c_double) :: omega = 0, radius = 0
+      integer(c_int64_t) :: count = 0, unstable = 0, neutral = 0, grazing_contact = -1
+      real(c_double) :: orbit_change = 0, residual = 0
+   end type hbvib_floquet_info
 
    abstract interface
       !> A force of the caller.
@@ -1054,6 +1076,45 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_verify
 
+      function hbvib_floquet_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_floquet_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_floquet_options_init
+
+      function hbvib_floquet_info_init(i, size_of_i) bind(c) result(status)
+         import
+         type(hbvib_floquet_info), intent(inout) :: i
+         integer(c_size_t), value :: size_of_i
+         integer(c_int32_t) :: status
+      end function hbvib_floquet_info_init
+
+      function hbvib_floquet(model, branch, point, options, hooks, multipliers, multipliers_len, classes, classes_len, &
+         out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         type(hbvib_floquet_options), intent(in), optional :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         complex(c_double_complex), intent(inout), optional :: multipliers(*)
+         integer(c_int64_t), value :: multipliers_len
+         integer(c_int64_t), intent(inout), optional :: classes(*)
+         integer(c_int64_t), value :: classes_len
+         type(hbvib_floquet_info), intent(inout), optional :: out
+         integer(c_int32_t) :: status
+      end function hbvib_floquet
+
+      function hbvib_branch_limit_cycles(branch, capacity, omega, log10_amplitude, slope, point, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: omega(*), log10_amplitude(*), slope(*)
+         integer(c_int64_t), intent(inout), optional :: point(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_branch_limit_cycles
+
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)
          import
@@ -1168,6 +1229,7 @@ module hbvib
       procedure :: nonlinear_mode => model_nonlinear_mode
       procedure :: time_response => model_time_response
       procedure :: verify => model_verify
+      procedure :: floquet => model_floquet
       procedure :: forced_residual => model_forced_residual
    end type hbvib_model
 
@@ -1187,6 +1249,7 @@ module hbvib
       procedure :: reduction => branch_reduction
       procedure :: peaks => branch_peaks
       procedure :: folds => branch_folds
+      procedure :: limit_cycles => branch_limit_cycles
       procedure :: at => branch_at
       procedure :: energy => branch_energy
       procedure :: time_history => branch_time_history
@@ -1224,7 +1287,7 @@ module hbvib
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
-   private :: branch_synthesis_peaks, model_verify
+   private :: branch_synthesis_peaks, model_verify, model_floquet, branch_limit_cycles
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -2291,6 +2354,33 @@ contains
          status = hbvib_verify(self%handle, branch%handle, p, options, hooks, harmonics, n_harmonics, errors, n_errors, info)
    end function model_verify
 
+   !> The Floquet multipliers of a point of this model by falling modulus, and their classes (HBVIB_MULTIPLIER_ORDINARY
+   !> and so on); the motion is unstable where info%radius > 1.
+   function model_floquet(self, branch, point, multipliers, classes, info, options, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point
+      complex(dp), allocatable, intent(out), optional :: multipliers(:)
+      integer, allocatable, intent(out), optional :: classes(:)
+      type(hbvib_floquet_info), intent(out), optional :: info
+      type(hbvib_floquet_options), intent(in), optional :: options
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      type(hbvib_floquet_info) :: found
+      complex(dp), allocatable :: mu(:)
+      integer(i64), allocatable :: reasons(:)
+      integer(i64) :: p, most
+      status = HBVIB_OK
+      call point_to_zero(branch, status, point, p)
+      if (status /= HBVIB_OK) return
+      most = hbvib_model_sectors(self%handle)*(2*hbvib_model_dofs(self%handle) + hbvib_model_contacts(self%handle))
+      allocate (mu(most), reasons(most))
+      status = hbvib_floquet(self%handle, branch%handle, p, options, hooks, mu, most, reasons, most, found)
+      if (present(multipliers)) multipliers = mu(:found%count)
+      if (present(classes)) classes = int(reasons(:found%count))
+      if (present(info)) info = found
+   end function model_floquet
+
    !> Residual r(ndof, 0:H) of harmonic balance at x(ndof, 0:H), derivatives jac (2 (H + 1) ndof square) and d_omega (as r).
    function model_forced_residual(self, omega, x, r, jac, d_omega, solver, hooks) result(status)
       class(hbvib_model), intent(in) :: self
@@ -2494,6 +2584,27 @@ contains
       integer(i32) :: status
       status = special(self, -2_i64, omega, amplitude, point)
    end function branch_folds
+
+   !> Points of a nonlinear mode where its damping ratio is zero: motions of the model without forces.
+   function branch_limit_cycles(self, omega, log10_amplitude, slope, point) result(status)
+      class(hbvib_branch), intent(in) :: self
+      real(dp), allocatable, intent(inout), optional :: omega(:), log10_amplitude(:), slope(:)
+      integer, allocatable, intent(inout), optional :: point(:)
+      integer(i32) :: status
+      real(dp), allocatable :: w(:), a(:), s(:)
+      integer(i64), allocatable :: p(:)
+      integer(i64) :: n
+      n = 0
+      status = hbvib_branch_limit_cycles(self%handle, 0_i64, count=n)
+      if (status /= HBVIB_OK) return
+      allocate (w(n), a(n), s(n), p(n))
+      status = hbvib_branch_limit_cycles(self%handle, n, w, a, s, p, n)
+      if (status /= HBVIB_OK) return
+      if (present(omega)) omega = w
+      if (present(log10_amplitude)) log10_amplitude = a
+      if (present(slope)) slope = s
+      if (present(point)) point = int(p) + 1
+   end function branch_limit_cycles
 
    !> Solutions found at entry `wanted` of the array `at`.
    function branch_at(self, wanted, amplitude, point) result(status)

@@ -62,6 +62,7 @@
  *   Results             curve, fields, harmonics, special points, energies, contacts of a branch
  *   Modes               linear and nonlinear modes, responses synthesised from them
  *   Time                integration in time, and points of a branch compared with it
+ *   Stability           Floquet multipliers of points, limit cycles
  *   Low level           one contact law, the residual at a given motion, indices from 1
  */
 
@@ -2340,6 +2341,160 @@ hbvib_status hbvib_verify(const hbvib_model *model,
                           double *errors,
                           int64_t errors_len,
                           hbvib_verification *out);
+
+/* ==============================================================================================
+ * Stability: Floquet multipliers of points, limit cycles
+ * ============================================================================================== */
+
+/// Perturbations whose multipliers are computed.
+typedef enum {
+  /// The block of perturbations that contains the wave itself.
+  HBVIB_WAVES_WAVE = 0,
+  /// All perturbations of the wheel.
+  HBVIB_WAVES_WHEEL = 1,
+} hbvib_waves;
+
+/// Reasons of multipliers.
+typedef enum {
+  /// Decides about stability.
+  HBVIB_MULTIPLIER_ORDINARY = 0,
+  /// Zero: a slider that slips forgets its place.
+  HBVIB_MULTIPLIER_MEMORY = 1,
+  /// One: the slider of a contact that always sticks stays where it is put.
+  HBVIB_MULTIPLIER_NEUTRAL_STUCK = 2,
+  /// One: a rigid motion takes all sliders along.
+  HBVIB_MULTIPLIER_NEUTRAL_RIGID = 3,
+  /// One: a motion that no force drives may begin at any time.
+  HBVIB_MULTIPLIER_TRIVIAL = 4,
+} hbvib_multiplier_class;
+
+/// Events that a motion touches without passing them.
+typedef enum {
+  /// None.
+  HBVIB_GRAZING_NONE = 0,
+  /// The force of friction touches its limit.
+  HBVIB_GRAZING_SLIP_LIMIT = 1,
+  /// The contact closes without normal speed.
+  HBVIB_GRAZING_LANDING = 2,
+} hbvib_grazing;
+
+/// Options of hbvib_floquet. Fill it by hbvib_floquet_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_WAVES_WAVE or HBVIB_WAVES_WHEEL.
+  int32_t waves;
+  /// 1: move the point to the periodic motion in time by shooting first; 0: take it as it is.
+  int32_t refine;
+  /// Must be 0.
+  int32_t reserved;
+  /// As in hbvib_time_options.
+  double tolerance;
+  /// Cap on the periods that shooting integrates.
+  int64_t max_periods;
+} hbvib_floquet_options;
+
+/// Fills the options of Floquet multipliers with their defaults: those of the wave, refine = 1,
+/// tolerance = 1e-11.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_floquet_options_init(hbvib_floquet_options *o, size_t size_of_o);
+
+/// Numbers of the stability of a point. Fill it by hbvib_floquet_info_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// Event that the motion touches, HBVIB_GRAZING_NONE and so on. Derivatives then differ on its
+  /// two sides: ordinary multipliers and radius are NaN.
+  int32_t grazing;
+  /// Angular frequency of the motion: that of the point, unless no force drives it.
+  double omega;
+  /// Largest modulus of the ordinary multipliers; the motion is unstable if it is above 1.
+  double radius;
+  /// Number of multipliers.
+  int64_t count;
+  /// Number of ordinary multipliers outside the unit circle.
+  int64_t unstable;
+  /// Number of multipliers that are 1 by construction, a trivial one not among them.
+  int64_t neutral;
+  /// Contact that touches the event; -1: none.
+  int64_t grazing_contact;
+  /// Distance of the motion in time from that of the point, relative to it; 0 with refine = 0.
+  double orbit_change;
+  /// Largest change over a period of the motion in time, relative to its largest displacement and
+  /// velocity; NaN with refine = 0.
+  double residual;
+} hbvib_floquet_info;
+
+/// Fills the numbers of a stability with zeros, grazing_contact with -1.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_floquet_info_init(hbvib_floquet_info *i, size_t size_of_i);
+
+/// Computes the Floquet multipliers of a stored point: the factors by which small perturbations of
+/// its motion grow in one period. The equations of perturbations are integrated along the exact
+/// path in time from event to event, sliders included, so that the multipliers are those of the
+/// motion, not of its harmonics. The motion is unstable where an ordinary multiplier lies outside
+/// the unit circle. A cyclic model has one block of perturbations that contains the wave itself,
+/// and others: HBVIB_WAVES_WHEEL computes all of them. A point of a nonlinear mode must be a limit
+/// cycle, damping ratio zero, and its motion is one without forces.
+///
+/// model            the model of which the branch is a result.
+/// point            number of a point of the curve, or of a peak, fold or requested solution.
+/// options          NULL: the defaults.
+/// hooks            progress, log and cancellation as in hbvib_time_response; NULL: none.
+/// multipliers      receives the largest multipliers, complex, by falling modulus, as many as it
+///                  holds; or NULL.
+/// multipliers_len  complex numbers in it; 0 with NULL. Each sector of the wheel has at most 2 ndof
+///                  multipliers and one per contact.
+/// classes          receives the reasons of the same multipliers, numbers of
+///                  hbvib_multiplier_class; or NULL.
+/// classes_len      numbers in it; 0 with NULL.
+/// out              receives numbers of the stability; fill it by hbvib_floquet_info_init before;
+///                  or NULL.
+/// HBVIB_STOPPED_BY_CALLER: there are no multipliers, and the radius is NaN.
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_UNSUPPORTED (a point of a nonlinear mode that is no limit
+/// cycle; a model that hbvib_time_response refuses), HBVIB_E_ARGUMENT (another model, options,
+/// overlapping arrays), HBVIB_E_DIMENSION (a length), HBVIB_E_NO_CONVERGENCE (shooting did not
+/// converge from the point), HBVIB_E_NO_BOUNDED_SOLUTION, HBVIB_E_CALLBACK (a force callback
+/// failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+hbvib_status hbvib_floquet(const hbvib_model *model,
+                           const hbvib_branch *branch,
+                           int64_t point,
+                           const hbvib_floquet_options *options,
+                           const hbvib_hooks *hooks,
+                           double *multipliers,
+                           int64_t multipliers_len,
+                           int64_t *classes,
+                           int64_t classes_len,
+                           hbvib_floquet_info *out);
+
+/// Limit cycles on a nonlinear mode, where its damping ratio is zero: periodic motions of the model
+/// without forces. Refined on the solution, in the order of the branch. hbvib_floquet tells whether
+/// one is stable; with a negative slope it is not.
+///
+/// capacity         numbers that fit into each array.
+/// omega            receives their angular frequencies, or NULL.
+/// log10_amplitude  receives log10 of their amplitudes, the parameter of the mode, or NULL.
+/// slope            receives the derivatives of the damping ratio by log10 of the amplitude, or
+///                  NULL.
+/// point            receives their point numbers for hbvib_floquet and others, numbers, or NULL.
+/// count            receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned. A forced response has none.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch,
+                                       int64_t capacity,
+                                       double *omega,
+                                       double *log10_amplitude,
+                                       double *slope,
+                                       int64_t *point,
+                                       int64_t *count);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

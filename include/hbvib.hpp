@@ -354,6 +354,8 @@ using ModeInfo = Filled<hbvib_mode_info, hbvib_mode_info_init>;
 using TimeInfo = Filled<hbvib_time_info, hbvib_time_info_init>;
 using VerifyOptions = Filled<hbvib_verify_options, hbvib_verify_options_init>;
 using VerificationInfo = Filled<hbvib_verification, hbvib_verification_init>;
+using FloquetOptions = Filled<hbvib_floquet_options, hbvib_floquet_options_init>;
+using FloquetInfo = Filled<hbvib_floquet_info, hbvib_floquet_info_init>;
 using JacobianGap = Filled<hbvib_jacobian_gap, hbvib_jacobian_gap_init>;
 
 /// Range of a forced response, rad per time unit. Arrays handed in are borrowed until it was solved.
@@ -719,6 +721,18 @@ struct Verification {
   /// Fundamental of the response degree of freedom in time.
   Complex response() const { return {info.response[0], info.response[1]}; }
 };
+/// A motion without forces: a point of a nonlinear mode where the damping ratio is zero, with its slope by log10_amplitude.
+struct LimitCycle {
+  double omega, log10_amplitude, slope;
+  Index point;
+};
+/// Multipliers of one period of a motion by falling modulus, and the reason of each.
+struct Floquet {
+  hbvib_status status;
+  std::vector<Complex> multipliers;
+  std::vector<hbvib_multiplier_class> classes;
+  FloquetInfo info;
+};
 /// Residual of n complex rows; jacobian is 2 n x 2 n over the pairs (re, im). Both derivatives are empty
 /// unless requested.
 struct Residual {
@@ -787,6 +801,17 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   }
   /// Turning points.
   std::vector<Peak> folds() const { return extremes(hbvib_branch_folds); }
+  /// Points of a nonlinear mode where its damping ratio is zero.
+  std::vector<LimitCycle> limit_cycles() const {
+    Index count = 0;
+    use(hbvib_branch_limit_cycles, 0, nullptr, nullptr, nullptr, nullptr, &count);
+    std::vector<double> omega(detail::extent(count)), amplitude(omega.size()), slope(omega.size());
+    std::vector<Index> point(omega.size());
+    use(hbvib_branch_limit_cycles, count, omega.data(), amplitude.data(), slope.data(), point.data(), &count);
+    std::vector<LimitCycle> out;
+    for (std::size_t i = 0; i < omega.size(); i++) out.push_back({omega[i], amplitude[i], slope[i], point[i]});
+    return out;
+  }
   /// Every solution at entry `wanted` of the requested frequencies or amplitudes.
   std::vector<Wanted> at(Index wanted) const {
     Index count = 0;
@@ -1028,6 +1053,22 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     out.status = use(hbvib_verify, branch.get(), point, &options, &bound, detail::flat(x.data()), x.length(), out.errors.data(), rows,
                      &out.info);
     out.harmonics = x.view({rows, n});
+    return out;
+  }
+  /// The Floquet multipliers of a point. hooks.partial plays no part.
+  Floquet floquet(const Branch& branch, Index point, const FloquetOptions& options = FloquetOptions(), const Hooks& hooks = {}) const {
+    const auto keep = branch.core_;
+    const std::size_t most = detail::extent(sectors(), 2 * dofs() + contacts());
+    Floquet out{};
+    out.multipliers.resize(most);
+    std::vector<std::int64_t> classes(most);
+    const detail::BoundHooks bound(hooks);
+    const auto room = static_cast<Index>(most);
+    out.status = use(hbvib_floquet, branch.get(), point, &options, &bound, detail::flat(out.multipliers.data()), room, classes.data(), room,
+                     &out.info);
+    const auto count = static_cast<std::size_t>(out.info.count);
+    out.multipliers.resize(count);
+    for (std::size_t i = 0; i < count; i++) out.classes.push_back(static_cast<hbvib_multiplier_class>(classes[i]));
     return out;
   }
 

@@ -252,6 +252,28 @@ class SteadyMethod(enum.IntEnum):
     SHOOTING = 0  #: Newton's method on the map over a period, with marching where it fails.
     MARCHING = 1  #: Period after period until the motion repeats.
 
+
+class Waves(enum.IntEnum):
+    """Perturbations whose multipliers are computed."""
+    WAVE = 0  #: The block of perturbations that contains the wave itself.
+    WHEEL = 1  #: All perturbations of the wheel.
+
+
+class MultiplierClass(enum.IntEnum):
+    """Reasons of multipliers."""
+    ORDINARY = 0  #: Decides about stability.
+    MEMORY = 1  #: Zero: a slider that slips forgets its place.
+    NEUTRAL_STUCK = 2  #: One: the slider of a contact that always sticks stays where it is put.
+    NEUTRAL_RIGID = 3  #: One: a rigid motion takes all sliders along.
+    TRIVIAL = 4  #: One: a motion that no force drives may begin at any time.
+
+
+class Grazing(enum.IntEnum):
+    """Events that a motion touches without passing them."""
+    NONE = 0  #: None.
+    SLIP_LIMIT = 1  #: The force of friction touches its limit.
+    LANDING = 2  #: The contact closes without normal speed.
+
 _VERSION = (0, 1)  # of the library that this module was written for
 
 # Structs in the order of the header: "type names, array[length] ...; ..." for each.
@@ -300,6 +322,9 @@ time_info: uint32 struct_size; int32 reserved; double period residual; int64 per
 verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
 verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
     response_error motion_error above distance peak peak_error residual; int64 periods events
+floquet_options: uint32 struct_size; int32 waves refine reserved; double tolerance; int64 max_periods
+floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 count unstable neutral grazing_contact;
+    double orbit_change residual
 """
 
 # Types of callbacks, in the kinds of functions.
@@ -400,6 +425,10 @@ time_response: h time_options hooks p l p l time_info
 verify_options_init: verify_options z
 verification_init: verification z
 verify: h h l verify_options hooks p l p l verification
+floquet_options_init: floquet_options z
+floquet_info_init: floquet_info z
+floquet: h h l floquet_options hooks p l p l floquet_info
+branch_limit_cycles: h l p p p p p
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -527,6 +556,12 @@ if TYPE_CHECKING:
         def hbvib_verification_init(self, v: Any, size_of_v: int) -> int: ...
         def hbvib_verify(self, model: Any, branch: Any, point: int, options: Any, hooks: Any, harmonics: Any,
             harmonics_len: int, errors: Any, errors_len: int, out: Any) -> int: ...
+        def hbvib_floquet_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_floquet_info_init(self, i: Any, size_of_i: int) -> int: ...
+        def hbvib_floquet(self, model: Any, branch: Any, point: int, options: Any, hooks: Any, multipliers: Any,
+            multipliers_len: int, classes: Any, classes_len: int, out: Any) -> int: ...
+        def hbvib_branch_limit_cycles(self, branch: Any, capacity: int, omega: Any, log10_amplitude: Any, slope: Any,
+            point: Any, count: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,
@@ -907,6 +942,26 @@ Residual = namedtuple("Residual", "residual jacobian d_omega")
 ContactForce = namedtuple("ContactForce", "force jacobian")
 TimeResponse = namedtuple("TimeResponse", "harmonics samples info status")
 Verification = namedtuple("Verification", "harmonics errors info status")
+
+
+LimitCycles = namedtuple("LimitCycles", "omega log10_amplitude slope point")
+
+
+class Floquet(NamedTuple):
+    """Stability of a motion: multipliers of one period by falling modulus, their classes ("ordinary", "memory",
+    "neutral_stuck", "neutral_rigid", "trivial"), the largest modulus of the ordinary ones, and how many of them lie
+    outside the unit circle. `neutral` of the others are 1 by construction. `orbit_change` is the distance that shooting
+    moved the point, `omega` the angular frequency of the motion. `reason` tells why the radius is NaN, or is empty."""
+    multipliers: np.ndarray
+    classes: np.ndarray
+    radius: float
+    unstable: int
+    neutral: int
+    orbit_change: float
+    omega: float
+    residual: float
+    reason: str
+    status: Status
 
 # ------------------------------------------------------------------------------------------ calls
 
@@ -1587,6 +1642,31 @@ class Model(_Owner):
                            errors.size, info, guard=guard)
         return Verification(x, errors, VerificationInfo.of(info), Status(status))
 
+    def floquet(self, branch: Branch, point: int, *, waves: Any = Waves.WAVE, refine: bool = True,
+                progress: Optional[Callable[[Progress], Any]] = None,
+                log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+                cancel: Optional[CancelFlag] = None,
+                phase: Optional[Callable[[Phase, float], Any]] = None, **options: Any) -> Floquet:
+        """The Floquet multipliers of a point of this model: the motion is unstable where radius > 1.
+
+        waves      "wave": perturbations of the kind of the wave itself; "wheel": all of the wheel.
+        refine     move the point to the periodic motion in time first.    tolerance, max_periods   see hbvib.h.
+        progress   after each period of shooting; the rest as in forced_response.
+        A point of a nonlinear mode must be a limit cycle, damping ratio zero."""
+        settings = _options("floquet", "hbvib_floquet_options", options, waves=_member(Waves, waves), refine=int(refine))
+        most = self.sectors * (2 * self.ndof + self.contacts)
+        mu, classes, info = np.empty(most, complex), np.empty(most, np.int64), _new("hbvib_floquet_info")
+        with _Guard() as guard:
+            hooks = _hooks(guard, progress, log, log_level, cancel, phase)
+            status = _call("hbvib_floquet", self.handle, branch.handle, point, settings, hooks, mu, mu.size, classes,
+                           classes.size, info, guard=guard)
+        names = np.array([MultiplierClass(number).name.lower() for number in classes[:info.count]], dtype="U13")
+        reasons = {Grazing.NONE: "", Grazing.SLIP_LIMIT: "the force of contact {} touches its slip limit",
+                   Grazing.LANDING: "contact {} closes without normal speed"}
+        reason = reasons[Grazing(info.grazing)].format(info.grazing_contact)
+        return Floquet(mu[:info.count], names, info.radius, info.unstable, info.neutral, info.orbit_change, info.omega,
+                       info.residual, reason, Status(status))
+
     def forced_residual(self, omega: float, x: ArrayLike, *, jacobian: bool = False, d_omega: bool = False,
                         samples: int = 0, phase: Optional[Callable[[Phase, float], Any]] = None,
                         cancel: Optional[CancelFlag] = None) -> Residual:
@@ -1608,6 +1688,7 @@ forced_response = Model.forced_response
 nonlinear_mode = Model.nonlinear_mode
 time_response = Model.time_response
 verify = Model.verify
+floquet = Model.floquet
 
 
 def evaluate_contact(kind: Any, motion: ArrayLike, *, omega: float = 1, samples: int = 0, jacobian: bool = False,
@@ -1825,6 +1906,11 @@ class Branch(_Owner):
     def folds(self) -> Points:
         """Turning points in frequency, in a nonlinear mode in amplitude: omega, amplitude, point number."""
         return Points(*self._listed("hbvib_branch_folds", (), [float, float, np.int64]))
+
+    def limit_cycles(self) -> LimitCycles:
+        """Points of a nonlinear mode where its damping ratio is zero, motions of the model without forces: omega, log10
+        of the amplitude, slope of the damping ratio by it, point number for Model.floquet and others."""
+        return LimitCycles(*self._listed("hbvib_branch_limit_cycles", (), [float, float, float, np.int64]))
 
     def at(self, wanted: int) -> Wanted:
         """Every solution at one entry of the solve's `at`: amplitude, point number."""

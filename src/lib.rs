@@ -65,6 +65,8 @@ pub mod problem;
 #[doc(hidden)]
 pub mod results;
 #[doc(hidden)]
+pub mod stability;
+#[doc(hidden)]
 pub mod time_integration;
 
 // Models.
@@ -84,6 +86,7 @@ pub use model::structure::MatrixKind;
 
 // Analyses.
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use analysis::floquet::{Floquet, floquet};
 pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
@@ -96,16 +99,17 @@ pub use analysis::verify::{Verification, verify};
 pub use hooks::{Hooks, LogLevel, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport};
 pub use options::{
-    Amplitude, DampingForm, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod, SynthesisOptions,
-    TimeOptions, VerifyOptions,
+    Amplitude, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod,
+    SynthesisOptions, TimeOptions, VerifyOptions, Waves,
 };
 
 // Results.
 pub use contact::contact_state::State;
+pub use contact::time_piece::Grazing;
 pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeInfo, ModePoint};
-pub use results::{Branch, ContactLoop, ContactSummary, Energy, Special};
+pub use results::{Branch, ContactLoop, ContactSummary, Energy, LimitCycle, Multiplier, MultiplierClass, Special};
 pub use time_integration::TimeResponse;
 
 #[doc = include_str!("../docs/statuses.md")]

@@ -371,7 +371,7 @@ impl<'a> BranchTracer<'a> {
         Ok(Outside::Gone)
     }
 
-    /// Locates folds, peaks and requested parameter values between two neighbours.
+    /// Locates folds, peaks, limit cycles and requested parameter values between two neighbours.
     fn locate_special(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -384,6 +384,15 @@ impl<'a> BranchTracer<'a> {
         if SpecialPoint::Peak.between(a.0, b.0) {
             self.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
                 locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
+            })?;
+        }
+        if let Some(level) = analysis.level_of_limit_cycles().map(SpecialPoint::Level)
+            && level.between(a.0, b.0)
+        {
+            analysis.select(a.1.max(b.1))?;
+            let kind = SpecialKind::LimitCycle { slope: f64::NAN };
+            self.find(analysis, kind, a, b, |locator, problem, a, b| {
+                locator.locate(problem, level, a, b, interrupt)
             })?;
         }
         // A peak may have required more harmonics; a fold is located with those of its neighbours.

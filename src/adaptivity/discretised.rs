@@ -61,6 +61,12 @@ pub(crate) trait Discretised {
         Ok(None)
     }
 
+    /// The observed amplitude at which the motion needs neither force nor artificial damping; `None` where there is no
+    /// such motion.
+    fn level_of_limit_cycles(&self) -> Option<f64> {
+        None
+    }
+
     /// Selects the most accurate evaluation for [`Self::linear_at`].
     fn set_accurate(&mut self, _accurate: bool) {}
 

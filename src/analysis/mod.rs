@@ -1,6 +1,7 @@
 //! The crate's public face: each analysis puts the layers together.
 
 pub mod check_jacobian;
+pub mod floquet;
 mod forced_discretised;
 pub mod forced_response;
 pub mod harmonic_residual;
@@ -16,6 +17,7 @@ mod unbounded_response;
 pub mod verify;
 
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use crate::analysis::floquet::{Floquet, floquet};
 pub use crate::analysis::forced_response::forced_response;
 pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,

@@ -234,6 +234,14 @@ impl Discretised for ModeDiscretised<'_> {
         self.estimated = Some((of_frequency * factor, of_damping * factor));
         Ok(true)
     }
+
+    /// The damping ratio is observed; where it is zero the motion is one of the model alone.
+    fn level_of_limit_cycles(&self) -> Option<f64> {
+        let linear = self.start.linear;
+        let mut unknowns = [0.0; 2];
+        Epmc::set_frequency_and_damping(linear, (linear.omega, 0.0), &mut unknowns);
+        Some(1.0 + unknowns[1])
+    }
 }
 
 impl Recorder for ModeDiscretised<'_> {
@@ -261,6 +269,14 @@ impl Recorder for ModeDiscretised<'_> {
 
     fn record_special(&mut self, kind: SpecialKind, point: &Point) -> Result<()> {
         let numbers = self.measure(point, kind.is_fold())?;
+        let kind = match kind {
+            SpecialKind::LimitCycle { .. } => {
+                let along = point.tangent.last().copied().unwrap_or(f64::NAN);
+                let slope = Epmc::damping_of_change(&[point.slope.re]) / along;
+                SpecialKind::LimitCycle { slope }
+            }
+            kind => kind,
+        };
         let equations = &self.resolutions.current;
         let record = record(equations, point, &numbers);
         self.recorder

@@ -131,7 +131,7 @@ pub fn verify(
 }
 
 /// Refuses a model that cannot be that of the branch.
-fn check_model(model: &Model, branch: &Branch) -> Result<()> {
+pub(super) fn check_model(model: &Model, branch: &Branch) -> Result<()> {
     let (ours, theirs) = (model.structure().sectors(), branch.reduction().sectors);
     if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() || ours != theirs {
         return fail!(

@@ -26,6 +26,15 @@ impl Mode {
     }
 }
 
+/// An event that is touched, not passed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grazing {
+    /// The force of friction touches its limit.
+    SlipLimit,
+    /// The contact closes without normal speed.
+    Landing,
+}
+
 /// Relative motions and velocities at a time.
 #[derive(Clone, Copy, Debug)]
 pub struct Instant {

@@ -1,5 +1,5 @@
-//! Special points between two accepted points: folds, peaks of the observed amplitude, and solutions at given
-//! parameter values, each solved for and not interpolated.
+//! Special points between two accepted points: folds, peaks and levels of the observed amplitude, and solutions at
+//! given parameter values, each solved for and not interpolated.
 
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::predictor::Cubic;
@@ -10,21 +10,24 @@ use crate::linalg::norm;
 use crate::problem::Problem;
 
 /// Special points that are searched for between two points.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SpecialPoint {
     /// The parameter turns: the tangent has no component along it.
     Fold,
     /// The observed amplitude is largest: d|z|/ds = 0, falling after.
     Peak,
+    /// The observed amplitude, a real number, has this value.
+    Level(f64),
 }
 
 impl SpecialPoint {
     /// The function whose root is the special point: the derivative of the parameter or of the amplitude along the
-    /// tangent, over a `length` of the tangent.
+    /// tangent, over a `length` of the tangent, or the amplitude above a level.
     #[must_use]
     pub fn function(self, point: &Point, length: f64) -> f64 {
         match self {
             Self::Fold => point.tangent[point.tangent.len() - 1] / length,
+            Self::Level(level) => point.amplitude.re - level,
             Self::Peak => {
                 let z = point.amplitude;
                 let size = z.norm();
@@ -43,6 +46,7 @@ impl SpecialPoint {
         let (fa, fb) = (self.function(a, 1.0), self.function(b, 1.0));
         match self {
             Self::Fold => fa * fb < 0.0,
+            Self::Level(_) => (fa < 0.0) != (fb < 0.0),
             Self::Peak => fa > 0.0 && fb <= 0.0,
         }
     }

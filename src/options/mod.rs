@@ -1,11 +1,13 @@
 //! Options of the analyses, each with its defaults and checks.
 
+mod floquet_options;
 mod forced_options;
 mod mode_options;
 mod solver_options;
 mod synthesis_options;
 mod time_options;
 
+pub use floquet_options::{FloquetOptions, Waves};
 pub use forced_options::ForcedOptions;
 pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
 pub use solver_options::{Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};

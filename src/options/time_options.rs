@@ -90,7 +90,7 @@ impl TimeOptions<'_> {
     }
 }
 
-fn check_search(tolerance: f64, max_periods: usize) -> Result<()> {
+pub(super) fn check_search(tolerance: f64, max_periods: usize) -> Result<()> {
     if !(tolerance > 0.0 && tolerance < 1.0) {
         return fail!(Argument, "tolerance = {tolerance}, needs 0 < tolerance < 1");
     }

@@ -47,6 +47,8 @@ pub struct Branch {
     pub(super) response: Vec<Complex64>,
     pub(super) peaks: Vec<Special>,
     pub(super) folds: Vec<Special>,
+    /// Limit cycles, each with the slope of the damping ratio.
+    pub(super) limit_cycles: Vec<(Special, f64)>,
     pub(super) at: Vec<Vec<Special>>,
     pub(super) mode: Option<ModeData>,
 }

@@ -41,6 +41,10 @@ pub(crate) enum SpecialKind {
     Peak,
     Fold,
     At(usize),
+    /// With the derivative of the damping ratio by log₁₀ of the amplitude.
+    LimitCycle {
+        slope: f64,
+    },
 }
 
 impl SpecialKind {
@@ -81,6 +85,7 @@ impl Branch {
             response: Vec::new(),
             peaks: Vec::new(),
             folds: Vec::new(),
+            limit_cycles: Vec::new(),
             at: Vec::new(),
             mode: None,
         })
@@ -185,6 +190,9 @@ impl Branch {
         let list = match kind {
             SpecialKind::Peak => &mut self.peaks,
             SpecialKind::Fold => &mut self.folds,
+            SpecialKind::LimitCycle { slope } => {
+                return try_push(&mut self.limit_cycles, (special, slope), "the limit cycles");
+            }
             SpecialKind::At(i) => {
                 while self.at.len() <= i {
                     try_push(&mut self.at, Vec::new(), "the requested solutions")?;

@@ -23,26 +23,46 @@ const CONTEXT: &str = "the contacts";
 
 /// One contact of one sector.
 #[derive(Clone, Debug)]
-pub(super) struct Element {
+pub(crate) struct Element {
     /// One row for each relative motion.
     pub rows: Vec<Row>,
+    /// The same relative motions over the sectors of the whole wheel.
+    pub motions: Vec<SectorMotion>,
     /// The law, its constants in the caller's units.
     law: TimePart,
     /// Number of the contact, equal for its copies in all sectors.
     pub family: usize,
+    /// Sector of its side a.
+    pub sector: usize,
 }
 
 /// A linear spring between two degrees of freedom.
-pub(super) struct Spring {
+pub(crate) struct Spring {
     pub row: Row,
+    /// The same relative motion over the sectors of the whole wheel.
+    pub motion: SectorMotion,
+    /// Sector of its side a.
+    pub sector: usize,
     pub stiffness: f64,
 }
 
 /// Row of a relative motion r·x: entries (degree of freedom of the unrolled structure, coefficient).
-pub(super) type Row = [Option<(usize, f64)>; 6];
+pub(crate) type Row = [Option<(usize, f64)>; 6];
+
+impl Spring {
+    /// A spring along a relative motion whose side a lies in sector `s` of the unrolled structure.
+    pub fn new(structure: &Structure, motion: SectorMotion, s: usize, stiffness: f64) -> Self {
+        Self {
+            row: row(structure, &motion, s),
+            motion,
+            sector: s,
+            stiffness,
+        }
+    }
+}
 
 /// Row of a relative motion whose side a lies in sector `s` of the unrolled structure.
-pub(super) fn row(structure: &Structure, motion: &SectorMotion, s: usize) -> Row {
+fn row(structure: &Structure, motion: &SectorMotion, s: usize) -> Row {
     let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
     motion.ring_row(|dof, offset| {
         let sector = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
@@ -73,18 +93,25 @@ pub(super) fn unroll(
             }
         };
         for s in 0..structure.repeating_sectors() {
-            let row = |k| row(structure, &structure.contact_motion(c, k), s);
             if stiffness != 0.0 {
-                let spring = Spring { row: row(0), stiffness };
-                try_push(springs, spring, CONTEXT)?;
+                let motion = structure.contact_motion(c, 0);
+                try_push(springs, Spring::new(structure, motion, s, stiffness), CONTEXT)?;
             }
             if let Some((first, part)) = &law {
-                let mut rows = Vec::new();
+                let (mut rows, mut motions) = (Vec::new(), Vec::new());
                 for k in *first..c.directions() {
-                    try_push(&mut rows, row(k), CONTEXT)?;
+                    let motion = structure.contact_motion(c, k);
+                    try_push(&mut rows, row(structure, &motion, s), CONTEXT)?;
+                    try_push(&mut motions, motion, CONTEXT)?;
                 }
-                let law = part.clone();
-                try_push(elements, Element { rows, law, family }, CONTEXT)?;
+                let element = Element {
+                    rows,
+                    motions,
+                    law: part.clone(),
+                    family,
+                    sector: s,
+                };
+                try_push(elements, element, CONTEXT)?;
             }
         }
     }

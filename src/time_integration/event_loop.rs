@@ -1,7 +1,7 @@
 //! Integration from event to event through one lapse: the part of the period after which the wave has moved on by
 //! some sectors.
 
-use crate::contact::time_piece::{Mode, TimePiece, Zeros};
+use crate::contact::time_piece::{Grazing, Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::time_integration::event_law::{Element, along};
@@ -10,6 +10,7 @@ use crate::time_integration::implicit_step::Implicit;
 use crate::time_integration::linear_step::Taylor;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial, first_fall};
 use crate::time_integration::unrolled_structure::System;
+use crate::time_integration::variation::{Collocation, Interval, Variation};
 
 const CONTEXT: &str = "the motion in time";
 
@@ -23,9 +24,13 @@ const MOST_AT_ONCE: usize = 50;
 /// Share of a step within which events count as simultaneous.
 const SIMULTANEOUS: f64 = 1e-13;
 
+/// Speed of a slider that begins to move, or of a landing, relative to the largest velocity, below which the event is
+/// touched rather than passed.
+const GRAZING_SPEED: f64 = 3e-6;
+
 /// Displacements, velocities and the stretches of the sliders' springs.
 #[derive(Clone, Debug)]
-pub(super) struct State {
+pub(crate) struct State {
     pub x: Vec<f64>,
     pub v: Vec<f64>,
     pub e: Vec<f64>,
@@ -65,7 +70,7 @@ impl State {
 
 /// Derivatives of a state by the initial state, column by column: (δx, δv, δe). Within the lapse the sliders'
 /// δu = r·δx − δe replaces δe, because it is constant while they rest.
-pub(super) struct Sensitivity {
+pub(crate) struct Sensitivity {
     pub columns: Vec<f64>,
 }
 
@@ -81,7 +86,7 @@ impl Sensitivity {
 
 /// Summary of a lapse.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct LapseSummary {
+pub(crate) struct LapseSummary {
     /// Changes of piece.
     pub events: usize,
     /// Largest displacement and velocity at the ends of the steps.
@@ -96,13 +101,24 @@ impl LapseSummary {
     }
 }
 
+/// Observers of a lapse.
+#[derive(Default)]
+pub(crate) struct Observers<'a, 'v> {
+    /// Derivatives of the state at the end by that at the begin.
+    pub sensitivity: Option<&'a mut Sensitivity>,
+    /// Harmonics and samples of the motion.
+    pub recorder: Option<&'a mut HarmonicAnalysis>,
+    /// Variational equations of other perturbations than those of the state.
+    pub variation: Option<&'a mut (dyn Variation + 'v)>,
+}
+
 enum Stepper {
     Taylor(Box<Taylor>),
     Implicit(Box<Implicit>),
 }
 
 /// Memory of the integration.
-pub(super) struct EventLoop {
+pub(crate) struct EventLoop {
     stepper: Stepper,
     polynomial: StepPolynomial,
     modes: Vec<Mode>,
@@ -143,14 +159,18 @@ impl EventLoop {
         self.moved.fill(false);
     }
 
-    /// Integrates a state from time 0 over one lapse, and with it the requested sensitivity and harmonic analysis.
+    /// Integrates a state from time 0 over one lapse, and with it what the observers request.
     pub fn run(
         &mut self,
         system: &mut System<'_>,
         state: &mut State,
-        mut sensitivity: Option<&mut Sensitivity>,
-        mut recorder: Option<&mut HarmonicAnalysis>,
+        observers: Observers<'_, '_>,
     ) -> Result<LapseSummary> {
+        let Observers {
+            mut sensitivity,
+            mut recorder,
+            mut variation,
+        } = observers;
         let end = system.lapse();
         let mut summary = LapseSummary::default();
         summary.update(state);
@@ -160,6 +180,13 @@ impl EventLoop {
             system.interrupt.check()?;
             self.identity(system, state, s);
             system.interrupt.check()?;
+        }
+        if let Some(variation) = variation.as_deref_mut() {
+            for (i, e) in system.elements.iter().enumerate() {
+                if let Some(mode) = self.dependent[i] {
+                    couple_variation(e, i, (mode, mode), state, variation);
+                }
+            }
         }
         for (moved, mode) in self.moved.iter_mut().zip(&self.modes) {
             *moved |= mode.moves_slider();
@@ -194,6 +221,9 @@ impl EventLoop {
                 if let Some(s) = sensitivity.as_deref_mut() {
                     self.transfer(system, theta, s)?;
                 }
+                if let Some(variation) = variation.as_deref_mut() {
+                    variation.advance(&self.interval(theta))?;
+                }
                 self.polynomial.at(theta, &mut state.x, &mut state.v);
                 for (i, e) in system.elements.iter().enumerate() {
                     if let Some(slider) = e.slider() {
@@ -205,7 +235,13 @@ impl EventLoop {
                 summary.update(state);
                 self.zeros.fill(Zeros::default());
             }
-            let happened = self.switch(system, state, sensitivity.as_deref_mut());
+            let happened = self.switch(
+                system,
+                state,
+                sensitivity.as_deref_mut(),
+                variation.as_deref_mut(),
+                summary.largest.1,
+            );
             summary.events += happened;
             at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
             if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {
@@ -224,6 +260,11 @@ impl EventLoop {
                 couple_slider(e, i, (self.modes[i], self.modes[i]), state, s);
             }
             exchange(system, state, s);
+        }
+        if let Some(variation) = variation {
+            for (i, e) in system.elements.iter().enumerate() {
+                couple_variation(e, i, (self.modes[i], self.modes[i]), state, variation);
+            }
         }
         Ok(summary)
     }
@@ -271,7 +312,14 @@ impl EventLoop {
     }
 
     /// Switches the contacts whose piece has ended to the next one. Returns their number.
-    fn switch(&mut self, system: &System<'_>, state: &mut State, mut sensitivity: Option<&mut Sensitivity>) -> usize {
+    fn switch<'v>(
+        &mut self,
+        system: &System<'_>,
+        state: &mut State,
+        mut sensitivity: Option<&mut Sensitivity>,
+        mut variation: Option<&mut (dyn Variation + 'v)>,
+        largest_speed: f64,
+    ) -> usize {
         let mut happened = 0;
         for (i, e) in system.elements.iter().enumerate() {
             let (Some(law), Some((_, which))) = (e.events(), self.falls[i]) else {
@@ -284,9 +332,63 @@ impl EventLoop {
             if let Some(s) = sensitivity.as_deref_mut() {
                 couple_slider(e, i, (before, self.modes[i]), state, s);
             }
+            if let Some(variation) = variation.as_deref_mut() {
+                couple_variation(e, i, (before, self.modes[i]), state, variation);
+                let after = self.modes[i];
+                if let Some(grazing) = touched(e, (before, after), at.rate, largest_speed) {
+                    variation.graze(i, grazing);
+                }
+            }
             happened += 1;
         }
         happened
+    }
+
+    /// The interval up to θ of the last step.
+    fn interval(&self, theta: f64) -> Interval<'_> {
+        let step = self.polynomial.length;
+        let collocation = match &self.stepper {
+            Stepper::Taylor(_) => None,
+            Stepper::Implicit(stepper) => {
+                let (tables, smooth) = stepper.nodes();
+                Some(Collocation {
+                    tables,
+                    smooth,
+                    step,
+                    theta,
+                })
+            }
+        };
+        Interval {
+            pieces: &self.pieces,
+            length: theta * step,
+            collocation,
+        }
+    }
+
+    /// Accelerations at a state at time 0, and the speeds of the sliders.
+    pub fn rates(&mut self, system: &mut System<'_>, state: &State) -> Result<(Vec<f64>, Vec<f64>)> {
+        let mut e = try_copy(&state.e, CONTEXT)?;
+        let mut speeds = try_vec(e.len(), 0.0, CONTEXT)?;
+        system.begin(&state.x, &state.v, &mut e, &mut self.modes, &mut self.dependent);
+        for (i, element) in system.elements.iter().enumerate() {
+            if let Some(law) = element.events() {
+                self.pieces[i] = law.piece(self.modes[i], element.relative(&state.x), e[i]);
+            }
+            if let (Some(slider), mode) = (element.slider(), self.modes[i])
+                && mode.moves_slider()
+            {
+                let rate = element.relative(&state.v);
+                speeds[i] = rate[0] + slider.follows(mode, mode, rate) * rate[1];
+            }
+        }
+        self.step(system, state, 0.0, system.lapse())?;
+        let scale = 2.0 / self.polynomial.length.powi(2);
+        let mut accelerations = try_copy(self.polynomial.term(2), CONTEXT)?;
+        for a in &mut accelerations {
+            *a *= scale;
+        }
+        Ok((accelerations, speeds))
     }
 
     fn identity(&self, system: &System<'_>, state: &State, s: &mut Sensitivity) {
@@ -320,6 +422,33 @@ impl EventLoop {
             }
         }
         Ok(())
+    }
+}
+
+/// The event that is touched at a change of mode, if any.
+fn touched(e: &Element, (before, after): (Mode, Mode), rate: [f64; 2], largest_speed: f64) -> Option<Grazing> {
+    let slider = e.slider()?;
+    let slow = GRAZING_SPEED * largest_speed;
+    match (before, after) {
+        (Mode::Stick, Mode::Slip(_)) => {
+            let speed = rate[0] + slider.follows(after, after, rate) * rate[1];
+            (speed.abs() <= slow).then_some(Grazing::SlipLimit)
+        }
+        (Mode::Open, Mode::Stick) => (rate[1].abs() <= slow).then_some(Grazing::Landing),
+        _ => None,
+    }
+}
+
+/// Reports, at the end of a mode, that a slider that has moved follows from the motion.
+fn couple_variation(
+    e: &Element,
+    i: usize,
+    (mode, after): (Mode, Mode),
+    state: &State,
+    variation: &mut (dyn Variation + '_),
+) {
+    if let Some(slider) = e.slider().filter(|_| mode.moves_slider()) {
+        variation.couple(i, slider.follows(mode, after, e.relative(&state.v)));
     }
 }
 

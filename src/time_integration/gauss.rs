@@ -3,7 +3,7 @@
 use crate::time_integration::step_polynomial::DEGREE;
 
 /// Stages of the implicit method, of order twice that.
-pub(super) const STAGES: usize = 8;
+pub(crate) const STAGES: usize = 8;
 
 /// Nodes and weights of quadrature with `N` points on [0, 1], exact up to degree 2N − 1.
 pub(super) fn nodes<const N: usize>() -> ([f64; N], [f64; N]) {
@@ -32,7 +32,7 @@ pub(super) fn nodes<const N: usize>() -> ([f64; N], [f64; N]) {
 }
 
 /// Collocation at Gauss's nodes.
-pub(super) struct GaussTables {
+pub(crate) struct GaussTables {
     /// Nodes cᵢ.
     pub nodes: [f64; STAGES],
     /// aᵢⱼ, integrals of the Lagrange polynomials up to the nodes.

@@ -28,7 +28,7 @@ struct RequestedTime {
 }
 
 /// Harmonics and samples of a lapse.
-pub(super) struct HarmonicAnalysis {
+pub(crate) struct HarmonicAnalysis {
     ndof: usize,
     degrees: DegreeMap,
     sectors: usize,

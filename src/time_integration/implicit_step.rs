@@ -274,6 +274,11 @@ impl Implicit {
         of(last * h / order, self.largest.1).max(of(last * (h / order).powi(2), self.largest.0))
     }
 
+    /// The nodes of the last step, and the tangents of smooth laws there.
+    pub fn nodes(&self) -> (&GaussTables, &Smooth) {
+        (&self.tables, &self.smooth)
+    }
+
     /// Factors the equations of sensitivities over the last step.
     pub fn prepare(&mut self, system: &System<'_>, pieces: &[TimePiece], h: f64) -> Result<()> {
         self.factor(system, pieces, h)

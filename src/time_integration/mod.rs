@@ -11,5 +11,15 @@ mod shooting;
 mod smooth_laws;
 mod step_polynomial;
 mod unrolled_structure;
+mod variation;
 
 pub use periodic_response::{TimeResponse, solve};
+
+// The variational equations of the room `stability`.
+pub(crate) use event_loop::{EventLoop, Observers, State};
+pub(crate) use gauss::STAGES;
+pub(crate) use harmonic_analysis::HarmonicAnalysis;
+pub(crate) use periodic_response::state_of;
+pub(crate) use shooting::Search;
+pub(crate) use unrolled_structure::System;
+pub(crate) use variation::{Collocation, Interval, Variation};

@@ -13,7 +13,7 @@ use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::TimeOptions;
-use crate::time_integration::event_loop::{EventLoop, State};
+use crate::time_integration::event_loop::{EventLoop, Observers, State};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::shooting::Search;
 use crate::time_integration::unrolled_structure::System;
@@ -99,7 +99,11 @@ fn integrate(
     hooks.log(LogLevel::Info, "the structure in time is set up");
     let mut steady = Search::new(&mut system, &mut event_loop, options, hooks, start)?.run()?;
     let mut recorder = HarmonicAnalysis::new(&system, options.harmonics, options.samples)?;
-    let recorded = event_loop.run(&mut system, &mut steady.state, None, Some(&mut recorder));
+    let observers = Observers {
+        recorder: Some(&mut recorder),
+        ..Observers::default()
+    };
+    let recorded = event_loop.run(&mut system, &mut steady.state, observers);
     let summary = match recorded {
         Ok(summary) => summary,
         // A part of a period has no harmonics.
@@ -145,7 +149,7 @@ fn integrate(
 pub(super) const POINTS_PER_WAVE: usize = 64;
 
 /// The state at time 0 of a periodic motion; each slider has its place after two periods of the motion from rest.
-pub(super) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
+pub(crate) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
     const CONTEXT: &str = "the start of the motion in time";
     let mut state = State::rest(system)?;
     let (ndof, n) = (system.ndof, system.order());

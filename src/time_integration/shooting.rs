@@ -5,11 +5,11 @@
 //! piece and is exact, since the field is continuous at events. A slider that never moves may rest anywhere: its
 //! equation is void, and it keeps its initial place.
 
-use crate::error::{Result, Status, fail, try_vec};
+use crate::error::{Result, Status, fail, try_extend, try_push, try_vec};
 use crate::hooks::{Hooks, Progress};
 use crate::linalg::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
-use crate::time_integration::event_loop::{EventLoop, LapseSummary, Sensitivity, State};
+use crate::time_integration::event_loop::{EventLoop, LapseSummary, Observers, Sensitivity, State};
 use crate::time_integration::unrolled_structure::System;
 
 /// Newton iterations before marching replaces them.
@@ -26,7 +26,7 @@ const NEUTRAL: f64 = 1e-9;
 const FIRST_MARCH: usize = 8;
 
 /// Result of a search.
-pub(super) struct Steady {
+pub(crate) struct Steady {
     /// The state at time 0.
     pub state: State,
     /// Largest change over a lapse, relative to the largest displacement and velocity.
@@ -46,7 +46,7 @@ enum Outcome {
 }
 
 /// Memory of a search.
-pub(super) struct Search<'a, 'h, 's> {
+pub(crate) struct Search<'a, 'h, 's> {
     system: &'a mut System<'s>,
     event_loop: &'a mut EventLoop,
     options: &'a TimeOptions<'a>,
@@ -59,6 +59,8 @@ pub(super) struct Search<'a, 'h, 's> {
     residual: f64,
     laps: usize,
     most_laps: usize,
+    /// Whether the frequency is an unknown, because no force has one.
+    free: bool,
 }
 
 impl<'a, 'h, 's> Search<'a, 'h, 's> {
@@ -82,7 +84,27 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             scale: (0.0, 0.0),
             residual: f64::INFINITY,
             laps: 0,
+            free: false,
         })
+    }
+
+    /// Makes the frequency an unknown. Its equation fixes the phase: the state moves at right angles to its own
+    /// rate.
+    pub fn free_frequency(mut self) -> Self {
+        self.free = true;
+        self
+    }
+
+    /// Shoots without marching, so that an unstable motion is kept; `None`: Newton's method did not converge.
+    pub fn closest(mut self) -> Result<Option<Steady>> {
+        let status = match self.shoot() {
+            Ok(Outcome::Found) => Status::Ok,
+            Ok(Outcome::Failed) => return Ok(None),
+            Ok(Outcome::Stopped) => Status::StoppedByCaller,
+            Err(e) if e.status == Status::StoppedByCaller => e.status,
+            Err(e) => return Err(e),
+        };
+        Ok(Some(self.result(status, false)))
     }
 
     /// Searches for the steady state.
@@ -93,13 +115,17 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             Err(e) if e.status == Status::StoppedByCaller => e.status,
             Err(e) => return Err(e),
         };
-        Ok(Steady {
+        Ok(self.result(status, marched))
+    }
+
+    fn result(self, status: Status, marched: bool) -> Steady {
+        Steady {
             periods: self.laps.div_ceil(self.system.sectors),
             state: self.state,
             residual: self.residual,
             status,
             marched,
-        })
+        }
     }
 
     fn search(&mut self, marched: &mut bool) -> Result<Status> {
@@ -138,7 +164,13 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         }
         self.laps += 1;
         self.image.set(&self.state);
-        let summary = self.event_loop.run(self.system, &mut self.image, sensitivity, None)?;
+        let summary = {
+            let observers = Observers {
+                sensitivity,
+                ..Observers::default()
+            };
+            self.event_loop.run(self.system, &mut self.image, observers)?
+        };
         self.compare(&summary);
         if self.residual.is_nan() {
             return fail!(NoBoundedSolution, "the motion in time grows beyond all bounds");
@@ -190,12 +222,12 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
 
     /// Newton's method with halved steps where a whole one increases the error.
     fn shoot(&mut self) -> Result<Outcome> {
-        let m = self.state.len();
+        let unknowns = self.state.len() + usize::from(self.free);
         let interrupt = self.system.interrupt;
         interrupt.check()?;
         let mut sensitivity = Sensitivity::new(&self.state, interrupt)?;
-        let mut equations = LeastSquares::new(m, interrupt)?;
-        let mut step = try_vec(m, 0.0, "Newton's method in time")?;
+        let mut equations = LeastSquares::new(unknowns, interrupt)?;
+        let mut step = try_vec(unknowns, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
         for _ in 0..MOST_ITERATIONS {
             self.event_loop.clear_moved();
@@ -208,9 +240,10 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
                 return Ok(if converged { Outcome::Found } else { Outcome::Failed });
             }
             base.set(&self.state);
+            let omega = self.system.omega;
             let mut share = 1.0;
             loop {
-                self.advance(&base, &step, share);
+                self.advance(&base, omega, &step, share);
                 match self.lap(None) {
                     Ok(false) => {}
                     Ok(true) => return Ok(Outcome::Stopped),
@@ -228,6 +261,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
                     // The last correction; round-off may keep it from reducing the residual.
                     if self.residual > self.options.tolerance {
                         self.state.set(&base);
+                        self.system.omega = omega;
                         self.residual = residual;
                     }
                     return Ok(Outcome::Found);
@@ -244,9 +278,12 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(Outcome::Failed)
     }
 
-    /// Solves (I − S ∂G/∂z) step = S G(z) − z; `false`: it has no solution.
+    /// Solves (I − S ∂G/∂z) step = S G(z) − z, with a free frequency bordered by the rate of the state; `false`: it has
+    /// no solution.
     fn correction(&mut self, s: &Sensitivity, equations: &mut LeastSquares, step: &mut [f64]) -> Result<bool> {
+        let rates = if self.free { Some(self.rates()?) } else { None };
         let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
+        let order = m + usize::from(self.free);
         // Velocities are scaled to displacements, so that pivots compare.
         let unit = |i: usize| {
             if (n..2 * n).contains(&i) {
@@ -278,7 +315,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             let (void, from) = (rests(i), source(i));
             for j in 0..m {
                 let image = if void { 0.0 } else { s.columns[j * m + from] };
-                matrix[j * m + i] = f64::from(u8::from(i == j)) - image * unit(j) / unit(i);
+                matrix[j * order + i] = f64::from(u8::from(i == j)) - image * unit(j) / unit(i);
             }
             step[i] = match i {
                 _ if void => 0.0,
@@ -291,22 +328,57 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         for (i, e) in system.elements.iter().enumerate() {
             if rests(2 * n + i) && e.slider().is_some() {
                 for &(dof, a) in e.rows[0].iter().flatten() {
-                    matrix[dof * m + 2 * n + i] -= a;
+                    matrix[dof * order + 2 * n + i] -= a;
                 }
             }
         }
+        if let Some((here, there)) = &rates {
+            // The lapse as an unknown, in units of itself, and the phase.
+            let lapse = system.lapse();
+            let size: f64 = (0..m).map(|i| (here[i] / unit(i)).powi(2)).sum::<f64>().sqrt();
+            for i in 0..m {
+                let void = rests(i);
+                matrix[m * order + i] = if void { 0.0 } else { -lapse * there[source(i)] / unit(i) };
+                matrix[i * order + m] = if void { 0.0 } else { here[i] / unit(i) / size };
+            }
+            step[m] = 0.0;
+        }
         equations.solve(step, NEUTRAL, system.interrupt)?;
-        for (i, step) in step.iter_mut().enumerate() {
+        for (i, step) in step.iter_mut().take(m).enumerate() {
             *step *= unit(i);
         }
         Ok(step.iter().all(|x| x.is_finite()))
     }
 
-    /// state = base + share·step
-    fn advance(&mut self, base: &State, step: &[f64], share: f64) {
+    /// Rates of the state and of its image: (x′, v′, e′).
+    fn rates(&mut self) -> Result<(Vec<f64>, Vec<f64>)> {
+        let mut pair = (Vec::new(), Vec::new());
+        for (rates, state) in [(&mut pair.0, &self.state), (&mut pair.1, &self.image)] {
+            let (a, w) = self.event_loop.rates(self.system, state)?;
+            try_extend(rates, &state.v, "Newton's method in time")?;
+            try_extend(rates, &a, "Newton's method in time")?;
+            for (e, w) in self.system.elements.iter().zip(w) {
+                let stretch = if e.slider().is_some() {
+                    e.relative(&state.v)[0] - w
+                } else {
+                    0.0
+                };
+                try_push(rates, stretch, "Newton's method in time")?;
+            }
+        }
+        Ok(pair)
+    }
+
+    /// state = base + share·step, and the frequency where it is free.
+    fn advance(&mut self, base: &State, omega: f64, step: &[f64], share: f64) {
         let n = base.x.len();
         let (x, rest) = step.split_at(n);
-        let (v, e) = rest.split_at(n);
+        let (v, rest) = rest.split_at(n);
+        let (e, lapse) = rest.split_at(base.e.len());
+        if let [lapse] = lapse {
+            // A step that would turn time around is cut.
+            self.system.omega = omega / (1.0 + share * lapse).clamp(0.5, 2.0);
+        }
         for (to, from, step) in [
             (&mut self.state.x, &base.x, x),
             (&mut self.state.v, &base.v, v),

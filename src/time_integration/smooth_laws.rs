@@ -10,7 +10,7 @@ use crate::time_integration::unrolled_structure::System;
 const CONTEXT: &str = "the contacts at a time";
 
 /// Memory of the laws at the nodes.
-pub(super) struct Smooth {
+pub(crate) struct Smooth {
     /// First tangent of each element within those of a node.
     starts: Vec<usize>,
     /// Tangents by motions, d × d, and by velocities, d × d, of every element; node after node.
@@ -89,6 +89,14 @@ impl Smooth {
                 node.copy_from_slice(first);
             }
         }
+    }
+
+    /// Tangents of a smooth element at a node by its motions and by its velocities, d × d each.
+    pub fn tangents(&self, node: usize, element: usize, motions: usize) -> (&[f64], &[f64]) {
+        let square = motions * motions;
+        let at = node * self.per_node + self.starts[element];
+        let both = self.tangents.get(at..at + 2 * square).unwrap_or(&[]);
+        both.split_at(both.len() / 2)
     }
 
     /// Visits the tangents of a node that are not zero: (degree of freedom of the force, that of the motion,

@@ -8,7 +8,7 @@ use crate::time_integration::event_law::{Row, along};
 pub(super) const DEGREE: usize = 26;
 
 /// The motion x(t₀ + θh) = Σₖ Xₖ θᵏ, 0 ≤ θ ≤ 1, of n degrees of freedom.
-pub(super) struct StepPolynomial {
+pub(crate) struct StepPolynomial {
     n: usize,
     /// Degree in use.
     pub degree: usize,

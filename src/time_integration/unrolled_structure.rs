@@ -9,14 +9,14 @@ use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 use crate::model::structure::MatrixKind;
-use crate::time_integration::event_law::{Element, Spring, row, unroll};
+use crate::time_integration::event_law::{Element, Spring, unroll};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 const CONTEXT: &str = "the structure in time";
 
 /// A real sparse matrix, column by column.
-pub(super) struct Sparse {
+pub(crate) struct Sparse {
     starts: Vec<usize>,
     rows: Vec<usize>,
     values: Vec<f64>,
@@ -70,14 +70,14 @@ enum Mass {
 }
 
 /// A force Re(value·e^{i·harmonic·ωt}).
-pub(super) struct Load {
+pub(crate) struct Load {
     pub dof: usize,
     pub harmonic: usize,
     pub value: Complex64,
 }
 
 /// The equations of motion of all carried sectors.
-pub(super) struct System<'s> {
+pub(crate) struct System<'s> {
     /// Asked by every loop of the integration.
     pub interrupt: &'s Interrupt<'s>,
     /// Independent degrees of freedom of a sector.
@@ -98,6 +98,8 @@ pub(super) struct System<'s> {
     /// K with springs and contacts that always stick.
     pub stiffness: Sparse,
     pub loads: Vec<Load>,
+    /// The springs within the stiffness.
+    pub springs: Vec<Spring>,
     /// Contacts with events or smooth laws, all sectors of one contact after the other.
     pub elements: Vec<Element>,
 }
@@ -105,6 +107,13 @@ pub(super) struct System<'s> {
 impl<'s> System<'s> {
     /// The structure of a model at angular frequency `omega`.
     pub fn new(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
+        let mut system = Self::unforced(model, omega, interrupt)?;
+        system.apply_forces(model)?;
+        Ok(system)
+    }
+
+    /// The same without the forces of the model.
+    pub fn unforced(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
         interrupt.phase(Phase::Setup, 0.0)?;
         let structure = model.structure();
         let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
@@ -112,31 +121,17 @@ impl<'s> System<'s> {
         for spring in model.springs() {
             let motion = structure.spring_motion(spring);
             for s in 0..sectors {
-                let spring = Spring {
-                    row: row(structure, &motion, s),
-                    stiffness: spring.stiffness,
-                };
-                try_push(&mut springs, spring, CONTEXT)?;
+                try_push(
+                    &mut springs,
+                    Spring::new(structure, motion, s, spring.stiffness),
+                    CONTEXT,
+                )?;
             }
         }
         unroll(structure, model.contacts(), &mut springs, &mut elements)?;
         let inertia = structure.unrolled(MatrixKind::Mass)?;
         let damping = structure.unrolled(MatrixKind::Damping)?;
         let stiffness = with_springs(&structure.unrolled(MatrixKind::Stiffness)?, &springs)?;
-        let mut loads = Vec::new();
-        for force in model.excitation().forces() {
-            let (offset, terms) = structure.degrees().image(force.dof);
-            for (dof, c) in terms {
-                for s in 0..sectors {
-                    let load = Load {
-                        dof: (s + offset as usize) % sectors * ndof + dof,
-                        harmonic: force.harmonic,
-                        value: c * force.value * structure.phase(force.harmonic, s as i64),
-                    };
-                    try_push(&mut loads, load, CONTEXT)?;
-                }
-            }
-        }
         interrupt.check()?;
         Ok(Self {
             interrupt,
@@ -149,9 +144,28 @@ impl<'s> System<'s> {
             inertia: Sparse::new(&inertia)?,
             damping: Sparse::new(&damping)?,
             stiffness: Sparse::new(&stiffness)?,
-            loads,
+            loads: Vec::new(),
+            springs,
             elements,
         })
+    }
+
+    fn apply_forces(&mut self, model: &Model) -> Result<()> {
+        let structure = model.structure();
+        for force in model.excitation().forces() {
+            let (offset, terms) = structure.degrees().image(force.dof);
+            for (dof, c) in terms {
+                for s in 0..self.sectors {
+                    let load = Load {
+                        dof: (s + offset as usize) % self.sectors * self.ndof + dof,
+                        harmonic: force.harmonic,
+                        value: c * force.value * structure.phase(force.harmonic, s as i64),
+                    };
+                    try_push(&mut self.loads, load, CONTEXT)?;
+                }
+            }
+        }
+        Ok(())
     }
 
     /// Operations of one product with the matrices, for the checks of the interrupt.

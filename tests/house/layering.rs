@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 19] = [
+const LAYERS: [(&str, u8); 20] = [
     ("error", 0),
     ("options", 0),
     ("interrupt", 0),
@@ -22,6 +22,7 @@ const LAYERS: [(&str, u8); 19] = [
     ("results", 6),
     ("error_estimate", 6),
     ("time_integration", 6),
+    ("stability", 7),
     ("adaptivity", 7),
     ("analysis", 8),
     ("capi", 9),

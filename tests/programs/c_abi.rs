@@ -138,6 +138,11 @@ fn points_checked_in_time_have_the_errors_of_the_reference() {
 }
 
 #[test]
+fn multipliers_of_points_are_those_of_the_reference() {
+    silent("floquet", |_| vec![]);
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
 }

@@ -11,7 +11,7 @@ pub struct Section {
 }
 
 /// The sections in the order of the header.
-pub const SECTIONS: [Section; 11] = [
+pub const SECTIONS: [Section; 12] = [
     Section {
         title: "Version and errors",
         about: "the version in use, status codes, the sentence behind a status",
@@ -67,6 +67,11 @@ pub const SECTIONS: [Section; 11] = [
         title: "Time",
         about: "integration in time, and points of a branch compared with it",
         files: &["time", "time_verify"],
+    },
+    Section {
+        title: "Stability",
+        about: "Floquet multipliers of points, limit cycles",
+        files: &["stability"],
     },
     Section {
         title: "Low level",

@@ -124,6 +124,13 @@ void friction() {
   for (const double e : checked.errors) squares += e * e;
   near(std::sqrt(squares), checked.info.motion_error, 1e-12, "the harmonics make up the error");
 
+  // Its stability.
+  const auto stability = model.floquet(branch, peak.point);
+  claim(stability.status == HBVIB_OK && stability.multipliers.size() == 3 && stability.classes.size() == 3, "the number of multipliers");
+  claim(stability.info.radius < 1 && stability.info.unstable == 0 && stability.classes[2] == HBVIB_MULTIPLIER_MEMORY, "the point is stable");
+  claim(branch.limit_cycles().empty(), "a forced response has no limit cycles");
+  near(stability.info.radius, std::abs(stability.multipliers[0]), 1e-15, "the radius is that of the largest");
+
   // The law alone, on the motion of the point.
   std::vector<Complex> motion(x.data(), x.data() + x.size());
   const auto force = hbvib::contact_evaluate(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload), 31, 0, peak.omega, motion, true);

@@ -29,6 +29,8 @@ program layout
    call time_info()
    call verify_options()
    call verification()
+   call floquet_options()
+   call floquet_info()
    ! END GENERATED
 
 contains
@@ -410,6 +412,32 @@ contains
       call field('periods', c_loc(s), c_loc(s%periods), c_sizeof(s%periods))
       call field('events', c_loc(s), c_loc(s%events), c_sizeof(s%events))
    end subroutine verification
+
+   subroutine floquet_options()
+      type(hbvib_floquet_options), target :: s
+      call whole('hbvib_floquet_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('waves', c_loc(s), c_loc(s%waves), c_sizeof(s%waves))
+      call field('refine', c_loc(s), c_loc(s%refine), c_sizeof(s%refine))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('tolerance', c_loc(s), c_loc(s%tolerance), c_sizeof(s%tolerance))
+      call field('max_periods', c_loc(s), c_loc(s%max_periods), c_sizeof(s%max_periods))
+   end subroutine floquet_options
+
+   subroutine floquet_info()
+      type(hbvib_floquet_info), target :: s
+      call whole('hbvib_floquet_info', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('grazing', c_loc(s), c_loc(s%grazing), c_sizeof(s%grazing))
+      call field('omega', c_loc(s), c_loc(s%omega), c_sizeof(s%omega))
+      call field('radius', c_loc(s), c_loc(s%radius), c_sizeof(s%radius))
+      call field('count', c_loc(s), c_loc(s%count), c_sizeof(s%count))
+      call field('unstable', c_loc(s), c_loc(s%unstable), c_sizeof(s%unstable))
+      call field('neutral', c_loc(s), c_loc(s%neutral), c_sizeof(s%neutral))
+      call field('grazing_contact', c_loc(s), c_loc(s%grazing_contact), c_sizeof(s%grazing_contact))
+      call field('orbit_change', c_loc(s), c_loc(s%orbit_change), c_sizeof(s%orbit_change))
+      call field('residual', c_loc(s), c_loc(s%residual), c_sizeof(s%residual))
+   end subroutine floquet_info
 
    ! END GENERATED
 

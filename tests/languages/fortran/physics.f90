@@ -285,6 +285,9 @@ contains
       type(hbvib_verification) :: check
       complex(dp) :: truth(1, 0:63)
       real(dp) :: errors(0:63)
+      type(hbvib_floquet_info) :: stability
+      complex(dp), allocatable :: mu(:)
+      integer, allocatable :: classes(:)
       integer :: j
       exact = load/cmplx(k - omega**2, c*omega, dp)
       call oscillator(k, c, load)
@@ -307,6 +310,13 @@ contains
       call expect('its error is the distance of both', &
                   close(check%response_error, abs(start(1, 1) - x(1, 1))/abs(x(1, 1)), 1e-3_dp) .and. check%same_solution == 1)
       call expect('the harmonics make up the error', close(sqrt(sum(errors**2)), check%motion_error, 1e-12_dp))
+      call works(model%floquet(branch, point(1), mu, classes, stability), 'the stability of the point')
+      call expect('two multipliers and a memory', size(mu) == 3 .and. all(classes == [HBVIB_MULTIPLIER_ORDINARY, &
+                  HBVIB_MULTIPLIER_ORDINARY, HBVIB_MULTIPLIER_MEMORY]))
+      call expect('the point is stable', close(stability%radius, abs(mu(1)), 1e-14_dp) .and. stability%radius < 1)
+      call works(branch%limit_cycles(amplitude), 'limit cycles')
+      call expect('a forced response has none', size(amplitude) == 0)
+      call refused(model%floquet(branch, 0), HBVIB_E_INDEX, 'point = 0, needs 1', 'the stability of point 0')
       call refused(model%verify(branch, 0), HBVIB_E_INDEX, 'point = 0, needs 1', 'a check of point 0')
       call refused(model%verify(branch, point(1), errors=errors(1:)), HBVIB_E_DIMENSION, 'harmonics + 1 = 64', 'too few errors')
       call refused(model%time_response(omega, x, start=reshape(start, [2, 32])), HBVIB_E_DIMENSION, 'start', &

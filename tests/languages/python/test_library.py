@@ -44,11 +44,14 @@ PREFIXES = dict(
     SynthesisFlag="SYNTHESIS_",
     LogLevel="LOG_",
     Phase="PHASE_",
+    Waves="WAVES_",
+    MultiplierClass="MULTIPLIER_",
+    Grazing="GRAZING_",
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
     "Status Storage Scalar Part MatrixKind SectorFrame ContactKind ContactState State Tangent Field DampingForm "
-    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod"
+    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Waves MultiplierClass Grazing"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)

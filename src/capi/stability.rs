@@ -1,0 +1,381 @@
+//! Section "Stability" of the header: Floquet multipliers of stored points, and limit cycles.
+
+#![allow(non_camel_case_types)]
+
+use super::arrays::{Range, check_pointer, count, disjoint, optional, output};
+use super::boundary::{WithArgument, call};
+use super::handles::{KeptBranch, read};
+use super::indices::{index, number};
+use super::model::hbvib_model;
+use super::solve::hbvib_branch;
+use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
+use super::version_and_errors::hbvib_status;
+use super::versioned_struct::{VersionedStruct, check_out, check_reserved, fill_out, init, load};
+use crate::analysis;
+use crate::contact::time_piece::Grazing;
+use crate::error::{Result, Status, fail};
+use crate::model::Model;
+use crate::options::{FloquetOptions, Waves};
+use crate::results::MultiplierClass;
+use num_complex::Complex64;
+
+/// Perturbations whose multipliers are computed.
+#[repr(C)]
+pub enum hbvib_waves {
+    /// The block of perturbations that contains the wave itself.
+    HBVIB_WAVES_WAVE = 0,
+    /// All perturbations of the wheel.
+    HBVIB_WAVES_WHEEL = 1,
+}
+
+/// Reasons of multipliers.
+#[repr(C)]
+pub enum hbvib_multiplier_class {
+    /// Decides about stability.
+    HBVIB_MULTIPLIER_ORDINARY = 0,
+    /// Zero: a slider that slips forgets its place.
+    HBVIB_MULTIPLIER_MEMORY = 1,
+    /// One: the slider of a contact that always sticks stays where it is put.
+    HBVIB_MULTIPLIER_NEUTRAL_STUCK = 2,
+    /// One: a rigid motion takes all sliders along.
+    HBVIB_MULTIPLIER_NEUTRAL_RIGID = 3,
+    /// One: a motion that no force drives may begin at any time.
+    HBVIB_MULTIPLIER_TRIVIAL = 4,
+}
+
+/// Events that a motion touches without passing them.
+#[repr(C)]
+pub enum hbvib_grazing {
+    /// None.
+    HBVIB_GRAZING_NONE = 0,
+    /// The force of friction touches its limit.
+    HBVIB_GRAZING_SLIP_LIMIT = 1,
+    /// The contact closes without normal speed.
+    HBVIB_GRAZING_LANDING = 2,
+}
+
+/// Options of hbvib_floquet. Fill it by hbvib_floquet_options_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_floquet_options {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// HBVIB_WAVES_WAVE or HBVIB_WAVES_WHEEL.
+    pub waves: i32,
+    /// 1: move the point to the periodic motion in time by shooting first; 0: take it as it is.
+    pub refine: i32,
+    /// Must be 0.
+    pub reserved: i32,
+    /// As in hbvib_time_options.
+    pub tolerance: f64,
+    /// Cap on the periods that shooting integrates.
+    pub max_periods: i64,
+}
+
+unsafe impl VersionedStruct for hbvib_floquet_options {
+    const NAME: &'static str = "hbvib_floquet_options";
+    const FIRST_SIZE: usize = 32;
+
+    fn defaults() -> Self {
+        let defaults = FloquetOptions::default();
+        Self {
+            struct_size: 0,
+            waves: hbvib_waves::HBVIB_WAVES_WAVE as i32,
+            refine: i32::from(defaults.refine),
+            reserved: 0,
+            tolerance: defaults.tolerance,
+            max_periods: defaults.max_periods as i64,
+        }
+    }
+}
+
+/// Fills the options of Floquet multipliers with their defaults: those of the wave, refine = 1,
+/// tolerance = 1e-11.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_floquet_options_init(o: *mut hbvib_floquet_options, size_of_o: usize) -> hbvib_status {
+    call(|| unsafe { init(o, size_of_o) })
+}
+
+/// Numbers of the stability of a point. Fill it by hbvib_floquet_info_init.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct hbvib_floquet_info {
+    /// Bytes of this struct as the caller knows it.
+    pub struct_size: u32,
+    /// Event that the motion touches, HBVIB_GRAZING_NONE and so on. Derivatives then differ on its
+    /// two sides: ordinary multipliers and radius are NaN.
+    pub grazing: i32,
+    /// Angular frequency of the motion: that of the point, unless no force drives it.
+    pub omega: f64,
+    /// Largest modulus of the ordinary multipliers; the motion is unstable if it is above 1.
+    pub radius: f64,
+    /// Number of multipliers.
+    pub count: i64,
+    /// Number of ordinary multipliers outside the unit circle.
+    pub unstable: i64,
+    /// Number of multipliers that are 1 by construction, a trivial one not among them.
+    pub neutral: i64,
+    /// Contact that touches the event; -1: none.
+    pub grazing_contact: i64,
+    /// Distance of the motion in time from that of the point, relative to it; 0 with refine = 0.
+    pub orbit_change: f64,
+    /// Largest change over a period of the motion in time, relative to its largest displacement and
+    /// velocity; NaN with refine = 0.
+    pub residual: f64,
+}
+
+unsafe impl VersionedStruct for hbvib_floquet_info {
+    const NAME: &'static str = "hbvib_floquet_info";
+    const FIRST_SIZE: usize = 72;
+
+    fn defaults() -> Self {
+        Self {
+            struct_size: 0,
+            grazing: hbvib_grazing::HBVIB_GRAZING_NONE as i32,
+            omega: 0.0,
+            radius: 0.0,
+            count: 0,
+            unstable: 0,
+            neutral: 0,
+            grazing_contact: -1,
+            orbit_change: 0.0,
+            residual: 0.0,
+        }
+    }
+}
+
+/// Fills the numbers of a stability with zeros, grazing_contact with -1.
+///
+/// i          the struct; untouched on error.
+/// size_of_i  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_floquet_info_init(i: *mut hbvib_floquet_info, size_of_i: usize) -> hbvib_status {
+    call(|| unsafe { init(i, size_of_i) })
+}
+
+/// Computes the Floquet multipliers of a stored point: the factors by which small perturbations of
+/// its motion grow in one period. The equations of perturbations are integrated along the exact
+/// path in time from event to event, sliders included, so that the multipliers are those of the
+/// motion, not of its harmonics. The motion is unstable where an ordinary multiplier lies outside
+/// the unit circle. A cyclic model has one block of perturbations that contains the wave itself,
+/// and others: HBVIB_WAVES_WHEEL computes all of them. A point of a nonlinear mode must be a limit
+/// cycle, damping ratio zero, and its motion is one without forces.
+///
+/// model            the model of which the branch is a result.
+/// point            number of a point of the curve, or of a peak, fold or requested solution.
+/// options          NULL: the defaults.
+/// hooks            progress, log and cancellation as in hbvib_time_response; NULL: none.
+/// multipliers      receives the largest multipliers, complex, by falling modulus, as many as it
+///                  holds; or NULL.
+/// multipliers_len  complex numbers in it; 0 with NULL. Each sector of the wheel has at most 2 ndof
+///                  multipliers and one per contact.
+/// classes          receives the reasons of the same multipliers, numbers of
+///                  hbvib_multiplier_class; or NULL.
+/// classes_len      numbers in it; 0 with NULL.
+/// out              receives numbers of the stability; fill it by hbvib_floquet_info_init before;
+///                  or NULL.
+/// HBVIB_STOPPED_BY_CALLER: there are no multipliers, and the radius is NaN.
+/// Errors: HBVIB_E_INDEX (point), HBVIB_E_UNSUPPORTED (a point of a nonlinear mode that is no limit
+/// cycle; a model that hbvib_time_response refuses), HBVIB_E_ARGUMENT (another model, options,
+/// overlapping arrays), HBVIB_E_DIMENSION (a length), HBVIB_E_NO_CONVERGENCE (shooting did not
+/// converge from the point), HBVIB_E_NO_BOUNDED_SOLUTION, HBVIB_E_CALLBACK (a force callback
+/// failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+#[unsafe(no_mangle)]
+#[allow(clippy::too_many_arguments)]
+pub unsafe extern "C" fn hbvib_floquet(
+    model: *const hbvib_model,
+    branch: *const hbvib_branch,
+    point: i64,
+    options: *const hbvib_floquet_options,
+    hooks: *const hbvib_hooks,
+    multipliers: *mut f64,
+    multipliers_len: i64,
+    classes: *mut i64,
+    classes_len: i64,
+    out: *mut hbvib_floquet_info,
+) -> hbvib_status {
+    call(|| {
+        let model = read::<Model>(model, 1)?;
+        let kept = read::<KeptBranch>(branch, 2)?;
+        let branch = &kept.branch;
+        let point = index(point, branch.stored(), 3, "point")?;
+        let options = unsafe { floquet_options(options) }?;
+        let hooks = unsafe { load_hooks(hooks, 5) }?;
+        let room = room(multipliers.is_null(), multipliers_len, 7, "multipliers_len")?;
+        let class_room = self::room(classes.is_null(), classes_len, 9, "classes_len")?;
+        if !out.is_null() {
+            unsafe { check_out(out, 10) }?;
+        }
+        disjoint(
+            &[],
+            &[
+                Range::new::<Complex64>(multipliers.cast(), room, 6, "multipliers")?,
+                Range::new(classes, class_room, 8, "classes")?,
+            ],
+        )?;
+        let found = unsafe {
+            with_hooks(&hooks, |hooks| {
+                analysis::floquet(&model, branch, point, &options, hooks)
+            })
+        }
+        .map_err(|e| match e.status {
+            Status::Unsupported if branch.mode().is_some() => e.in_argument(3),
+            Status::Argument => e.in_argument(1),
+            _ => e,
+        })?;
+        if room > 0 {
+            let values = unsafe { output::<Complex64>(multipliers.cast(), room, 6, "multipliers") }?;
+            for (value, m) in values.iter_mut().zip(&found.multipliers) {
+                *value = m.value;
+            }
+        }
+        if class_room > 0 {
+            let numbers = unsafe { output(classes, class_room, 8, "classes") }?;
+            for (number, m) in numbers.iter_mut().zip(&found.multipliers) {
+                *number = class_number(m.class);
+            }
+        }
+        if !out.is_null() {
+            let (contact, grazing) = match found.grazing {
+                None => (-1, hbvib_grazing::HBVIB_GRAZING_NONE),
+                Some((contact, Grazing::SlipLimit)) => (contact as i64, hbvib_grazing::HBVIB_GRAZING_SLIP_LIMIT),
+                Some((contact, Grazing::Landing)) => (contact as i64, hbvib_grazing::HBVIB_GRAZING_LANDING),
+            };
+            let value = hbvib_floquet_info {
+                grazing: grazing as i32,
+                omega: found.omega,
+                radius: found.radius,
+                count: found.multipliers.len() as i64,
+                unstable: found.unstable as i64,
+                neutral: found.neutral as i64,
+                grazing_contact: contact,
+                orbit_change: found.orbit_change,
+                residual: found.residual,
+                ..hbvib_floquet_info::defaults()
+            };
+            unsafe { fill_out(out, value) };
+        }
+        Ok(found.status)
+    })
+}
+
+/// Limit cycles on a nonlinear mode, where its damping ratio is zero: periodic motions of the model
+/// without forces. Refined on the solution, in the order of the branch. hbvib_floquet tells whether
+/// one is stable; with a negative slope it is not.
+///
+/// capacity         numbers that fit into each array.
+/// omega            receives their angular frequencies, or NULL.
+/// log10_amplitude  receives log10 of their amplitudes, the parameter of the mode, or NULL.
+/// slope            receives the derivatives of the damping ratio by log10 of the amplitude, or
+///                  NULL.
+/// point            receives their point numbers for hbvib_floquet and others, numbers, or NULL.
+/// count            receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned. A forced response has none.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_branch_limit_cycles(
+    branch: *const hbvib_branch,
+    capacity: i64,
+    omega: *mut f64,
+    log10_amplitude: *mut f64,
+    slope: *mut f64,
+    point: *mut i64,
+    count: *mut i64,
+) -> hbvib_status {
+    call(|| {
+        let kept = read::<KeptBranch>(branch, 1)?;
+        let capacity = super::arrays::count(capacity, 2, "capacity")?;
+        let columns = [
+            optional((omega, 3), "omega")?,
+            optional((log10_amplitude, 4), "log10_amplitude")?,
+            optional((slope, 5), "slope")?,
+        ];
+        let point = optional((point, 6), "point")?;
+        check_pointer(count, 7, "count")?;
+        let found = kept.branch.limit_cycles()?;
+        unsafe { count.write(found.len() as i64) };
+        if columns.iter().all(Option::is_none) && point.is_none() {
+            return Ok(Status::Ok);
+        }
+        if capacity < found.len() {
+            return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(2);
+        }
+        for (i, cycle) in found.iter().enumerate() {
+            let values = [cycle.omega, cycle.log10_amplitude, cycle.slope];
+            unsafe {
+                for (column, value) in columns.iter().zip(values) {
+                    if let Some(p) = column {
+                        p.add(i).write(value);
+                    }
+                }
+                if let Some(p) = point {
+                    p.add(i).write(cycle.point as i64);
+                }
+            }
+        }
+        Ok(Status::Ok)
+    })
+}
+
+/// Checked capacity of an array that may be NULL.
+fn room(null: bool, len: i64, argument: i32, name: &str) -> Result<usize> {
+    let len = count(len, argument, name)?;
+    if null && len > 0 {
+        return fail!(Dimension, "{name} = {len}, needs 0 with NULL").with_argument(argument);
+    }
+    Ok(len)
+}
+
+fn class_number(class: MultiplierClass) -> i64 {
+    use hbvib_multiplier_class as c;
+    let class = match class {
+        MultiplierClass::Ordinary => c::HBVIB_MULTIPLIER_ORDINARY,
+        MultiplierClass::Memory => c::HBVIB_MULTIPLIER_MEMORY,
+        MultiplierClass::NeutralStuck => c::HBVIB_MULTIPLIER_NEUTRAL_STUCK,
+        MultiplierClass::NeutralRigid => c::HBVIB_MULTIPLIER_NEUTRAL_RIGID,
+        MultiplierClass::Trivial => c::HBVIB_MULTIPLIER_TRIVIAL,
+    };
+    class as i64
+}
+
+unsafe fn floquet_options(p: *const hbvib_floquet_options) -> Result<FloquetOptions> {
+    if p.is_null() {
+        return Ok(FloquetOptions::default());
+    }
+    let o = unsafe { load(p, 4) }?;
+    check_reserved(o.reserved, 4, "hbvib_floquet_options")?;
+    let chosen = || -> Result<FloquetOptions> {
+        let options = FloquetOptions {
+            waves: waves(o.waves)?,
+            refine: match o.refine {
+                0 => false,
+                1 => true,
+                other => return fail!(Argument, "refine = {other}, needs 0 or 1"),
+            },
+            tolerance: o.tolerance,
+            max_periods: number(o.max_periods, "max_periods")?,
+        };
+        options.check()?;
+        Ok(options)
+    };
+    chosen().with_argument(4)
+}
+
+/// The perturbations of a number.
+fn waves(waves: i32) -> Result<Waves> {
+    match waves {
+        0 => Ok(Waves::Wave),
+        1 => Ok(Waves::Wheel),
+        other => fail!(
+            Argument,
+            "waves = {other}, needs HBVIB_WAVES_WAVE = 0 or HBVIB_WAVES_WHEEL = 1"
+        ),
+    }
+}

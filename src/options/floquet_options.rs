@@ -1,0 +1,49 @@
+//! Options of Floquet multipliers.
+
+use crate::error::Result;
+use crate::options::time_options::check_search;
+
+/// Perturbations whose multipliers are computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Waves {
+    /// Those of the nodal diameters of the travelling wave itself.
+    #[default]
+    Wave,
+    /// All of the wheel.
+    Wheel,
+}
+
+/// Options of the Floquet multipliers of a point.
+#[derive(Clone, Copy, Debug)]
+pub struct FloquetOptions {
+    /// Perturbations of a cyclic model; a plain structure has one block only.
+    pub waves: Waves,
+    /// Move the point to the periodic motion in time by shooting first. A motion of harmonic balance is truncated, and
+    /// its multipliers are those of a path that does not quite close.
+    pub refine: bool,
+    /// See [`TimeOptions::tolerance`](crate::options::TimeOptions::tolerance).
+    pub tolerance: f64,
+    /// Largest number of periods integrated by shooting.
+    pub max_periods: usize,
+}
+
+impl Default for FloquetOptions {
+    fn default() -> Self {
+        Self {
+            waves: Waves::Wave,
+            refine: true,
+            tolerance: 1e-11,
+            max_periods: 10_000,
+        }
+    }
+}
+
+impl FloquetOptions {
+    /// Checks every field.
+    ///
+    /// # Errors
+    /// `Argument`, naming the field, its value and its range.
+    pub fn check(&self) -> Result<()> {
+        check_search(self.tolerance, self.max_periods)
+    }
+}

@@ -1,0 +1,41 @@
+//! Limit cycles: points of a nonlinear mode at which the damping ratio is zero.
+//!
+//! There the motion needs no artificial damping: it is a periodic motion of the model without forces, which flutter or
+//! another negative damping drives and friction limits.
+
+use crate::error::{Result, try_push};
+use crate::results::Branch;
+
+/// A limit cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitCycle {
+    /// Number of the point; it continues the numbering of the curve.
+    pub point: usize,
+    /// Angular frequency.
+    pub omega: f64,
+    /// log₁₀ of the amplitude, the parameter of the mode.
+    pub log10_amplitude: f64,
+    /// Derivative of the damping ratio by it. A limit cycle with a negative slope is unstable, one with a positive
+    /// slope need not be stable: its Floquet multipliers decide.
+    pub slope: f64,
+}
+
+impl Branch {
+    /// The limit cycles on a nonlinear mode, refined on the solution, in the order of the branch.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn limit_cycles(&self) -> Result<Vec<LimitCycle>> {
+        let mut found = Vec::new();
+        for &(special, slope) in &self.limit_cycles {
+            let cycle = LimitCycle {
+                point: special.point,
+                omega: special.omega,
+                log10_amplitude: self.mode_at(special.point).map_or(f64::NAN, |m| m.log10_amplitude),
+                slope,
+            };
+            try_push(&mut found, cycle, "the limit cycles")?;
+        }
+        Ok(found)
+    }
+}

@@ -1,0 +1,95 @@
+//! Perturbations that return unchanged by construction.
+//!
+//! A contact whose slider never moves keeps the slider where it is put: its row of the map is that of the identity,
+//! and its multiplier is exactly 1. A displacement that strains neither the structure nor a contact other than the
+//! sliders that move, such as the rotation of a ring that friction alone holds, takes these sliders along and satisfies
+//! the variational equations as a constant. The rate of an autonomous motion is a perturbation that returns as itself.
+
+use crate::error::{Error, Result, Status};
+use crate::linalg::sparse::Csc;
+use crate::stability::perturbations::Perturbations;
+use crate::stability::ring::Row;
+use nalgebra::{DMatrix, DVector, SVD};
+use num_complex::Complex64;
+
+/// Singular values below this share of the largest are rounding: the displacement strains nothing.
+const NO_STRAIN: f64 = 1e-12;
+
+/// Iterations of the singular values, far above what converging cases need.
+const MOST_ITERATIONS: usize = 100_000;
+
+impl Perturbations {
+    /// The sliders of the ring that never move; `moved` tells it of the elements of the structure in time.
+    pub(super) fn stuck_sliders(&self, moved: &dyn Fn(usize) -> bool) -> Vec<usize> {
+        let sliders = self.ring.elements.iter().filter(|e| !moved(e.source));
+        sliders.filter_map(|e| e.slider).collect()
+    }
+
+    /// Constant perturbations (δx, 0, δw) that strain nothing, one per column.
+    pub(super) fn unstrained(&self, stuck: &[usize]) -> Result<DMatrix<Complex64>> {
+        let ring = &self.ring;
+        let n = ring.order;
+        let mut rows: Vec<&Row> = Vec::new();
+        for e in &ring.elements {
+            let held = e.slider.is_none_or(|s| stuck.contains(&s));
+            rows.extend(e.rows.iter().skip(usize::from(!held)));
+        }
+        let mut strain = DMatrix::<Complex64>::zeros(n + rows.len(), n);
+        let unit = 1.0 / ring.stiffness.max_abs().max(f64::MIN_POSITIVE);
+        put(&ring.stiffness, unit, &mut strain);
+        for (i, row) in rows.iter().enumerate() {
+            for &(dof, a) in row.iter().flatten() {
+                strain[(n + i, dof)] += a;
+            }
+        }
+        let Some(svd) = SVD::try_new(strain, false, true, f64::EPSILON, MOST_ITERATIONS) else {
+            return Err(Error::new(
+                Status::NoConvergence,
+                format_args!("displacements without strain"),
+            ));
+        };
+        let largest = svd.singular_values.max();
+        let empty = DMatrix::zeros(ring.states(), 0);
+        let Some(v) = svd.v_t else { return Ok(empty) };
+        let free: Vec<usize> = (0..n)
+            .filter(|&i| svd.singular_values[i] <= NO_STRAIN * largest)
+            .collect();
+        let mut found = DMatrix::zeros(ring.states(), free.len());
+        for (c, &i) in free.iter().enumerate() {
+            for dof in 0..n {
+                found[(dof, c)] = v[(i, dof)].conj();
+            }
+            for e in &ring.elements {
+                if let Some(slider) = e.slider.filter(|s| !stuck.contains(s)) {
+                    let w = e.rows[0].iter().flatten().map(|&(dof, a)| a * v[(i, dof)].conj()).sum();
+                    found[(2 * n + slider, c)] = w;
+                }
+            }
+        }
+        Ok(found)
+    }
+
+    /// The rate (x′, v′, w′) of the motion, of which `rates` are those of all sectors in time.
+    pub(super) fn rate(&self, (v, a, w): (&[f64], &[f64], &[f64])) -> DVector<Complex64> {
+        let n = self.ring.order;
+        let mut rate = DVector::zeros(self.ring.states());
+        for i in 0..n {
+            rate[i] = v[i].into();
+            rate[n + i] = a[i].into();
+        }
+        for e in &self.ring.elements {
+            if let Some(slider) = e.slider {
+                rate[2 * n + slider] = w[e.source].into();
+            }
+        }
+        rate
+    }
+}
+
+fn put(a: &Csc, unit: f64, dense: &mut DMatrix<Complex64>) {
+    for j in 0..a.cols {
+        for (i, v) in a.column(j) {
+            dense[(i, j)] += unit * v;
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Multipliers of one period from the map of a lapse, and the reason of those that are known beforehand.
+//!
+//! Known perturbations span an invariant subspace: reflections that carry it to the first coordinates leave the other
+//! multipliers in the remaining block. A slider that has slipped forgets where it was; the map then has a null space,
+//! which is split off by factorisations that reveal the rank, again and again until nothing is left of it. Its
+//! multipliers are exact zeros, which an eigensolver would find as roots of round-off.
+
+use crate::error::{Error, Result, Status, try_push};
+use crate::model::structure::Structure;
+use crate::results::{Multiplier, MultiplierClass};
+use crate::stability::perturbations::Perturbations;
+use crate::time_integration::System;
+use nalgebra::{ColPivQR, DMatrix, DVector, Schur};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the Floquet multipliers";
+
+/// Share of the largest pivot below which a direction of the map is round-off.
+const ROUNDING: f64 = 1e-12;
+
+/// Modulus over a period below which the multiplier of a slider is zero to rounding: while another one remembers, what
+/// a slider has forgotten is not an exact null space.
+const FORGOTTEN: f64 = f64::EPSILON;
+
+/// Largest residual of a known perturbation, relative to it; above it is not invariant after all.
+const INVARIANT: f64 = 1e-6;
+
+/// Iterations of the eigensolver, far above what converging cases need.
+const MOST_ITERATIONS: usize = 100_000;
+
+/// Facts about the motion from which multipliers are known.
+pub(crate) struct Known<'a> {
+    /// Whether the slider of an element of the structure in time moves.
+    pub moved: &'a dyn Fn(usize) -> bool,
+    /// Rates (x′, v′, w′) of all sectors at the begin of an autonomous motion.
+    pub rates: Option<(&'a [f64], &'a [f64], &'a [f64])>,
+}
+
+/// The multipliers of a block, whose perturbations were carried through a lapse.
+pub(crate) fn multipliers_of(
+    structure: &Structure,
+    system: &System<'_>,
+    block: &Perturbations,
+    known: &Known<'_>,
+) -> Result<Vec<Multiplier>> {
+    let (n, states) = (block.ring.order, block.ring.states());
+    let stuck = block.stuck_sliders(known.moved);
+    let kept: Vec<usize> = (0..states)
+        .filter(|&i| i < 2 * n || !stuck.contains(&(i - 2 * n)))
+        .collect();
+    // Velocities are divided by ω, which gives them the unit of displacements.
+    let unit = |i: usize| if (n..2 * n).contains(&i) { system.omega } else { 1.0 };
+    let map = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {
+        let (i, j) = (kept[i], kept[j]);
+        block.entry(structure, system, i, j) * (unit(j) / unit(i))
+    });
+    let keep = |v: &DVector<Complex64>| DVector::from_fn(kept.len(), |i, _| v[kept[i]] / unit(kept[i]));
+    let mut directions = Vec::new();
+    for column in block.unstrained(&stuck)?.column_iter() {
+        try_push(&mut directions, keep(&column.into_owned()), CONTEXT)?;
+    }
+    let mut rigid = directions.len();
+    if !is_invariant(&map, &directions) {
+        directions.clear();
+        rigid = 0;
+    }
+    let mut trivial = 0;
+    if let Some(rates) = known.rates.filter(|_| block.closure().has_wave) {
+        let rate = keep(&block.rate(rates));
+        try_push(&mut directions, rate, CONTEXT)?;
+        trivial = 1;
+    }
+    let moving = kept.len() - 2 * n;
+    let (rest, zeros) = without_zeros(without(map, directions), system)?;
+    let mut found = Vec::new();
+    let mut add = |count: usize, value: Complex64, class| {
+        (0..count).try_for_each(|_| try_push(&mut found, Multiplier { value, class }, CONTEXT))
+    };
+    add(stuck.len(), Complex64::ONE, MultiplierClass::NeutralStuck)?;
+    add(rigid, Complex64::ONE, MultiplierClass::NeutralRigid)?;
+    add(trivial, Complex64::ONE, MultiplierClass::Trivial)?;
+    add(zeros.min(moving), Complex64::ZERO, MultiplierClass::Memory)?;
+    add(zeros.saturating_sub(moving), Complex64::ZERO, MultiplierClass::Ordinary)?;
+    // The lapses of a period turn the wheel by `follower` sectors each, which passes the ring some whole times.
+    let lapses = system.sectors;
+    let passed = system.follower * lapses / block.closure().sectors;
+    let turn = block.closure().factor(structure, passed).conj();
+    let mut memories = moving.saturating_sub(zeros);
+    for value in eigenvalues(rest)? {
+        let value = value.powu(lapses as u32) * turn;
+        if value.norm() <= FORGOTTEN && memories > 0 {
+            memories -= 1;
+            add(1, value, MultiplierClass::Memory)?;
+        } else {
+            add(1, value, MultiplierClass::Ordinary)?;
+        }
+    }
+    if block.closure().has_conjugate {
+        for i in 0..found.len() {
+            let Multiplier { value, class } = found[i];
+            let value = value.conj();
+            try_push(&mut found, Multiplier { value, class }, CONTEXT)?;
+        }
+    }
+    Ok(found)
+}
+
+/// Whether the map leaves the span of the directions, which are orthogonal up to their sliders, in itself.
+fn is_invariant(map: &DMatrix<Complex64>, directions: &[DVector<Complex64>]) -> bool {
+    if directions.is_empty() {
+        return true;
+    }
+    let basis = DMatrix::from_columns(directions).qr().q();
+    let image = map * &basis;
+    let rest = &image - &basis * (basis.adjoint() * &image);
+    rest.norm() <= INVARIANT * image.norm()
+}
+
+/// The map without an invariant subspace, by reflections that carry it to the first coordinates.
+fn without(mut map: DMatrix<Complex64>, mut directions: Vec<DVector<Complex64>>) -> DMatrix<Complex64> {
+    let count = directions.len();
+    for k in 0..count {
+        let mut mirror = directions[k].clone();
+        mirror.rows_mut(0, k).fill(Complex64::ZERO);
+        let length = mirror.norm();
+        if length == 0.0 {
+            continue;
+        }
+        let head = mirror[k];
+        let turn = if head == Complex64::ZERO {
+            Complex64::ONE
+        } else {
+            head / head.norm()
+        };
+        mirror[k] += turn * length;
+        let square = mirror.norm_squared();
+        for direction in directions.iter_mut().skip(k) {
+            let along = mirror.dotc(direction) * (2.0 / square);
+            direction.axpy(-along, &mirror, Complex64::ONE);
+        }
+        let row = mirror.adjoint() * &map;
+        map -= (&mirror * row).scale(2.0 / square);
+        let column = &map * &mirror;
+        map -= (column * mirror.adjoint()).scale(2.0 / square);
+    }
+    map.view((count, count), (map.nrows() - count, map.nrows() - count))
+        .into_owned()
+}
+
+/// The map on its lasting range, and the number of its zero multipliers.
+fn without_zeros(mut map: DMatrix<Complex64>, system: &System<'_>) -> Result<(DMatrix<Complex64>, usize)> {
+    let mut zeros = 0;
+    loop {
+        system.interrupt.check()?;
+        let order = map.nrows();
+        if order == 0 {
+            return Ok((map, zeros));
+        }
+        let factors = ColPivQR::new(map.clone());
+        let r = factors.r();
+        let first = r[(0, 0)].norm();
+        let rank = (0..order).take_while(|&i| r[(i, i)].norm() > ROUNDING * first).count();
+        if rank == order {
+            return Ok((map, zeros));
+        }
+        let q = factors.q();
+        map = (q.adjoint() * map * q).view((0, 0), (rank, rank)).into_owned();
+        zeros += order - rank;
+    }
+}
+
+fn eigenvalues(map: DMatrix<Complex64>) -> Result<Vec<Complex64>> {
+    let order = map.nrows();
+    let mut found = Vec::new();
+    if order == 0 {
+        return Ok(found);
+    }
+    let Some(schur) = Schur::try_new(map, f64::EPSILON, MOST_ITERATIONS) else {
+        return Err(Error::new(
+            Status::NoConvergence,
+            format_args!("the eigenvalues of a map of order {order} were not found"),
+        ));
+    };
+    let (_, triangular) = schur.unpack();
+    for i in 0..order {
+        try_push(&mut found, triangular[(i, i)], CONTEXT)?;
+    }
+    Ok(found)
+}

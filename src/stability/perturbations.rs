@@ -1,0 +1,326 @@
+//! A basis of the perturbations of a block, carried through a lapse.
+//!
+//! Columns are perturbations (δx, δv, δw), sliders w last. At the end of a lapse every sector receives the perturbation
+//! of the sector whose motion it repeats, so that the map of a lapse, applied as often as the wave has lapses in a
+//! period, is the monodromy matrix of the period but for a known factor.
+
+use crate::contact::time_piece::Grazing;
+use crate::error::{Result, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::model::structure::Structure;
+use crate::stability::closure::Closure;
+use crate::stability::ring::{Ring, along};
+use crate::stability::variational_step::VariationalStep;
+use crate::time_integration::{Interval, System, Variation};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the perturbations";
+
+/// The perturbations of one block.
+pub(crate) struct Perturbations {
+    pub(super) ring: Ring,
+    step: VariationalStep,
+    /// Column by column.
+    columns: Vec<Complex64>,
+}
+
+/// The blocks that are carried together.
+pub(crate) struct Blocks<'s> {
+    interrupt: &'s Interrupt<'s>,
+    /// The blocks.
+    pub list: Vec<Perturbations>,
+    /// The first contact that touches an event: number of the element, and the event.
+    pub grazing: Option<(usize, Grazing)>,
+}
+
+impl Perturbations {
+    fn new(structure: &Structure, system: &System<'_>, closure: Closure) -> Result<Self> {
+        let ring = Ring::new(structure, system, closure)?;
+        let states = ring.states();
+        let mut columns = try_vec(states.saturating_mul(states), Complex64::ZERO, CONTEXT)?;
+        for i in 0..states {
+            columns[i * states + i] = Complex64::ONE;
+        }
+        Ok(Self {
+            step: VariationalStep::new(&ring, !system.is_piecewise_linear())?,
+            ring,
+            columns,
+        })
+    }
+
+    /// The block.
+    pub fn closure(&self) -> &Closure {
+        &self.ring.closure
+    }
+
+    /// Entry of the map of a lapse: state `i` at the end by state `j` at the begin, sectors exchanged.
+    pub(super) fn entry(&self, structure: &Structure, system: &System<'_>, i: usize, j: usize) -> Complex64 {
+        let (from, turns) = self.shifted(system, i);
+        self.columns[j * self.ring.states() + from] * self.ring.closure.factor(structure, turns)
+    }
+
+    /// The state that state `i` repeats a lapse later, and how often the ring is passed on the way to it.
+    fn shifted(&self, system: &System<'_>, i: usize) -> (usize, usize) {
+        let (n, m) = (self.ring.order, self.ring.closure.sectors);
+        let (first, block, at) = match i {
+            i if i < n => (0, system.ndof, i),
+            i if i < 2 * n => (n, system.ndof, i - n),
+            i => (2 * n, 1, i - 2 * n),
+        };
+        // Sliders are numbered contact by contact, sectors within.
+        let (sector, within) = (at / block % m, at % block);
+        let group = at - sector * block - within;
+        let to = sector + system.follower;
+        (first + group + to % m * block + within, to / m)
+    }
+
+    fn advance(&mut self, interval: &Interval<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
+        self.step.prepare(&self.ring, interval, interrupt)?;
+        let states = self.ring.states();
+        for column in self.columns.chunks_exact_mut(states) {
+            self.step.carry(&mut self.ring, interval, column, interrupt)?;
+        }
+        Ok(())
+    }
+
+    fn couple(&mut self, element: usize, share: f64) {
+        let Ok(found) = self.ring.elements.binary_search_by_key(&element, |e| e.source) else {
+            return;
+        };
+        let e = &self.ring.elements[found];
+        let Some(slider) = e.slider else { return };
+        let at = 2 * self.ring.order + slider;
+        for column in self.columns.chunks_exact_mut(self.ring.states()) {
+            let mut w = along(&e.rows[0], column);
+            if let Some(normal) = e.rows.get(1)
+                && share != 0.0
+            {
+                w += share * along(normal, column);
+            }
+            column[at] = w;
+        }
+    }
+}
+
+impl<'s> Blocks<'s> {
+    /// The blocks of the given closures, before the lapse.
+    pub fn new(structure: &Structure, system: &System<'s>, closures: &[Closure]) -> Result<Self> {
+        let mut list = Vec::new();
+        for closure in closures {
+            try_push(&mut list, Perturbations::new(structure, system, *closure)?, CONTEXT)?;
+        }
+        Ok(Self {
+            interrupt: system.interrupt,
+            list,
+            grazing: None,
+        })
+    }
+}
+
+impl Variation for Blocks<'_> {
+    fn advance(&mut self, interval: &Interval<'_>) -> Result<()> {
+        for block in &mut self.list {
+            block.advance(interval, self.interrupt)?;
+        }
+        Ok(())
+    }
+
+    fn couple(&mut self, element: usize, share: f64) {
+        for block in &mut self.list {
+            block.couple(element, share);
+        }
+    }
+
+    fn graze(&mut self, element: usize, grazing: Grazing) {
+        self.grazing.get_or_insert((element, grazing));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::laws::polynomial::{Monomial, Polynomial};
+    use crate::contact::laws::table::Table;
+    use crate::contact::{Contact, ContactKind};
+    use crate::linalg::matrix_view::MatrixView;
+    use crate::model::Model;
+    use crate::model::structure::MatrixKind;
+    use crate::options::Waves;
+    use crate::stability::closures;
+    use crate::time_integration::{EventLoop, Observers, State};
+
+    /// Numbers in −1 … 1.
+    struct Random(u64);
+
+    impl Random {
+        fn next(&mut self) -> f64 {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
+        }
+    }
+
+    /// A random damped structure of three masses under forces of two harmonics, excited along both motions of `contact`.
+    fn structure(random: &mut Random, contacts: &[Contact]) -> Model {
+        const N: usize = 3;
+        let mut model = Model::new(N).unwrap();
+        let mut positive = |size: f64, diagonal: f64| {
+            let mut a = [0.0; N * N];
+            for i in 0..N {
+                for j in 0..i {
+                    let v = 0.3 * size * random.next();
+                    (a[i * N + j], a[j * N + i]) = (v, v);
+                }
+                a[i * N + i] = diagonal * (1.0 + 0.3 * random.next());
+            }
+            a
+        };
+        for (kind, a) in [
+            (MatrixKind::Mass, positive(1.0, 1.0)),
+            (MatrixKind::Damping, positive(0.05, 0.1)),
+            (MatrixKind::Stiffness, positive(1.0, 2.0)),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(N, &a)).unwrap();
+        }
+        for contact in contacts {
+            model.add_contact(contact).unwrap();
+        }
+        for (dof, harmonic) in [(0, 1), (1, 1), (2, 3)] {
+            let force = Complex64::new(random.next(), random.next());
+            model.add_force(dof, harmonic, 1.5 * force).unwrap();
+        }
+        model
+    }
+
+    fn laws() -> Vec<(&'static str, Vec<Contact>)> {
+        let table = Table::new(&[-1.0, -0.2, 0.3, 1.0], &[-1.5, -0.1, 0.1, 2.0]).unwrap();
+        let terms = [
+            Monomial {
+                direction: 0,
+                coefficient: 0.4,
+                displacements: &[3],
+                velocities: &[0],
+            },
+            Monomial {
+                direction: 0,
+                coefficient: 0.3,
+                displacements: &[2],
+                velocities: &[1],
+            },
+        ];
+        let polynomial = Polynomial::new(1, &terms).unwrap();
+        let plane = |preload| Contact::friction_2d([Some(0), Some(1)], [None, None], (2.0, 3.0), 0.6, preload);
+        vec![
+            ("friction", vec![Contact::jenkins(0, Some(1), 1.0, 0.5, 0.6)]),
+            (
+                "two sliders",
+                vec![
+                    Contact::jenkins(0, None, 2.0, 0.5, 0.5),
+                    Contact::jenkins(1, Some(2), 1.0, 0.5, 0.3),
+                ],
+            ),
+            ("stop", vec![Contact::unilateral(Some(0), None, 4.0, 0.1)]),
+            (
+                "friction and stop",
+                vec![
+                    Contact::jenkins(0, Some(1), 1.0, 0.5, 0.6),
+                    Contact::unilateral(Some(2), None, 4.0, 0.1),
+                ],
+            ),
+            ("varying load", vec![plane(1.0)]),
+            ("varying load that lands often", vec![plane(0.1)]),
+            ("table", vec![Contact::between(0, None, ContactKind::Table(table))]),
+            ("cubic", vec![Contact::cubic(0, Some(1), 0.5, 0.4)]),
+            (
+                "cubic and friction",
+                vec![
+                    Contact::cubic(0, Some(1), 0.5, 0.4),
+                    Contact::jenkins(1, None, 1.0, 0.5, 0.6),
+                ],
+            ),
+            ("smooth friction", vec![Contact::regularised(0, None, 0.5, 0.6, 0.2)]),
+            (
+                "polynomial",
+                vec![Contact::between(0, None, ContactKind::Polynomial(polynomial))],
+            ),
+        ]
+    }
+
+    /// Displacements, velocities and sliders after a lapse.
+    fn after(event_loop: &mut EventLoop, system: &mut System<'_>, z: &[f64]) -> (Vec<f64>, usize) {
+        let n = system.order();
+        let mut state = State::rest(system).unwrap();
+        state.x.copy_from_slice(&z[..n]);
+        state.v.copy_from_slice(&z[n..2 * n]);
+        let mut slider = 2 * n;
+        for (i, e) in system.elements.iter().enumerate() {
+            if e.slider().is_some() {
+                state.e[i] = e.relative(&state.x)[0] - z[slider];
+                slider += 1;
+            }
+        }
+        let summary = event_loop.run(system, &mut state, Observers::default()).unwrap();
+        let mut found = state.x.clone();
+        found.extend(&state.v);
+        for (i, e) in system.elements.iter().enumerate() {
+            if e.slider().is_some() {
+                found.push(e.relative(&state.x)[0] - state.e[i]);
+            }
+        }
+        (found, summary.events)
+    }
+
+    #[test]
+    fn perturbations_are_the_differences_of_neighbouring_motions() {
+        let interrupt = Interrupt::none();
+        for (name, contacts) in laws() {
+            let (mut worst, mut events) = (0.0_f64, 0);
+            for seed in 1..=8 {
+                let mut random = Random(seed * 7919);
+                let model = structure(&mut random, &contacts);
+                let mut system = System::new(&model, 1.1 + 0.3 * random.next(), &interrupt).unwrap();
+                let mut event_loop = EventLoop::new(&system, 1e-13).unwrap();
+                let sliders = system.elements.iter().filter(|e| e.slider().is_some()).count();
+                let z: Vec<f64> = (0..6 + sliders)
+                    .map(|i| if i < 6 { random.next() } else { 0.1 * random.next() })
+                    .collect();
+                let list = closures(model.structure(), Waves::Wave, false).unwrap();
+                let mut blocks = Blocks::new(model.structure(), &system, &list).unwrap();
+                let mut state = State::rest(&system).unwrap();
+                state.x.copy_from_slice(&z[..3]);
+                state.v.copy_from_slice(&z[3..6]);
+                let mut slider = 6;
+                for (i, e) in system.elements.iter().enumerate() {
+                    if e.slider().is_some() {
+                        state.e[i] = e.relative(&state.x)[0] - z[slider];
+                        slider += 1;
+                    }
+                }
+                let observers = Observers {
+                    variation: Some(&mut blocks),
+                    ..Observers::default()
+                };
+                events += event_loop.run(&mut system, &mut state, observers).unwrap().events;
+                let states = z.len();
+                for j in 0..states {
+                    let mut moved = |step: f64| {
+                        let mut z = z.clone();
+                        z[j] += step;
+                        after(&mut event_loop, &mut system, &z).0
+                    };
+                    let h = 2e-6;
+                    let (up, down) = (moved(h), moved(-h));
+                    for i in 0..states {
+                        let difference = (up[i] - down[i]) / (2.0 * h);
+                        let exact = blocks.list[0].columns[j * states + i];
+                        worst = worst.max((exact - difference).norm());
+                    }
+                }
+            }
+            println!("{name}: {worst:.1e} after {events} events");
+            assert!(worst < 1e-5, "{name}: {worst:.1e}");
+        }
+    }
+}

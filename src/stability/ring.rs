@@ -1,0 +1,214 @@
+//! The matrices of a block of perturbations: m sectors closed to a ring with the factor c.
+//!
+//! Between the sectors s and s′ of the ring lies A_{ss′} = 1/m Σ_δ A(δ) e^{−2πi(s − s′)δ/N}, the sum over the diameters
+//! δ of the block. A relative motion that reaches over the end of the ring has the factor c there.
+
+use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::factor::Factor;
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::sector_motion::SectorMotion;
+use crate::model::structure::{MatrixKind, Structure};
+use crate::stability::closure::Closure;
+use crate::time_integration::System;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the equations of perturbations";
+
+/// Entries of a sum over diameters below this share of the largest are rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// Row of a relative motion: entries (degree of freedom of the ring, coefficient).
+pub(super) type Row = [Option<(usize, Complex64)>; 6];
+
+/// r·x
+pub(super) fn along(row: &Row, x: &[Complex64]) -> Complex64 {
+    row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
+}
+
+/// f −= rᴴ g
+pub(super) fn pull(row: &Row, g: Complex64, f: &mut [Complex64]) {
+    for &(dof, a) in row.iter().flatten() {
+        f[dof] -= a.conj() * g;
+    }
+}
+
+/// An element of the ring.
+pub(super) struct RingElement {
+    /// Number of the element in the structure in time.
+    pub source: usize,
+    pub rows: Vec<Row>,
+    /// Number of its slider among those of the ring.
+    pub slider: Option<usize>,
+    /// Whether its law has no events.
+    pub smooth: bool,
+}
+
+/// Factors of the mass matrix of a ring.
+enum MassFactor {
+    /// 1/mᵢᵢ of a diagonal one.
+    Diagonal(Vec<Complex64>),
+    General(Box<Factor>),
+}
+
+/// A block of perturbations.
+pub(super) struct Ring {
+    pub closure: Closure,
+    /// Degrees of freedom of all its sectors.
+    pub order: usize,
+    pub mass: Csc,
+    mass_factor: MassFactor,
+    pub damping: Csc,
+    pub stiffness: Csc,
+    pub elements: Vec<RingElement>,
+    /// Number of sliders.
+    pub sliders: usize,
+}
+
+impl Ring {
+    pub fn new(structure: &Structure, system: &System<'_>, closure: Closure) -> Result<Self> {
+        let interrupt = system.interrupt;
+        let order = structure.ndof() * closure.sectors;
+        let mass = matrix(structure, MatrixKind::Mass, &closure)?;
+        let mut stiffness = matrix(structure, MatrixKind::Stiffness, &closure)?;
+        let mut elements = Vec::new();
+        let mut sliders = 0;
+        for (source, element) in system.elements.iter().enumerate() {
+            if element.sector >= closure.sectors {
+                continue;
+            }
+            let mut rows = Vec::new();
+            for motion in &element.motions {
+                try_push(&mut rows, row(structure, motion, element.sector, &closure), CONTEXT)?;
+            }
+            let slider = element.slider().map(|_| sliders);
+            sliders += usize::from(slider.is_some());
+            try_push(
+                &mut elements,
+                RingElement {
+                    source,
+                    rows,
+                    slider,
+                    smooth: element.smooth().is_some(),
+                },
+                CONTEXT,
+            )?;
+        }
+        let mut entries = Vec::new();
+        for spring in system.springs.iter().filter(|s| s.sector < closure.sectors) {
+            let row = row(structure, &spring.motion, spring.sector, &closure);
+            for &(i, a) in row.iter().flatten() {
+                for &(j, b) in row.iter().flatten() {
+                    try_push(&mut entries, (i, j, spring.stiffness * a.conj() * b), CONTEXT)?;
+                }
+            }
+        }
+        if !entries.is_empty() {
+            let springs = Csc::from_triplets(order, order, entries)?;
+            let one = Complex64::ONE;
+            stiffness = Csc::sum(order, &[(one, &stiffness, Form::Plain), (one, &springs, Form::Plain)])?;
+        }
+        Ok(Self {
+            closure,
+            order,
+            mass_factor: factored(&mass, interrupt)?,
+            mass,
+            damping: matrix(structure, MatrixKind::Damping, &closure)?,
+            stiffness,
+            elements,
+            sliders,
+        })
+    }
+
+    /// a ← M⁻¹ a
+    pub fn accelerate(&mut self, a: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
+        match &mut self.mass_factor {
+            MassFactor::Diagonal(inverse) => {
+                for (a, m) in a.iter_mut().zip(inverse) {
+                    *a *= *m;
+                }
+                Ok(())
+            }
+            MassFactor::General(factor) => factor.solve(a, false, interrupt),
+        }
+    }
+
+    /// Number of states of a perturbation: displacements, velocities and sliders.
+    pub fn states(&self) -> usize {
+        2 * self.order + self.sliders
+    }
+}
+
+fn factored(mass: &Csc, interrupt: &Interrupt<'_>) -> Result<MassFactor> {
+    if (0..mass.cols).all(|j| mass.column(j).all(|(i, v)| i == j || v == Complex64::ZERO)) {
+        // The structure in time has refused degrees of freedom without mass.
+        let mut inverse = try_vec(mass.cols, Complex64::ZERO, CONTEXT)?;
+        for (i, d) in inverse.iter_mut().enumerate() {
+            *d = (1.0 / mass.get(i, i).re).into();
+        }
+        return Ok(MassFactor::Diagonal(inverse));
+    }
+    let mut factor = Box::new(Factor::new(mass, 1)?);
+    match factor.factor(mass, interrupt) {
+        Ok(()) => Ok(MassFactor::General(factor)),
+        Err(e) if e.status == Status::Singular => fail!(
+            Unsupported,
+            "the mass matrix is singular: some motion in time has no differential equation; give it mass"
+        ),
+        Err(e) => Err(e),
+    }
+}
+
+/// M, C or K of the ring.
+fn matrix(structure: &Structure, which: MatrixKind, closure: &Closure) -> Result<Csc> {
+    let (ndof, sectors) = (structure.ndof(), closure.sectors);
+    let count = structure.sectors() / sectors;
+    let mut waves = Vec::new();
+    for d in 0..sectors {
+        let diameter = d * count + closure.index;
+        try_push(&mut waves, structure.diameter_matrix(which, diameter)?, CONTEXT)?;
+    }
+    let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
+    let share = 1.0 / sectors as f64;
+    let mut entries = Vec::new();
+    for offset in 1 - sectors as i64..sectors as i64 {
+        let mut terms = Vec::new();
+        for (d, a) in waves.iter().enumerate() {
+            let turn = structure.wave_phase(d * count + closure.index, -offset);
+            try_push(&mut terms, (share * turn, a, Form::Plain), CONTEXT)?;
+        }
+        let block = Csc::sum(ndof, &terms)?;
+        for j in 0..ndof {
+            for (i, mut v) in block.column(j) {
+                if v.im.abs() <= ROUNDING * largest {
+                    v.im = 0.0;
+                }
+                if v.norm() <= ROUNDING * largest {
+                    continue;
+                }
+                for s in 0..sectors as i64 {
+                    let to = s + offset;
+                    if (0..sectors as i64).contains(&to) {
+                        let entry = (s as usize * ndof + i, to as usize * ndof + j, v);
+                        try_push(&mut entries, entry, CONTEXT)?;
+                    }
+                }
+            }
+        }
+    }
+    Csc::from_triplets(ndof * sectors, ndof * sectors, entries)
+}
+
+/// Row of a relative motion whose side a lies in sector `s`.
+fn row(structure: &Structure, motion: &SectorMotion, s: usize, closure: &Closure) -> Row {
+    let (ndof, all) = (structure.ndof(), structure.sectors() as i64);
+    let place = |dof: usize, offset: i64| (s as i64 + offset).rem_euclid(all) as usize * ndof + dof;
+    motion.ring_row(place).map(|term| {
+        term.map(|(dof, a)| {
+            let (sector, within) = (dof / ndof, dof % ndof);
+            let turns = sector / closure.sectors;
+            let place = sector % closure.sectors * ndof + within;
+            (place, a * closure.factor(structure, turns))
+        })
+    })
+}

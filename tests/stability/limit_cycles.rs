@@ -1,0 +1,121 @@
+//! Limit cycles on nonlinear modes are found where the damping ratio is zero, are motions in time, and have one trivial
+//! multiplier.
+
+use crate::common::mode_cases::follow;
+use crate::common::{BASE, harmonics};
+use crate::{multipliers, of_class, ordinary};
+use hbvib::MultiplierClass;
+use hbvib::contact::Contact;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{ModeChoice, ModeOptions, Waves};
+use hbvib::results::Branch;
+use num_complex::Complex64;
+
+/// Two masses, the first with negative damping, and friction between them.
+fn two_masses() -> Model {
+    let mut model = Model::new(2).unwrap();
+    for (kind, a) in [
+        (MatrixKind::Mass, [1.0, 0.0, 0.0, 0.5]),
+        (MatrixKind::Damping, [-0.02, 0.0, 0.0, 0.01]),
+        (MatrixKind::Stiffness, [1.1, -0.1, -0.1, 0.5]),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
+    }
+    model.add_contact(&Contact::jenkins(0, Some(1), 0.5, 0.5, 0.2)).unwrap();
+    model
+}
+
+fn amplitudes(branch: &Branch, point: usize) -> [f64; 2] {
+    let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * 2];
+    branch.harmonics_at(point, &mut x).unwrap();
+    [x[2].norm(), x[3].norm()]
+}
+
+#[test]
+fn friction_limits_the_flutter_of_two_masses() {
+    let model = two_masses();
+    let range = ModeOptions {
+        log10_start: -2.0,
+        log10_stop: 2.0,
+        ..ModeOptions::default()
+    };
+    let branch = follow(&model, &harmonics(31), &range);
+    let cycles = branch.limit_cycles().unwrap();
+    for cycle in &cycles {
+        let found = multipliers(&model, &branch, cycle.point, Waves::Wave);
+        println!(
+            "{cycle:?} {:?} omega {} unstable {} {:.1e} {:?}",
+            amplitudes(&branch, cycle.point),
+            found.omega,
+            found.unstable,
+            found.residual,
+            found.multipliers
+        );
+        assert_eq!(of_class(&found, MultiplierClass::Trivial).len(), 1);
+        assert!(found.residual <= 1e-12);
+        assert!(cycle.slope > 0.0 || found.unstable > 0);
+    }
+    let inner = cycles.iter().find(|c| (c.omega - 0.963_164).abs() < 1e-4).unwrap();
+    let found = multipliers(&model, &branch, inner.point, Waves::Wave);
+    assert!((found.omega - 0.963_164_341_122_1).abs() < 1e-9);
+    let x = amplitudes(&branch, inner.point);
+    assert!((x[0] - 2.089_761_496_4).abs() < 1e-4 && (x[1] - 2.422_198_189_5).abs() < 1e-4);
+    for (mu, expected) in ordinary(&found).iter().zip([0.859_662_769_5, 0.451_781_811_5]) {
+        assert!((mu - expected).norm() < 1e-7, "{mu}");
+    }
+    assert_eq!(found.unstable, 0);
+}
+
+/// On the second mode, free of friction at large motions, the damping is negative again: beyond this cycle nothing limits
+/// the motion.
+#[test]
+fn the_outer_limit_cycle_of_two_masses_is_unstable() {
+    let model = two_masses();
+    let range = ModeOptions {
+        choice: ModeChoice::Index(1),
+        log10_start: -2.0,
+        log10_stop: 2.0,
+        ..ModeOptions::default()
+    };
+    let branch = follow(&model, &harmonics(31), &range);
+    let cycles = branch.limit_cycles().unwrap();
+    let outer = cycles.last().unwrap();
+    let found = multipliers(&model, &branch, outer.point, Waves::Wave);
+    println!(
+        "{cycles:?} {:?} omega {:.12} {:?}",
+        amplitudes(&branch, outer.point),
+        found.omega,
+        found.multipliers
+    );
+    assert!(outer.slope < 0.0 && found.unstable > 0 && found.residual <= 1e-12);
+}
+
+#[test]
+fn the_ring_damper_flutters_in_a_wave() {
+    const ALPHA: f64 = 7.0;
+    let mut model = BASE.sector();
+    model.set_rayleigh(-ALPHA, 1.5e-6).unwrap();
+    model.clear_forces();
+    let range = ModeOptions {
+        diameter: Some(2),
+        log10_start: -6.0,
+        log10_stop: -1.0,
+        ..ModeOptions::default()
+    };
+    let branch = follow(&model, &harmonics(31), &range);
+    let cycles = branch.limit_cycles().unwrap();
+    for cycle in &cycles {
+        for waves in [Waves::Wave, Waves::Wheel] {
+            let found = multipliers(&model, &branch, cycle.point, waves);
+            println!(
+                "{cycle:?} {waves:?}: omega {}, radius {}, {} unstable, {} neutral, residual {:.1e}, change {:.1e}",
+                found.omega, found.radius, found.unstable, found.neutral, found.residual, found.orbit_change
+            );
+            assert_eq!(of_class(&found, MultiplierClass::Trivial).len(), 1);
+            assert!(found.residual <= 1e-12);
+        }
+    }
+    assert_eq!(cycles.len(), 2);
+}

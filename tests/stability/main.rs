@@ -1,0 +1,42 @@
+//! Floquet multipliers of periodic motions.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bifurcations;
+mod floquet_classes;
+mod floquet_references;
+mod floquet_wheel;
+mod limit_cycles;
+
+use hbvib::analysis::floquet;
+use hbvib::hooks::Hooks;
+use hbvib::model::Model;
+use hbvib::options::{FloquetOptions, Waves};
+use hbvib::results::Branch;
+use hbvib::{Floquet, MultiplierClass};
+use num_complex::Complex64;
+
+/// Multipliers of a point after shooting.
+pub(crate) fn multipliers(model: &Model, branch: &Branch, point: usize, waves: Waves) -> Floquet {
+    let options = FloquetOptions {
+        waves,
+        ..FloquetOptions::default()
+    };
+    floquet(model, branch, point, &options, &mut Hooks::default()).unwrap()
+}
+
+/// The ordinary ones.
+pub(crate) fn ordinary(found: &Floquet) -> Vec<Complex64> {
+    of_class(found, MultiplierClass::Ordinary)
+}
+
+/// Those of a class.
+pub(crate) fn of_class(found: &Floquet, class: MultiplierClass) -> Vec<Complex64> {
+    found
+        .multipliers
+        .iter()
+        .filter(|m| m.class == class)
+        .map(|m| m.value)
+        .collect()
+}
