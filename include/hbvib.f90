@@ -43,9 +43,10 @@ module hbvib
    ! hbvib_scalar
    integer(c_int32_t), parameter, public :: HBVIB_REAL = 0, HBVIB_COMPLEX = 1
    ! hbvib_part
-   integer(c_int32_t), parameter, public :: HBVIB_FULL = 0, HBVIB_LOWER = 1, HBVIB_UPPER = 2, HBVIB_GENERAL = 3
+   integer(c_int32_t), parameter, public :: HBVIB_FULL = 0, HBVIB_LOWER = 1, HBVIB_UPPER = 2, HBVIB_GENERAL = 3, &
+      HBVIB_SYMMETRIC = 4, HBVIB_SYMMETRIC_LOWER = 5, HBVIB_SYMMETRIC_UPPER = 6
    ! hbvib_matrix_kind
-   integer(c_int32_t), parameter, public :: HBVIB_MASS = 0, HBVIB_DAMPING = 1, HBVIB_STIFFNESS = 2
+   integer(c_int32_t), parameter, public :: HBVIB_MASS = 0, HBVIB_DAMPING = 1, HBVIB_STIFFNESS = 2, HBVIB_STRUCTURAL = 3
    ! hbvib_special_dof
    integer(c_int32_t), parameter, public :: HBVIB_GROUND = -1
    ! hbvib_sector_frame
@@ -444,6 +445,21 @@ module hbvib
          type(c_ptr), value :: model
          integer(c_int32_t) :: status
       end function hbvib_model_clear_forces
+
+      function hbvib_model_set_loss_factor(model, loss_factor) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         real(c_double), value :: loss_factor
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_loss_factor
+
+      function hbvib_model_set_modal_damping(model, n, ratios) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: n
+         real(c_double), intent(in) :: ratios(*)
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_modal_damping
 
       function hbvib_cyclic_new(ndof_sector, sectors, out) bind(c) result(status)
          import
@@ -1143,6 +1159,8 @@ module hbvib
       generic :: set_coupling => couple_real, couple_complex, couple_sparse_real, couple_sparse_complex, couple_struct
       generic :: add_force => add_force_real, add_force_complex
       procedure :: set_rayleigh => model_set_rayleigh
+      procedure :: set_loss_factor => model_set_loss_factor
+      procedure :: set_modal_damping => model_set_modal_damping
       procedure :: set_wave => model_set_wave
       procedure :: clear_forces => model_clear_forces
       procedure :: add_contact => model_add_contact
@@ -1210,6 +1228,7 @@ module hbvib
    private :: model_sectors, model_contacts, dense, address, dense_real, dense_complex, sparse, set, couple, set_real
    private :: set_sparse_real, couple_real, couple_sparse_real, set_complex, set_sparse_complex, couple_complex
    private :: couple_sparse_complex, set_struct, couple_struct, model_set_rayleigh, model_set_wave, add_force_complex
+   private :: model_set_loss_factor, model_set_modal_damping
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
@@ -1797,6 +1816,22 @@ contains
       integer(i32) :: status
       status = hbvib_model_set_rayleigh(self%handle, alpha_mass, beta_stiffness)
    end function model_set_rayleigh
+
+   !> Structural damping i loss_factor K of the structure's own stiffness in harmonics above 0.
+   function model_set_loss_factor(self, loss_factor) result(status)
+      class(hbvib_model), intent(inout) :: self
+      real(dp), intent(in) :: loss_factor
+      integer(i32) :: status
+      status = hbvib_model_set_loss_factor(self%handle, loss_factor)
+   end function model_set_loss_factor
+
+   !> Damping ratios of the lowest natural modes without contacts; an empty array removes them.
+   function model_set_modal_damping(self, ratios) result(status)
+      class(hbvib_model), intent(inout) :: self
+      real(dp), intent(in), contiguous :: ratios(:)
+      integer(i32) :: status
+      status = hbvib_model_set_modal_damping(self%handle, size(ratios, kind=i64), ratios)
+   end function model_set_modal_damping
 
    !> Engine order of the excitation.
    function model_set_wave(self, engine_order) result(status)

@@ -233,6 +233,12 @@ typedef enum {
   HBVIB_UPPER = 2,
   /// All of any matrix.
   HBVIB_GENERAL = 3,
+  /// All of a matrix with A = A^T, real or complex; the symmetry is checked.
+  HBVIB_SYMMETRIC = 4,
+  /// The lower triangle of a matrix with A = A^T, real or complex; the upper one is not read.
+  HBVIB_SYMMETRIC_LOWER = 5,
+  /// The upper triangle of a matrix with A = A^T, real or complex; the lower one is not read.
+  HBVIB_SYMMETRIC_UPPER = 6,
 } hbvib_part;
 
 /// A matrix of the caller, read during the call and never kept. Fill it by hbvib_matrix_init.
@@ -243,7 +249,7 @@ typedef struct {
   int32_t storage;
   /// HBVIB_REAL or HBVIB_COMPLEX.
   int32_t scalar;
-  /// HBVIB_FULL, HBVIB_LOWER, HBVIB_UPPER or HBVIB_GENERAL.
+  /// HBVIB_FULL .. HBVIB_SYMMETRIC_UPPER.
   int32_t part;
   /// Number of rows.
   int64_t rows;
@@ -280,6 +286,8 @@ typedef enum {
   HBVIB_DAMPING = 1,
   /// K
   HBVIB_STIFFNESS = 2,
+  /// D of the structural damping iD in harmonics above 0; positive dissipates.
+  HBVIB_STRUCTURAL = 3,
 } hbvib_matrix_kind;
 
 /* ==============================================================================================
@@ -331,11 +339,12 @@ int64_t hbvib_model_sectors(const hbvib_model *model);
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed). Threads: any number on one model.
 int64_t hbvib_model_contacts(const hbvib_model *model);
 
-/// Sets the mass, damping or stiffness matrix of a structure, or of a sector on itself.
+/// Sets a matrix of a structure, or of a sector on itself.
 ///
-/// which  HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
-/// a      ndof x ndof. M must be symmetric or Hermitian; C and K may be HBVIB_GENERAL. Complex
-///        entries act on all harmonics above zero, the mean sees their real part.
+/// which  HBVIB_MASS, HBVIB_DAMPING, HBVIB_STIFFNESS or HBVIB_STRUCTURAL.
+/// a      ndof x ndof. M must be symmetric or Hermitian; the others may be HBVIB_GENERAL or
+///        HBVIB_SYMMETRIC. Complex entries act on all harmonics above zero, the mean sees their
+///        real part, and no structural damping.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_NOT_HERMITIAN, HBVIB_E_INDEX, each naming the entry;
 /// HBVIB_E_DIMENSION, HBVIB_E_ARGUMENT, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_NOT_POSITIVE_DEFINITE (negative diagonal mass), HBVIB_E_OUT_OF_MEMORY.
@@ -398,6 +407,30 @@ hbvib_status hbvib_model_add_force(hbvib_model *model,
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
 hbvib_status hbvib_model_clear_forces(hbvib_model *model);
 
+/// Sets the loss factor eta of structural damping i eta K in harmonics above 0; a later call
+/// replaces an earlier one, 0 removes it. K is the stiffness of the structure, couplings and
+/// matrices per nodal diameter included, springs and contacts not. A structure without contacts
+/// has the damping ratio eta / 2 at each resonance. Structural damping has no meaning in time:
+/// integration and verification refuse it.
+///
+/// loss_factor  at least 0.
+/// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_ARGUMENT, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_set_loss_factor(hbvib_model *model, double loss_factor);
+
+/// Damps the lowest natural modes of each nodal diameter by given ratios, as the viscous matrix sum
+/// of 2 ratio omega (M phi)(M phi)^H; other motions are not damped. The modes are those without
+/// contacts, with springs. A later call replaces an earlier one, n = 0 removes the damping. Call it
+/// when mass, stiffness, springs and fixed degrees of freedom are complete.
+///
+/// n       number of modes, 0 .. ndof.
+/// ratios  damping ratio of each mode in the order of rising frequency, at least 0; n numbers.
+/// Errors: HBVIB_E_DIMENSION (n), HBVIB_E_NOT_FINITE or HBVIB_E_ARGUMENT (ratios),
+/// HBVIB_E_UNSUPPORTED (more than 2000 degrees of freedom), those of hbvib_linear_modes, after all
+/// of which the model is unchanged; HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_set_modal_damping(hbvib_model *model, int64_t n, const double *ratios);
+
 /* ==============================================================================================
  * Cyclic structures: sectors, their faces and couplings, nodal diameters, engine order
  * ============================================================================================== */
@@ -415,7 +448,7 @@ hbvib_status hbvib_cyclic_new(int64_t ndof_sector, int64_t sectors, hbvib_model 
 /// Sets the coupling of a sector to the next one: rows of sector s, columns of s + 1. The coupling
 /// to the previous sector is its transpose unless hbvib_cyclic_set_coupling_previous is called.
 ///
-/// which    HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which    HBVIB_MASS, HBVIB_DAMPING, HBVIB_STIFFNESS or HBVIB_STRUCTURAL.
 /// to_next  ndof x ndof, any matrix: `part` is no promise of symmetry here; a triangle is completed
 ///          by its mirror image.
 /// Where sector s + 1 lags by phi, harmonic p has the matrix A0 + A1 exp(-i p phi) + A1^T exp(i p
@@ -429,7 +462,7 @@ hbvib_status hbvib_cyclic_set_coupling(hbvib_model *model,
 /// Sets the coupling of a sector (rows) to the previous one (columns), for damping and stiffness
 /// without symmetry.
 ///
-/// which        HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which        HBVIB_DAMPING, HBVIB_STIFFNESS or HBVIB_STRUCTURAL.
 /// to_previous  ndof x ndof, any matrix.
 /// Errors: as hbvib_cyclic_set_coupling; HBVIB_E_UNSUPPORTED for the mass.
 /// Threads: one at a time per model.
@@ -441,9 +474,9 @@ hbvib_status hbvib_cyclic_set_coupling_previous(hbvib_model *model,
 /// blocks. Waves in the other direction have its conjugate. A solve that needs a harmonic without a
 /// matrix of its nodal diameter is refused.
 ///
-/// which     HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which     HBVIB_MASS, HBVIB_DAMPING, HBVIB_STIFFNESS or HBVIB_STRUCTURAL.
 /// diameter  nodal diameter, 0 .. N/2.
-/// a         ndof x ndof, Hermitian; C and K may be HBVIB_GENERAL.
+/// a         ndof x ndof, Hermitian; all but M may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
 /// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter out of range and for
 /// matrices that were given by sector blocks. Threads: one at a time per model.
 hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model,

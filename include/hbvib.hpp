@@ -479,7 +479,7 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
   template <class S, class = decltype(std::declval<const S&>().outerIndexPtr()), class = void,
             class = std::enable_if_t<!S::IsRowMajor>>
   Matrix(const S& s) : Matrix(csc(s.rows(), s.cols(), s.valuePtr(), compressed(s).outerIndexPtr(), s.innerIndexPtr())) {}
-  /// The same matrix with another promise: HBVIB_GENERAL, HBVIB_LOWER, ...
+  /// The same matrix with another promise: HBVIB_GENERAL, HBVIB_SYMMETRIC_LOWER, ...
   Matrix as(hbvib_part given) const {
     Matrix a = *this;
     return a.part = given, a;
@@ -877,6 +877,10 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   /// Fixes degrees of freedom, now or before matrices are set; their numbers stay.
   void fix(In<Index> dofs) { use(hbvib_model_fix, dofs.length(), dofs.data()); }
   void set_rayleigh(double alpha_mass, double beta_stiffness) { use(hbvib_model_set_rayleigh, alpha_mass, beta_stiffness); }
+  /// Structural damping i loss_factor K of the structure's own stiffness in harmonics above 0.
+  void set_loss_factor(double loss_factor) { use(hbvib_model_set_loss_factor, loss_factor); }
+  /// Damping ratios of the lowest natural modes without contacts; {}: none.
+  void set_modal_damping(In<double> ratios) { use(hbvib_model_set_modal_damping, ratios.length(), ratios.data()); }
   void set_coupling(hbvib_matrix_kind which, const Matrix& to_next) { use(hbvib_cyclic_set_coupling, which, &to_next); }
   void set_coupling_previous(hbvib_matrix_kind which, const Matrix& to_previous) {
     use(hbvib_cyclic_set_coupling_previous, which, &to_previous);

@@ -100,6 +100,9 @@ class Part(enum.IntEnum):
     LOWER = 1  #: The lower triangle of a symmetric or Hermitian matrix; the upper one is not read.
     UPPER = 2  #: The upper triangle of a symmetric or Hermitian matrix; the lower one is not read.
     GENERAL = 3  #: All of any matrix.
+    SYMMETRIC = 4  #: All of a matrix with A = A^T, real or complex; the symmetry is checked.
+    SYMMETRIC_LOWER = 5  #: The lower triangle of a matrix with A = A^T, real or complex; the upper one is not read.
+    SYMMETRIC_UPPER = 6  #: The upper triangle of a matrix with A = A^T, real or complex; the lower one is not read.
 
 
 class MatrixKind(enum.IntEnum):
@@ -107,6 +110,7 @@ class MatrixKind(enum.IntEnum):
     MASS = 0  #: M
     DAMPING = 1  #: C
     STIFFNESS = 2  #: K
+    STRUCTURAL = 3  #: D of the structural damping iD in harmonics above 0; positive dissipates.
 
 
 GROUND = -1  #: The ground, which does not move.
@@ -322,6 +326,8 @@ model_set_rayleigh: h d d
 model_add_springs: h l p p p p
 model_add_force: h l l d d
 model_clear_forces: h
+model_set_loss_factor: h d
+model_set_modal_damping: h l p
 cyclic_new: l l p
 cyclic_set_coupling: h i matrix
 cyclic_set_coupling_previous: h i matrix
@@ -422,6 +428,8 @@ if TYPE_CHECKING:
             Any) -> int: ...
         def hbvib_model_add_force(self, model: Any, dof: int, harmonic: int, re: float, im: float) -> int: ...
         def hbvib_model_clear_forces(self, model: Any) -> int: ...
+        def hbvib_model_set_loss_factor(self, model: Any, loss_factor: float) -> int: ...
+        def hbvib_model_set_modal_damping(self, model: Any, n: int, ratios: Any) -> int: ...
         def hbvib_cyclic_new(self, ndof_sector: int, sectors: int, out: Any) -> int: ...
         def hbvib_cyclic_set_coupling(self, model: Any, which: int, to_next: Any) -> int: ...
         def hbvib_cyclic_set_coupling_previous(self, model: Any, which: int, to_previous: Any) -> int: ...
@@ -1269,10 +1277,12 @@ class Model(_Owner):
         return _call("hbvib_model_contacts", self.handle)
 
     def set_matrix(self, which: Any, matrix: Any, part: Any = Part.FULL) -> None:
-        """Sets M, C or K: which is "mass", "damping", "stiffness" or a MatrixKind; matrix is ndof x ndof.
+        """Sets a matrix: which is "mass", "damping", "stiffness", "structural" (D of the structural damping i D in
+        harmonics above 0) or a MatrixKind; matrix is ndof x ndof.
 
         part   "full": symmetric or Hermitian, which is checked; "lower", "upper": that triangle of such a one, the
-               rest is not read; "general": any, for damping and stiffness."""
+               rest is not read; "general": any but the mass; "symmetric", "symmetric_lower", "symmetric_upper": the
+               same for A = A^T, where A may be complex."""
         self._call("hbvib_model_set_matrix", _member(MatrixKind, which), _matrix(matrix, part))
 
     def fix(self, dofs: ArrayLike) -> None:
@@ -1284,6 +1294,17 @@ class Model(_Owner):
     def set_rayleigh(self, alpha_mass: float, beta_stiffness: float) -> None:
         """Adds alpha_mass M + beta_stiffness K to the damping (1 / time, time); replaces an earlier call."""
         self._call("hbvib_model_set_rayleigh", alpha_mass, beta_stiffness)
+
+    def set_loss_factor(self, loss_factor: float) -> None:
+        """Structural damping i loss_factor K of the structure's own stiffness in harmonics above 0; replaces an
+        earlier call."""
+        self._call("hbvib_model_set_loss_factor", loss_factor)
+
+    def set_modal_damping(self, ratios: ArrayLike) -> None:
+        """Damping ratios of the lowest natural modes without contacts, in the order of rising frequency, of each
+        nodal diameter; call it when matrices, springs and fixed degrees of freedom are complete. []: none."""
+        given = _array("ratios", ratios, np.float64).ravel()
+        self._call("hbvib_model_set_modal_damping", given.size, given)
 
     def set_coupling(self, which: Any, to_next: Any) -> None:
         """Coupling of a sector (rows) to the next (columns), ndof x ndof; its transpose couples to the previous."""

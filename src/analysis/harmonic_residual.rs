@@ -206,6 +206,7 @@ impl Dynamic {
         let n = structure.ndof();
         let k = model.sprung_stiffness(Wave::Harmonic(h), core::iter::empty())?;
         let c = structure.wave_matrix(MatrixKind::Damping, h)?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
         let m = structure.wave_matrix(MatrixKind::Mass, h)?;
         let h = h as f64;
         let hw = h * omega;
@@ -216,6 +217,7 @@ impl Dynamic {
                 &[
                     (Complex64::ONE, &k, plain),
                     (Complex64::new(0.0, hw), &c, plain),
+                    (Complex64::I, &structural, plain),
                     ((-hw * hw).into(), &m, plain),
                 ],
             )?,

@@ -121,15 +121,15 @@ pub fn synthesise_with(
     if force.iter().all(|f| *f == Complex64::ZERO) {
         return fail!(Argument, "the model has no force in the fundamental");
     }
-    let damping = if options.model_damping {
-        Some(model.structure().wave_matrix(MatrixKind::Damping, 1)?)
-    } else {
-        None
+    let of_model = |kind| {
+        let matrix = || model.structure().wave_matrix(kind, 1);
+        options.model_damping.then(matrix).transpose()
     };
     let fundamental = branch.condensed_at(0);
     let load = Load {
         force,
-        damping,
+        damping: of_model(MatrixKind::Damping)?,
+        structural: of_model(MatrixKind::Structural)?,
         ratio: options.damping_ratio,
         response: fundamental.motion_row(fundamental.set().fundamental(), branch.response_dof()),
     };

@@ -28,10 +28,12 @@ pub struct HarmonicBlock {
     pub number: usize,
     /// Motion of the next sector over that of this one.
     pub next: Complex64,
-    /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
+    /// K_h with springs, contacts that never slip, structural damping iD_h, and Wᴴ κ W; its pattern holds C and M too.
     pub reference: Csc,
-    /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
+    /// K_h with springs and contacts that never slip, without iD_h and Wᴴ κ W, at the entries of the pattern.
     pub stiffness: Vec<Complex64>,
+    /// D_h of the structural damping iD_h, ηK_h included, at the entries of the pattern; `None` without such damping.
+    pub structural: Option<Vec<Complex64>>,
     /// C_h at the entries of the pattern.
     pub damping: Vec<Complex64>,
     /// M_h at the entries of the pattern.
@@ -83,6 +85,7 @@ pub(super) fn harmonic_block(
     let rows = rows_of(representatives)?;
     interrupt.check()?;
     let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
+    let structural = structure.wave_matrix(MatrixKind::Structural, number)?;
     interrupt.check()?;
     let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
     let mut references = Vec::new();
@@ -102,6 +105,7 @@ pub(super) fn harmonic_block(
         &[
             (one, &stiffness, Form::Plain),
             (one, &references, Form::Plain),
+            (Complex64::I, &structural, Form::Plain),
             (zero, &damping, Form::Plain),
             (zero, &mass, Form::Plain),
         ],
@@ -113,6 +117,11 @@ pub(super) fn harmonic_block(
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
         stiffness: stiffness.aligned(&reference)?,
+        structural: if structural.is_empty() {
+            None
+        } else {
+            Some(structural.aligned(&reference)?)
+        },
         reference,
         artificial: Artificial::None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,

@@ -70,8 +70,8 @@ impl Structure {
         i128::from(offset).rem_euclid(self.sectors() as i128) == 0
     }
 
-    /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh damping; the mean has the real
-    /// part of complex matrices.
+    /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh and modal damping, the structural
+    /// matrix ηK; the mean has the real part of complex matrices, and no structural damping.
     ///
     /// # Errors
     /// `Argument` when the nodal diameter of the harmonic was not given; `OutOfMemory`.
@@ -88,21 +88,52 @@ impl Structure {
     }
 
     fn residue_matrix(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {
+        let (of_mass, of_stiffness) = match which {
+            MatrixKind::Damping => self.rayleigh,
+            // No stress follows a mean strain by a phase.
+            MatrixKind::Structural if real => return Csc::sum(self.ndof(), &[]),
+            MatrixKind::Structural => (0.0, self.loss_factor),
+            MatrixKind::Mass | MatrixKind::Stiffness => (0.0, 0.0),
+        };
+        let modal = match which {
+            MatrixKind::Damping => self.modal_damping_of(residue, real)?,
+            _ => None,
+        };
         let given = self.given(which, residue, real)?;
-        let (alpha, beta) = self.rayleigh;
-        if which != MatrixKind::Damping || (alpha == 0.0 && beta == 0.0) {
+        if of_mass == 0.0 && of_stiffness == 0.0 && modal.is_none() {
             return Ok(given);
         }
-        let mass = self.given(MatrixKind::Mass, residue, real)?;
-        let stiffness = self.given(MatrixKind::Stiffness, residue, real)?;
-        Csc::sum(
-            self.ndof(),
-            &[
-                (Complex64::ONE, &given, Form::Plain),
-                (alpha.into(), &mass, Form::Plain),
-                (beta.into(), &stiffness, Form::Plain),
-            ],
-        )
+        let mut terms = Vec::with_capacity(4);
+        terms.push((Complex64::ONE, &given, Form::Plain));
+        let (mass, stiffness);
+        if of_mass != 0.0 {
+            mass = self.given(MatrixKind::Mass, residue, real)?;
+            terms.push((of_mass.into(), &mass, Form::Plain));
+        }
+        if of_stiffness != 0.0 {
+            stiffness = self.given(MatrixKind::Stiffness, residue, real)?;
+            terms.push((of_stiffness.into(), &stiffness, Form::Plain));
+        }
+        if let Some(modal) = &modal {
+            terms.push((Complex64::ONE, modal, Form::Plain));
+        }
+        Csc::sum(self.ndof(), &terms)
+    }
+
+    /// The matrix of the modal damping; `None` without such damping, or without modes of this diameter.
+    fn modal_damping_of(&self, residue: usize, real: bool) -> Result<Option<Csc>> {
+        let (diameter, backward) = self.fold(residue as i64);
+        let Some(Some(matrix)) = self.modal_damping.get(diameter) else {
+            return Ok(None);
+        };
+        let form = if backward { Form::Conjugated } else { Form::Plain };
+        let mut matrix = Csc::sum(self.ndof(), &[(Complex64::ONE, matrix, form)])?;
+        if real {
+            for v in &mut matrix.values {
+                v.im = 0.0;
+            }
+        }
+        Ok(Some(matrix))
     }
 
     fn given(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {

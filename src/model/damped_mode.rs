@@ -1,7 +1,7 @@
 //! The linear mode, with stuck contacts, of a damped structure that artificial damping keeps periodic.
 //!
 //! Real ω and D and a complex shape x solve (K + iωC − ω²(1 + 2iD) M) x = 0, or (K − 2iD Kₛ + iωC − ω² M) x = 0
-//! with Kₛ the structure's own stiffness. One complex equation determines the two real unknowns. The method is
+//! with Kₛ the structure's own stiffness; structural damping is a part of K. One complex equation determines the two real unknowns. The method is
 //! inverse iteration on a problem that is nonlinear in its eigenvalue (Neumaier 1985, doi:10.1137/0722055).
 
 use crate::error::{Result, fail, try_copy, try_vec};
@@ -91,9 +91,17 @@ impl Model {
             );
         }
         let structure = self.structure();
+        let stuck = self.stiffness_at_small_motion(Wave::Harmonic(1), ContactState::Stuck)?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, 1)?;
         let problem = Damped {
             form,
-            stiffness: self.stiffness_at_small_motion(Wave::Harmonic(1), ContactState::Stuck)?,
+            stiffness: Csc::sum(
+                n,
+                &[
+                    (Complex64::ONE, &stuck, Form::Plain),
+                    (Complex64::I, &structural, Form::Plain),
+                ],
+            )?,
             own: structure.wave_matrix(MatrixKind::Stiffness, 1)?,
             damping: structure.wave_matrix(MatrixKind::Damping, 1)?,
             mass: structure.wave_matrix(MatrixKind::Mass, 1)?,

@@ -32,14 +32,15 @@ impl Structure {
     }
 
     /// M, C or K of [`Self::repeating_sectors`] sectors closed to a ring, sector after sector; the damping includes
-    /// Rayleigh damping.
+    /// Rayleigh and modal damping.
     ///
     /// # Errors
     /// `Unsupported` for complex matrices, which have no meaning in time; `Argument` when a nodal diameter was not
     /// given; `OutOfMemory`.
     pub fn unrolled(&self, which: MatrixKind) -> Result<Csc> {
         let (alpha, beta) = self.rayleigh;
-        let own = if self.blocks[which as usize].diameters.is_empty() {
+        let is_modal = which == MatrixKind::Damping && !self.modal_damping.is_empty();
+        let own = if self.blocks[which as usize].diameters.is_empty() && !is_modal {
             let given = self.sectors_around(which)?;
             if which == MatrixKind::Damping && (alpha, beta) != (0.0, 0.0) {
                 let mass = self.unrolled(MatrixKind::Mass)?;

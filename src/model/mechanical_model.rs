@@ -120,8 +120,8 @@ impl Model {
         })
     }
 
-    /// Sets the mass, damping or stiffness matrix (of the sector itself), ndof × ndof. M must be symmetric or
-    /// Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
+    /// Sets the mass, damping, stiffness or structural matrix (of the sector itself), ndof × ndof. M must be symmetric or
+    /// Hermitian; the others may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
     /// on all harmonics above zero; the mean has the real part.
     ///
     /// # Errors
@@ -136,6 +136,15 @@ impl Model {
     /// `NotFinite`.
     pub fn set_rayleigh(&mut self, alpha_mass: f64, beta_stiffness: f64) -> Result<()> {
         self.structure.set_rayleigh(alpha_mass, beta_stiffness)
+    }
+
+    /// Sets the loss factor η of structural damping iηK in all harmonics above 0: K is the stiffness of the structure,
+    /// couplings and matrices per diameter included, springs and contacts not. 0 removes it.
+    ///
+    /// # Errors
+    /// `NotFinite`; `Argument` if it is negative.
+    pub fn set_loss_factor(&mut self, loss_factor: f64) -> Result<()> {
+        self.structure.set_loss_factor(loss_factor)
     }
 
     /// Sets the coupling of a cyclic model's sector (rows) to the next one (columns). The coupling
@@ -326,6 +335,11 @@ impl Model {
     #[must_use]
     pub fn structure(&self) -> &Structure {
         &self.structure
+    }
+
+    /// The same, for the parts of a model.
+    pub(super) fn structure_mut(&mut self) -> &mut Structure {
+        &mut self.structure
     }
 
     /// The contacts in the order in which they were added.

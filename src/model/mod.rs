@@ -9,6 +9,7 @@ mod face_coordinates;
 pub mod full_wheel;
 pub mod linear_modes;
 mod mechanical_model;
+mod modal_damping;
 pub mod mode_selection;
 mod model_checks;
 mod part_of_turn;

@@ -115,7 +115,12 @@ impl Model {
         let structure = self.structure();
         let stiffness = self.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
         let mass = structure.wave_matrix(MatrixKind::Mass, h)?;
-        let (hermitian, skew) = parts(&stiffness)?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
+        let terms = [
+            (Complex64::ONE, &stiffness, Form::Plain),
+            (Complex64::I, &structural, Form::Plain),
+        ];
+        let (hermitian, skew) = parts(&Csc::sum(mass.rows, &terms)?)?;
         let number = h as f64;
         let Some(modes) = modes_up_to(&hermitian, &mass, high * number, interrupt)? else {
             return Ok(None);

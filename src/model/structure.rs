@@ -3,7 +3,7 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse::{Csc, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use crate::model::sector_faces::{Faces, SectorDescription};
@@ -24,7 +24,12 @@ pub enum MatrixKind {
     Damping = 1,
     /// K
     Stiffness = 2,
+    /// D of the structural damping iD in harmonics above 0.
+    Structural = 3,
 }
+
+/// Number of kinds of matrices.
+const KINDS: usize = 4;
 
 impl MatrixKind {
     pub(super) fn name(self) -> &'static str {
@@ -32,6 +37,7 @@ impl MatrixKind {
             Self::Mass => "mass",
             Self::Damping => "damping",
             Self::Stiffness => "stiffness",
+            Self::Structural => "structural damping",
         }
     }
 }
@@ -42,8 +48,12 @@ pub struct Structure {
     degrees: DegreeMap,
     sectors: usize,
     engine_order: i64,
-    pub(super) blocks: [Blocks; 3],
+    pub(super) blocks: [Blocks; KINDS],
     pub(super) rayleigh: (f64, f64),
+    /// Loss factor η of the stiffness of the structure.
+    pub(super) loss_factor: f64,
+    /// Modal damping as a matrix per nodal diameter 0 ..= N/2; empty: none.
+    pub(super) modal_damping: Vec<Option<Csc>>,
 }
 
 impl Structure {
@@ -60,19 +70,48 @@ impl Structure {
             engine_order: 0,
             blocks: Default::default(),
             rayleigh: (0.0, 0.0),
+            loss_factor: 0.0,
+            modal_damping: Vec::new(),
         })
     }
 
     /// Whether any damping was given.
     #[must_use]
     pub fn is_damped(&self) -> bool {
-        self.rayleigh != (0.0, 0.0) || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
+        self.rayleigh != (0.0, 0.0)
+            || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
+            || !self.modal_damping.is_empty()
+            || self.has_structural_damping()
+    }
+
+    /// Whether damping without a causal law was given: a loss factor or a structural matrix.
+    #[must_use]
+    pub fn has_structural_damping(&self) -> bool {
+        self.loss_factor != 0.0 || self.has_structural_matrix()
+    }
+
+    /// Whether a structural matrix was given.
+    #[must_use]
+    pub fn has_structural_matrix(&self) -> bool {
+        self.parts(MatrixKind::Structural).any(|a| !a.is_empty())
+    }
+
+    /// Loss factor of the stiffness of the structure.
+    #[must_use]
+    pub fn loss_factor(&self) -> f64 {
+        self.loss_factor
     }
 
     /// Whether a matrix was given in any form.
     #[must_use]
     pub fn has(&self, kind: MatrixKind) -> bool {
         self.parts(kind).next().is_some()
+    }
+
+    /// Whether the matrices of a nodal diameter can be made of what was given.
+    pub(super) fn has_diameter(&self, diameter: usize) -> bool {
+        let given = |b: &Blocks| b.diameters.is_empty() || b.diameters.get(diameter).is_some_and(Option::is_some);
+        self.blocks.iter().all(given)
     }
 
     /// The blocks of a matrix that were given.
@@ -83,10 +122,19 @@ impl Structure {
 
     /// A copy, allocated fallibly.
     pub(super) fn try_clone(&self) -> Result<Self> {
-        let [mass, damping, stiffness] = &self.blocks;
+        let mut blocks: [Blocks; KINDS] = Default::default();
+        for (copy, own) in blocks.iter_mut().zip(&self.blocks) {
+            *copy = own.try_clone()?;
+        }
+        let mut modal_damping = Vec::new();
+        for a in &self.modal_damping {
+            let copy = a.as_ref().map(Csc::try_clone).transpose()?;
+            try_push(&mut modal_damping, copy, "the modal damping")?;
+        }
         Ok(Self {
             degrees: self.degrees.clone(),
-            blocks: [mass.try_clone()?, damping.try_clone()?, stiffness.try_clone()?],
+            blocks,
+            modal_damping,
             ..*self
         })
     }
@@ -116,9 +164,10 @@ impl Structure {
     /// # Errors
     /// As [`DegreeMap::fixing`].
     pub(super) fn fixing(&self, dofs: &[usize]) -> Result<Self> {
+        self.refuse_modal_damping("degrees of freedom are fixed")?;
         let degrees = self.degrees.fixing(dofs)?;
         let keep = |a: &Option<Csc>| a.as_ref().map(|a| restricted(&self.degrees, &degrees, a)).transpose();
-        let mut blocks: [Blocks; 3] = Default::default();
+        let mut blocks: [Blocks; KINDS] = Default::default();
         for (new, old) in blocks.iter_mut().zip(&self.blocks) {
             (new.own, new.next, new.previous) = (keep(&old.own)?, keep(&old.next)?, keep(&old.previous)?);
             for a in &old.diameters {
@@ -128,6 +177,7 @@ impl Structure {
         Ok(Self {
             degrees,
             blocks,
+            modal_damping: Vec::new(),
             ..*self
         })
     }
@@ -158,10 +208,46 @@ impl Structure {
         Ok(())
     }
 
+    pub(super) fn set_loss_factor(&mut self, loss_factor: f64) -> Result<()> {
+        if !loss_factor.is_finite() {
+            return fail!(NotFinite, "loss_factor = {loss_factor}, needs a finite number >= 0");
+        }
+        if loss_factor < 0.0 {
+            return fail!(
+                Argument,
+                "loss_factor = {loss_factor}, needs a number >= 0: positive dissipates"
+            );
+        }
+        self.loss_factor = loss_factor;
+        Ok(())
+    }
+
+    /// Refuses a change of what the modes of the modal damping depend on.
+    fn refuse_modal_damping(&self, change: &str) -> Result<()> {
+        if self.modal_damping.is_empty() {
+            return Ok(());
+        }
+        fail!(
+            Argument,
+            "{change} after the modal damping was set, whose modes depend on it: remove that (n = 0) or set it last"
+        )
+    }
+
+    /// The same for a matrix that is set.
+    fn refuse_modal_matrix(&self, which: MatrixKind) -> Result<()> {
+        match which {
+            MatrixKind::Mass => self.refuse_modal_damping("mass is set"),
+            MatrixKind::Stiffness => self.refuse_modal_damping("stiffness is set"),
+            MatrixKind::Damping | MatrixKind::Structural => Ok(()),
+        }
+    }
+
     pub(super) fn set_own(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
         Self::refuse_general_mass(which, a)?;
+        self.refuse_modal_matrix(which)?;
         self.refuse_diameters(which)?;
         let own = a.copy_in(which.name(), self.degrees.given())?;
+        Self::check_mass(which, a, &own)?;
         if which == MatrixKind::Mass
             && let Some(i) = (0..own.cols).find(|&i| own.get(i, i).re < 0.0)
         {
@@ -175,7 +261,7 @@ impl Structure {
         }
         let blocks = &mut self.blocks[which as usize];
         if self.degrees.faces().is_some() {
-            *blocks = sector_matrices::blocks(&self.degrees, &own, a.part != Part::General)?;
+            *blocks = sector_matrices::blocks(&self.degrees, &own, a.part.symmetry())?;
         } else {
             blocks.own = Some(of_independent(&self.degrees, own)?);
         }
@@ -208,10 +294,11 @@ impl Structure {
                 "a plain structure has no neighbouring sector; use a cyclic model"
             );
         }
+        self.refuse_modal_matrix(which)?;
         self.refuse_faces(which)?;
         self.refuse_diameters(which)?;
         let part = match a.part {
-            Part::Full => Part::General,
+            Part::Full | Part::Symmetric => Part::General,
             other => other,
         };
         let given = a.part(part).copy_in(which.name(), self.degrees.given())?;
@@ -220,6 +307,7 @@ impl Structure {
 
     pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
         Self::refuse_general_mass(which, a)?;
+        self.refuse_modal_matrix(which)?;
         let highest = self.sectors / 2;
         if diameter > highest {
             return fail!(
@@ -239,6 +327,7 @@ impl Structure {
         }
         self.refuse_faces(which)?;
         let matrix = a.copy_in(which.name(), self.degrees.given())?;
+        Self::check_mass(which, a, &matrix)?;
         let matrix = of_independent(&self.degrees, matrix)?;
         let blocks = &mut self.blocks[which as usize];
         if blocks.diameters.is_empty() {
@@ -268,6 +357,20 @@ impl Structure {
             "{} was given per nodal diameter; it cannot be given by sector blocks too",
             which.name()
         )
+    }
+
+    /// A mass matrix that is symmetric must be real.
+    fn check_mass(which: MatrixKind, a: &MatrixView<'_>, copied: &Csc) -> Result<()> {
+        if which == MatrixKind::Mass
+            && a.part.symmetry() == Symmetry::Plain
+            && copied.values.iter().any(|v| v.im != 0.0)
+        {
+            return fail!(
+                NotHermitian,
+                "mass must be real symmetric or Hermitian, but was passed as complex SYMMETRIC"
+            );
+        }
+        Ok(())
     }
 
     fn refuse_general_mass(which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {

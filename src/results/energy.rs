@@ -25,7 +25,7 @@ pub struct Balance {
     /// Mean strain energy of the linear structure, with springs and contacts that never slip, without the other
     /// contacts.
     pub potential_mean: f64,
-    /// Work per cycle that damping, and stiffness without symmetry, dissipate.
+    /// Work per cycle that viscous and structural damping, and stiffness without symmetry, dissipate.
     pub structural_loss: f64,
     /// Work per cycle of the contacts that may slip.
     pub friction_loss: f64,
@@ -51,6 +51,9 @@ pub fn balance(condensed: &Condensed, omega: f64, x: &[Complex64], forces: &[f64
         sum.twice_mean_kinetic += 0.5 * hw * hw * form(pattern, &block.mass, x).re;
         sum.potential_mean += 0.25 * stiffness.re;
         sum.structural_loss += PI * h * (stiffness.im + hw * form(pattern, &block.damping, x).re);
+        if let Some(structural) = &block.structural {
+            sum.structural_loss += PI * h * form(pattern, structural, x).re;
+        }
     }
     let set = condensed.set();
     let packed = set.packed_len().max(1);

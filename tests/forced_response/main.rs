@@ -16,6 +16,7 @@ mod preload;
 mod reference_point;
 mod reference_response;
 mod small_systems;
+mod structural_damping;
 mod stuck_and_scaling;
 mod user_failures;
 mod user_in_solver;

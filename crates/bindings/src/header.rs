@@ -25,7 +25,7 @@ pub const SECTIONS: [Section; 11] = [
     Section {
         title: "Model",
         about: "structures, their matrices, springs and forces",
-        files: &["model"],
+        files: &["model", "model_damping"],
     },
     Section {
         title: "Cyclic structures",

@@ -57,6 +57,14 @@ pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
     if let Some([alpha, beta]) = part.rayleigh {
         model.set_rayleigh(alpha, beta).map_err(|e| format!("[model]: {e}"))?;
     }
+    if let Some(loss_factor) = part.loss_factor {
+        model
+            .set_loss_factor(loss_factor)
+            .map_err(|e| format!("[model]: {e}"))?;
+    }
+    model
+        .set_modal_damping(&part.modal_damping)
+        .map_err(|e| format!("[model], modal_damping: {e}"))?;
     let table = node_dofs(&given.dofs);
     let mut names = Names::new();
     for (i, part) in job.contact.iter().enumerate() {
@@ -117,6 +125,7 @@ fn matrices(job: &Job) -> Outcome<Given> {
         (MatrixKind::Stiffness, &part.stiffness),
         (MatrixKind::Mass, &part.mass),
         (MatrixKind::Damping, &part.damping),
+        (MatrixKind::Structural, &part.structural),
     ] {
         if let Some(path) = path {
             given.own.retain(|(other, _)| *other != kind);
@@ -174,10 +183,6 @@ fn with_view<R>(a: &Matrix, take: impl FnOnce(&MatrixView<'_>) -> R) -> R {
     let row_idx: Vec<i64> = entries.iter().map(|&(i, ..)| i64::from(i)).collect();
     let real: Vec<f64> = entries.iter().map(|(_, _, v)| v.re).collect();
     let complex: Vec<Complex64> = entries.iter().map(|(_, _, v)| *v).collect();
-    let symmetric = !matches!(
-        (a.symmetry, a.is_complex),
-        (Symmetry::Skew, _) | (Symmetry::Symmetric, true)
-    );
     take(&MatrixView {
         rows: a.rows,
         cols: a.columns,
@@ -190,7 +195,11 @@ fn with_view<R>(a: &Matrix, take: impl FnOnce(&MatrixView<'_>) -> R) -> R {
         } else {
             Values::Real(&real)
         },
-        part: if symmetric { Part::Full } else { Part::General },
+        part: match a.symmetry {
+            Symmetry::Skew => Part::General,
+            Symmetry::Symmetric => Part::Symmetric,
+            Symmetry::General | Symmetry::Hermitian => Part::Full,
+        },
         index_base: 0,
     })
 }

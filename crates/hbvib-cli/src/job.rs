@@ -33,11 +33,18 @@ pub struct ModelPart {
     pub stiffness: Option<PathBuf>,
     pub mass: Option<PathBuf>,
     pub damping: Option<PathBuf>,
+    /// D of structural damping iD in harmonics above 0.
+    pub structural: Option<PathBuf>,
     /// Coupling to the next sector.
     pub coupling_stiffness: Option<PathBuf>,
     pub coupling_mass: Option<PathBuf>,
     /// C += alpha M + beta K
     pub rayleigh: Option<[f64; 2]>,
+    /// Structural damping i loss_factor K in harmonics above 0.
+    pub loss_factor: Option<f64>,
+    /// Damping ratios of the lowest natural modes without contacts, of each nodal diameter.
+    #[serde(default)]
+    pub modal_damping: Vec<f64>,
     #[serde(default = "one")]
     pub sectors: usize,
     #[serde(default)]

@@ -25,6 +25,7 @@ pub struct SynthesisPoint {
 pub(super) struct Load {
     pub force: Vec<Complex64>,
     pub damping: Option<Csc>,
+    pub structural: Option<Csc>,
     pub ratio: f64,
     /// Row of the response degree of freedom in the fundamental.
     pub response: Row,
@@ -49,15 +50,11 @@ impl Load {
     pub fn state(&self, omega: f64, point: &ModePoint, x: &[Complex64]) -> State {
         let square = point.modal_amplitude * point.modal_amplitude;
         let mut damping = point.damping_ratio + self.ratio;
-        if let Some(c) = &self.damping {
-            // xᴴ C x = 2Dω·xᴴ M x
-            let mut form = 0.0;
-            for (j, xj) in x.iter().enumerate() {
-                for (i, v) in c.column(j) {
-                    form += (x[i].conj() * v * xj).re;
-                }
+        // xᴴ (ωC + D) x = 2Dω²·xᴴ M x with the damping ratio D on the right.
+        for (matrix, factor) in [(&self.damping, omega), (&self.structural, 1.0)] {
+            if let Some(a) = matrix {
+                damping += 0.5 * factor * form(a, x) / (omega * omega * square);
             }
-            damping += 0.5 * form / (omega * square);
         }
         State {
             omega,
@@ -69,6 +66,17 @@ impl Load {
             fundamental_share: point.fundamental_share,
         }
     }
+}
+
+/// Re xᴴ A x
+fn form(a: &Csc, x: &[Complex64]) -> f64 {
+    let mut form = 0.0;
+    for (j, xj) in x.iter().enumerate() {
+        for (i, v) in a.column(j) {
+            form += (x[i].conj() * v * xj).re;
+        }
+    }
+    form
 }
 
 impl State {
