@@ -118,7 +118,9 @@ pub fn synthesise_with(
     let ndof = model.structure().ndof();
     let mut force = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
     model.add_forces_to(1, options.force_factor, &mut force);
-    if force.iter().all(|f| *f == Complex64::ZERO) {
+    let mut unbalance = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+    model.add_unbalance_to(1, options.force_factor, &mut unbalance);
+    if force.iter().chain(&unbalance).all(|f| *f == Complex64::ZERO) {
         return fail!(Argument, "the model has no force in the fundamental");
     }
     let of_model = |kind| {
@@ -128,6 +130,7 @@ pub fn synthesise_with(
     let fundamental = branch.condensed_at(0);
     let load = Load {
         force,
+        unbalance,
         damping: of_model(MatrixKind::Damping)?,
         structural: of_model(MatrixKind::Structural)?,
         ratio: options.damping_ratio,

@@ -15,6 +15,7 @@ use crate::condense::flexibility::Workspace;
 use crate::condense::harmonic_block::{Artificial, harmonic_block};
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
+use crate::condense::tied_load::TiedLoad;
 use crate::contact::Contact;
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
@@ -75,10 +76,16 @@ impl Condensed {
             .excitation()
             .forces()
             .iter()
-            .fold(0.0_f64, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()));
+            .map(|f| f.at(omega))
+            .fold(0.0_f64, |m, f| m.max(f.re.abs()).max(f.im.abs()));
         let unit = power_of_two(largest);
         for block in &mut condensed.blocks {
             model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
+            if block.number == 1 && model.excitation().has_unbalance() {
+                let mut unbalance = try_vec(block.force.len(), Complex64::ZERO, "the forces")?;
+                model.add_unbalance_to(block.number, 1.0 / unit, &mut unbalance);
+                block.unbalance = Some(unbalance);
+            }
         }
         let mut workspace = Workspace::new(&condensed, None)?;
         let mut motion = 0.0_f64;
@@ -88,7 +95,7 @@ impl Condensed {
         }
         let scale = power_of_two(motion);
         for block in &mut condensed.blocks {
-            for f in &mut block.force {
+            for f in block.force.iter_mut().chain(block.unbalance.iter_mut().flatten()) {
                 *f /= scale;
             }
         }
@@ -251,6 +258,7 @@ impl Condensed {
                 contact,
                 normal: model.contacts()[contact].normal_direction(),
                 law: model.contacts()[contact].law(length)?,
+                load: TiedLoad::of(model, contact, length)?,
             };
             try_push(&mut self.laws, assembled, CONTEXT)?;
         }

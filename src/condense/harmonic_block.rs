@@ -42,13 +42,34 @@ pub struct HarmonicBlock {
     pub artificial: Artificial,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
+    /// Amplitudes of the forces that grow with ω², over ω², likewise; `None` without such forces.
+    pub unbalance: Option<Vec<Complex64>>,
+    /// Terms of a speed that is tied to the frequency; `None` without.
+    pub tied: Option<TiedValues>,
     /// Rows of W, one per relative coordinate.
     pub rows: Vec<Row>,
     /// Rows of the relative motions of linear contacts, which are no coordinates.
     pub linear_rows: Vec<Row>,
 }
 
+/// p²K₁ and pG at the entries of the pattern, for Z_h = … + ω² p²K₁ + ihω² pG.
+#[derive(Clone, Debug)]
+pub struct TiedValues {
+    /// p²K₁
+    pub stiffness: Vec<Complex64>,
+    /// pG
+    pub gyroscopic: Vec<Complex64>,
+}
+
 impl HarmonicBlock {
+    /// F_h at an angular frequency.
+    pub fn force_at(&self, omega: f64, force: &mut [Complex64]) {
+        force.copy_from_slice(&self.force);
+        for (f, u) in force.iter_mut().zip(self.unbalance.iter().flatten()) {
+            *f += u * (omega * omega);
+        }
+    }
+
     /// y = M x
     pub fn multiply_mass(&self, x: &[Complex64], y: &mut [Complex64]) {
         y.fill(Complex64::ZERO);
@@ -88,6 +109,7 @@ pub(super) fn harmonic_block(
     let structural = structure.wave_matrix(MatrixKind::Structural, number)?;
     interrupt.check()?;
     let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
+    let tied = structure.tied_to_frequency(Wave::Harmonic(number))?;
     let mut references = Vec::new();
     for (c, row) in rows.iter().enumerate() {
         for &(p, a) in row.iter().flatten() {
@@ -100,22 +122,35 @@ pub(super) fn harmonic_block(
     interrupt.check()?;
     // Zero factors add the pattern alone.
     let (one, zero) = (Complex64::ONE, Complex64::ZERO);
-    let reference = Csc::sum(
-        n,
-        &[
-            (one, &stiffness, Form::Plain),
-            (one, &references, Form::Plain),
-            (Complex64::I, &structural, Form::Plain),
-            (zero, &damping, Form::Plain),
-            (zero, &mass, Form::Plain),
-        ],
-    )?;
+    let mut terms = Vec::with_capacity(7);
+    terms.extend([
+        (one, &stiffness, Form::Plain),
+        (one, &references, Form::Plain),
+        (Complex64::I, &structural, Form::Plain),
+        (zero, &damping, Form::Plain),
+        (zero, &mass, Form::Plain),
+    ]);
+    if let Some(tied) = &tied {
+        terms.extend([
+            (zero, &tied.stiffness, Form::Plain),
+            (zero, &tied.gyroscopic, Form::Plain),
+        ]);
+    }
+    let reference = Csc::sum(n, &terms)?;
     interrupt.check()?;
     Ok(HarmonicBlock {
         number,
         next: structure.phase(number, 1),
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
+        tied: match &tied {
+            Some(tied) => Some(TiedValues {
+                stiffness: tied.stiffness.aligned(&reference)?,
+                gyroscopic: tied.gyroscopic.aligned(&reference)?,
+            }),
+            None => None,
+        },
+        unbalance: None,
         stiffness: stiffness.aligned(&reference)?,
         structural: if structural.is_empty() {
             None

@@ -17,6 +17,7 @@ mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
+mod tied_load;
 pub mod wave_modes;
 
 pub use condensed::{Condensed, Reference};
@@ -24,3 +25,4 @@ pub use harmonic_block::{Artificial, HarmonicBlock};
 pub use model_cache::ModelCache;
 pub use reduction::Reduction;
 pub use resolution::Resolution;
+pub use tied_load::{LoadedLaw, TiedLoad};

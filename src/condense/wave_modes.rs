@@ -67,7 +67,7 @@ impl WaveCache {
     }
 
     /// The modes of the i-th carried harmonic; `None` where the damping is not proportional, a
-    /// structural matrix is given, the reference stiffness is
+    /// structural matrix is given, the structure rotates or has an unbalance, the reference stiffness is
     /// complex, the structure can move without it, or has too many degrees of freedom.
     ///
     /// # Errors
@@ -101,7 +101,11 @@ impl WaveModes {
     fn new(model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
-        if n > MOST || !matches!(block.artificial, Artificial::None) || model.structure().has_structural_matrix() {
+        let other_terms = model.structure().has_structural_matrix()
+            || model.structure().is_rotating()
+            || block.unbalance.is_some()
+            || !matches!(block.artificial, Artificial::None);
+        if n > MOST || other_terms {
             return Ok(None);
         }
         let structure = model.structure().wave_matrix(MatrixKind::Stiffness, block.number)?;

@@ -148,6 +148,52 @@ impl<'a> MatrixView<'a> {
     /// # Errors
     /// `Dimension`, `Index`, `NotFinite`, `NotHermitian` or `OutOfMemory`, naming the place.
     pub fn copy_in(&self, name: &str, order: usize) -> Result<Csc> {
+        let a = self.entries(name, order, self.part.symmetry())?;
+        match self.part {
+            Part::Full | Part::Symmetric => self.symmetrised(name, a),
+            Part::Lower | Part::Upper => self.with_real_diagonal(name, a),
+            Part::General | Part::SymmetricLower | Part::SymmetricUpper => Ok(a),
+        }
+    }
+
+    /// The same for a skew-symmetric (complex: skew-Hermitian) matrix, given in full, which is checked, or by one
+    /// triangle.
+    ///
+    /// # Errors
+    /// As [`Self::copy_in`].
+    pub fn copy_in_skew(&self, name: &str, order: usize) -> Result<Csc> {
+        if self.part.symmetry() == Symmetry::Plain {
+            return fail!(
+                NotHermitian,
+                "{name} must be skew-symmetric, A = -A^T, but was passed as SYMMETRIC"
+            );
+        }
+        let a = self.entries(name, order, Symmetry::Skew)?;
+        let (i, j, gap) = a.worst_pair(Symmetry::Skew);
+        let largest = a.max_abs();
+        if gap > SYMMETRY_TOLERANCE * largest {
+            let base = self.index_base;
+            return fail!(
+                NotHermitian,
+                "{name} must be skew-symmetric, A = -A^T, but the sum of {name}[{},{}] and its mirror is {gap:.3e}, \
+                 {:.1e} of the largest entry",
+                i + base,
+                j + base,
+                gap / largest
+            );
+        }
+        if gap == 0.0 {
+            return Ok(a);
+        }
+        let transposed = Csc::sum(a.rows, &[(Complex64::ONE, &a, Form::Transposed)])?;
+        let half = Complex64::new(0.5, 0.0);
+        Csc::sum(
+            a.rows,
+            &[(half, &a, Form::Plain), (-half, &transposed, Form::Conjugated)],
+        )
+    }
+
+    fn entries(&self, name: &str, order: usize, symmetry: Symmetry) -> Result<Csc> {
         if self.rows != order || self.cols != order {
             return fail!(
                 Dimension,
@@ -157,16 +203,11 @@ impl<'a> MatrixView<'a> {
             );
         }
         let entries = match self.storage {
-            Storage::ColMajor { ld } => self.dense_entries(name, ld, false)?,
-            Storage::RowMajor { ld } => self.dense_entries(name, ld, true)?,
-            Storage::Csc { col_ptr, row_idx } => self.sparse_entries(name, col_ptr, row_idx)?,
+            Storage::ColMajor { ld } => self.dense_entries(name, (ld, false), symmetry)?,
+            Storage::RowMajor { ld } => self.dense_entries(name, (ld, true), symmetry)?,
+            Storage::Csc { col_ptr, row_idx } => self.sparse_entries(name, (col_ptr, row_idx), symmetry)?,
         };
-        let a = Csc::from_triplets(order, order, entries)?;
-        match self.part {
-            Part::Full | Part::Symmetric => self.symmetrised(name, a),
-            Part::Lower | Part::Upper => self.with_real_diagonal(name, a),
-            Part::General | Part::SymmetricLower | Part::SymmetricUpper => Ok(a),
-        }
+        Csc::from_triplets(order, order, entries)
     }
 
     /// A Hermitian matrix from one triangle, whose diagonal must be real up to rounding.
@@ -197,7 +238,12 @@ impl<'a> MatrixView<'a> {
         Ok(a)
     }
 
-    fn dense_entries(&self, name: &str, ld: usize, row_major: bool) -> Result<Vec<(usize, usize, Complex64)>> {
+    fn dense_entries(
+        &self,
+        name: &str,
+        (ld, row_major): (usize, bool),
+        symmetry: Symmetry,
+    ) -> Result<Vec<(usize, usize, Complex64)>> {
         let (inner, outer) = if row_major {
             (self.cols, self.rows)
         } else {
@@ -219,13 +265,18 @@ impl<'a> MatrixView<'a> {
         for o in 0..outer {
             for k in 0..inner {
                 let (i, j) = if row_major { (o, k) } else { (k, o) };
-                self.take(name, i, j, self.values.get(o * ld + k), &mut entries)?;
+                self.take(name, (i, j, self.values.get(o * ld + k)), symmetry, &mut entries)?;
             }
         }
         Ok(entries)
     }
 
-    fn sparse_entries(&self, name: &str, col_ptr: &[i64], row_idx: &[i64]) -> Result<Vec<(usize, usize, Complex64)>> {
+    fn sparse_entries(
+        &self,
+        name: &str,
+        (col_ptr, row_idx): (&[i64], &[i64]),
+        symmetry: Symmetry,
+    ) -> Result<Vec<(usize, usize, Complex64)>> {
         let base = self.index_base as i64;
         if col_ptr.len() != self.cols + 1 {
             return fail!(
@@ -273,7 +324,7 @@ impl<'a> MatrixView<'a> {
                         self.rows as i64 - 1 + base
                     );
                 }
-                self.take(name, row as usize, j, self.values.get(k), &mut entries)?;
+                self.take(name, (row as usize, j, self.values.get(k)), symmetry, &mut entries)?;
             }
         }
         Ok(entries)
@@ -283,9 +334,8 @@ impl<'a> MatrixView<'a> {
     fn take(
         &self,
         name: &str,
-        i: usize,
-        j: usize,
-        v: Complex64,
+        (i, j, v): (usize, usize, Complex64),
+        symmetry: Symmetry,
         entries: &mut Vec<(usize, usize, Complex64)>,
     ) -> Result<()> {
         if (self.part.skips_upper() && i < j) || (self.part.skips_lower() && i > j) {
@@ -301,7 +351,7 @@ impl<'a> MatrixView<'a> {
         }
         try_push(entries, (i, j, v), name)?;
         if i != j && (self.part.skips_lower() || self.part.skips_upper()) {
-            try_push(entries, (j, i, self.part.symmetry().mirror(v)), name)?;
+            try_push(entries, (j, i, symmetry.mirror(v)), name)?;
         }
         Ok(())
     }

@@ -37,6 +37,8 @@ pub enum Symmetry {
     Hermitian,
     /// A = Aᵀ, also where A is complex.
     Plain,
+    /// A = −Aᴴ; real matrices are then skew-symmetric.
+    Skew,
     /// None is known.
     None,
 }
@@ -47,6 +49,7 @@ impl Symmetry {
     pub fn mirror(self, v: Complex64) -> Complex64 {
         match self {
             Self::Hermitian => v.conj(),
+            Self::Skew => -v.conj(),
             Self::Plain | Self::None => v,
         }
     }
@@ -265,7 +268,7 @@ impl Csc {
         self.worst_pair(Symmetry::Hermitian)
     }
 
-    /// The same for A = Aᴴ or A = Aᵀ.
+    /// The same for another symmetry.
     #[must_use]
     pub fn worst_pair(&self, symmetry: Symmetry) -> (usize, usize, f64) {
         let mut worst = (0, 0, 0.0);

@@ -7,6 +7,7 @@ use crate::contact::relative_motion::Direction;
 use crate::error::{Error, Result, fail, try_copy, try_extend, try_push};
 use crate::linalg::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
+use crate::model::rotation::SpeedLoad;
 use crate::model::sector_faces::SectorDescription;
 use crate::model::spring::Spring;
 use crate::model::structure::{MatrixKind, Structure};
@@ -27,7 +28,7 @@ pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
     })
 }
 
-/// A structure with its contacts and forces: M ẍ + C ẋ + K x + f_nl = f_ex.
+/// A structure with its contacts and forces: M ẍ + (C + ΩG) ẋ + (K + Ω²K₁) x + f_nl = f_ex.
 ///
 /// Cyclic models describe one of N equal sectors; sector s + 1 lags behind sector s by the phase
 /// 2π·EO/N per harmonic, where EO is the engine order of the wave.
@@ -37,6 +38,8 @@ pub struct Model {
     contacts: Vec<Contact>,
     springs: Vec<Spring>,
     excitation: Excitation,
+    /// Normal loads that depend on the speed.
+    speed_loads: Vec<SpeedLoad>,
 }
 
 impl Model {
@@ -58,6 +61,7 @@ impl Model {
             contacts: Vec::new(),
             springs: Vec::new(),
             excitation: Excitation::default(),
+            speed_loads: Vec::new(),
         })
     }
 
@@ -74,6 +78,7 @@ impl Model {
             contacts: Vec::new(),
             springs: Vec::new(),
             excitation: Excitation::default(),
+            speed_loads: Vec::new(),
         })
     }
 
@@ -117,6 +122,7 @@ impl Model {
             contacts,
             springs,
             excitation: self.excitation.try_clone()?,
+            speed_loads: try_copy(&self.speed_loads, CONTACTS)?,
         })
     }
 
@@ -274,12 +280,17 @@ impl Model {
         self.check_sides("spring", &sides, spring.sector_offset, None)
     }
 
-    /// Changes the normal load of a contact.
+    /// Changes the normal load of a contact, at any speed.
     ///
     /// # Errors
     /// `Index` for an unknown contact, `Argument` for one without normal load, else as
     /// [`Contact::check_constants`].
     pub fn set_preload(&mut self, id: usize, preload: f64) -> Result<()> {
+        self.set_preload_at_speed(id, preload, 0.0)
+    }
+
+    /// Changes normal load and gap of a contact.
+    pub(super) fn change_preload(&mut self, id: usize, preload: f64, gap: f64) -> Result<()> {
         let count = self.contacts.len();
         let Some(contact) = self.contacts.get_mut(id) else {
             return fail!(Index, "contact id = {id}, but the model has {count} contacts");
@@ -292,11 +303,33 @@ impl Model {
         }
         let changed = Contact {
             preload,
+            gap,
             ..contact.clone()
         };
         changed.check_constants()?;
         *contact = changed;
         Ok(())
+    }
+
+    /// Normal loads that depend on the speed.
+    pub(crate) fn speed_loads(&self) -> &[SpeedLoad] {
+        &self.speed_loads
+    }
+
+    pub(super) fn speed_loads_mut(&mut self) -> &mut Vec<SpeedLoad> {
+        &mut self.speed_loads
+    }
+
+    pub(super) fn contact_mut(&mut self, id: usize) -> Option<&mut Contact> {
+        self.contacts.get_mut(id)
+    }
+
+    pub(super) fn add_unbalance_forces(&mut self, forces: [(usize, Complex64); 2]) -> Result<()> {
+        self.excitation.add_unbalance(forces)
+    }
+
+    pub(super) fn fix_unbalance(&mut self, omega: f64) {
+        self.excitation.fix_unbalance(omega);
     }
 
     /// Adds the force Re(value·e^{i·harmonic·ωt}) on a degree of freedom (of sector 1; the others
@@ -316,7 +349,17 @@ impl Model {
     /// Adds the forces of one harmonic, times `scale`, to a vector over the independent degrees of freedom. A force
     /// on the right face acts on the next sector; one on a fixed degree of freedom has no effect.
     pub(crate) fn add_forces_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
-        for f in self.excitation.forces().iter().filter(|f| f.harmonic == harmonic) {
+        self.add_to(harmonic, scale, false, vector);
+    }
+
+    /// The same for the amplitudes of the forces that grow with ω².
+    pub(crate) fn add_unbalance_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
+        self.add_to(harmonic, scale, true, vector);
+    }
+
+    fn add_to(&self, harmonic: usize, scale: f64, per_omega2: bool, vector: &mut [Complex64]) {
+        let forces = self.excitation.forces().iter();
+        for f in forces.filter(|f| f.harmonic == harmonic && f.per_omega2 == per_omega2) {
             let (sector, terms) = self.structure.degrees().image(f.dof);
             let value = f.value * scale * self.structure.phase(harmonic, -sector);
             for (dof, c) in terms {

@@ -13,8 +13,10 @@ mod modal_damping;
 pub mod mode_selection;
 mod model_checks;
 mod part_of_turn;
+pub mod quadratic_modes;
 pub mod repeated_modes;
 pub mod resonances;
+pub mod rotation;
 pub mod sector_faces;
 mod sector_matrices;
 pub mod sector_motion;
@@ -22,6 +24,7 @@ pub mod slip_capacity;
 pub mod spring;
 pub mod spring_stiffness;
 pub mod structure;
+pub mod wave;
 
 pub use mechanical_model::Model;
 pub(crate) use mechanical_model::copy;

@@ -30,7 +30,7 @@ pub(super) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blo
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
     }
     let mut complex = false;
-    let has_mirror = symmetry != Symmetry::None;
+    let has_mirror = matches!(symmetry, Symmetry::Hermitian | Symmetry::Plain);
     visit(map, a, |(row, p), (column, q), v| {
         let block = which(row, column);
         complex |= v.im != 0.0;
@@ -45,7 +45,7 @@ pub(super) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blo
     let own = if has_mirror { mirrored(&own, symmetry)? } else { own };
     let next = Csc::from_triplets(n, n, next)?;
     let previous = match symmetry {
-        Symmetry::None => Some(Csc::from_triplets(n, n, previous)?),
+        Symmetry::None | Symmetry::Skew => Some(Csc::from_triplets(n, n, previous)?),
         Symmetry::Hermitian if complex => Some(adjoint(&next)?),
         // The transpose of the coupling to the next sector.
         Symmetry::Hermitian | Symmetry::Plain => None,

@@ -71,13 +71,14 @@ impl Model {
     /// # Errors
     /// `OutOfMemory`, and those of [`Self::sprung_stiffness`]; `StoppedByCaller`.
     pub fn overload(&self, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
+        let at_frequency = self.at_frequency(omega)?;
         let mut last = None;
         for force in self.excitation().forces() {
             if last == Some(force.harmonic) || force.value == Complex64::ZERO {
                 continue;
             }
             last = Some(force.harmonic);
-            let found = self.resonance(omega, force.harmonic, interrupt)?;
+            let found = at_frequency.resonance(omega, force.harmonic, interrupt)?;
             if found.as_ref().is_some_and(Resonance::is_overloaded) {
                 return Ok(found);
             }

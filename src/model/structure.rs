@@ -3,11 +3,13 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
-use crate::linalg::sparse::{Csc, Symmetry};
+use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
+use crate::model::rotation::Speed;
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
+use num_complex::Complex64;
 
 /// Largest accepted number of degrees of freedom.
 pub const MAX_DOF: usize = 1 << 31;
@@ -26,10 +28,14 @@ pub enum MatrixKind {
     Stiffness = 2,
     /// D of the structural damping iD in harmonics above 0.
     Structural = 3,
+    /// G of the gyroscopic term ΩG ẋ, skew-symmetric.
+    Gyroscopic = 4,
+    /// K₁ of the stiffness K + Ω²K₁ at speed; that of softening is negative.
+    StiffnessSpeed2 = 5,
 }
 
 /// Number of kinds of matrices.
-const KINDS: usize = 4;
+const KINDS: usize = 6;
 
 impl MatrixKind {
     pub(super) fn name(self) -> &'static str {
@@ -38,6 +44,8 @@ impl MatrixKind {
             Self::Damping => "damping",
             Self::Stiffness => "stiffness",
             Self::Structural => "structural damping",
+            Self::Gyroscopic => "gyroscopic",
+            Self::StiffnessSpeed2 => "stiffness_speed2",
         }
     }
 }
@@ -52,6 +60,8 @@ pub struct Structure {
     pub(super) rayleigh: (f64, f64),
     /// Loss factor η of the stiffness of the structure.
     pub(super) loss_factor: f64,
+    /// Speed of rotation.
+    pub(super) speed: Speed,
     /// Modal damping as a matrix per nodal diameter 0 ..= N/2; empty: none.
     pub(super) modal_damping: Vec<Option<Csc>>,
 }
@@ -71,6 +81,7 @@ impl Structure {
             blocks: Default::default(),
             rayleigh: (0.0, 0.0),
             loss_factor: 0.0,
+            speed: Speed::Fixed(0.0),
             modal_damping: Vec::new(),
         })
     }
@@ -94,6 +105,21 @@ impl Structure {
     #[must_use]
     pub fn has_structural_matrix(&self) -> bool {
         self.parts(MatrixKind::Structural).any(|a| !a.is_empty())
+    }
+
+    /// Whether the matrices depend on a speed that is not zero.
+    #[must_use]
+    pub fn is_rotating(&self) -> bool {
+        self.is_gyroscopic()
+            || (!matches!(self.speed, Speed::Fixed(0.0) | Speed::PerOmega(0.0))
+                && self.parts(MatrixKind::StiffnessSpeed2).any(|a| !a.is_empty()))
+    }
+
+    /// Whether gyroscopic forces act.
+    #[must_use]
+    pub fn is_gyroscopic(&self) -> bool {
+        !matches!(self.speed, Speed::Fixed(0.0) | Speed::PerOmega(0.0))
+            && self.parts(MatrixKind::Gyroscopic).any(|a| !a.is_empty())
     }
 
     /// Loss factor of the stiffness of the structure.
@@ -238,7 +264,9 @@ impl Structure {
         match which {
             MatrixKind::Mass => self.refuse_modal_damping("mass is set"),
             MatrixKind::Stiffness => self.refuse_modal_damping("stiffness is set"),
-            MatrixKind::Damping | MatrixKind::Structural => Ok(()),
+            MatrixKind::Damping | MatrixKind::Structural | MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2 => {
+                Ok(())
+            }
         }
     }
 
@@ -246,7 +274,7 @@ impl Structure {
         Self::refuse_general_mass(which, a)?;
         self.refuse_modal_matrix(which)?;
         self.refuse_diameters(which)?;
-        let own = a.copy_in(which.name(), self.degrees.given())?;
+        let own = self.copied(which, a)?;
         Self::check_mass(which, a, &own)?;
         if which == MatrixKind::Mass
             && let Some(i) = (0..own.cols).find(|&i| own.get(i, i).re < 0.0)
@@ -261,24 +289,44 @@ impl Structure {
         }
         let blocks = &mut self.blocks[which as usize];
         if self.degrees.faces().is_some() {
-            *blocks = sector_matrices::blocks(&self.degrees, &own, a.part.symmetry())?;
+            *blocks = sector_matrices::blocks(&self.degrees, &own, Self::symmetry(which, a))?;
         } else {
             blocks.own = Some(of_independent(&self.degrees, own)?);
         }
         Ok(())
     }
 
+    /// The matrix of a view, its symmetry checked.
+    fn copied(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<Csc> {
+        if which == MatrixKind::Gyroscopic {
+            return a.copy_in_skew(which.name(), self.degrees.given());
+        }
+        a.copy_in(which.name(), self.degrees.given())
+    }
+
+    fn symmetry(which: MatrixKind, a: &MatrixView<'_>) -> Symmetry {
+        if which == MatrixKind::Gyroscopic {
+            return Symmetry::Skew;
+        }
+        a.part.symmetry()
+    }
+
     pub(super) fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
         let next = self.coupling(which, to_next)?;
+        if which == MatrixKind::Gyroscopic {
+            let previous = Csc::sum(next.rows, &[(-Complex64::ONE, &next, Form::Transposed)])?;
+            self.blocks[which as usize].previous = Some(previous);
+        }
         self.blocks[which as usize].next = Some(next);
         Ok(())
     }
 
     pub(super) fn set_coupling_previous(&mut self, which: MatrixKind, to_previous: &MatrixView<'_>) -> Result<()> {
-        if which == MatrixKind::Mass {
+        if which == MatrixKind::Mass || which == MatrixKind::Gyroscopic {
             return fail!(
                 Unsupported,
-                "mass is symmetric: its coupling to the previous sector follows from the next one"
+                "{} has a symmetry: its coupling to the previous sector follows from the next one",
+                which.name()
             );
         }
         let previous = self.coupling(which, to_previous)?;
@@ -326,7 +374,7 @@ impl Structure {
             );
         }
         self.refuse_faces(which)?;
-        let matrix = a.copy_in(which.name(), self.degrees.given())?;
+        let matrix = self.copied(which, a)?;
         Self::check_mass(which, a, &matrix)?;
         let matrix = of_independent(&self.degrees, matrix)?;
         let blocks = &mut self.blocks[which as usize];

@@ -106,6 +106,7 @@ impl<'s> System<'s> {
     /// The structure of a model at angular frequency `omega`.
     pub fn new(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
         interrupt.phase(Phase::Setup, 0.0)?;
+        let model = &*model.at_frequency(omega)?;
         let structure = model.structure();
         refuse_structural_damping(structure, omega)?;
         let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());

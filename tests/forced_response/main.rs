@@ -15,6 +15,7 @@ mod many_contacts;
 mod preload;
 mod reference_point;
 mod reference_response;
+mod rotation;
 mod small_systems;
 mod structural_damping;
 mod stuck_and_scaling;

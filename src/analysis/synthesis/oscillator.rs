@@ -24,6 +24,8 @@ pub struct SynthesisPoint {
 /// Force and additional damping that act on the mode.
 pub(super) struct Load {
     pub force: Vec<Complex64>,
+    /// Forces over ω² of unbalances, taken at the natural frequency of each amplitude.
+    pub unbalance: Vec<Complex64>,
     pub damping: Option<Csc>,
     pub structural: Option<Csc>,
     pub ratio: f64,
@@ -60,7 +62,7 @@ impl Load {
             omega,
             damping,
             square,
-            work: inner(x, &self.force),
+            work: inner(x, &self.force) + inner(x, &self.unbalance) * (omega * omega),
             response: along(&self.response, x),
             log10: point.log10_amplitude,
             fundamental_share: point.fundamental_share,
