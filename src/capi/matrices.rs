@@ -126,6 +126,10 @@ pub enum hbvib_matrix_kind {
     HBVIB_STIFFNESS = 2,
     /// D of the structural damping iD in harmonics above 0; positive dissipates.
     HBVIB_STRUCTURAL = 3,
+    /// G of the gyroscopic forces Omega G x', skew-symmetric: G = -G^T.
+    HBVIB_GYROSCOPIC = 4,
+    /// K1 of the stiffness K + Omega^2 K1 at speed; that of softening is negative.
+    HBVIB_STIFFNESS_SPEED2 = 5,
 }
 
 const COL_MAJOR: i32 = hbvib_storage::HBVIB_COL_MAJOR as i32;
@@ -138,14 +142,18 @@ pub(super) fn matrix_kind(which: i32) -> Result<MatrixKind> {
     const DAMPING: i32 = hbvib_matrix_kind::HBVIB_DAMPING as i32;
     const STIFFNESS: i32 = hbvib_matrix_kind::HBVIB_STIFFNESS as i32;
     const STRUCTURAL: i32 = hbvib_matrix_kind::HBVIB_STRUCTURAL as i32;
+    const GYROSCOPIC: i32 = hbvib_matrix_kind::HBVIB_GYROSCOPIC as i32;
+    const STIFFNESS_SPEED2: i32 = hbvib_matrix_kind::HBVIB_STIFFNESS_SPEED2 as i32;
     match which {
         MASS => Ok(MatrixKind::Mass),
         DAMPING => Ok(MatrixKind::Damping),
         STIFFNESS => Ok(MatrixKind::Stiffness),
         STRUCTURAL => Ok(MatrixKind::Structural),
+        GYROSCOPIC => Ok(MatrixKind::Gyroscopic),
+        STIFFNESS_SPEED2 => Ok(MatrixKind::StiffnessSpeed2),
         _ => fail!(
             Argument,
-            "which = {which}, needs HBVIB_MASS = 0 .. HBVIB_STRUCTURAL = 3"
+            "which = {which}, needs HBVIB_MASS = 0 .. HBVIB_STIFFNESS_SPEED2 = 5"
         ),
     }
     .with_argument(2)

@@ -112,9 +112,10 @@ pub unsafe extern "C" fn hbvib_model_contacts(model: *const hbvib_model) -> i64 
 
 /// Sets a matrix of a structure, or of a sector on itself.
 ///
-/// which  HBVIB_MASS, HBVIB_DAMPING, HBVIB_STIFFNESS or HBVIB_STRUCTURAL.
-/// a      ndof x ndof. M must be symmetric or Hermitian; the others may be HBVIB_GENERAL or
-///        HBVIB_SYMMETRIC. Complex entries act on all harmonics above zero, the mean sees their
+/// which  HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
+/// a      ndof x ndof. M must be symmetric or Hermitian, HBVIB_GYROSCOPIC skew-symmetric (in full,
+///        which is checked, or one triangle); the others may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
+///        Complex entries act on all harmonics above zero, the mean sees their
 ///        real part, and no structural damping.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_NOT_HERMITIAN, HBVIB_E_INDEX, each naming the entry;
 /// HBVIB_E_DIMENSION, HBVIB_E_ARGUMENT, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE,

@@ -10,7 +10,7 @@
 use crate::contact::{Contact, Law};
 use crate::error::Result;
 use crate::model::Model;
-use crate::model::rotation::{Speed, SpeedLoad};
+use crate::model::speed::{Speed, SpeedLoad};
 use std::sync::Arc;
 
 /// Smallest r: the motion over it stays finite.
@@ -20,7 +20,7 @@ const LEAST: f64 = 1e-100;
 #[derive(Clone, Debug)]
 pub struct TiedLoad {
     /// N₀ with the gap counted in.
-    at_rest: f64,
+    constant: f64,
     /// c p²
     per_omega2: f64,
     /// N_r
@@ -43,10 +43,10 @@ pub struct LoadedLaw<'a> {
     pub factor: f64,
     /// dr/dω
     pub slope: f64,
-    /// Factor of the motion: r, or 1.
-    pub of_motion: f64,
-    /// Whether the motion scales with the load.
-    pub scales_motion: bool,
+    /// Factor of the motion where that scales with the load: r.
+    pub of_motion: Option<f64>,
+    /// Whether the law is evaluated as it is.
+    pub is_plain: bool,
 }
 
 impl<'a> LoadedLaw<'a> {
@@ -57,15 +57,9 @@ impl<'a> LoadedLaw<'a> {
             law,
             factor: 1.0,
             slope: 0.0,
-            of_motion: 1.0,
-            scales_motion: true,
+            of_motion: None,
+            is_plain: true,
         }
-    }
-
-    /// Whether the law is evaluated as it is.
-    #[must_use]
-    pub fn is_plain(&self) -> bool {
-        self.factor == 1.0 && self.slope == 0.0
     }
 }
 
@@ -80,17 +74,17 @@ impl TiedLoad {
         };
         let contact = &model.contacts()[contact];
         let reference = load.reference(contact, p);
-        let at_rest = load.load_at_rest(contact);
+        let constant = load.load_at_rest(contact);
         if p == 0.0 || reference == 0.0 {
             return Ok(None);
         }
-        let open = if at_rest < 0.0 {
+        let open = if constant < 0.0 {
             Some(load.referred(contact, -reference).law(length)?)
         } else {
             None
         };
         Ok(Some(Self {
-            at_rest,
+            constant,
             per_omega2: load.per_speed2 * p * p,
             reference,
             open,
@@ -102,7 +96,7 @@ impl TiedLoad {
     }
 
     pub(super) fn at<'a>(&'a self, law: &'a dyn Law, omega: f64) -> LoadedLaw<'a> {
-        let load = self.at_rest + self.per_omega2 * omega * omega;
+        let load = self.constant + self.per_omega2 * omega * omega;
         let slope = 2.0 * self.per_omega2 * omega / self.reference;
         let factor = (load.abs() / self.reference).max(LEAST);
         let (law, slope) = match &self.open {
@@ -113,8 +107,8 @@ impl TiedLoad {
             law,
             factor,
             slope,
-            of_motion: if self.scales_motion { factor } else { 1.0 },
-            scales_motion: self.scales_motion,
+            of_motion: self.scales_motion.then_some(factor),
+            is_plain: false,
         }
     }
 

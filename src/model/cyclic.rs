@@ -7,7 +7,7 @@
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::part_of_turn::lag;
-use crate::model::rotation::Speed;
+use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wave::Wave;
 use num_complex::Complex64;

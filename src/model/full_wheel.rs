@@ -7,7 +7,7 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::linalg::sparse::{Csc, Form};
-use crate::model::rotation::Speed;
+use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 
 /// Entries of a transform over nodal diameters below this share of the largest are rounding.
@@ -65,7 +65,7 @@ impl Structure {
             _ => {}
         }
         if which == MatrixKind::Damping && !self.modal_damping.is_empty() {
-            let modal = self.blocks_of_waves(|structure, d| structure.modal_damping_of_diameter(d))?;
+            let modal = self.blocks_of_waves(Self::modal_damping_of_diameter)?;
             try_push(&mut parts, (1.0, modal), "the matrices of the wheel")?;
         }
         let mut terms = Vec::new();

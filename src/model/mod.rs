@@ -21,6 +21,7 @@ pub mod sector_faces;
 mod sector_matrices;
 pub mod sector_motion;
 pub mod slip_capacity;
+pub mod speed;
 pub mod spring;
 pub mod spring_stiffness;
 pub mod structure;

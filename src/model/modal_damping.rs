@@ -6,7 +6,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
-use crate::model::rotation::Speed;
+use crate::model::speed::Speed;
 use crate::model::spring_stiffness::Wave;
 use num_complex::Complex64;
 
@@ -58,10 +58,10 @@ impl Model {
             }
             self.check_matrices(true)?;
             // The modes at rest.
-            let mut at_rest = self.try_clone()?;
-            at_rest.structure_mut().speed = Speed::Fixed(0.0);
+            let mut standing = self.try_clone()?;
+            standing.structure_mut().speed = Speed::Fixed(0.0);
             for diameter in 0..=self.structure().sectors() / 2 {
-                let matrix = match at_rest.modal_damping_matrix(diameter, ratios, interrupt) {
+                let matrix = match standing.modal_damping_matrix(diameter, ratios, interrupt) {
                     // A diameter whose matrices were not given has no modes.
                     Err(e) if e.status == Status::Argument && !self.structure().has_diameter(diameter) => None,
                     matrix => Some(matrix.map_err(|e| at_diameter(e, self, diameter))?),

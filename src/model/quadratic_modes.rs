@@ -44,8 +44,11 @@ const CONTEXT: &str = "the damped modes";
 
 /// M, C and K.
 pub struct Quadratic<'a> {
+    /// M
     pub mass: &'a Csc,
+    /// C, with gyroscopic forces
     pub damping: &'a Csc,
+    /// K, with structural damping
     pub stiffness: &'a Csc,
 }
 
@@ -167,7 +170,10 @@ impl Quadratic<'_> {
     }
 
     /// λ²M + λC + K
-    pub(super) fn matrix(&self, eigenvalue: Complex64) -> Result<Csc> {
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn matrix(&self, eigenvalue: Complex64) -> Result<Csc> {
         Csc::sum(
             self.mass.rows,
             &[
@@ -179,7 +185,10 @@ impl Quadratic<'_> {
     }
 
     /// (2λM + C) x
-    pub(super) fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn slope_times(&self, eigenvalue: Complex64, x: &[Complex64]) -> Result<Vec<Complex64>> {
         let mut y = self.damping.times(x, CONTEXT)?;
         self.mass.multiply_add(2.0 * eigenvalue, x, &mut y);
         Ok(y)

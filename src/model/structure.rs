@@ -6,9 +6,9 @@ use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
-use crate::model::rotation::Speed;
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
+use crate::model::speed::Speed;
 use num_complex::Complex64;
 
 /// Largest accepted number of degrees of freedom.

@@ -154,14 +154,14 @@ impl<'a> ContactForces<'a> {
             };
             let here = assembled.at(omega);
             let y = gather_scaled(at, (m, here.of_motion), &self.scaled, &mut self.gathered);
-            if at.len() == 1 && (prepared != at[0] || here.of_motion != 1.0) {
+            if at.len() == 1 && (prepared != at[0] || here.of_motion.is_some()) {
                 self.evaluator.prepare(set, y);
-                prepared = if here.of_motion == 1.0 { at[0] } else { usize::MAX };
+                prepared = if here.of_motion.is_none() { at[0] } else { usize::MAX };
             }
             self.evaluator
                 .evaluate(here.law, set, y, omega, found, self.interrupt)
                 .map_err(|e| e.at(format_args!("contact {}", assembled.contact)))?;
-            if !here.is_plain() {
+            if !here.is_plain {
                 apply_load(&here, found);
             }
             self.slip_fractions[k] = found.slip_fraction;
@@ -291,10 +291,15 @@ fn gather<'m>(at: &[usize], m: usize, motion: &'m [f64], gathered: &'m mut [f64]
 }
 
 /// The same over the factor by which motion scales with the load of a law.
-fn gather_scaled<'m>(at: &[usize], (m, factor): (usize, f64), motion: &'m [f64], gathered: &'m mut [f64]) -> &'m [f64] {
-    if factor == 1.0 {
+fn gather_scaled<'m>(
+    at: &[usize],
+    (m, factor): (usize, Option<f64>),
+    motion: &'m [f64],
+    gathered: &'m mut [f64],
+) -> &'m [f64] {
+    let Some(factor) = factor else {
         return gather(at, m, motion, gathered);
-    }
+    };
     for (to, &c) in gathered.chunks_exact_mut(m).zip(at) {
         for (to, y) in to.iter_mut().zip(&motion[c * m..(c + 1) * m]) {
             *to = y / factor;
@@ -307,7 +312,7 @@ fn gather_scaled<'m>(at: &[usize], (m, factor): (usize, f64), motion: &'m [f64],
 fn apply_load(here: &LoadedLaw<'_>, found: &mut Evaluation) {
     for (i, by_omega) in found.by_omega.iter_mut().enumerate() {
         // By the load, at a motion that does not change.
-        let by_load = if here.scales_motion {
+        let by_load = if here.of_motion.is_some() {
             found.offset[i]
         } else {
             found.force[i]
@@ -317,7 +322,7 @@ fn apply_load(here: &LoadedLaw<'_>, found: &mut Evaluation) {
     for value in found.force.iter_mut().chain(&mut found.offset) {
         *value *= here.factor;
     }
-    if !here.scales_motion {
+    if here.of_motion.is_none() {
         for value in &mut found.jacobian {
             *value *= here.factor;
         }

@@ -9,6 +9,7 @@ use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
+use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{TimeOptions, VerifyOptions};
 use num_complex::Complex64;
@@ -150,5 +151,89 @@ fn structural_damping_is_refused_in_time_with_its_viscous_equivalent() {
             Status::Unsupported,
             words,
         );
+    }
+}
+
+#[test]
+fn a_rotation_out_of_range_is_refused_by_name() {
+    let mut model = BASE.sector();
+    let symmetric = [
+        0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+    ];
+    for (part, words) in [
+        (Part::Full, ["gyroscopic must be skew-symmetric", "2.000e0"]),
+        (Part::General, ["gyroscopic must be skew-symmetric", "2.000e0"]),
+        (
+            Part::Symmetric,
+            ["gyroscopic must be skew-symmetric", "passed as SYMMETRIC"],
+        ),
+    ] {
+        let view = MatrixView::dense(4, &symmetric).part(part);
+        refused(
+            model.set_matrix(MatrixKind::Gyroscopic, &view),
+            Status::NotHermitian,
+            &words,
+        );
+    }
+    // One triangle of a skew-symmetric matrix is enough.
+    let view = MatrixView::dense(4, &symmetric).part(Part::Lower);
+    model.set_matrix(MatrixKind::Gyroscopic, &view).unwrap();
+    let previous = MatrixView::dense(4, &symmetric);
+    refused(
+        model.set_coupling_previous(MatrixKind::Gyroscopic, &previous),
+        Status::Unsupported,
+        &["gyroscopic has a symmetry"],
+    );
+    refused(
+        model.set_speed(Speed::Fixed(f64::NAN)),
+        Status::NotFinite,
+        &["speed = NaN"],
+    );
+    refused(
+        model.set_speed(Speed::PerOmega(f64::INFINITY)),
+        Status::NotFinite,
+        &["per_omega = inf"],
+    );
+    refused(
+        model.set_preload_at_speed(0, 1.0, f64::NAN),
+        Status::NotFinite,
+        &["per_speed2 = NaN"],
+    );
+    refused(
+        model.set_preload_at_speed(0, -1.0, 1.0),
+        Status::Argument,
+        &["preload = -1", ">= 0"],
+    );
+    refused(
+        model.set_preload_at_speed(0, f64::INFINITY, 1.0),
+        Status::Argument,
+        &["preload = inf", "finite"],
+    );
+    refused(
+        model.set_preload_at_speed(7, 1.0, 1.0),
+        Status::Index,
+        &["id = 7", "1 contacts"],
+    );
+    model.set_preload_at_speed(0, 1.0, -1.0).unwrap();
+    refused(
+        model.set_speed(Speed::PerOmega(0.5)),
+        Status::Argument,
+        &["per_speed2 = -1 of contact 0", ">= 0"],
+    );
+    model.set_preload(0, 1.0).unwrap();
+    model.set_speed(Speed::PerOmega(0.5)).unwrap();
+    refused(
+        model.set_preload_at_speed(0, 1.0, -1.0),
+        Status::Argument,
+        &["per_speed2 = -1", ">= 0"],
+    );
+    for (x, y, m_e, phase, status, words) in [
+        (4, 1, 1.0, 0.0, Status::Index, ["dof_x = 4", "0 .. 3"]),
+        (0, 9, 1.0, 0.0, Status::Index, ["dof_y = 9", "0 .. 3"]),
+        (1, 1, 1.0, 0.0, Status::Argument, ["both 1", "different"]),
+        (0, 1, f64::NAN, 0.0, Status::NotFinite, ["m_e = NaN", "finite"]),
+        (0, 1, 1.0, f64::INFINITY, Status::NotFinite, ["phase = inf", "finite"]),
+    ] {
+        refused(model.add_unbalance(x, y, m_e, phase), status, &words);
     }
 }

@@ -14,6 +14,8 @@ pub struct Job {
     pub contact: Vec<ContactPart>,
     #[serde(default)]
     pub force: Vec<ForcePart>,
+    #[serde(default)]
+    pub unbalance: Vec<UnbalancePart>,
     pub forced: Option<ForcedPart>,
     pub mode: Option<ModePart>,
     pub verify: Option<VerifyPart>,
@@ -22,6 +24,18 @@ pub struct Job {
     /// Folder of the job file, on which all paths depend.
     #[serde(skip)]
     pub folder: PathBuf,
+}
+
+/// An unbalance that rotates with the frequency of the response.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UnbalancePart {
+    pub dof_x: usize,
+    pub dof_y: usize,
+    /// Mass times eccentricity.
+    pub m_e: f64,
+    #[serde(default)]
+    pub phase: f64,
 }
 
 /// Matrices and symmetry.
@@ -35,9 +49,15 @@ pub struct ModelPart {
     pub damping: Option<PathBuf>,
     /// D of structural damping iD in harmonics above 0.
     pub structural: Option<PathBuf>,
+    /// G of the gyroscopic forces, skew-symmetric.
+    pub gyroscopic: Option<PathBuf>,
+    /// K1 of the stiffness K + speed^2 K1.
+    pub stiffness_speed2: Option<PathBuf>,
     /// Coupling to the next sector.
     pub coupling_stiffness: Option<PathBuf>,
     pub coupling_mass: Option<PathBuf>,
+    pub coupling_gyroscopic: Option<PathBuf>,
+    pub coupling_stiffness_speed2: Option<PathBuf>,
     /// C += alpha M + beta K
     pub rayleigh: Option<[f64; 2]>,
     /// Structural damping i loss_factor K in harmonics above 0.
@@ -45,6 +65,10 @@ pub struct ModelPart {
     /// Damping ratios of the lowest natural modes without contacts, of each nodal diameter.
     #[serde(default)]
     pub modal_damping: Vec<f64>,
+    /// Speed of rotation, rad per time unit.
+    pub speed: Option<f64>,
+    /// Speed over the frequency of the response, instead: 1 / EO.
+    pub speed_per_omega: Option<f64>,
     #[serde(default = "one")]
     pub sectors: usize,
     #[serde(default)]
@@ -119,6 +143,9 @@ pub struct ContactPart {
     pub mu: f64,
     #[serde(default)]
     pub preload: f64,
+    /// Growth of the preload with the square of the speed.
+    #[serde(default)]
+    pub per_speed2: f64,
     #[serde(default)]
     pub gap: f64,
     #[serde(default)]

@@ -79,7 +79,7 @@ impl ContactForces<'_> {
             let mut reference = f64::INFINITY;
             for &c in &assembled.coordinates {
                 let Range { half, mean, speed } = ranges[c];
-                let of_motion = here.of_motion;
+                let of_motion = here.of_motion.unwrap_or(1.0);
                 let range = Range {
                     half: half / of_motion,
                     mean: mean / of_motion,
