@@ -19,6 +19,7 @@ pub struct Job {
     pub forced: Option<ForcedPart>,
     pub mode: Option<ModePart>,
     pub verify: Option<VerifyPart>,
+    pub campbell: Option<CampbellPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
@@ -233,6 +234,41 @@ pub struct ModePart {
     pub estimate_error: bool,
 }
 
+/// Contacts of a linear analysis.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum StateName {
+    #[default]
+    Stuck,
+    Free,
+}
+
+/// Natural frequencies over the speed of rotation, and where engine orders meet them; times are seconds.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CampbellPart {
+    pub from_rpm: f64,
+    pub to_rpm: f64,
+    #[serde(default = "speeds")]
+    pub points: usize,
+    /// Number of modes.
+    #[serde(default = "modes")]
+    pub count: usize,
+    #[serde(default = "first_order")]
+    pub engine_orders: Vec<i64>,
+    #[serde(default)]
+    pub diameter: usize,
+    #[serde(default)]
+    pub contacts: StateName,
+    pub csv: Option<PathBuf>,
+    /// SVG
+    pub figure: Option<PathBuf>,
+    /// Frequencies over nodal diameter with the engine orders (SAFE diagram), SVG.
+    pub interference_figure: Option<PathBuf>,
+    /// Speed of the interference figure; that of to_rpm unless given.
+    pub interference_rpm: Option<f64>,
+}
+
 /// Points of a branch.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -313,6 +349,18 @@ fn z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
 }
 
+fn speeds() -> usize {
+    41
+}
+
+fn modes() -> usize {
+    6
+}
+
+fn first_order() -> Vec<i64> {
+    vec![1]
+}
+
 fn samples() -> usize {
     256
 }
@@ -331,9 +379,9 @@ impl Job {
         let mut job: Self = toml::from_str(&text)
             .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
         path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
-        if job.forced.is_none() && job.mode.is_none() {
+        if job.forced.is_none() && job.mode.is_none() && job.campbell.is_none() {
             return Err(format!(
-                "{}: names no analysis: needs [forced] or [mode]",
+                "{}: names no analysis: needs [forced], [mode] or [campbell]",
                 path.display()
             ));
         }
