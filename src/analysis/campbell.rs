@@ -96,7 +96,8 @@ pub fn campbell(
                 let (low, high) = (gap(i - 1), gap(i));
                 // A crossing at a speed itself belongs to the interval that it ends.
                 let is_first = i == 1 && low.1 == 0.0;
-                if !is_first && !(low.1 * high.1 < 0.0 || (high.1 == 0.0 && low.1 != 0.0)) {
+                let meets = low.1 * high.1 < 0.0 || (high.1 == 0.0 && low.1 != 0.0);
+                if !(is_first || meets) {
                     continue;
                 }
                 interrupt.check()?;

@@ -56,7 +56,7 @@ pub struct Structure {
     degrees: DegreeMap,
     sectors: usize,
     engine_order: i64,
-    pub(super) blocks: [Blocks; KINDS],
+    pub(super) blocks: Box<[Blocks; KINDS]>,
     pub(super) rayleigh: (f64, f64),
     /// Loss factor η of the stiffness of the structure.
     pub(super) loss_factor: f64,
@@ -78,7 +78,7 @@ impl Structure {
             degrees: DegreeMap::identity(ndof),
             sectors,
             engine_order: 0,
-            blocks: Default::default(),
+            blocks: Box::default(),
             rayleigh: (0.0, 0.0),
             loss_factor: 0.0,
             speed: Speed::Fixed(0.0),
@@ -148,8 +148,8 @@ impl Structure {
 
     /// A copy, allocated fallibly.
     pub(super) fn try_clone(&self) -> Result<Self> {
-        let mut blocks: [Blocks; KINDS] = Default::default();
-        for (copy, own) in blocks.iter_mut().zip(&self.blocks) {
+        let mut blocks = Box::<[Blocks; KINDS]>::default();
+        for (copy, own) in blocks.iter_mut().zip(self.blocks.iter()) {
             *copy = own.try_clone()?;
         }
         let mut modal_damping = Vec::new();
@@ -193,8 +193,8 @@ impl Structure {
         self.refuse_modal_damping("degrees of freedom are fixed")?;
         let degrees = self.degrees.fixing(dofs)?;
         let keep = |a: &Option<Csc>| a.as_ref().map(|a| restricted(&self.degrees, &degrees, a)).transpose();
-        let mut blocks: [Blocks; KINDS] = Default::default();
-        for (new, old) in blocks.iter_mut().zip(&self.blocks) {
+        let mut blocks = Box::<[Blocks; KINDS]>::default();
+        for (new, old) in blocks.iter_mut().zip(self.blocks.iter()) {
             (new.own, new.next, new.previous) = (keep(&old.own)?, keep(&old.next)?, keep(&old.previous)?);
             for a in &old.diameters {
                 try_push(&mut new.diameters, keep(a)?, "the matrices per diameter")?;

@@ -127,7 +127,7 @@ fn engine_orders_meet_the_modes_at_the_critical_speeds() {
 
 /// Random numbers in −1 .. 1.
 fn random(seed: usize) -> f64 {
-    let x = (seed as f64 * 12.9898).sin() * 43758.5453;
+    let x = (seed as f64 * 12.9898).sin() * 43_758.545_3;
     2.0 * (x - x.floor()) - 1.0
 }
 
