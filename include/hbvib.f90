@@ -43,9 +43,11 @@ module hbvib
    ! hbvib_scalar
    integer(c_int32_t), parameter, public :: HBVIB_REAL = 0, HBVIB_COMPLEX = 1
    ! hbvib_part
-   integer(c_int32_t), parameter, public :: HBVIB_FULL = 0, HBVIB_LOWER = 1, HBVIB_UPPER = 2, HBVIB_GENERAL = 3
+   integer(c_int32_t), parameter, public :: HBVIB_FULL = 0, HBVIB_LOWER = 1, HBVIB_UPPER = 2, HBVIB_GENERAL = 3, &
+      HBVIB_SYMMETRIC = 4, HBVIB_SYMMETRIC_LOWER = 5, HBVIB_SYMMETRIC_UPPER = 6
    ! hbvib_matrix_kind
-   integer(c_int32_t), parameter, public :: HBVIB_MASS = 0, HBVIB_DAMPING = 1, HBVIB_STIFFNESS = 2
+   integer(c_int32_t), parameter, public :: HBVIB_MASS = 0, HBVIB_DAMPING = 1, HBVIB_STIFFNESS = 2, HBVIB_STRUCTURAL = 3, &
+      HBVIB_GYROSCOPIC = 4, HBVIB_STIFFNESS_SPEED2 = 5
    ! hbvib_special_dof
    integer(c_int32_t), parameter, public :: HBVIB_GROUND = -1
    ! hbvib_sector_frame
@@ -472,6 +474,51 @@ module hbvib
          type(c_ptr), value :: model
          integer(c_int32_t) :: status
       end function hbvib_model_clear_forces
+
+      function hbvib_model_set_loss_factor(model, loss_factor) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         real(c_double), value :: loss_factor
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_loss_factor
+
+      function hbvib_model_set_modal_damping(model, n, ratios) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: n
+         real(c_double), intent(in) :: ratios(*)
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_modal_damping
+
+      function hbvib_model_set_speed(model, speed) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         real(c_double), value :: speed
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_speed
+
+      function hbvib_model_set_speed_per_omega(model, per_omega) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         real(c_double), value :: per_omega
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_speed_per_omega
+
+      function hbvib_model_set_preload_at_speed(model, id, preload, per_speed2) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: id
+         real(c_double), value :: preload, per_speed2
+         integer(c_int32_t) :: status
+      end function hbvib_model_set_preload_at_speed
+
+      function hbvib_model_add_unbalance(model, dof_x, dof_y, m_e, phase) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: dof_x, dof_y
+         real(c_double), value :: m_e, phase
+         integer(c_int32_t) :: status
+      end function hbvib_model_add_unbalance
 
       function hbvib_cyclic_new(ndof_sector, sectors, out) bind(c) result(status)
          import
@@ -914,6 +961,51 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_linear_modes_with_hooks
 
+      function hbvib_damped_modes(model, diameter, contacts, count, eigenvalue, shapes, direction, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: diameter
+         integer(c_int32_t), value :: contacts
+         integer(c_int64_t), value :: count
+         complex(c_double_complex), intent(inout) :: eigenvalue(*)
+         complex(c_double_complex), intent(inout), optional :: shapes(*)
+         integer(c_int64_t), intent(inout), optional :: direction(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_damped_modes
+
+      function hbvib_campbell(model, n, speeds, diameter, contacts, count, omega, damping_ratio, direction, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: n
+         real(c_double), intent(in) :: speeds(*)
+         integer(c_int64_t), value :: diameter
+         integer(c_int32_t), value :: contacts
+         integer(c_int64_t), value :: count
+         real(c_double), intent(inout) :: omega(*)
+         real(c_double), intent(inout), optional :: damping_ratio(*)
+         integer(c_int64_t), intent(inout), optional :: direction(*)
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_campbell
+
+      function hbvib_campbell_crossings(model, n, speeds, diameter, contacts, count, engine_order, capacity, speed, omega, &
+         direction, found, hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: n
+         real(c_double), intent(in) :: speeds(*)
+         integer(c_int64_t), value :: diameter
+         integer(c_int32_t), value :: contacts
+         integer(c_int64_t), value :: count, engine_order, capacity
+         real(c_double), intent(inout), optional :: speed(*), omega(*)
+         integer(c_int64_t), intent(inout), optional :: direction(*)
+         integer(c_int64_t), intent(inout) :: found
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_campbell_crossings
+
       function hbvib_mode_options_init(o, size_of_o) bind(c) result(status)
          import
          type(hbvib_mode_options), intent(inout) :: o
@@ -1210,6 +1302,11 @@ module hbvib
       generic :: set_coupling => couple_real, couple_complex, couple_sparse_real, couple_sparse_complex, couple_struct
       generic :: add_force => add_force_real, add_force_complex
       procedure :: set_rayleigh => model_set_rayleigh
+      procedure :: set_loss_factor => model_set_loss_factor
+      procedure :: set_modal_damping => model_set_modal_damping
+      procedure :: set_speed => model_set_speed
+      procedure :: set_speed_per_omega => model_set_speed_per_omega
+      procedure :: add_unbalance => model_add_unbalance
       procedure :: set_wave => model_set_wave
       procedure :: clear_forces => model_clear_forces
       procedure :: add_contact => model_add_contact
@@ -1225,6 +1322,9 @@ module hbvib
       procedure :: add_user_force => model_add_user_force
       procedure :: check_jacobian => model_check_jacobian
       procedure :: linear_modes => model_linear_modes
+      procedure :: damped_modes => model_damped_modes
+      procedure :: campbell => model_campbell
+      procedure :: campbell_crossings => model_campbell_crossings
       procedure :: forced_response => model_forced_response
       procedure :: nonlinear_mode => model_nonlinear_mode
       procedure :: time_response => model_time_response
@@ -1279,6 +1379,8 @@ module hbvib
    private :: model_sectors, model_contacts, dense, address, dense_real, dense_complex, sparse, set, couple, set_real
    private :: set_sparse_real, couple_real, couple_sparse_real, set_complex, set_sparse_complex, couple_complex
    private :: couple_sparse_complex, set_struct, couple_struct, model_set_rayleigh, model_set_wave, add_force_complex
+   private :: model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
+   private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
    private :: model_add_polynomial, model_add_stiffness_tensors, all_of_length, model_add_patch, three_by
@@ -1867,6 +1969,55 @@ contains
       status = hbvib_model_set_rayleigh(self%handle, alpha_mass, beta_stiffness)
    end function model_set_rayleigh
 
+   !> Structural damping i loss_factor K of the structure's own stiffness in harmonics above 0.
+   function model_set_loss_factor(self, loss_factor) result(status)
+      class(hbvib_model), intent(inout) :: self
+      real(dp), intent(in) :: loss_factor
+      integer(i32) :: status
+      status = hbvib_model_set_loss_factor(self%handle, loss_factor)
+   end function model_set_loss_factor
+
+   !> Damping ratios of the lowest natural modes without contacts; an empty array removes them.
+   function model_set_modal_damping(self, ratios) result(status)
+      class(hbvib_model), intent(inout) :: self
+      real(dp), intent(in), contiguous :: ratios(:)
+      integer(i32) :: status
+      status = hbvib_model_set_modal_damping(self%handle, size(ratios, kind=i64), ratios)
+   end function model_set_modal_damping
+
+   !> A fixed speed of rotation.
+   function model_set_speed(self, speed) result(status)
+      class(hbvib_model), intent(inout) :: self
+      real(dp), intent(in) :: speed
+      integer(i32) :: status
+      status = hbvib_model_set_speed(self%handle, speed)
+   end function model_set_speed
+
+   !> A speed of rotation of per_omega times the frequency of the response: 1 / EO for an excitation of engine order EO.
+   function model_set_speed_per_omega(self, per_omega) result(status)
+      class(hbvib_model), intent(inout) :: self
+      real(dp), intent(in) :: per_omega
+      integer(i32) :: status
+      status = hbvib_model_set_speed_per_omega(self%handle, per_omega)
+   end function model_set_speed_per_omega
+
+   !> Adds m_e omega**2 cos(omega t + phase) on dof_x and m_e omega**2 sin(omega t + phase) on dof_y.
+   function model_add_unbalance(self, dof_x, dof_y, m_e, phase) result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: dof_x, dof_y
+      real(dp), intent(in) :: m_e
+      real(dp), intent(in), optional :: phase
+      integer(i32) :: status
+      integer(i64) :: x, y
+      real(dp) :: turn
+      status = HBVIB_OK
+      turn = 0
+      if (present(phase)) turn = phase
+      call to_zero(status, 'dof_x', int(dof_x, i64), hbvib_model_dofs(self%handle), x)
+      call to_zero(status, 'dof_y', int(dof_y, i64), hbvib_model_dofs(self%handle), y)
+      if (status == HBVIB_OK) status = hbvib_model_add_unbalance(self%handle, x, y, m_e, turn)
+   end function model_add_unbalance
+
    !> Engine order of the excitation.
    function model_set_wave(self, engine_order) result(status)
       class(hbvib_model), intent(inout) :: self
@@ -1925,6 +2076,84 @@ contains
                                                                      omega, shapes, hooks)
    end function model_linear_modes
 
+   !> Damped natural modes at the speed of the model: the lowest size(eigenvalue) of them, shapes(ndof, size(eigenvalue)); direction is 1
+   !> (forward), -1 (backward) or 0. contacts: HBVIB_CONTACTS_STUCK (default) or HBVIB_CONTACTS_FREE. diameter: default 0.
+   function model_damped_modes(self, eigenvalue, shapes, direction, diameter, contacts, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      complex(dp), intent(inout), contiguous :: eigenvalue(:)
+      complex(dp), intent(inout), contiguous, optional :: shapes(:, :)
+      integer(i64), intent(inout), contiguous, optional :: direction(:)
+      integer, intent(in), optional :: diameter
+      integer(i32), intent(in), optional :: contacts
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status, state
+      integer(i64) :: d
+      status = HBVIB_OK
+      d = 0
+      state = HBVIB_CONTACTS_STUCK
+      if (present(diameter)) d = diameter
+      if (present(contacts)) state = contacts
+      if (present(shapes)) then
+         call same_length(status, 'shapes(:, 1)', size(shapes, 1, i64), hbvib_model_dofs(self%handle))
+         call same_length(status, 'shapes(1, :)', size(shapes, 2, i64), size(eigenvalue, kind=i64))
+      end if
+      if (present(direction)) call same_length(status, 'direction', size(direction, kind=i64), size(eigenvalue, kind=i64))
+      if (status == HBVIB_OK) status = hbvib_damped_modes(self%handle, d, state, size(eigenvalue, kind=i64), eigenvalue, shapes, &
+                                                          direction, hooks)
+   end function model_damped_modes
+
+   !> Campbell diagram: omega(count, size(speeds)) of the damped modes at rising speeds; damping_ratio and direction likewise.
+   function model_campbell(self, speeds, omega, damping_ratio, direction, diameter, contacts, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      real(dp), intent(in), contiguous :: speeds(:)
+      real(dp), intent(inout), contiguous :: omega(:, :)
+      real(dp), intent(inout), contiguous, optional :: damping_ratio(:, :)
+      integer(i64), intent(inout), contiguous, optional :: direction(:, :)
+      integer, intent(in), optional :: diameter
+      integer(i32), intent(in), optional :: contacts
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status, state
+      integer(i64) :: d
+      status = HBVIB_OK
+      d = 0
+      state = HBVIB_CONTACTS_STUCK
+      if (present(diameter)) d = diameter
+      if (present(contacts)) state = contacts
+      call same_length(status, 'omega(1, :)', size(omega, 2, i64), size(speeds, kind=i64))
+      if (present(damping_ratio)) call same_length(status, 'damping_ratio', size(damping_ratio, kind=i64), size(omega, kind=i64))
+      if (present(direction)) call same_length(status, 'direction', size(direction, kind=i64), size(omega, kind=i64))
+      if (status == HBVIB_OK) status = hbvib_campbell(self%handle, size(speeds, kind=i64), speeds, d, state, size(omega, 1, i64), &
+                                                      omega, damping_ratio, direction, hooks)
+   end function model_campbell
+
+   !> The speeds at which an engine order meets one of count modes between neighbours of the given speeds; found of them.
+   function model_campbell_crossings(self, speeds, count, engine_order, speed, omega, found, direction, diameter, contacts, hooks) &
+      result(status)
+      class(hbvib_model), intent(in) :: self
+      real(dp), intent(in), contiguous :: speeds(:)
+      integer, intent(in) :: count, engine_order
+      real(dp), intent(inout), contiguous :: speed(:), omega(:)
+      integer, intent(inout) :: found
+      integer(i64), intent(inout), contiguous, optional :: direction(:)
+      integer, intent(in), optional :: diameter
+      integer(i32), intent(in), optional :: contacts
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status, state
+      integer(i64) :: d, number
+      status = HBVIB_OK
+      d = 0
+      number = 0
+      state = HBVIB_CONTACTS_STUCK
+      if (present(diameter)) d = diameter
+      if (present(contacts)) state = contacts
+      call same_length(status, 'omega', size(omega, kind=i64), size(speed, kind=i64))
+      if (present(direction)) call same_length(status, 'direction', size(direction, kind=i64), size(speed, kind=i64))
+      if (status == HBVIB_OK) status = hbvib_campbell_crossings(self%handle, size(speeds, kind=i64), speeds, d, state, &
+                                                                int(count, i64), int(engine_order, i64), &
+                                                                size(speed, kind=i64), speed, omega, direction, number, hooks)
+      if (status == HBVIB_OK) found = int(number)
+   end function model_campbell_crossings
+
    !> id receives the number of the contact, from 1.
    function model_add_contact(self, contact, id) result(status)
       class(hbvib_model), intent(inout) :: self
@@ -1940,15 +2169,20 @@ contains
       if (status == HBVIB_OK .and. present(id)) id = int(zero) + 1
    end function model_add_contact
 
-   function model_set_preload(self, id, preload) result(status)
+   !> The normal load of a contact is preload + per_speed2 Omega**2 at the speed of rotation Omega; per_speed2 absent: 0.
+   function model_set_preload(self, id, preload, per_speed2) result(status)
       class(hbvib_model), intent(inout) :: self
       integer, intent(in) :: id
       real(dp), intent(in) :: preload
+      real(dp), intent(in), optional :: per_speed2
       integer(i32) :: status
       integer(i64) :: zero
+      real(dp) :: growth
       status = HBVIB_OK
+      growth = 0
+      if (present(per_speed2)) growth = per_speed2
       call to_zero(status, 'id', int(id, i64), hbvib_model_contacts(self%handle), zero)
-      if (status == HBVIB_OK) status = hbvib_model_set_preload(self%handle, zero, preload)
+      if (status == HBVIB_OK) status = hbvib_model_set_preload_at_speed(self%handle, zero, preload, growth)
    end function model_set_preload
 
    !> Many Jenkins contacts, all arrays of one length. dof_b absent: the ground; sector_offset absent: 0.

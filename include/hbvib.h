@@ -234,6 +234,12 @@ typedef enum {
   HBVIB_UPPER = 2,
   /// All of any matrix.
   HBVIB_GENERAL = 3,
+  /// All of a matrix with A = A^T, real or complex; the symmetry is checked.
+  HBVIB_SYMMETRIC = 4,
+  /// The lower triangle of a matrix with A = A^T, real or complex; the upper one is not read.
+  HBVIB_SYMMETRIC_LOWER = 5,
+  /// The upper triangle of a matrix with A = A^T, real or complex; the lower one is not read.
+  HBVIB_SYMMETRIC_UPPER = 6,
 } hbvib_part;
 
 /// A matrix of the caller, read during the call and never kept. Fill it by hbvib_matrix_init.
@@ -244,7 +250,7 @@ typedef struct {
   int32_t storage;
   /// HBVIB_REAL or HBVIB_COMPLEX.
   int32_t scalar;
-  /// HBVIB_FULL, HBVIB_LOWER, HBVIB_UPPER or HBVIB_GENERAL.
+  /// HBVIB_FULL .. HBVIB_SYMMETRIC_UPPER.
   int32_t part;
   /// Number of rows.
   int64_t rows;
@@ -281,6 +287,12 @@ typedef enum {
   HBVIB_DAMPING = 1,
   /// K
   HBVIB_STIFFNESS = 2,
+  /// D of the structural damping iD in harmonics above 0; positive dissipates.
+  HBVIB_STRUCTURAL = 3,
+  /// G of the gyroscopic forces Omega G x', skew-symmetric: G = -G^T.
+  HBVIB_GYROSCOPIC = 4,
+  /// K1 of the stiffness K + Omega^2 K1 at speed; that of softening is negative.
+  HBVIB_STIFFNESS_SPEED2 = 5,
 } hbvib_matrix_kind;
 
 /* ==============================================================================================
@@ -332,11 +344,13 @@ int64_t hbvib_model_sectors(const hbvib_model *model);
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed). Threads: any number on one model.
 int64_t hbvib_model_contacts(const hbvib_model *model);
 
-/// Sets the mass, damping or stiffness matrix of a structure, or of a sector on itself.
+/// Sets a matrix of a structure, or of a sector on itself.
 ///
-/// which  HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
-/// a      ndof x ndof. M must be symmetric or Hermitian; C and K may be HBVIB_GENERAL. Complex
-///        entries act on all harmonics above zero, the mean sees their real part.
+/// which  HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
+/// a      ndof x ndof. M must be symmetric or Hermitian, HBVIB_GYROSCOPIC skew-symmetric (in full,
+///        which is checked, or one triangle); the others may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
+///        Complex entries act on all harmonics above zero, the mean sees their
+///        real part, and no structural damping.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_NOT_HERMITIAN, HBVIB_E_INDEX, each naming the entry;
 /// HBVIB_E_DIMENSION, HBVIB_E_ARGUMENT, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_NOT_POSITIVE_DEFINITE (negative diagonal mass), HBVIB_E_OUT_OF_MEMORY.
@@ -399,6 +413,76 @@ hbvib_status hbvib_model_add_force(hbvib_model *model,
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
 hbvib_status hbvib_model_clear_forces(hbvib_model *model);
 
+/// Sets the loss factor eta of structural damping i eta K in harmonics above 0; a later call
+/// replaces an earlier one, 0 removes it. K is the stiffness of the structure, couplings and
+/// matrices per nodal diameter included, springs and contacts not. A structure without contacts
+/// has the damping ratio eta / 2 at each resonance. Structural damping has no meaning in time:
+/// integration and verification refuse it.
+///
+/// loss_factor  at least 0.
+/// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_ARGUMENT, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_set_loss_factor(hbvib_model *model, double loss_factor);
+
+/// Damps the lowest natural modes of each nodal diameter by given ratios, as the viscous matrix sum
+/// of 2 ratio omega (M phi)(M phi)^H; other motions are not damped. The modes are those without
+/// contacts, with springs. A later call replaces an earlier one, n = 0 removes the damping. Call it
+/// when mass, stiffness, springs and fixed degrees of freedom are complete.
+///
+/// n       number of modes, 0 .. ndof.
+/// ratios  damping ratio of each mode in the order of rising frequency, at least 0; n numbers.
+/// Errors: HBVIB_E_DIMENSION (n), HBVIB_E_NOT_FINITE or HBVIB_E_ARGUMENT (ratios),
+/// HBVIB_E_UNSUPPORTED (more than 2000 degrees of freedom), those of hbvib_linear_modes, after all
+/// of which the model is unchanged; HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_set_modal_damping(hbvib_model *model, int64_t n, const double *ratios);
+
+/// Sets a fixed speed of rotation Omega: M x'' + (C + Omega G) x' + (K + Omega^2 K1) x + f = f_ex
+/// with the matrices HBVIB_GYROSCOPIC and HBVIB_STIFFNESS_SPEED2, and the loads of
+/// hbvib_model_set_preload_at_speed. Rayleigh damping and the loss factor use K without K1.
+///
+/// speed  rad per time unit, finite, of any sign.
+/// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+hbvib_status hbvib_model_set_speed(hbvib_model *model, double speed);
+
+/// Ties the speed of rotation to the angular frequency omega of the response: Omega = per_omega *
+/// omega, along a whole sweep or mode. An excitation of engine order EO has per_omega = 1 / EO.
+///
+/// per_omega  finite, of any sign.
+/// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_ARGUMENT (a load that decreases with the speed),
+/// HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+hbvib_status hbvib_model_set_speed_per_omega(hbvib_model *model, double per_omega);
+
+/// Sets the normal load of a contact to preload + per_speed2 * Omega^2; a later call, or one of
+/// hbvib_model_set_preload, replaces it. A ring of mass m at the radius R has per_speed2 = m R. A
+/// load below zero opens a contact with a normal stiffness, others lose their friction.
+///
+/// id          number from hbvib_model_add_contact or another function that adds contacts.
+/// preload     force at rest, >= 0 and finite.
+/// per_speed2  force times time^2, finite; at least 0 where the speed is tied to the frequency.
+/// Errors: HBVIB_E_INDEX (id), HBVIB_E_ARGUMENT (no normal load, a negative number),
+/// HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+hbvib_status hbvib_model_set_preload_at_speed(hbvib_model *model,
+                                              int64_t id,
+                                              double preload,
+                                              double per_speed2);
+
+/// Adds the force of an unbalance that rotates with the frequency omega of the response:
+/// m_e omega^2 cos(omega t + phase) on dof_x and m_e omega^2 sin(omega t + phase) on dof_y.
+/// hbvib_model_clear_forces removes it, too.
+///
+/// dof_x, dof_y  two degrees of freedom, 0 .. ndof - 1.
+/// m_e           mass times eccentricity, finite.
+/// phase         radians, finite.
+/// Errors: HBVIB_E_INDEX (dof_x, dof_y), HBVIB_E_ARGUMENT (the same degree of freedom twice),
+/// HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: one at a time per model.
+hbvib_status hbvib_model_add_unbalance(hbvib_model *model,
+                                       int64_t dof_x,
+                                       int64_t dof_y,
+                                       double m_e,
+                                       double phase);
+
 /* ==============================================================================================
  * Cyclic structures: sectors, their faces and couplings, nodal diameters, engine order
  * ============================================================================================== */
@@ -416,7 +500,8 @@ hbvib_status hbvib_cyclic_new(int64_t ndof_sector, int64_t sectors, hbvib_model 
 /// Sets the coupling of a sector to the next one: rows of sector s, columns of s + 1. The coupling
 /// to the previous sector is its transpose unless hbvib_cyclic_set_coupling_previous is called.
 ///
-/// which    HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which    HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2; the coupling of HBVIB_GYROSCOPIC to the previous
+///          sector is minus the transpose.
 /// to_next  ndof x ndof, any matrix: `part` is no promise of symmetry here; a triangle is completed
 ///          by its mirror image.
 /// Where sector s + 1 lags by phi, harmonic p has the matrix A0 + A1 exp(-i p phi) + A1^T exp(i p
@@ -430,7 +515,7 @@ hbvib_status hbvib_cyclic_set_coupling(hbvib_model *model,
 /// Sets the coupling of a sector (rows) to the previous one (columns), for damping and stiffness
 /// without symmetry.
 ///
-/// which        HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which        any but HBVIB_MASS and HBVIB_GYROSCOPIC, which have a symmetry.
 /// to_previous  ndof x ndof, any matrix.
 /// Errors: as hbvib_cyclic_set_coupling; HBVIB_E_UNSUPPORTED for the mass.
 /// Threads: one at a time per model.
@@ -442,9 +527,9 @@ hbvib_status hbvib_cyclic_set_coupling_previous(hbvib_model *model,
 /// blocks. Waves in the other direction have its conjugate. A solve that needs a harmonic without a
 /// matrix of its nodal diameter is refused.
 ///
-/// which     HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which     HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
 /// diameter  nodal diameter, 0 .. N/2.
-/// a         ndof x ndof, Hermitian; C and K may be HBVIB_GENERAL.
+/// a         ndof x ndof, Hermitian; all but M may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
 /// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter out of range and for
 /// matrices that were given by sector blocks. Threads: one at a time per model.
 hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model,
@@ -1809,6 +1894,90 @@ hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model,
                                            double *omega,
                                            double *shapes,
                                            const hbvib_hooks *hooks);
+
+/// Damped natural modes at the speed of the model, in the order of rising frequency: eigenvalues
+/// lambda in the upper half plane of lambda^2 M + lambda (C + Omega G) + K + Omega^2 K1 + i D.
+/// Motions that do not oscillate are not counted. A mode that grows is told to the log.
+///
+/// diameter    nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain one.
+/// contacts    HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// count       number of requested modes, 1 .. ndof.
+/// eigenvalue  receives `count` complex numbers: the damped angular frequency is the imaginary
+///             part, the damping ratio minus the real part over the modulus.
+/// shapes      receives `count` complex shapes of ndof numbers each, one after the other, with
+///             phi^H M phi = 1 over one sector; or NULL.
+/// direction   receives `count` numbers: 1 (forward) where the frequency rises with the speed at
+///             fixed K1, -1 (backward) where it falls, 0 where neither; or NULL.
+/// hooks       phase, log and cancellation; progress is not called. NULL: none.
+/// Errors: HBVIB_E_ARGUMENT (diameter, contacts, a speed tied to the frequency), HBVIB_E_DIMENSION
+/// (more modes than oscillate), HBVIB_E_NOT_POSITIVE_DEFINITE, HBVIB_E_SINGULAR,
+/// HBVIB_E_NO_CONVERGENCE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
+/// Threads: any number on one model.
+hbvib_status hbvib_damped_modes(const hbvib_model *model,
+                                int64_t diameter,
+                                int32_t contacts,
+                                int64_t count,
+                                double *eigenvalue,
+                                double *shapes,
+                                int64_t *direction,
+                                const hbvib_hooks *hooks);
+
+/// Campbell diagram: the lowest damped modes at each of some speeds of rotation. The speed of the
+/// model has no effect.
+///
+/// n              number of speeds, at least 1.
+/// speeds         rising speeds, rad per time unit; n numbers.
+/// diameter       nodal diameter 0 .. N/2; 0 for a plain structure.
+/// contacts       HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// count          number of modes at each speed, 1 .. ndof.
+/// omega          receives n * count damped angular frequencies, those of one speed rising, one
+///                speed after the other; NaN where fewer motions oscillate.
+/// damping_ratio  receives n * count damping ratios likewise; or NULL.
+/// direction      receives n * count numbers likewise, as hbvib_damped_modes; or NULL.
+/// hooks          phase and cancellation; progress is not called. NULL: none.
+/// Errors: HBVIB_E_DIMENSION (n, count), HBVIB_E_NOT_FINITE or HBVIB_E_ARGUMENT (speeds), and those
+/// of hbvib_damped_modes. Threads: any number on one model.
+hbvib_status hbvib_campbell(const hbvib_model *model,
+                            int64_t n,
+                            const double *speeds,
+                            int64_t diameter,
+                            int32_t contacts,
+                            int64_t count,
+                            double *omega,
+                            double *damping_ratio,
+                            int64_t *direction,
+                            const hbvib_hooks *hooks);
+
+/// The speeds at which an engine order meets a mode of the Campbell diagram, omega = engine_order *
+/// Omega, found between neighbours of the given speeds and then to rounding.
+///
+/// n             number of speeds, at least 1.
+/// speeds        rising speeds, rad per time unit; n numbers.
+/// diameter      nodal diameter 0 .. N/2; 0 for a plain structure.
+/// contacts      HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// count         number of modes at each speed, 1 .. ndof.
+/// engine_order  at least 1.
+/// capacity      room of each of the arrays, >= 0; n * count is enough.
+/// speed         receives the speeds, rising, `found` numbers; or NULL if capacity = 0.
+/// omega         receives the angular frequencies, `found` numbers; or NULL if capacity = 0.
+/// direction     receives the directions, as hbvib_damped_modes, `found` numbers; or NULL.
+/// found         receives the number of crossings; if it is above the capacity, no array is filled.
+/// hooks         phase and cancellation; progress is not called. NULL: none.
+/// Errors: HBVIB_E_DIMENSION (n, count, capacity), HBVIB_E_NOT_FINITE (speeds), HBVIB_E_ARGUMENT
+/// (speeds, engine_order), and those of hbvib_damped_modes. Threads: any number on one model.
+hbvib_status hbvib_campbell_crossings(const hbvib_model *model,
+                                      int64_t n,
+                                      const double *speeds,
+                                      int64_t diameter,
+                                      int32_t contacts,
+                                      int64_t count,
+                                      int64_t engine_order,
+                                      int64_t capacity,
+                                      double *speed,
+                                      double *omega,
+                                      int64_t *direction,
+                                      int64_t *found,
+                                      const hbvib_hooks *hooks);
 
 /// Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
 typedef enum {

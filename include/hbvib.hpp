@@ -481,7 +481,7 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
   template <class S, class = decltype(std::declval<const S&>().outerIndexPtr()), class = void,
             class = std::enable_if_t<!S::IsRowMajor>>
   Matrix(const S& s) : Matrix(csc(s.rows(), s.cols(), s.valuePtr(), compressed(s).outerIndexPtr(), s.innerIndexPtr())) {}
-  /// The same matrix with another promise: HBVIB_GENERAL, HBVIB_LOWER, ...
+  /// The same matrix with another promise: HBVIB_GENERAL, HBVIB_SYMMETRIC_LOWER, ...
   Matrix as(hbvib_part given) const {
     Matrix a = *this;
     return a.part = given, a;
@@ -698,6 +698,27 @@ struct SynthesisPeak {
   double omega, amplitude, log10_amplitude, damping_ratio, other_mode;
   std::int32_t flags;
 };
+/// Damped natural modes.
+struct DampedModes {
+  std::vector<Complex> eigenvalue;  ///< In the upper half plane, by rising imaginary part.
+  View<const Complex> shapes;       ///< (mode, degree of freedom)
+  std::vector<Index> direction;     ///< 1 forward, -1 backward, 0 undefined.
+  double omega(std::size_t k) const { return eigenvalue[k].imag(); }
+  double damping_ratio(std::size_t k) const { return -eigenvalue[k].real() / std::abs(eigenvalue[k]); }
+};
+/// An engine order at the frequency of a mode.
+struct Crossing {
+  Index engine_order;
+  double speed, omega;
+  Index direction;
+};
+/// Damped modes over speeds: count numbers for each speed, one after the other.
+struct Campbell {
+  Index count;
+  std::vector<double> omega, damping_ratio;
+  std::vector<Index> direction;
+  std::vector<Crossing> crossings;
+};
 /// Natural angular frequencies, and shapes count x ndof.
 struct LinearModes {
   std::vector<double> omega;
@@ -902,6 +923,14 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   /// Fixes degrees of freedom, now or before matrices are set; their numbers stay.
   void fix(In<Index> dofs) { use(hbvib_model_fix, dofs.length(), dofs.data()); }
   void set_rayleigh(double alpha_mass, double beta_stiffness) { use(hbvib_model_set_rayleigh, alpha_mass, beta_stiffness); }
+  /// Structural damping i loss_factor K of the structure's own stiffness in harmonics above 0.
+  void set_loss_factor(double loss_factor) { use(hbvib_model_set_loss_factor, loss_factor); }
+  /// Damping ratios of the lowest natural modes without contacts; {}: none.
+  void set_modal_damping(In<double> ratios) { use(hbvib_model_set_modal_damping, ratios.length(), ratios.data()); }
+  /// A fixed speed of rotation.
+  void set_speed(double speed) { use(hbvib_model_set_speed, speed); }
+  /// Omega = per_omega omega along a sweep; 1 / EO for an excitation of engine order EO.
+  void set_speed_per_omega(double per_omega) { use(hbvib_model_set_speed_per_omega, per_omega); }
   void set_coupling(hbvib_matrix_kind which, const Matrix& to_next) { use(hbvib_cyclic_set_coupling, which, &to_next); }
   void set_coupling_previous(hbvib_matrix_kind which, const Matrix& to_previous) {
     use(hbvib_cyclic_set_coupling_previous, which, &to_previous);
@@ -913,11 +942,14 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   void add_force(Index dof, Index harmonic, Complex amplitude) {
     use(hbvib_model_add_force, dof, harmonic, amplitude.real(), amplitude.imag());
   }
+  /// m_e omega^2 cos(omega t + phase) on dof_x and m_e omega^2 sin(omega t + phase) on dof_y.
+  void add_unbalance(Index dof_x, Index dof_y, double m_e, double phase = 0) { use(hbvib_model_add_unbalance, dof_x, dof_y, m_e, phase); }
   void clear_forces() { use(hbvib_model_clear_forces); }
 
   // Contacts: each returns the number of the (first) contact added. Arrays that may be left out: {}.
   Index add_contact(const Contact& c) { return add(hbvib_model_add_contact, &c); }
-  void set_preload(Index id, double preload) { use(hbvib_model_set_preload, id, preload); }
+  /// preload + per_speed2 Omega^2 at the speed of rotation Omega.
+  void set_preload(Index id, double preload, double per_speed2 = 0) { use(hbvib_model_set_preload_at_speed, id, preload, per_speed2); }
   Index add_jenkins(In<Index> dof_a, In<Index> dof_b, In<Index> sector_offset, In<double> kt, In<double> mu, In<double> preload) {
     const Index n = dof_a.length();
     detail::check_length(dof_b.size(), n, 4, "dof_b");
@@ -1007,6 +1039,31 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     use_whole(hooks, hbvib_linear_modes_with_hooks, diameter, contacts, count, modes.omega.data(), detail::flat(shapes.data()));
     modes.shapes = shapes.view({count, n});
     return modes;
+  }
+  /// Damped natural modes at the speed of the model, by rising frequency.
+  DampedModes damped_modes(Index diameter, hbvib_contact_state contacts, Index count) const {
+    const Index n = dofs();
+    DampedModes modes{std::vector<Complex>(detail::room(count)), {}, std::vector<Index>(detail::room(count))};
+    const detail::Array<Complex> shapes(detail::room(count, n));
+    use(hbvib_damped_modes, diameter, contacts, count, detail::flat(modes.eigenvalue.data()), detail::flat(shapes.data()), modes.direction.data(),
+        nullptr);
+    modes.shapes = shapes.view({count, n});
+    return modes;
+  }
+  /// Damped modes at rising speeds, and where engine orders meet them.
+  Campbell campbell(In<double> speeds, Index diameter, hbvib_contact_state contacts, Index count, In<Index> engine_orders) const {
+    const Index n = speeds.length(), room = n * count;
+    Campbell c{count, std::vector<double>(detail::room(room)), std::vector<double>(detail::room(room)), std::vector<Index>(detail::room(room)), {}};
+    use(hbvib_campbell, n, speeds.data(), diameter, contacts, count, c.omega.data(), c.damping_ratio.data(), c.direction.data(), nullptr);
+    std::vector<double> at(detail::room(room)), omega(at.size());
+    std::vector<Index> sense(at.size());
+    for (Index k = 0; k < engine_orders.length(); k++) {
+      Index found = 0;
+      const Index order = engine_orders.data()[k];
+      use(hbvib_campbell_crossings, n, speeds.data(), diameter, contacts, count, order, room, at.data(), omega.data(), sense.data(), &found, nullptr);
+      for (std::size_t i = 0; i < detail::extent(found); i++) c.crossings.push_back({order, at[i], omega[i], sense[i]});
+    }
+    return c;
   }
   /// The response to the forces over a range of frequency.
   Branch forced_response(const SolverOptions& solver, const ForcedOptions& range, const Hooks& hooks = {}) const {

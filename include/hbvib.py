@@ -100,6 +100,9 @@ class Part(enum.IntEnum):
     LOWER = 1  #: The lower triangle of a symmetric or Hermitian matrix; the upper one is not read.
     UPPER = 2  #: The upper triangle of a symmetric or Hermitian matrix; the lower one is not read.
     GENERAL = 3  #: All of any matrix.
+    SYMMETRIC = 4  #: All of a matrix with A = A^T, real or complex; the symmetry is checked.
+    SYMMETRIC_LOWER = 5  #: The lower triangle of a matrix with A = A^T, real or complex; the upper one is not read.
+    SYMMETRIC_UPPER = 6  #: The upper triangle of a matrix with A = A^T, real or complex; the lower one is not read.
 
 
 class MatrixKind(enum.IntEnum):
@@ -107,6 +110,9 @@ class MatrixKind(enum.IntEnum):
     MASS = 0  #: M
     DAMPING = 1  #: C
     STIFFNESS = 2  #: K
+    STRUCTURAL = 3  #: D of the structural damping iD in harmonics above 0; positive dissipates.
+    GYROSCOPIC = 4  #: G of the gyroscopic forces Omega G x', skew-symmetric: G = -G^T.
+    STIFFNESS_SPEED2 = 5  #: K1 of the stiffness K + Omega^2 K1 at speed; that of softening is negative.
 
 
 GROUND = -1  #: The ground, which does not move.
@@ -357,6 +363,12 @@ model_set_rayleigh: h d d
 model_add_springs: h l p p p p
 model_add_force: h l l d d
 model_clear_forces: h
+model_set_loss_factor: h d
+model_set_modal_damping: h l p
+model_set_speed: h d
+model_set_speed_per_omega: h d
+model_set_preload_at_speed: h l d d
+model_add_unbalance: h l l d d
 cyclic_new: l l p
 cyclic_set_coupling: h i matrix
 cyclic_set_coupling_previous: h i matrix
@@ -408,6 +420,9 @@ branch_contact_summary: h l l contact_summary
 branch_contact_summary_with_hooks: h l l contact_summary hooks
 linear_modes: h l i l p p
 linear_modes_with_hooks: h l i l p p hooks
+damped_modes: h l i l p p p hooks
+campbell: h l p l i l p p p hooks
+campbell_crossings: h l p l i l l l p p p p hooks
 mode_options_init: mode_options z
 nonlinear_mode: h solver_options mode_options hooks p
 mode_point_init: mode_point z
@@ -461,6 +476,12 @@ if TYPE_CHECKING:
             Any) -> int: ...
         def hbvib_model_add_force(self, model: Any, dof: int, harmonic: int, re: float, im: float) -> int: ...
         def hbvib_model_clear_forces(self, model: Any) -> int: ...
+        def hbvib_model_set_loss_factor(self, model: Any, loss_factor: float) -> int: ...
+        def hbvib_model_set_modal_damping(self, model: Any, n: int, ratios: Any) -> int: ...
+        def hbvib_model_set_speed(self, model: Any, speed: float) -> int: ...
+        def hbvib_model_set_speed_per_omega(self, model: Any, per_omega: float) -> int: ...
+        def hbvib_model_set_preload_at_speed(self, model: Any, id: int, preload: float, per_speed2: float) -> int: ...
+        def hbvib_model_add_unbalance(self, model: Any, dof_x: int, dof_y: int, m_e: float, phase: float) -> int: ...
         def hbvib_cyclic_new(self, ndof_sector: int, sectors: int, out: Any) -> int: ...
         def hbvib_cyclic_set_coupling(self, model: Any, which: int, to_next: Any) -> int: ...
         def hbvib_cyclic_set_coupling_previous(self, model: Any, which: int, to_previous: Any) -> int: ...
@@ -531,6 +552,13 @@ if TYPE_CHECKING:
             Any) -> int: ...
         def hbvib_linear_modes_with_hooks(self, model: Any, diameter: int, contacts: int, count: int, omega: Any,
             shapes: Any, hooks: Any) -> int: ...
+        def hbvib_damped_modes(self, model: Any, diameter: int, contacts: int, count: int, eigenvalue: Any, shapes: Any,
+            direction: Any, hooks: Any) -> int: ...
+        def hbvib_campbell(self, model: Any, n: int, speeds: Any, diameter: int, contacts: int, count: int, omega: Any,
+            damping_ratio: Any, direction: Any, hooks: Any) -> int: ...
+        def hbvib_campbell_crossings(self, model: Any, n: int, speeds: Any, diameter: int, contacts: int, count: int,
+            engine_order: int, capacity: int, speed: Any, omega: Any, direction: Any, found: Any, hooks:
+            Any) -> int: ...
         def hbvib_mode_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_nonlinear_mode(self, model: Any, solver: Any, mode: Any, hooks: Any, out: Any) -> int: ...
         def hbvib_mode_point_init(self, p: Any, size_of_p: int) -> int: ...
@@ -933,6 +961,9 @@ class Progress(NamedTuple):
 
 
 Modes = namedtuple("Modes", "omega shapes")
+DampedModes = namedtuple("DampedModes", "eigenvalue omega damping_ratio shape direction")
+Crossings = namedtuple("Crossings", "engine_order speed omega direction")
+Campbell = namedtuple("Campbell", "speeds omega damping_ratio direction crossings")
 Points = namedtuple("Points", "omega amplitude point")
 Wanted = namedtuple("Wanted", "amplitude point")
 Loop = namedtuple("Loop", "motion force state")
@@ -1334,10 +1365,13 @@ class Model(_Owner):
         return _call("hbvib_model_contacts", self.handle)
 
     def set_matrix(self, which: Any, matrix: Any, part: Any = Part.FULL) -> None:
-        """Sets M, C or K: which is "mass", "damping", "stiffness" or a MatrixKind; matrix is ndof x ndof.
+        """Sets a matrix: which is "mass", "damping", "stiffness", "structural" (D of the structural damping i D in
+        harmonics above 0), "gyroscopic" (G, skew-symmetric), "stiffness_speed2" (K1 of K + Omega^2 K1) or a
+        MatrixKind; matrix is ndof x ndof.
 
         part   "full": symmetric or Hermitian, which is checked; "lower", "upper": that triangle of such a one, the
-               rest is not read; "general": any, for damping and stiffness."""
+               rest is not read; "general": any but the mass; "symmetric", "symmetric_lower", "symmetric_upper": the
+               same for A = A^T, where A may be complex."""
         self._call("hbvib_model_set_matrix", _member(MatrixKind, which), _matrix(matrix, part))
 
     def fix(self, dofs: ArrayLike) -> None:
@@ -1349,6 +1383,27 @@ class Model(_Owner):
     def set_rayleigh(self, alpha_mass: float, beta_stiffness: float) -> None:
         """Adds alpha_mass M + beta_stiffness K to the damping (1 / time, time); replaces an earlier call."""
         self._call("hbvib_model_set_rayleigh", alpha_mass, beta_stiffness)
+
+    def set_loss_factor(self, loss_factor: float) -> None:
+        """Structural damping i loss_factor K of the structure's own stiffness in harmonics above 0; replaces an
+        earlier call."""
+        self._call("hbvib_model_set_loss_factor", loss_factor)
+
+    def set_modal_damping(self, ratios: ArrayLike) -> None:
+        """Damping ratios of the lowest natural modes without contacts, in the order of rising frequency, of each
+        nodal diameter; call it when matrices, springs and fixed degrees of freedom are complete. []: none."""
+        given = _array("ratios", ratios, np.float64).ravel()
+        self._call("hbvib_model_set_modal_damping", given.size, given)
+
+    def set_speed(self, speed: Optional[float] = None, *, per_omega: Optional[float] = None) -> None:
+        """Speed of rotation: fixed, or tied to the frequency of the response, Omega = per_omega omega (1 / EO for an
+        excitation of engine order EO)."""
+        if (speed is None) == (per_omega is None):
+            raise TypeError("set_speed needs either a speed or per_omega")
+        if per_omega is None:
+            self._call("hbvib_model_set_speed", speed)
+        else:
+            self._call("hbvib_model_set_speed_per_omega", per_omega)
 
     def set_coupling(self, which: Any, to_next: Any) -> None:
         """Coupling of a sector (rows) to the next (columns), ndof x ndof; its transpose couples to the previous."""
@@ -1373,8 +1428,13 @@ class Model(_Owner):
         force = complex(force)
         self._call("hbvib_model_add_force", dof, harmonic, force.real, force.imag)
 
+    def add_unbalance(self, dof_x: int, dof_y: int, m_e: float, phase: float = 0.0) -> None:
+        """Adds m_e omega^2 cos(omega t + phase) on dof_x and m_e omega^2 sin(omega t + phase) on dof_y, omega the
+        frequency of the response."""
+        self._call("hbvib_model_add_unbalance", dof_x, dof_y, m_e, phase)
+
     def clear_forces(self) -> None:
-        """Removes all forces."""
+        """Removes all forces, unbalances included."""
         self._call("hbvib_model_clear_forces")
 
     def _identified(self, name: str, *arguments: Any) -> int:
@@ -1396,9 +1456,10 @@ class Model(_Owner):
         law.dof_a[:], law.dof_b[:] = (_side(ContactKind(law.kind), side) for side in (a, b))
         return self._identified("hbvib_model_add_contact", law)
 
-    def set_preload(self, contact: int, preload: float) -> None:
-        """Changes the normal load of a contact."""
-        self._call("hbvib_model_set_preload", contact, preload)
+    def set_preload(self, contact: int, preload: float, per_speed2: float = 0.0) -> None:
+        """Changes the normal load of a contact: preload + per_speed2 Omega^2 at the speed of rotation Omega; m R for a
+        ring of mass m at the radius R."""
+        self._call("hbvib_model_set_preload_at_speed", contact, preload, per_speed2)
 
     def add_jenkins(self, a: ArrayLike, b: ArrayLike, kt: ArrayLike, mu: ArrayLike, preload: ArrayLike,
                     sector_offset: ArrayLike = 0) -> range:
@@ -1533,6 +1594,37 @@ class Model(_Owner):
         _stoppable("hbvib_linear_modes", self.handle, diameter, _member(ContactState, contacts), count, omega, shapes,
                    phase=phase, cancel=cancel)
         return Modes(omega, shapes)
+
+    def damped_modes(self, count: int, diameter: int = 0, contacts: Any = ContactState.STUCK) -> DampedModes:
+        """Damped natural modes at the speed of the model, by rising frequency: eigenvalue (upper half plane), omega
+        (its imaginary part), damping_ratio (minus its real part over its modulus; negative: the motion grows), shape
+        (count, ndof), phi^H M phi = 1, and direction: 1 forward, -1 backward, 0 undefined, the sign of the change of
+        omega with the speed at fixed K1. Motions that do not oscillate are not counted."""
+        eigenvalue, shape = np.empty(count, complex), np.empty((count, self.ndof), complex)
+        direction = np.empty(count, np.int64)
+        self._call("hbvib_damped_modes", diameter, _member(ContactState, contacts), count, eigenvalue, shape, direction,
+                   None)
+        ratio = -eigenvalue.real / np.abs(eigenvalue)
+        return DampedModes(eigenvalue, eigenvalue.imag.copy(), ratio, shape, direction)
+
+    def campbell(self, speeds: ArrayLike, count: int, engine_orders: Sequence[int] = (1,), diameter: int = 0,
+                 contacts: Any = ContactState.STUCK) -> Campbell:
+        """Campbell diagram: omega, damping_ratio and direction (speeds, count) of the damped modes at rising speeds, NaN
+        where fewer motions oscillate, and the crossings with engine orders, omega = engine_order Omega."""
+        speeds, state = _array("speeds", speeds, np.float64).ravel(), _member(ContactState, contacts)
+        omega, ratio = np.empty((speeds.size, count)), np.empty((speeds.size, count))
+        direction = np.empty((speeds.size, count), np.int64)
+        self._call("hbvib_campbell", speeds.size, speeds, diameter, state, count, omega, ratio, direction, None)
+        room, found, rows = speeds.size * count, ctypes.c_int64(), []
+        at, frequency, sense = np.empty(room), np.empty(room), np.empty(room, np.int64)
+        for order in engine_orders:
+            self._call("hbvib_campbell_crossings", speeds.size, speeds, diameter, state, count, order, room, at,
+                       frequency, sense, found, None)
+            rows += [(int(order), *row) for row in zip(at[:found.value], frequency, sense)]
+        orders, critical, frequencies, senses = zip(*rows) if rows else ((), (), (), ())
+        crossings = Crossings(np.array(orders, np.int64), np.array(critical, float), np.array(frequencies, float),
+                              np.array(senses, np.int64))
+        return Campbell(speeds, omega, ratio, direction, crossings)
 
     def _solve(self, name: str, solver: dict, options: Any, hooks: tuple) -> Branch:
         if "harmonics" in solver:

@@ -81,11 +81,14 @@ pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
 pub use model::linear_modes::{ContactState, LinearModes};
 pub use model::sector_faces::{SectorDescription, SectorFrame};
+pub use model::speed::Speed;
 pub use model::spring::Spring;
 pub use model::structure::MatrixKind;
 
 // Analyses.
+pub use analysis::campbell::{Campbell, Crossing, campbell};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use analysis::damped_modes::{DampedModes, damped_modes};
 pub use analysis::floquet::{Floquet, floquet};
 pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{

@@ -98,15 +98,20 @@ fn forced_residual_of_independent(
     interrupt: &Interrupt<'_>,
 ) -> Result<()> {
     let highest = solver.harmonics;
-    let contact = ContactTerms::new(model, solver, omega, x, interrupt)?;
+    let at_frequency = model.at_frequency(omega)?;
+    let contact = ContactTerms::new(model, &at_frequency, (solver, omega), x, interrupt)?;
     let mut dynamic = Vec::new();
     for h in 0..=highest {
         interrupt.part(Phase::Setup, h, highest + 1)?;
-        try_push(&mut dynamic, Dynamic::new(model, h, omega)?, "the dynamic stiffness")?;
+        try_push(
+            &mut dynamic,
+            Dynamic::new(model, &at_frequency, h, omega)?,
+            "the dynamic stiffness",
+        )?;
     }
 
     let assembled = assemble(
-        model,
+        (model, &at_frequency, omega),
         (&dynamic, &contact),
         x,
         (r, jacobian.as_deref_mut(), d_omega.as_deref_mut()),
@@ -127,7 +132,7 @@ fn forced_residual_of_independent(
 
 /// Fills the arrays with the sum of all terms.
 fn assemble(
-    model: &Model,
+    (model, at_frequency, omega): (&Model, &Model, f64),
     (dynamic, contact): (&[Dynamic], &ContactTerms),
     x: &[Complex64],
     (r, mut jacobian, mut d_omega): ResidualArrays<'_>,
@@ -148,7 +153,10 @@ fn assemble(
     for (h, dynamic) in dynamic.iter().enumerate() {
         interrupt.part(Phase::Results, h, x.len() / n)?;
         let range = h * n..(h + 1) * n;
-        model.add_forces_to(h, -1.0, &mut r[range.clone()]);
+        at_frequency.add_forces_to(h, -1.0, &mut r[range.clone()]);
+        if let Some(d) = d_omega.as_deref_mut() {
+            model.add_unbalance_to(h, -2.0 * omega, &mut d[range.clone()]);
+        }
         dynamic
             .z
             .multiply_add(Complex64::ONE, &x[range.clone()], &mut r[range.clone()]);
@@ -201,28 +209,37 @@ struct Dynamic {
 }
 
 impl Dynamic {
-    fn new(model: &Model, h: usize, omega: f64) -> Result<Self> {
-        let structure = model.structure();
+    /// `at` is the model at the frequency, whose damping has ΩG and whose stiffness Ω²K₁.
+    fn new(model: &Model, at: &Model, h: usize, omega: f64) -> Result<Self> {
+        let structure = at.structure();
         let n = structure.ndof();
-        let k = model.sprung_stiffness(Wave::Harmonic(h), core::iter::empty())?;
+        let k = at.sprung_stiffness(Wave::Harmonic(h), core::iter::empty())?;
         let c = structure.wave_matrix(MatrixKind::Damping, h)?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
         let m = structure.wave_matrix(MatrixKind::Mass, h)?;
+        let tied = model.structure().tied_to_frequency(Wave::Harmonic(h))?;
         let h = h as f64;
         let hw = h * omega;
         let plain = Form::Plain;
+        let mut slope = Vec::with_capacity(4);
+        slope.extend([(Complex64::new(0.0, h), &c, plain), ((-2.0 * h * hw).into(), &m, plain)]);
+        if let Some(tied) = &tied {
+            slope.extend([
+                ((2.0 * omega).into(), &tied.stiffness, plain),
+                (Complex64::new(0.0, hw), &tied.gyroscopic, plain),
+            ]);
+        }
         Ok(Self {
             z: Csc::sum(
                 n,
                 &[
                     (Complex64::ONE, &k, plain),
                     (Complex64::new(0.0, hw), &c, plain),
+                    (Complex64::I, &structural, plain),
                     ((-hw * hw).into(), &m, plain),
                 ],
             )?,
-            slope: Csc::sum(
-                n,
-                &[(Complex64::new(0.0, h), &c, plain), ((-2.0 * h * hw).into(), &m, plain)],
-            )?,
+            slope: Csc::sum(n, &slope)?,
         })
     }
 }
@@ -237,8 +254,8 @@ struct ContactTerms {
 impl ContactTerms {
     fn new(
         model: &Model,
-        solver: &SolverOptions,
-        omega: f64,
+        at: &Model,
+        (solver, omega): (&SolverOptions, f64),
         x: &[Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<Self> {
@@ -247,7 +264,7 @@ impl ContactTerms {
         let set = HarmonicSet::all(solver.harmonics)?;
         let m = set.packed_len();
         let mut terms = Vec::new();
-        for contact in model.contacts() {
+        for (number, contact) in at.contacts().iter().enumerate() {
             let directions = contact.directions();
             let mut packed = try_vec(m.saturating_mul(directions), 0.0, "a contact motion")?;
             let mut rows = Vec::new();
@@ -261,7 +278,18 @@ impl ContactTerms {
                 }
                 try_push(&mut rows, own, CONTEXT)?;
             }
-            let evaluation = evaluate(contact, &set, (solver.samples, omega), &packed, interrupt)?;
+            let mut evaluation = evaluate(contact, &set, (solver.samples, omega), &packed, interrupt)?;
+            if let Some(growth) = model.growth_of_load(number, omega) {
+                // ∂f/∂ω = (∂f/∂ln N) ∂ln N/∂ω
+                let by_load = if contact.load_scales_motion() {
+                    &evaluation.offset
+                } else {
+                    &evaluation.force
+                };
+                for (by_omega, by_load) in evaluation.by_omega.iter_mut().zip(by_load) {
+                    *by_omega += growth * by_load;
+                }
+            }
             try_push(&mut terms, (rows, evaluation), CONTEXT)?;
         }
         Ok(Self { set, terms })

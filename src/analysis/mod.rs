@@ -1,6 +1,8 @@
 //! The crate's public face: each analysis puts the layers together.
 
+pub mod campbell;
 pub mod check_jacobian;
+pub mod damped_modes;
 pub mod floquet;
 mod forced_discretised;
 pub mod forced_response;

@@ -118,18 +118,21 @@ pub fn synthesise_with(
     let ndof = model.structure().ndof();
     let mut force = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
     model.add_forces_to(1, options.force_factor, &mut force);
-    if force.iter().all(|f| *f == Complex64::ZERO) {
+    let mut unbalance = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
+    model.add_unbalance_to(1, options.force_factor, &mut unbalance);
+    if force.iter().chain(&unbalance).all(|f| *f == Complex64::ZERO) {
         return fail!(Argument, "the model has no force in the fundamental");
     }
-    let damping = if options.model_damping {
-        Some(model.structure().wave_matrix(MatrixKind::Damping, 1)?)
-    } else {
-        None
+    let of_model = |kind| {
+        let matrix = || model.structure().wave_matrix(kind, 1);
+        options.model_damping.then(matrix).transpose()
     };
     let fundamental = branch.condensed_at(0);
     let load = Load {
         force,
-        damping,
+        unbalance,
+        damping: of_model(MatrixKind::Damping)?,
+        structural: of_model(MatrixKind::Structural)?,
         ratio: options.damping_ratio,
         response: fundamental.motion_row(fundamental.set().fundamental(), branch.response_dof())?,
     };

@@ -38,7 +38,8 @@ pub unsafe extern "C" fn hbvib_cyclic_new(ndof_sector: i64, sectors: i64, out: *
 /// Sets the coupling of a sector to the next one: rows of sector s, columns of s + 1. The coupling
 /// to the previous sector is its transpose unless hbvib_cyclic_set_coupling_previous is called.
 ///
-/// which    HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which    HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2; the coupling of HBVIB_GYROSCOPIC to the previous
+///          sector is minus the transpose.
 /// to_next  ndof x ndof, any matrix: `part` is no promise of symmetry here; a triangle is completed
 ///          by its mirror image.
 /// Where sector s + 1 lags by phi, harmonic p has the matrix A0 + A1 exp(-i p phi) + A1^T exp(i p
@@ -62,7 +63,7 @@ pub unsafe extern "C" fn hbvib_cyclic_set_coupling(
 /// Sets the coupling of a sector (rows) to the previous one (columns), for damping and stiffness
 /// without symmetry.
 ///
-/// which        HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which        any but HBVIB_MASS and HBVIB_GYROSCOPIC, which have a symmetry.
 /// to_previous  ndof x ndof, any matrix.
 /// Errors: as hbvib_cyclic_set_coupling; HBVIB_E_UNSUPPORTED for the mass.
 /// Threads: one at a time per model.
@@ -84,9 +85,9 @@ pub unsafe extern "C" fn hbvib_cyclic_set_coupling_previous(
 /// blocks. Waves in the other direction have its conjugate. A solve that needs a harmonic without a
 /// matrix of its nodal diameter is refused.
 ///
-/// which     HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
+/// which     HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
 /// diameter  nodal diameter, 0 .. N/2.
-/// a         ndof x ndof, Hermitian; C and K may be HBVIB_GENERAL.
+/// a         ndof x ndof, Hermitian; all but M may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
 /// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter out of range and for
 /// matrices that were given by sector blocks. Threads: one at a time per model.
 #[unsafe(no_mangle)]

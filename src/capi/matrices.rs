@@ -43,6 +43,12 @@ pub enum hbvib_part {
     HBVIB_UPPER = 2,
     /// All of any matrix.
     HBVIB_GENERAL = 3,
+    /// All of a matrix with A = A^T, real or complex; the symmetry is checked.
+    HBVIB_SYMMETRIC = 4,
+    /// The lower triangle of a matrix with A = A^T, real or complex; the upper one is not read.
+    HBVIB_SYMMETRIC_LOWER = 5,
+    /// The upper triangle of a matrix with A = A^T, real or complex; the lower one is not read.
+    HBVIB_SYMMETRIC_UPPER = 6,
 }
 
 /// A matrix of the caller, read during the call and never kept. Fill it by hbvib_matrix_init.
@@ -55,7 +61,7 @@ pub struct hbvib_matrix {
     pub storage: i32,
     /// HBVIB_REAL or HBVIB_COMPLEX.
     pub scalar: i32,
-    /// HBVIB_FULL, HBVIB_LOWER, HBVIB_UPPER or HBVIB_GENERAL.
+    /// HBVIB_FULL .. HBVIB_SYMMETRIC_UPPER.
     pub part: i32,
     /// Number of rows.
     pub rows: i64,
@@ -118,24 +124,36 @@ pub enum hbvib_matrix_kind {
     HBVIB_DAMPING = 1,
     /// K
     HBVIB_STIFFNESS = 2,
+    /// D of the structural damping iD in harmonics above 0; positive dissipates.
+    HBVIB_STRUCTURAL = 3,
+    /// G of the gyroscopic forces Omega G x', skew-symmetric: G = -G^T.
+    HBVIB_GYROSCOPIC = 4,
+    /// K1 of the stiffness K + Omega^2 K1 at speed; that of softening is negative.
+    HBVIB_STIFFNESS_SPEED2 = 5,
 }
 
 const COL_MAJOR: i32 = hbvib_storage::HBVIB_COL_MAJOR as i32;
 const ROW_MAJOR: i32 = hbvib_storage::HBVIB_ROW_MAJOR as i32;
 const CSC: i32 = hbvib_storage::HBVIB_CSC as i32;
 
-/// One of M, C, K by its number.
+/// One of the matrices by its number.
 pub(super) fn matrix_kind(which: i32) -> Result<MatrixKind> {
     const MASS: i32 = hbvib_matrix_kind::HBVIB_MASS as i32;
     const DAMPING: i32 = hbvib_matrix_kind::HBVIB_DAMPING as i32;
     const STIFFNESS: i32 = hbvib_matrix_kind::HBVIB_STIFFNESS as i32;
+    const STRUCTURAL: i32 = hbvib_matrix_kind::HBVIB_STRUCTURAL as i32;
+    const GYROSCOPIC: i32 = hbvib_matrix_kind::HBVIB_GYROSCOPIC as i32;
+    const STIFFNESS_SPEED2: i32 = hbvib_matrix_kind::HBVIB_STIFFNESS_SPEED2 as i32;
     match which {
         MASS => Ok(MatrixKind::Mass),
         DAMPING => Ok(MatrixKind::Damping),
         STIFFNESS => Ok(MatrixKind::Stiffness),
+        STRUCTURAL => Ok(MatrixKind::Structural),
+        GYROSCOPIC => Ok(MatrixKind::Gyroscopic),
+        STIFFNESS_SPEED2 => Ok(MatrixKind::StiffnessSpeed2),
         _ => fail!(
             Argument,
-            "which = {which}, needs HBVIB_MASS = 0, HBVIB_DAMPING = 1 or HBVIB_STIFFNESS = 2"
+            "which = {which}, needs HBVIB_MASS = 0 .. HBVIB_STIFFNESS_SPEED2 = 5"
         ),
     }
     .with_argument(2)
@@ -146,14 +164,20 @@ fn part(value: i32) -> Result<Part> {
     const LOWER: i32 = hbvib_part::HBVIB_LOWER as i32;
     const UPPER: i32 = hbvib_part::HBVIB_UPPER as i32;
     const GENERAL: i32 = hbvib_part::HBVIB_GENERAL as i32;
+    const SYMMETRIC: i32 = hbvib_part::HBVIB_SYMMETRIC as i32;
+    const SYMMETRIC_LOWER: i32 = hbvib_part::HBVIB_SYMMETRIC_LOWER as i32;
+    const SYMMETRIC_UPPER: i32 = hbvib_part::HBVIB_SYMMETRIC_UPPER as i32;
     match value {
         FULL => Ok(Part::Full),
         LOWER => Ok(Part::Lower),
         UPPER => Ok(Part::Upper),
         GENERAL => Ok(Part::General),
+        SYMMETRIC => Ok(Part::Symmetric),
+        SYMMETRIC_LOWER => Ok(Part::SymmetricLower),
+        SYMMETRIC_UPPER => Ok(Part::SymmetricUpper),
         _ => fail!(
             Argument,
-            "hbvib_matrix: part = {value}, needs HBVIB_FULL = 0 .. HBVIB_GENERAL = 3"
+            "hbvib_matrix: part = {value}, needs HBVIB_FULL = 0 .. HBVIB_SYMMETRIC_UPPER = 6"
         ),
     }
 }

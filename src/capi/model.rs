@@ -110,11 +110,13 @@ pub unsafe extern "C" fn hbvib_model_contacts(model: *const hbvib_model) -> i64 
     call_count(|| Ok(read::<Model>(model, 1)?.contacts().len()))
 }
 
-/// Sets the mass, damping or stiffness matrix of a structure, or of a sector on itself.
+/// Sets a matrix of a structure, or of a sector on itself.
 ///
-/// which  HBVIB_MASS, HBVIB_DAMPING or HBVIB_STIFFNESS.
-/// a      ndof x ndof. M must be symmetric or Hermitian; C and K may be HBVIB_GENERAL. Complex
-///        entries act on all harmonics above zero, the mean sees their real part.
+/// which  HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
+/// a      ndof x ndof. M must be symmetric or Hermitian, HBVIB_GYROSCOPIC skew-symmetric (in full,
+///        which is checked, or one triangle); the others may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
+///        Complex entries act on all harmonics above zero, the mean sees their
+///        real part, and no structural damping.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_NOT_HERMITIAN, HBVIB_E_INDEX, each naming the entry;
 /// HBVIB_E_DIMENSION, HBVIB_E_ARGUMENT, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_NOT_POSITIVE_DEFINITE (negative diagonal mass), HBVIB_E_OUT_OF_MEMORY.

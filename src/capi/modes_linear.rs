@@ -73,7 +73,7 @@ pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
         let hooks = unsafe { load_hooks(hooks, 7) }?;
         let model = read::<Model>(model, 1)?;
         let diameter = nodal_diameter(&model, diameter, 2)?;
-        let state = contact_state(contacts)?;
+        let state = contact_state_of(contacts, 3)?;
         let wanted = usize::try_from(count).unwrap_or(0);
         check_pointer(omega, 5, "omega")?;
         if !shapes.is_null() {
@@ -105,7 +105,8 @@ pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
     })
 }
 
-fn contact_state(value: i32) -> Result<ContactState> {
+/// The state of contacts by its number.
+pub(super) fn contact_state_of(value: i32, argument: i32) -> Result<ContactState> {
     const FREE: i32 = hbvib_contact_state::HBVIB_CONTACTS_FREE as i32;
     const STUCK: i32 = hbvib_contact_state::HBVIB_CONTACTS_STUCK as i32;
     match value {
@@ -116,5 +117,5 @@ fn contact_state(value: i32) -> Result<ContactState> {
             "contacts = {value}, needs HBVIB_CONTACTS_FREE = 0 or HBVIB_CONTACTS_STUCK = 1"
         ),
     }
-    .with_argument(3)
+    .with_argument(argument)
 }

@@ -17,6 +17,7 @@ use crate::condense::memory_limit::within_directly;
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
+use crate::condense::tied_load::TiedLoad;
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
 use crate::error::{Result, try_push, try_vec};
@@ -79,7 +80,7 @@ impl Condensed {
             Self::unscaled(model, options, (&forced, sweep), (None, reference), interrupt)?;
         // A power of two near the largest motion of the linear structure, so that nothing over- or
         // underflows whatever the units.
-        let unit = power_of_two(model.excitation().largest());
+        let unit = power_of_two(model.excitation().largest(sweep.start));
         let n = model.structure().ndof();
         for block in &mut condensed.blocks {
             if let Some(view) = &block.view {
@@ -87,8 +88,13 @@ impl Condensed {
                 model.add_forces_to(block.number, 1.0 / unit, &mut force);
                 let force = view.force(&force)?;
                 block.force[..force.len()].copy_from_slice(&force);
-            } else {
-                model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
+                continue;
+            }
+            model.add_forces_to(block.number, 1.0 / unit, &mut block.force);
+            if block.number == 1 && model.excitation().has_unbalance() {
+                let mut unbalance = try_vec(block.force.len(), Complex64::ZERO, "the forces")?;
+                model.add_unbalance_to(block.number, 1.0 / unit, &mut unbalance);
+                block.unbalance = Some(unbalance);
             }
         }
         let mut workspace = Workspace::new(&condensed, None)?;
@@ -99,7 +105,7 @@ impl Condensed {
         }
         let scale = power_of_two(motion);
         for block in &mut condensed.blocks {
-            for f in &mut block.force {
+            for f in block.force.iter_mut().chain(block.unbalance.iter_mut().flatten()) {
                 *f /= scale;
             }
         }
@@ -281,6 +287,7 @@ impl Condensed {
                 contact,
                 normal: model.contacts()[contact].normal_direction(),
                 law: model.contacts()[contact].law(length)?,
+                load: TiedLoad::of(model, contact, length)?,
             };
             try_push(&mut self.laws, assembled, CONTEXT)?;
         }

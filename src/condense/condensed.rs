@@ -2,6 +2,7 @@
 
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::harmonic_block::HarmonicBlock;
+use crate::condense::tied_load::{LoadedLaw, TiedLoad};
 use crate::contact::Law;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
@@ -43,8 +44,21 @@ pub struct AssembledLaw {
     pub contact: usize,
     /// Normal direction of the law, if it has one.
     pub normal: Option<usize>,
-    /// The law in the solver's units.
+    /// The law in the solver's units; that of a reference load where the load depends on the frequency.
     pub law: Arc<dyn Law>,
+    /// The load that depends on the frequency, if it does.
+    pub load: Option<TiedLoad>,
+}
+
+impl AssembledLaw {
+    /// The law at an angular frequency with the factor of its load.
+    #[must_use]
+    pub fn at(&self, omega: f64) -> LoadedLaw<'_> {
+        match &self.load {
+            None => LoadedLaw::plain(&*self.law),
+            Some(load) => load.at(&*self.law, omega),
+        }
+    }
 }
 
 /// A model made ready for solving: harmonics chosen, contacts gathered on relative coordinates,

@@ -1,6 +1,6 @@
 //! The dynamic stiffness Z_κ of one harmonic at a time, factorised.
 //!
-//! Z_κ = K + Wᴴ κ W − h²ω²M + ihωC, and in a nonlinear mode of damping ratio D the artificial
+//! Z_κ = K + Wᴴ κ W − h²ω²M + ihωC + iD, with a speed Ω = pω also + ω² p²K₁ + ihω² pG, and in a nonlinear mode of damping ratio D the artificial
 //! damping −2DωM ẋ (mass type) or −ζK ẋ with D = ζω/2 (stiffness type), which adds −2ihDω²M or
 //! −2ihDK.
 
@@ -174,6 +174,8 @@ struct Combination {
     mass: Complex64,
     /// Factor of the stiffness of the structure itself, for artificial damping of that type.
     own: Complex64,
+    /// Factors of p²K₁ and pG of a speed that is tied to the frequency.
+    tied: [Complex64; 2],
 }
 
 impl Combination {
@@ -186,6 +188,7 @@ impl Combination {
             damping: Complex64::I * hw,
             mass: damping * artificial.mass - hw * hw,
             own: damping * artificial.own,
+            tied: [omega * omega, Complex64::I * hw * omega],
         }
     }
 
@@ -198,6 +201,7 @@ impl Combination {
             damping: Complex64::ZERO,
             mass: Complex64::ZERO,
             own: Complex64::ZERO,
+            tied: [Complex64::ZERO; 2],
         };
         match (by, &block.artificial) {
             (Variable::Omega, artificial) => Self {
@@ -206,6 +210,7 @@ impl Combination {
                     Artificial::Mass => -2.0 * (h + 2.0 * Complex64::I * damping) * h * omega,
                     Artificial::None | Artificial::Stiffness(_) => -2.0 * h * h * omega,
                 },
+                tied: [2.0 * omega, 2.0 * ih * omega],
                 ..zero
             },
             (Variable::Damping, Artificial::None) => zero,
@@ -224,11 +229,14 @@ impl Combination {
             Artificial::Stiffness(own) => Some((self.own, own)),
             Artificial::None | Artificial::Mass => None,
         };
+        let tied = block.tied.as_ref();
         let terms = [
             Some((self.reference.into(), &block.reference.values)),
             Some((self.damping, &block.damping)),
             Some((self.mass, &block.mass)),
             own,
+            tied.map(|tied| (self.tied[0], &tied.stiffness)),
+            tied.map(|tied| (self.tied[1], &tied.gyroscopic)),
         ];
         sums.fill(ComplexSum::default());
         for (factor, values) in terms.into_iter().flatten() {
@@ -242,8 +250,11 @@ impl Combination {
 
     #[inline]
     fn at(&self, block: &HarmonicBlock, at: usize) -> Complex64 {
-        let z =
+        let mut z =
             self.reference * block.reference.values[at] + self.damping * block.damping[at] + self.mass * block.mass[at];
+        if let Some(tied) = &block.tied {
+            z += self.tied[0] * tied.stiffness[at] + self.tied[1] * tied.gyroscopic[at];
+        }
         match &block.artificial {
             Artificial::Stiffness(own) => z + self.own * own[at],
             Artificial::None | Artificial::Mass => z,

@@ -147,7 +147,7 @@ impl Workspace {
                 column[p] += a.conj();
             }
         }
-        self.columns[coordinates * n..].copy_from_slice(&block.force);
+        block.force_at(omega, &mut self.columns[coordinates * n..]);
         self.dynamic
             .solve(condensed, i, omega, &mut self.columns, false, interrupt)
     }
@@ -224,6 +224,14 @@ impl Workspace {
                 *slope = -sum;
             }
         }
+        if let Some(unbalance) = &block.unbalance {
+            // The last column is that of the excitation, whose own derivative is 2ω times the unbalance.
+            let last = self.table.slope.len() - outputs;
+            for (slope, solved) in self.table.slope[last..].iter_mut().zip(self.rows.chunks_exact(n)) {
+                let sum: Complex64 = solved.iter().zip(unbalance).map(|(a, b)| a * b).sum();
+                *slope += 2.0 * omega * sum;
+            }
+        }
         Ok(&self.table)
     }
 
@@ -249,7 +257,7 @@ impl Workspace {
         self.dynamic
             .factor(condensed, i, omega.into(), self.damping, interrupt)?;
         let block = &condensed.blocks()[i];
-        self.load.copy_from_slice(&block.force);
+        block.force_at(omega, &mut self.load);
         for (row, w) in block.rows.iter().zip(contact_force) {
             for &(p, a) in row.terms() {
                 self.load[p] -= a.conj() * w;

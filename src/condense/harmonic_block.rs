@@ -29,10 +29,12 @@ pub struct HarmonicBlock {
     pub number: usize,
     /// Motion of the next sector over that of this one.
     pub next: Complex64,
-    /// K_h with springs, contacts that never slip, and Wᴴ κ W; its pattern holds C and M too.
+    /// K_h with springs, contacts that never slip, structural damping iD_h, and Wᴴ κ W; its pattern holds C and M too.
     pub reference: Csc,
-    /// K_h with springs and contacts that never slip, without Wᴴ κ W, at the entries of the pattern.
+    /// K_h with springs and contacts that never slip, without iD_h and Wᴴ κ W, at the entries of the pattern.
     pub stiffness: Vec<Complex64>,
+    /// D_h of the structural damping iD_h, ηK_h included, at the entries of the pattern; `None` without such damping.
+    pub structural: Option<Vec<Complex64>>,
     /// C_h at the entries of the pattern.
     pub damping: Vec<Complex64>,
     /// M_h at the entries of the pattern.
@@ -41,6 +43,10 @@ pub struct HarmonicBlock {
     pub artificial: Artificial,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
+    /// Amplitudes of the forces that grow with ω², over ω², likewise; `None` without such forces.
+    pub unbalance: Option<Vec<Complex64>>,
+    /// Terms of a speed that is tied to the frequency; `None` without.
+    pub tied: Option<TiedValues>,
     /// Rows of W, one per relative coordinate.
     pub rows: Vec<MotionRow>,
     /// The same over the independent degrees of freedom.
@@ -51,6 +57,15 @@ pub struct HarmonicBlock {
     pub springs: Vec<(Row, Row, f64)>,
     /// The basis on which the matrices are; `None`: they are on the independent degrees of freedom.
     pub view: Option<ReducedView>,
+}
+
+/// p²K₁ and pG at the entries of the pattern, for Z_h = … + ω² p²K₁ + ihω² pG.
+#[derive(Clone, Debug)]
+pub struct TiedValues {
+    /// p²K₁
+    pub stiffness: Vec<Complex64>,
+    /// pG
+    pub gyroscopic: Vec<Complex64>,
 }
 
 impl HarmonicBlock {
@@ -84,6 +99,14 @@ impl HarmonicBlock {
             own[k * n + k] = view.pencil().stiffness(k).into();
         }
         Ok(own)
+    }
+
+    /// F_h at an angular frequency.
+    pub fn force_at(&self, omega: f64, force: &mut [Complex64]) {
+        force.copy_from_slice(&self.force);
+        for (f, u) in force.iter_mut().zip(self.unbalance.iter().flatten()) {
+            *f += u * (omega * omega);
+        }
     }
 
     /// y = M x
@@ -122,8 +145,10 @@ pub(super) fn harmonic_block(
     let rows = rows_of(representatives)?;
     interrupt.check()?;
     let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
+    let structural = structure.wave_matrix(MatrixKind::Structural, number)?;
     interrupt.check()?;
     let mass = structure.wave_matrix(MatrixKind::Mass, number)?;
+    let tied = structure.tied_to_frequency(Wave::Harmonic(number))?;
     let mut references = Vec::new();
     for (c, row) in rows.iter().enumerate() {
         for &(p, a) in row.iter().flatten() {
@@ -136,22 +161,41 @@ pub(super) fn harmonic_block(
     interrupt.check()?;
     // Zero factors add the pattern alone.
     let (one, zero) = (Complex64::ONE, Complex64::ZERO);
-    let reference = Csc::sum(
-        n,
-        &[
-            (one, &stiffness, Form::Plain),
-            (one, &references, Form::Plain),
-            (zero, &damping, Form::Plain),
-            (zero, &mass, Form::Plain),
-        ],
-    )?;
+    let mut terms = Vec::with_capacity(7);
+    terms.extend([
+        (one, &stiffness, Form::Plain),
+        (one, &references, Form::Plain),
+        (Complex64::I, &structural, Form::Plain),
+        (zero, &damping, Form::Plain),
+        (zero, &mass, Form::Plain),
+    ]);
+    if let Some(tied) = &tied {
+        terms.extend([
+            (zero, &tied.stiffness, Form::Plain),
+            (zero, &tied.gyroscopic, Form::Plain),
+        ]);
+    }
+    let reference = Csc::sum(n, &terms)?;
     interrupt.check()?;
     Ok(HarmonicBlock {
         number,
         next: structure.phase(number, 1),
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
+        tied: match &tied {
+            Some(tied) => Some(TiedValues {
+                stiffness: tied.stiffness.aligned(&reference)?,
+                gyroscopic: tied.gyroscopic.aligned(&reference)?,
+            }),
+            None => None,
+        },
+        unbalance: None,
         stiffness: stiffness.aligned(&reference)?,
+        structural: if structural.is_empty() {
+            None
+        } else {
+            Some(structural.aligned(&reference)?)
+        },
         reference,
         artificial: Artificial::None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,

@@ -23,6 +23,7 @@ mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
 mod sweep;
+mod tied_load;
 pub mod wave_modes;
 mod wave_reduction;
 
@@ -33,3 +34,4 @@ pub use reduced_resonances::reduced_resonances;
 pub use reduction::Reduction;
 pub use resolution::Resolution;
 pub use sweep::Sweep;
+pub use tied_load::{LoadedLaw, TiedLoad};

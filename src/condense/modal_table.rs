@@ -51,10 +51,10 @@ impl ModalTable {
         let block = &condensed.blocks()[i];
         let (n, coordinates) = (condensed.ndof(), condensed.coordinates());
         // Without damping by stiffness the low-rank term vanishes.
-        let springs = if modes.proportional.1 == 0.0 {
-            &[][..]
-        } else {
+        let springs = if modes.is_damped_by_stiffness() {
             &modes.springs
+        } else {
+            &[][..]
         };
         let (outputs, rows) = (coordinates + 1, coordinates + 1 + springs.len());
         let mut left = try_vec(rows * n, Complex64::ZERO, CONTEXT)?;
@@ -81,10 +81,10 @@ impl ModalTable {
         for (k, (_, spring)) in stiffness[coordinates..].iter_mut().zip(springs) {
             *k = *spring;
         }
-        let low_rank = if modes.proportional.1 == 0.0 {
-            0
-        } else {
+        let low_rank = if modes.is_damped_by_stiffness() {
             stiffness.len()
+        } else {
+            0
         };
         Ok(Self {
             number: block.number as f64,
@@ -111,7 +111,7 @@ impl ModalTable {
         let outputs = coordinates + 1;
         let (alpha, beta) = self.modes.proportional;
         let frequency = self.number * omega;
-        let c = Complex64::new(0.0, frequency * beta);
+        let c = Complex64::new(0.0, frequency * beta + self.modes.loss_factor);
         let inertia = Complex64::new(frequency * frequency, -frequency * alpha);
         for (to, from) in self.weighted.chunks_exact_mut(n).zip(self.right.chunks_exact(n)) {
             for ((to, from), mu) in to.iter_mut().zip(from).zip(&self.modes.values) {
@@ -268,8 +268,16 @@ mod tests {
     #[test]
     fn tables_from_modes_are_those_by_factorisation() {
         for sectors in [1, 24] {
-            for damping in [(0.0, 1e-3), (0.02, 0.0), (0.03, 4e-2), (0.0, 1e-6)] {
-                let model = chain(sectors, damping);
+            for (damping, loss_factor) in [
+                ((0.0, 1e-3), 0.0),
+                ((0.02, 0.0), 0.0),
+                ((0.03, 4e-2), 0.0),
+                ((0.0, 1e-6), 0.0),
+                ((0.0, 0.0), 0.03),
+                ((0.03, 4e-2), 0.2),
+            ] {
+                let mut model = chain(sectors, damping);
+                model.set_loss_factor(loss_factor).unwrap();
                 let condensed = condensed(&model, Reference::Stuck);
                 let mut cache = WaveCache::default();
                 let mut direct = Workspace::new(&condensed, Some(4)).unwrap();
@@ -286,7 +294,7 @@ mod tests {
                         let off: Vec<Complex64> = table.value.iter().zip(&exact.value).map(|(a, b)| a - b).collect();
                         assert!(
                             size(&off) <= 1e-10 * size(&exact.value),
-                            "{sectors} sectors, {damping:?}, block {i} at {omega}: {:e}",
+                            "{sectors} sectors, {damping:?}, {loss_factor}, block {i} at {omega}: {:e}",
                             size(&off) / size(&exact.value)
                         );
                     }
@@ -310,6 +318,13 @@ mod tests {
         assert!(cache.of(&model, &stuck, 0, &Interrupt::none()).unwrap().is_none());
         assert!(cache.is_refused());
         let model = chain(1, (0.0, 1e-3));
+        let mut structural = chain(1, (0.0, 1e-3));
+        structural
+            .set_matrix(MatrixKind::Structural, &MatrixView::dense(N, &dashpot))
+            .unwrap();
+        let stuck = condensed(&structural, Reference::Stuck);
+        let mut cache = WaveCache::default();
+        assert!(cache.of(&structural, &stuck, 0, &Interrupt::none()).unwrap().is_none());
         let complex = condensed(&model, Reference::Complex);
         let mut cache = WaveCache::default();
         assert!(cache.of(&model, &complex, 0, &Interrupt::none()).unwrap().is_none());

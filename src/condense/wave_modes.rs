@@ -1,8 +1,8 @@
 //! Modes of one wave of the structure with its contacts stuck, by which the flexibility at any frequency is a sum.
 //!
-//! With M φ = μ K_κ φ, φᴴ K_κ φ = 1, and damping C = αM + βK of the structure alone,
+//! With M φ = μ K_κ φ, φᴴ K_κ φ = 1, and damping C = αM + βK and loss factor η of the structure alone,
 //!
-//! > Z_κ = (1 + c) K_κ − (ν² − iνα) M − c Bᴴ k B,  c = iνβ,  ν = hω,
+//! > Z_κ = (1 + c) K_κ − (ν² − iνα) M − c Bᴴ k B,  c = i(νβ + η),  ν = hω,
 //!
 //! where Bᴴ k B is the part of K_κ that belongs to no structure: springs, stuck contacts and κ. Without the last term
 //! Z⁻¹ = Σ φ φᴴ/(1 + c − (ν² − iνα) μ); the term itself is of low rank, see [`crate::condense::modal_table`].
@@ -29,7 +29,7 @@ const CONTEXT: &str = "the modes of the structure";
 
 /// The modes of one wave.
 pub struct WaveModes {
-    /// K_κ and M, by which the wave is known again.
+    /// K_κ with its structural damping and M, by which the wave is known again.
     reference: Csc,
     mass: Vec<Complex64>,
     /// μ
@@ -38,6 +38,8 @@ pub struct WaveModes {
     pub(super) vectors: Vec<Complex64>,
     /// α and β
     pub(super) proportional: (f64, f64),
+    /// η
+    pub(super) loss_factor: f64,
     /// Rows of B beyond those of the relative coordinates, with their stiffness.
     pub(super) springs: Vec<(MotionRow, f64)>,
 }
@@ -63,7 +65,8 @@ impl WaveCache {
         self.refused
     }
 
-    /// The modes of the i-th carried harmonic; `None` where the damping is not proportional, the reference stiffness is
+    /// The modes of the i-th carried harmonic; `None` where the damping is not proportional, a
+    /// structural matrix is given, the structure rotates or has an unbalance, the reference stiffness is
     /// complex, the structure can move without it, or has too many degrees of freedom.
     ///
     /// # Errors
@@ -97,7 +100,11 @@ impl WaveModes {
     fn new(model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
-        if n > MOST || !matches!(block.artificial, Artificial::None) {
+        let other_terms = model.structure().has_structural_matrix()
+            || model.structure().is_rotating()
+            || block.unbalance.is_some()
+            || !matches!(block.artificial, Artificial::None);
+        if n > MOST || other_terms {
             return Ok(None);
         }
         let own = block.own_stiffness(model)?;
@@ -119,7 +126,11 @@ impl WaveModes {
             a
         };
         // The pencil turned round: the lowest modes, which matter most, are the most accurate.
-        let pairs = match eigen::generalised(&dense(&block.mass), &dense(&pattern.values), interrupt) {
+        let mut stiffness = dense(&pattern.values);
+        if let Some(structural) = &block.structural {
+            stiffness -= dense(structural) * Complex64::I;
+        }
+        let pairs = match eigen::generalised(&dense(&block.mass), &stiffness, interrupt) {
             Ok(pairs) => pairs,
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
             Err(_) => return Ok(None),
@@ -137,8 +148,14 @@ impl WaveModes {
             values: pairs.values,
             vectors,
             proportional,
+            loss_factor: model.structure().loss_factor(),
             springs,
         }))
+    }
+
+    /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
+    pub(super) fn is_damped_by_stiffness(&self) -> bool {
+        self.proportional.1 != 0.0 || self.loss_factor != 0.0
     }
 
     /// Whether these are the modes of a harmonic.

@@ -68,6 +68,15 @@ pub(super) fn reduced_blocks(
         return Ok(None);
     }
     let forced = options.flexibility == Flexibility::Krylov;
+    let structure = model.structure();
+    // A basis knows mass, viscous damping and stiffness, and forces of one size.
+    if structure.has_structural_damping()
+        || structure.is_rotating()
+        || structure.has_modal_damping()
+        || model.excitation().has_unbalance()
+    {
+        return declined(forced);
+    }
     let groups = groups(request)?;
     let small = |group: &Group| SHARE * group.inputs.len() > n;
     if groups.iter().any(|group| group.inputs.is_empty()) || (!forced && groups.iter().any(small)) {
@@ -108,7 +117,8 @@ fn declined<T>(forced: bool) -> Result<Option<T>> {
     }
     fail!(
         Unsupported,
-        "flexibility = krylov needs Hermitian stiffness and mass, and a mass by which K + shift M is positive definite"
+        "flexibility = krylov needs Hermitian stiffness and mass, a mass by which K + shift M is positive definite, and neither \
+         structural or modal damping nor a speed of rotation or unbalance"
     )
 }
 
@@ -269,7 +279,7 @@ fn inputs(request: &Request<'_>, number: usize) -> Result<Vec<SparseVector>> {
     }
     if many {
         let mut force = try_vec(structure.ndof(), Complex64::ZERO, CONTEXT)?;
-        let size = model.excitation().largest();
+        let size = model.excitation().largest(request.sweep.start);
         model.add_forces_to(number, 1.0 / size, &mut force);
         let mut input = Vec::new();
         for (p, z) in force.iter().enumerate().filter(|(_, z)| **z != Complex64::ZERO) {

@@ -208,6 +208,12 @@ impl Contact {
         self.ask(|law| (!law.has_preload()).then(|| law.name()))
     }
 
+    /// Whether motion and normal load scale together; if not, the force is proportional to the load.
+    #[must_use]
+    pub fn load_scales_motion(&self) -> bool {
+        self.ask(|law| law.load_scales_motion())
+    }
+
     /// A bound of the force in each direction over all motions; infinite where there is none.
     #[must_use]
     pub fn largest_force(&self) -> f64 {

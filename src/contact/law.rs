@@ -91,6 +91,12 @@ pub trait ContactLaw {
         false
     }
 
+    /// Whether the force is homogeneous of degree 1 in motion and normal load, as for friction with a stick stiffness;
+    /// if not, it is proportional to the load.
+    fn load_scales_motion(&self) -> bool {
+        true
+    }
+
     /// Whether an infinite normal load is allowed: the contact then sticks for ever.
     fn may_stick_for_ever(&self) -> bool {
         false

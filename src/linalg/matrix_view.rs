@@ -1,7 +1,7 @@
 //! A matrix borrowed from the caller, and its checks.
 
 use crate::error::{Error, Result, Status, fail, try_push};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse::{Csc, Form, Symmetry};
 use num_complex::Complex64;
 
 /// Layout of the entries in memory.
@@ -62,6 +62,34 @@ pub enum Part {
     Upper,
     /// All entries of any matrix.
     General,
+    /// All entries of a matrix with A = Aᵀ, real or complex; the symmetry is checked.
+    Symmetric,
+    /// The lower triangle of a matrix with A = Aᵀ, real or complex; the upper one is not read.
+    SymmetricLower,
+    /// The upper triangle of a matrix with A = Aᵀ, real or complex; the lower one is not read.
+    SymmetricUpper,
+}
+
+impl Part {
+    /// Whether the entries below the diagonal are not read.
+    fn skips_lower(self) -> bool {
+        matches!(self, Self::Upper | Self::SymmetricUpper)
+    }
+
+    /// Whether the entries above the diagonal are not read.
+    fn skips_upper(self) -> bool {
+        matches!(self, Self::Lower | Self::SymmetricLower)
+    }
+
+    /// The symmetry that the caller promises.
+    #[must_use]
+    pub fn symmetry(self) -> Symmetry {
+        match self {
+            Self::Full | Self::Lower | Self::Upper => Symmetry::Hermitian,
+            Self::General => Symmetry::None,
+            Self::Symmetric | Self::SymmetricLower | Self::SymmetricUpper => Symmetry::Plain,
+        }
+    }
 }
 
 /// A borrowed matrix: its entries are copied, the reference is never kept.
@@ -120,6 +148,52 @@ impl<'a> MatrixView<'a> {
     /// # Errors
     /// `Dimension`, `Index`, `NotFinite`, `NotHermitian` or `OutOfMemory`, naming the place.
     pub fn copy_in(&self, name: &str, order: usize) -> Result<Csc> {
+        let a = self.entries(name, order, self.part.symmetry())?;
+        match self.part {
+            Part::Full | Part::Symmetric => self.symmetrised(name, a),
+            Part::Lower | Part::Upper => self.with_real_diagonal(name, a),
+            Part::General | Part::SymmetricLower | Part::SymmetricUpper => Ok(a),
+        }
+    }
+
+    /// The same for a skew-symmetric (complex: skew-Hermitian) matrix, given in full, which is checked, or by one
+    /// triangle.
+    ///
+    /// # Errors
+    /// As [`Self::copy_in`].
+    pub fn copy_in_skew(&self, name: &str, order: usize) -> Result<Csc> {
+        if self.part.symmetry() == Symmetry::Plain {
+            return fail!(
+                NotHermitian,
+                "{name} must be skew-symmetric, A = -A^T, but was passed as SYMMETRIC"
+            );
+        }
+        let a = self.entries(name, order, Symmetry::Skew)?;
+        let (i, j, gap) = a.worst_pair(Symmetry::Skew);
+        let largest = a.max_abs();
+        if gap > SYMMETRY_TOLERANCE * largest {
+            let base = self.index_base;
+            return fail!(
+                NotHermitian,
+                "{name} must be skew-symmetric, A = -A^T, but the sum of {name}[{},{}] and its mirror is {gap:.3e}, \
+                 {:.1e} of the largest entry",
+                i + base,
+                j + base,
+                gap / largest
+            );
+        }
+        if gap == 0.0 {
+            return Ok(a);
+        }
+        let transposed = Csc::sum(a.rows, &[(Complex64::ONE, &a, Form::Transposed)])?;
+        let half = Complex64::new(0.5, 0.0);
+        Csc::sum(
+            a.rows,
+            &[(half, &a, Form::Plain), (-half, &transposed, Form::Conjugated)],
+        )
+    }
+
+    fn entries(&self, name: &str, order: usize, symmetry: Symmetry) -> Result<Csc> {
         if self.rows != order || self.cols != order {
             return fail!(
                 Dimension,
@@ -129,18 +203,47 @@ impl<'a> MatrixView<'a> {
             );
         }
         let entries = match self.storage {
-            Storage::ColMajor { ld } => self.dense_entries(name, ld, false)?,
-            Storage::RowMajor { ld } => self.dense_entries(name, ld, true)?,
-            Storage::Csc { col_ptr, row_idx } => self.sparse_entries(name, col_ptr, row_idx)?,
+            Storage::ColMajor { ld } => self.dense_entries(name, (ld, false), symmetry)?,
+            Storage::RowMajor { ld } => self.dense_entries(name, (ld, true), symmetry)?,
+            Storage::Csc { col_ptr, row_idx } => self.sparse_entries(name, (col_ptr, row_idx), symmetry)?,
         };
-        let a = Csc::from_triplets(order, order, entries)?;
-        if self.part == Part::Full {
-            return self.symmetrised(name, a);
+        Csc::from_triplets(order, order, entries)
+    }
+
+    /// A Hermitian matrix from one triangle, whose diagonal must be real up to rounding.
+    fn with_real_diagonal(&self, name: &str, mut a: Csc) -> Result<Csc> {
+        let allowed = SYMMETRY_TOLERANCE * a.max_abs();
+        for j in 0..a.cols {
+            for at in a.col_ptr[j]..a.col_ptr[j + 1] {
+                if a.row_idx[at] != j {
+                    continue;
+                }
+                if a.values[at].im.abs() > allowed {
+                    let (lower, symmetric) = if self.part == Part::Lower {
+                        ("LOWER", "SYMMETRIC_LOWER")
+                    } else {
+                        ("UPPER", "SYMMETRIC_UPPER")
+                    };
+                    let i = j + self.index_base;
+                    return fail!(
+                        NotHermitian,
+                        "{name}[{i},{i}] has the imaginary part {:.3e}: {lower} is a triangle of a Hermitian matrix, \
+                         whose diagonal is real; say {symmetric} if the matrix is complex symmetric",
+                        a.values[at].im
+                    );
+                }
+                a.values[at].im = 0.0;
+            }
         }
         Ok(a)
     }
 
-    fn dense_entries(&self, name: &str, ld: usize, row_major: bool) -> Result<Vec<(usize, usize, Complex64)>> {
+    fn dense_entries(
+        &self,
+        name: &str,
+        (ld, row_major): (usize, bool),
+        symmetry: Symmetry,
+    ) -> Result<Vec<(usize, usize, Complex64)>> {
         let (inner, outer) = if row_major {
             (self.cols, self.rows)
         } else {
@@ -162,13 +265,18 @@ impl<'a> MatrixView<'a> {
         for o in 0..outer {
             for k in 0..inner {
                 let (i, j) = if row_major { (o, k) } else { (k, o) };
-                self.take(name, i, j, self.values.get(o * ld + k), &mut entries)?;
+                self.take(name, (i, j, self.values.get(o * ld + k)), symmetry, &mut entries)?;
             }
         }
         Ok(entries)
     }
 
-    fn sparse_entries(&self, name: &str, col_ptr: &[i64], row_idx: &[i64]) -> Result<Vec<(usize, usize, Complex64)>> {
+    fn sparse_entries(
+        &self,
+        name: &str,
+        (col_ptr, row_idx): (&[i64], &[i64]),
+        symmetry: Symmetry,
+    ) -> Result<Vec<(usize, usize, Complex64)>> {
         let base = self.index_base as i64;
         if col_ptr.len() != self.cols + 1 {
             return fail!(
@@ -216,7 +324,7 @@ impl<'a> MatrixView<'a> {
                         self.rows as i64 - 1 + base
                     );
                 }
-                self.take(name, row as usize, j, self.values.get(k), &mut entries)?;
+                self.take(name, (row as usize, j, self.values.get(k)), symmetry, &mut entries)?;
             }
         }
         Ok(entries)
@@ -226,12 +334,11 @@ impl<'a> MatrixView<'a> {
     fn take(
         &self,
         name: &str,
-        i: usize,
-        j: usize,
-        v: Complex64,
+        (i, j, v): (usize, usize, Complex64),
+        symmetry: Symmetry,
         entries: &mut Vec<(usize, usize, Complex64)>,
     ) -> Result<()> {
-        if (self.part == Part::Lower && i < j) || (self.part == Part::Upper && i > j) {
+        if (self.part.skips_upper() && i < j) || (self.part.skips_lower() && i > j) {
             return Ok(());
         }
         if !v.is_finite() {
@@ -243,14 +350,15 @@ impl<'a> MatrixView<'a> {
             return Ok(());
         }
         try_push(entries, (i, j, v), name)?;
-        if i != j && matches!(self.part, Part::Lower | Part::Upper) {
-            try_push(entries, (j, i, v.conj()), name)?;
+        if i != j && (self.part.skips_lower() || self.part.skips_upper()) {
+            try_push(entries, (j, i, symmetry.mirror(v)), name)?;
         }
         Ok(())
     }
 
     fn symmetrised(&self, name: &str, a: Csc) -> Result<Csc> {
-        let (i, j, gap) = a.worst_hermitian_pair();
+        let symmetry = self.part.symmetry();
+        let (i, j, gap) = a.worst_pair(symmetry);
         let largest = a.max_abs();
         if gap > SYMMETRY_TOLERANCE * largest {
             let one_triangle = a
@@ -262,8 +370,14 @@ impl<'a> MatrixView<'a> {
                     .windows(2)
                     .enumerate()
                     .all(|(j, range)| a.row_idx[range[0]..range[1]].iter().all(|&i| i >= j));
-            let hint = if one_triangle {
+            let plain = symmetry == Symmetry::Plain;
+            let is_complex_symmetric = || a.worst_pair(Symmetry::Plain).2 <= SYMMETRY_TOLERANCE * largest;
+            let hint = if one_triangle && plain {
+                "; it looks like one triangle was passed: say SYMMETRIC_LOWER or SYMMETRIC_UPPER"
+            } else if one_triangle {
                 "; it looks like one triangle was passed: say LOWER or UPPER"
+            } else if !plain && is_complex_symmetric() {
+                "; the matrix is complex symmetric: say SYMMETRIC if that is meant"
             } else {
                 "; say GENERAL if that is meant"
             };
@@ -283,12 +397,14 @@ impl<'a> MatrixView<'a> {
         if gap == 0.0 {
             return Ok(a);
         }
-        // Average A and Aᴴ = conj(Aᵀ).
+        // Average A and its mirror image, Aᵀ or Aᴴ = conj(Aᵀ).
         let transposed = Csc::sum(a.rows, &[(Complex64::ONE, &a, Form::Transposed)])?;
         let half = Complex64::new(0.5, 0.0);
-        Csc::sum(
-            a.rows,
-            &[(half, &a, Form::Plain), (half, &transposed, Form::Conjugated)],
-        )
+        let form = if symmetry == Symmetry::Plain {
+            Form::Plain
+        } else {
+            Form::Conjugated
+        };
+        Csc::sum(a.rows, &[(half, &a, Form::Plain), (half, &transposed, form)])
     }
 }

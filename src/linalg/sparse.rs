@@ -30,6 +30,31 @@ pub enum Form {
     Conjugated,
 }
 
+/// Symmetry of a matrix.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Symmetry {
+    /// A = Aᴴ; real matrices are then symmetric.
+    Hermitian,
+    /// A = Aᵀ, also where A is complex.
+    Plain,
+    /// A = −Aᴴ; real matrices are then skew-symmetric.
+    Skew,
+    /// None is known.
+    None,
+}
+
+impl Symmetry {
+    /// The entry that mirrors `v`.
+    #[must_use]
+    pub fn mirror(self, v: Complex64) -> Complex64 {
+        match self {
+            Self::Hermitian => v.conj(),
+            Self::Skew => -v.conj(),
+            Self::Plain | Self::None => v,
+        }
+    }
+}
+
 impl Csc {
     /// From (row, column, value) triplets; duplicates are summed, as in the assembly of finite elements.
     ///
@@ -246,10 +271,16 @@ impl Csc {
     /// The position (row, column) with the largest deviation from A = Aᴴ, and the deviation |aᵢⱼ − conj(aⱼᵢ)|.
     #[must_use]
     pub fn worst_hermitian_pair(&self) -> (usize, usize, f64) {
+        self.worst_pair(Symmetry::Hermitian)
+    }
+
+    /// The same for another symmetry.
+    #[must_use]
+    pub fn worst_pair(&self, symmetry: Symmetry) -> (usize, usize, f64) {
         let mut worst = (0, 0, 0.0);
         for j in 0..self.cols {
             for (i, v) in self.column(j) {
-                let gap = (v - self.get(j, i).conj()).norm();
+                let gap = (v - symmetry.mirror(self.get(j, i))).norm();
                 if gap > worst.2 {
                     worst = (i, j, gap);
                 }

@@ -8,8 +8,19 @@ use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::part_of_turn::lag;
 use crate::model::reduced_wave::WaveKey;
+use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
+use crate::model::wave::Wave;
 use num_complex::Complex64;
+
+/// Terms of a speed Ω = pω, which Z_h = … + ω² p²K₁ + ihω² pG contains.
+#[derive(Clone, Debug)]
+pub struct Tied {
+    /// p²K₁
+    pub stiffness: Csc,
+    /// pG
+    pub gyroscopic: Csc,
+}
 
 impl Structure {
     /// Residue h·EO mod N in 0 .. N.
@@ -87,8 +98,8 @@ impl Structure {
         i128::from(offset).rem_euclid(self.sectors() as i128) == 0
     }
 
-    /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh damping; the mean has the real
-    /// part of complex matrices.
+    /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh and modal damping and ΩG at a fixed
+    /// speed, the structural matrix ηK; the mean has the real part of complex matrices, and no structural damping.
     ///
     /// # Errors
     /// `Argument` when the nodal diameter of the harmonic was not given; `OutOfMemory`.
@@ -105,21 +116,167 @@ impl Structure {
     }
 
     fn residue_matrix(&self, which: MatrixKind, residue: usize, real: bool) -> Result<Csc> {
+        let (of_mass, of_stiffness) = match which {
+            MatrixKind::Damping => self.rayleigh,
+            // No stress follows a mean strain by a phase.
+            MatrixKind::Structural if real => return Csc::sum(self.ndof(), &[]),
+            MatrixKind::Structural => (0.0, self.loss_factor),
+            MatrixKind::Mass | MatrixKind::Stiffness | MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2 => {
+                (0.0, 0.0)
+            }
+        };
+        let speed = match (which, self.speed) {
+            (MatrixKind::Damping, Speed::Fixed(speed)) if self.has(MatrixKind::Gyroscopic) => speed,
+            _ => 0.0,
+        };
+        let modal = match which {
+            MatrixKind::Damping => self.modal_damping_of(residue, real)?,
+            _ => None,
+        };
         let given = self.given(which, residue, real)?;
-        let (alpha, beta) = self.rayleigh;
-        if which != MatrixKind::Damping || (alpha == 0.0 && beta == 0.0) {
+        if of_mass == 0.0 && of_stiffness == 0.0 && modal.is_none() && speed == 0.0 {
             return Ok(given);
         }
-        let mass = self.given(MatrixKind::Mass, residue, real)?;
-        let stiffness = self.given(MatrixKind::Stiffness, residue, real)?;
-        Csc::sum(
-            self.ndof(),
-            &[
-                (Complex64::ONE, &given, Form::Plain),
-                (alpha.into(), &mass, Form::Plain),
-                (beta.into(), &stiffness, Form::Plain),
-            ],
-        )
+        let mut terms = Vec::with_capacity(5);
+        terms.push((Complex64::ONE, &given, Form::Plain));
+        let (mass, stiffness, gyroscopic);
+        if of_mass != 0.0 {
+            mass = self.given(MatrixKind::Mass, residue, real)?;
+            terms.push((of_mass.into(), &mass, Form::Plain));
+        }
+        if of_stiffness != 0.0 {
+            stiffness = self.given(MatrixKind::Stiffness, residue, real)?;
+            terms.push((of_stiffness.into(), &stiffness, Form::Plain));
+        }
+        if speed != 0.0 {
+            gyroscopic = self.given(MatrixKind::Gyroscopic, residue, real)?;
+            terms.push((speed.into(), &gyroscopic, Form::Plain));
+        }
+        if let Some(modal) = &modal {
+            terms.push((Complex64::ONE, modal, Form::Plain));
+        }
+        Csc::sum(self.ndof(), &terms)
+    }
+
+    /// One matrix as it was given, for the wave in which sector s + 1 lags by 2π·diameter/N.
+    pub(super) fn given_of_diameter(&self, which: MatrixKind, diameter: usize) -> Result<Csc> {
+        self.given(which, diameter % self.sectors(), false)
+    }
+
+    /// The modal damping likewise.
+    pub(super) fn modal_damping_of_diameter(&self, diameter: usize) -> Result<Csc> {
+        match self.modal_damping_of(diameter % self.sectors(), false)? {
+            Some(matrix) => Ok(matrix),
+            None => Csc::sum(self.ndof(), &[]),
+        }
+    }
+
+    /// Ω²K₁ of the wave at a fixed speed; `None` where it is zero.
+    ///
+    /// # Errors
+    /// As [`Self::wave_matrix`].
+    pub fn stiffness_of_speed(&self, wave: Wave) -> Result<Option<Csc>> {
+        let Speed::Fixed(speed) = self.speed else {
+            return Ok(None);
+        };
+        if speed == 0.0 || !self.has(MatrixKind::StiffnessSpeed2) {
+            return Ok(None);
+        }
+        let mut matrix = self.of_wave(MatrixKind::StiffnessSpeed2, wave)?;
+        for v in &mut matrix.values {
+            *v *= speed * speed;
+        }
+        Ok(Some(matrix))
+    }
+
+    /// ΩG of the wave at a fixed speed; `None` where it is zero.
+    ///
+    /// # Errors
+    /// As [`Self::wave_matrix`].
+    pub fn gyroscopic_at_speed(&self, wave: Wave) -> Result<Option<Csc>> {
+        let Speed::Fixed(speed) = self.speed else {
+            return Ok(None);
+        };
+        if !self.is_gyroscopic() {
+            return Ok(None);
+        }
+        let mut matrix = self.of_wave(MatrixKind::Gyroscopic, wave)?;
+        for v in &mut matrix.values {
+            *v *= speed;
+        }
+        Ok(Some(matrix))
+    }
+
+    /// p²K₁ and pG of the wave where the speed is pω; `None` where nothing depends on it.
+    ///
+    /// # Errors
+    /// As [`Self::wave_matrix`].
+    pub fn tied_to_frequency(&self, wave: Wave) -> Result<Option<Tied>> {
+        let Speed::PerOmega(p) = self.speed else {
+            return Ok(None);
+        };
+        if p == 0.0 || !(self.has(MatrixKind::StiffnessSpeed2) || self.has(MatrixKind::Gyroscopic)) {
+            return Ok(None);
+        }
+        let mut stiffness = self.of_wave(MatrixKind::StiffnessSpeed2, wave)?;
+        let mut gyroscopic = self.of_wave(MatrixKind::Gyroscopic, wave)?;
+        for v in &mut stiffness.values {
+            *v *= p * p;
+        }
+        for v in &mut gyroscopic.values {
+            *v *= p;
+        }
+        Ok(Some(Tied { stiffness, gyroscopic }))
+    }
+
+    /// The matrix M_h of the inertia −h²ω²M_h, with the terms of a speed that is tied to the frequency, which grow with ω²,
+    /// too: M − p²K₁/h² − ipG/h. A nodal diameter is that of the fundamental; of the mean it is M.
+    ///
+    /// # Errors
+    /// As [`Self::wave_matrix`].
+    pub fn inertia(&self, wave: Wave) -> Result<Csc> {
+        let mass = self.of_wave(MatrixKind::Mass, wave)?;
+        let h = match wave {
+            Wave::Harmonic(0) => return Ok(mass),
+            Wave::Harmonic(h) => h as f64,
+            Wave::Diameter(_) => 1.0,
+        };
+        let Some(tied) = self.tied_to_frequency(wave)? else {
+            return Ok(mass);
+        };
+        let terms = [
+            (Complex64::ONE, &mass, Form::Plain),
+            (Complex64::new(-1.0 / (h * h), 0.0), &tied.stiffness, Form::Plain),
+            (Complex64::new(0.0, -1.0 / h), &tied.gyroscopic, Form::Plain),
+        ];
+        Csc::sum(self.ndof(), &terms)
+    }
+
+    /// The matrix of a wave.
+    ///
+    /// # Errors
+    /// As [`Self::wave_matrix`].
+    pub fn of_wave(&self, which: MatrixKind, wave: Wave) -> Result<Csc> {
+        match wave {
+            Wave::Harmonic(h) => self.wave_matrix(which, h),
+            Wave::Diameter(d) => self.diameter_matrix(which, d),
+        }
+    }
+
+    /// The matrix of the modal damping; `None` without such damping, or without modes of this diameter.
+    fn modal_damping_of(&self, residue: usize, real: bool) -> Result<Option<Csc>> {
+        let (diameter, backward) = self.fold(residue as i64);
+        let Some(Some(matrix)) = self.modal_damping.get(diameter) else {
+            return Ok(None);
+        };
+        let form = if backward { Form::Conjugated } else { Form::Plain };
+        let mut matrix = Csc::sum(self.ndof(), &[(Complex64::ONE, matrix, form)])?;
+        if real {
+            for v in &mut matrix.values {
+                v.im = 0.0;
+            }
+        }
+        Ok(Some(matrix))
     }
 
     /// Entry (p, p) of the matrix of a harmonic, without its assembly and without Rayleigh damping.

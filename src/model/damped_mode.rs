@@ -1,7 +1,7 @@
 //! The linear mode, with stuck contacts, of a damped structure that artificial damping keeps periodic.
 //!
 //! Real ω and D and a complex shape x solve (K + iωC − ω²(1 + 2iD) M) x = 0, or (K − 2iD Kₛ + iωC − ω² M) x = 0
-//! with Kₛ the structure's own stiffness. One complex equation determines the two real unknowns. The method is
+//! with Kₛ the structure's own stiffness; structural damping is a part of K. One complex equation determines the two real unknowns. The method is
 //! inverse iteration on a problem that is nonlinear in its eigenvalue (Neumaier 1985, doi:10.1137/0722055).
 
 use crate::error::{Result, fail, try_copy, try_vec};
@@ -10,6 +10,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::quadratic::quadratic;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
+use crate::model::cyclic::Tied;
 use crate::model::linear_modes::ContactState;
 use crate::model::mode_selection::SelectedMode;
 use crate::model::spring_stiffness::Wave;
@@ -91,12 +92,21 @@ impl Model {
             );
         }
         let structure = self.structure();
+        let stuck = self.stiffness_at_small_motion(Wave::Harmonic(1), ContactState::Stuck)?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, 1)?;
         let problem = Damped {
             form,
-            stiffness: self.stiffness_at_small_motion(Wave::Harmonic(1), ContactState::Stuck)?,
+            stiffness: Csc::sum(
+                n,
+                &[
+                    (Complex64::ONE, &stuck, Form::Plain),
+                    (Complex64::I, &structural, Form::Plain),
+                ],
+            )?,
             own: structure.wave_matrix(MatrixKind::Stiffness, 1)?,
             damping: structure.wave_matrix(MatrixKind::Damping, 1)?,
             mass: structure.wave_matrix(MatrixKind::Mass, 1)?,
+            tied: structure.tied_to_frequency(Wave::Harmonic(1))?,
         };
         let undamped = DampedMode {
             omega: start.omega,
@@ -138,6 +148,8 @@ struct Damped {
     own: Csc,
     damping: Csc,
     mass: Csc,
+    /// p²K₁ and pG of a speed that is tied to the frequency.
+    tied: Option<Tied>,
 }
 
 impl Damped {
@@ -156,17 +168,21 @@ impl Damped {
     }
 
     fn matrix(&self, omega: f64, d: f64) -> Result<Csc> {
-        let [k, s, c, m] = self.factors(omega, d);
-        let [stiffness, own, damping, mass] = self.terms();
-        Csc::sum(
-            mass.rows,
-            &[
-                (k, stiffness, Form::Plain),
-                (s, own, Form::Plain),
-                (c, damping, Form::Plain),
-                (m, mass, Form::Plain),
-            ],
-        )
+        let mut terms = Vec::with_capacity(6);
+        terms.extend(self.sum(omega, d).map(|(factor, a)| (factor, a, Form::Plain)));
+        Csc::sum(self.mass.rows, &terms)
+    }
+
+    /// A(ω, D) as a sum: the terms with their factors.
+    fn sum(&self, omega: f64, d: f64) -> impl Iterator<Item = (Complex64, &Csc)> {
+        let square = omega * omega;
+        let tied = self.tied.iter().flat_map(move |tied| {
+            [
+                (square.into(), &tied.stiffness),
+                (Complex64::new(0.0, square), &tied.gyroscopic),
+            ]
+        });
+        self.factors(omega, d).into_iter().zip(self.terms()).chain(tied)
     }
 
     /// A x, ∂A/∂ω x and ∂A/∂D x, one after the other.
@@ -175,11 +191,15 @@ impl Damped {
         let (omega, d) = (mode.omega, mode.damping);
         let mut columns = try_vec(3 * n, Complex64::ZERO, CONTEXT)?;
         let (residual, derivatives) = columns.split_at_mut(n);
-        for (factor, a) in self.factors(omega, d).into_iter().zip(self.terms()) {
+        for (factor, a) in self.sum(omega, d) {
             a.multiply_add(factor, x, residual);
         }
         let (by_omega, by_damping) = derivatives.split_at_mut(n);
         self.damping.multiply_add(i, x, by_omega);
+        if let Some(tied) = &self.tied {
+            tied.stiffness.multiply_add((2.0 * omega).into(), x, by_omega);
+            tied.gyroscopic.multiply_add(2.0 * omega * i, x, by_omega);
+        }
         match self.form {
             DampingForm::Mass => {
                 self.mass.multiply_add(-2.0 * omega * (1.0 + 2.0 * i * d), x, by_omega);
@@ -255,7 +275,7 @@ impl Damped {
         let mut sum = try_vec(n, Complex64::ZERO, CONTEXT)?;
         let mut sizes = try_vec(n, 0.0_f64, CONTEXT)?;
         let mut inertia = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        for (factor, a) in self.factors(mode.omega, mode.damping).into_iter().zip(self.terms()) {
+        for (factor, a) in self.sum(mode.omega, mode.damping) {
             a.multiply_add(factor, &mode.shape, &mut sum);
             for (j, x) in mode.shape.iter().enumerate() {
                 for (i, v) in a.column(j) {

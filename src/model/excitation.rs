@@ -11,8 +11,22 @@ pub struct Force {
     pub dof: usize,
     /// Harmonic number; 0 is a constant force.
     pub harmonic: usize,
-    /// Complex amplitude, peak.
+    /// Complex amplitude, peak; over ω² if [`Self::per_omega2`].
     pub value: Complex64,
+    /// Whether the force is that of an unbalance, which grows with the square of the frequency ω of the response.
+    pub per_omega2: bool,
+}
+
+impl Force {
+    /// Amplitude at the angular frequency ω.
+    #[must_use]
+    pub fn at(&self, omega: f64) -> Complex64 {
+        if self.per_omega2 {
+            self.value * (omega * omega)
+        } else {
+            self.value
+        }
+    }
 }
 
 /// All forces on a model.
@@ -36,7 +50,38 @@ impl Excitation {
         if harmonic == 0 && value.im != 0.0 {
             return fail!(Argument, "a constant force is real, but im = {}", value.im);
         }
-        try_push(&mut self.forces, Force { dof, harmonic, value }, "the forces")
+        let force = Force {
+            dof,
+            harmonic,
+            value,
+            per_omega2: false,
+        };
+        try_push(&mut self.forces, force, "the forces")
+    }
+
+    /// Adds fundamental forces that grow with ω².
+    pub(super) fn add_unbalance(&mut self, forces: [(usize, Complex64); 2]) -> Result<()> {
+        let force = |(dof, value)| Force {
+            dof,
+            harmonic: 1,
+            value,
+            per_omega2: true,
+        };
+        try_extend(&mut self.forces, &forces.map(force), "the forces")
+    }
+
+    /// Turns unbalances into the forces of one frequency.
+    pub(super) fn fix_unbalance(&mut self, omega: f64) {
+        for force in &mut self.forces {
+            force.value = force.at(omega);
+            force.per_omega2 = false;
+        }
+    }
+
+    /// Whether a force grows with ω².
+    #[must_use]
+    pub fn has_unbalance(&self) -> bool {
+        self.forces.iter().any(|f| f.per_omega2 && f.value != Complex64::ZERO)
     }
 
     /// A copy, allocated fallibly.
@@ -51,12 +96,11 @@ impl Excitation {
         self.forces.clear();
     }
 
-    /// Largest real or imaginary part of a force.
+    /// Largest real or imaginary part of a force at an angular frequency.
     #[must_use]
-    pub fn largest(&self) -> f64 {
-        self.forces
-            .iter()
-            .fold(0.0, |m, f| m.max(f.value.re.abs()).max(f.value.im.abs()))
+    pub fn largest(&self, omega: f64) -> f64 {
+        let values = self.forces.iter().map(|f| f.at(omega));
+        values.fold(0.0, |m, f| m.max(f.re.abs()).max(f.im.abs()))
     }
 
     /// The forces in the order in which they were added.

@@ -7,8 +7,8 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
-use num_complex::Complex64;
 
 /// Entries of a transform over nodal diameters below this share of the largest are rounding.
 const ROUNDING: f64 = 1e-14;
@@ -32,32 +32,51 @@ impl Structure {
     }
 
     /// M, C or K of [`Self::repeating_sectors`] sectors closed to a ring, sector after sector; the damping includes
-    /// Rayleigh damping.
+    /// Rayleigh and modal damping and ΩG, the stiffness Ω²K₁.
     ///
     /// # Errors
     /// `Unsupported` for complex matrices, which have no meaning in time; `Argument` when a nodal diameter was not
     /// given; `OutOfMemory`.
     pub fn unrolled(&self, which: MatrixKind) -> Result<Csc> {
         let (alpha, beta) = self.rayleigh;
-        let own = if self.blocks[which as usize].diameters.is_empty() {
-            let given = self.sectors_around(which)?;
-            if which == MatrixKind::Damping && (alpha, beta) != (0.0, 0.0) {
-                let mass = self.unrolled(MatrixKind::Mass)?;
-                let stiffness = self.unrolled(MatrixKind::Stiffness)?;
-                Csc::sum(
-                    given.rows,
-                    &[
-                        (Complex64::ONE, &given, Form::Plain),
-                        (alpha.into(), &mass, Form::Plain),
-                        (beta.into(), &stiffness, Form::Plain),
-                    ],
-                )?
-            } else {
-                given
+        let mut parts = Vec::new();
+        let mut add = |factor: f64, which: MatrixKind| -> Result<()> {
+            if factor == 0.0 {
+                return Ok(());
             }
-        } else {
-            self.blocks_of_waves(which)?
+            try_push(
+                &mut parts,
+                (factor, self.given_around(which)?),
+                "the matrices of the wheel",
+            )
         };
+        add(1.0, which)?;
+        let speed = match self.speed {
+            Speed::Fixed(speed) => speed,
+            Speed::PerOmega(_) => return fail!(Internal, "the speed of rotation depends on the frequency"),
+        };
+        match which {
+            MatrixKind::Damping => {
+                add(alpha, MatrixKind::Mass)?;
+                add(beta, MatrixKind::Stiffness)?;
+                add(speed, MatrixKind::Gyroscopic)?;
+            }
+            MatrixKind::Stiffness => add(speed * speed, MatrixKind::StiffnessSpeed2)?,
+            _ => {}
+        }
+        if which == MatrixKind::Damping && !self.modal_damping.is_empty() {
+            let modal = self.blocks_of_waves(Self::modal_damping_of_diameter)?;
+            try_push(&mut parts, (1.0, modal), "the matrices of the wheel")?;
+        }
+        let mut terms = Vec::new();
+        for (factor, a) in &parts {
+            try_push(
+                &mut terms,
+                ((*factor).into(), a, Form::Plain),
+                "the matrices of the wheel",
+            )?;
+        }
+        let own = Csc::sum(self.ndof() * self.repeating_sectors(), &terms)?;
         for j in 0..own.cols {
             if let Some((i, v)) = own.column(j).find(|(_, v)| v.im != 0.0) {
                 return fail!(
@@ -69,6 +88,15 @@ impl Structure {
             }
         }
         Ok(own)
+    }
+
+    /// One matrix as it was given.
+    fn given_around(&self, which: MatrixKind) -> Result<Csc> {
+        if self.blocks[which as usize].diameters.is_empty() {
+            self.sectors_around(which)
+        } else {
+            self.blocks_of_waves(|structure, d| structure.given_of_diameter(which, d))
+        }
     }
 
     /// Places the blocks of a sector around the ring.
@@ -104,17 +132,13 @@ impl Structure {
 
     /// The blocks of a ring from the matrices of its waves: with A(φ) = Σ Bⱼ e^{−ijφ} the block that
     /// couples a sector to the j-th after it is Bⱼ = 1/n Σ_d A(2πd/n) e^{+2πijd/n}.
-    fn blocks_of_waves(&self, which: MatrixKind) -> Result<Csc> {
+    fn blocks_of_waves(&self, wave: impl Fn(&Self, usize) -> Result<Csc>) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let divisor = self.sectors() / sectors;
         let share = 1.0 / sectors as f64;
         let mut waves = Vec::new();
         for d in 0..sectors {
-            try_push(
-                &mut waves,
-                self.diameter_matrix(which, d * divisor)?,
-                "the matrices of the wheel",
-            )?;
+            try_push(&mut waves, wave(self, d * divisor)?, "the matrices of the wheel")?;
         }
         let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
         let mut entries = Vec::new();

@@ -1,14 +1,16 @@
-//! Undamped natural modes of the structure with its contacts removed or stuck.
+//! Undamped natural modes of the structure with its contacts removed or stuck: with Ω²K₁ and gyroscopic forces at a
+//! fixed speed, with those of the own frequency where the speed is tied to that.
 
 use crate::contact::Role;
-use crate::error::{Result, Status, check_memory, fail, try_vec};
+use crate::error::{Result, Status, check_memory, fail, try_extend, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::definite::resists_all_motion;
 use crate::linalg::eigen::{self, Pairs};
 use crate::linalg::lanczos;
-use crate::linalg::quadratic::quadratic;
+use crate::linalg::quadratic::{form, quadratic};
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
+use crate::model::quadratic_modes::Quadratic;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
@@ -42,13 +44,21 @@ const RIGID_MODES: usize = 6;
 /// Largest ω² of a rigid motion, relative to that of the stiffest degree of freedom alone.
 const RIGID: f64 = 1e-10;
 
+/// 1/ω² relative to the largest, below which a motion has no inertia.
+const MASSLESS: f64 = 1e-13;
+
 /// Largest number of square matrices that [`eigen::generalised`] holds at a time.
 const EIGEN_COPIES: usize = 8;
 
 /// K and M of a wave, checked to be Hermitian.
 pub(super) struct Pencil {
     pub stiffness: Csc,
+    /// The matrix of the inertia, with the terms of a speed that is tied to the frequency.
     pub mass: Csc,
+    /// M itself where the inertia has more terms.
+    weight: Option<Csc>,
+    /// ΩG at a fixed speed.
+    gyroscopic: Option<Csc>,
 }
 
 impl Model {
@@ -166,8 +176,7 @@ impl Model {
                     structure.sectors()
                 );
             }
-            Wave::Diameter(diameter) => structure.diameter_matrix(MatrixKind::Mass, diameter)?,
-            Wave::Harmonic(harmonic) => structure.wave_matrix(MatrixKind::Mass, harmonic)?,
+            wave => structure.of_wave(MatrixKind::Mass, wave)?,
         };
         let stiffness = self.stiffness_at_small_motion(wave, contacts)?;
         for (name, a) in [("stiffness", &stiffness), ("mass", &mass)] {
@@ -179,7 +188,16 @@ impl Model {
                 );
             }
         }
-        Ok(Pencil { stiffness, mass })
+        let (mass, weight) = match structure.tied_to_frequency(wave)? {
+            Some(_) => (structure.inertia(wave)?, Some(mass)),
+            None => (mass, None),
+        };
+        Ok(Pencil {
+            stiffness,
+            mass,
+            weight,
+            gyroscopic: structure.gyroscopic_at_speed(wave)?,
+        })
     }
 }
 
@@ -192,6 +210,9 @@ impl Pencil {
 
     /// The `count` lowest modes, fewer if there are not so many.
     pub fn lowest(&self, count: usize, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
+        if let Some(gyroscopic) = &self.gyroscopic {
+            return self.gyroscopic_modes(gyroscopic, count, interrupt);
+        }
         if self.finds_all(count) {
             let mut modes = self.all(interrupt)?;
             modes.omega.truncate(count);
@@ -209,6 +230,9 @@ impl Pencil {
     /// All modes, by dense algebra.
     fn all(&self, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
         let n = self.mass.rows;
+        if let Some(gyroscopic) = &self.gyroscopic {
+            return self.gyroscopic_modes(gyroscopic, n, interrupt);
+        }
         // The eigensolver allocates through nalgebra, which aborts the process when memory is exhausted.
         check_memory::<Complex64>(n.saturating_mul(n).saturating_mul(EIGEN_COPIES), "the natural modes")?;
         let dense = |a: &Csc| {
@@ -216,14 +240,59 @@ impl Pencil {
             a.add_to_dense(Complex64::ONE, d.as_mut_slice());
             d
         };
-        let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass), interrupt)?;
-        Ok(LinearModes::from(pairs))
+        let Some(weight) = &self.weight else {
+            let pairs = eigen::generalised(&dense(&self.stiffness), &dense(&self.mass), interrupt)?;
+            return Ok(LinearModes::from(pairs));
+        };
+        // At a speed tied to the frequency the inertia may be negative: such a motion has no frequency. The pencil is
+        // turned round, M φ = φ/ω² K, where K is positive definite.
+        let pairs = eigen::generalised(&dense(&self.mass), &dense(&self.stiffness), interrupt)?;
+        let mut modes = LinearModes {
+            omega: Vec::new(),
+            shapes: Vec::new(),
+        };
+        let largest = pairs.values.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
+        for (value, shape) in pairs.values.iter().zip(pairs.vectors.column_iter()).rev() {
+            if *value <= MASSLESS * largest {
+                continue;
+            }
+            let norm = quadratic(weight, shape.as_slice()).sqrt();
+            try_push(&mut modes.omega, value.sqrt().recip(), "the natural modes")?;
+            for z in shape.iter() {
+                try_push(&mut modes.shapes, z / norm, "the natural modes")?;
+            }
+        }
+        Ok(modes)
+    }
+
+    /// Modes with gyroscopic forces: (K + iωΩG − ω²M) φ = 0.
+    fn gyroscopic_modes(&self, gyroscopic: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Result<LinearModes> {
+        let problem = Quadratic {
+            mass: &self.mass,
+            damping: gyroscopic,
+            stiffness: &self.stiffness,
+        };
+        let mut modes = LinearModes {
+            omega: Vec::new(),
+            shapes: Vec::new(),
+        };
+        for (eigenvalue, shape) in problem.lowest(count, interrupt)? {
+            try_push(&mut modes.omega, eigenvalue.im, "the natural modes")?;
+            try_extend(&mut modes.shapes, &shape, "the natural modes")?;
+        }
+        Ok(modes)
     }
 
     /// φᴴKφ / φᴴMφ. The quotient is stationary at the eigenvector and so far more accurate than the vector; only it
     /// distinguishes a rigid motion of a stiff structure from a slow one.
     pub fn quotient(&self, shape: &[Complex64]) -> f64 {
-        quadratic(&self.stiffness, shape) / quadratic(&self.mass, shape)
+        let (k, m) = (quadratic(&self.stiffness, shape), quadratic(&self.mass, shape));
+        let Some(gyroscopic) = &self.gyroscopic else {
+            return k / m;
+        };
+        // k + ωg − ω²m = 0 with g = φᴴ iΩG φ
+        let g = -form(gyroscopic, &gyroscopic.values, shape).im;
+        ((g + (g * g + 4.0 * m * k).sqrt()) / (2.0 * m)).powi(2)
     }
 }
 

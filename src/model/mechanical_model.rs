@@ -9,6 +9,7 @@ use crate::linalg::matrix_view::MatrixView;
 use crate::model::excitation::Excitation;
 use crate::model::reduced_wave::KeptWaves;
 use crate::model::sector_faces::SectorDescription;
+use crate::model::speed::SpeedLoad;
 use crate::model::spring::Spring;
 use crate::model::structure::{MatrixKind, Structure};
 use num_complex::Complex64;
@@ -28,7 +29,7 @@ pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
     })
 }
 
-/// A structure with its contacts and forces: M ẍ + C ẋ + K x + f_nl = f_ex.
+/// A structure with its contacts and forces: M ẍ + (C + ΩG) ẋ + (K + Ω²K₁) x + f_nl = f_ex.
 ///
 /// Cyclic models describe one of N equal sectors; sector s + 1 lags behind sector s by the phase
 /// 2π·EO/N per harmonic, where EO is the engine order of the wave.
@@ -40,6 +41,8 @@ pub struct Model {
     contacts: Vec<Contact>,
     springs: Vec<Spring>,
     excitation: Excitation,
+    /// Normal loads that depend on the speed.
+    speed_loads: Vec<SpeedLoad>,
 }
 
 impl Model {
@@ -62,6 +65,7 @@ impl Model {
             contacts: Vec::new(),
             springs: Vec::new(),
             excitation: Excitation::default(),
+            speed_loads: Vec::new(),
         })
     }
 
@@ -79,6 +83,7 @@ impl Model {
             contacts: Vec::new(),
             springs: Vec::new(),
             excitation: Excitation::default(),
+            speed_loads: Vec::new(),
         })
     }
 
@@ -131,16 +136,17 @@ impl Model {
         let mut springs = Vec::new();
         try_extend(&mut springs, &self.springs, "the springs")?;
         Ok(Self {
-            structure: self.structure.clone(),
+            structure: self.structure.try_clone()?,
             kept: self.kept.clone(),
             contacts,
             springs,
             excitation: self.excitation.try_clone()?,
+            speed_loads: try_copy(&self.speed_loads, CONTACTS)?,
         })
     }
 
-    /// Sets the mass, damping or stiffness matrix (of the sector itself), ndof × ndof. M must be symmetric or
-    /// Hermitian; C and K may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
+    /// Sets the mass, damping, stiffness or structural matrix (of the sector itself), ndof × ndof. M must be symmetric or
+    /// Hermitian; the others may be [`Part::General`](crate::linalg::matrix_view::Part::General). Complex entries act
     /// on all harmonics above zero; the mean has the real part.
     ///
     /// # Errors
@@ -155,6 +161,15 @@ impl Model {
     /// `NotFinite`.
     pub fn set_rayleigh(&mut self, alpha_mass: f64, beta_stiffness: f64) -> Result<()> {
         self.changed_structure().set_rayleigh(alpha_mass, beta_stiffness)
+    }
+
+    /// Sets the loss factor η of structural damping iηK in all harmonics above 0: K is the stiffness of the structure,
+    /// couplings and matrices per diameter included, springs and contacts not. 0 removes it.
+    ///
+    /// # Errors
+    /// `NotFinite`; `Argument` if it is negative.
+    pub fn set_loss_factor(&mut self, loss_factor: f64) -> Result<()> {
+        self.structure.set_loss_factor(loss_factor)
     }
 
     /// Sets the coupling of a cyclic model's sector (rows) to the next one (columns). The coupling
@@ -284,12 +299,17 @@ impl Model {
         self.check_sides("spring", &sides, spring.sector_offset, None)
     }
 
-    /// Changes the normal load of a contact.
+    /// Changes the normal load of a contact, at any speed.
     ///
     /// # Errors
     /// `Index` for an unknown contact, `Argument` for one without normal load, else as
     /// [`Contact::check_constants`].
     pub fn set_preload(&mut self, id: usize, preload: f64) -> Result<()> {
+        self.set_preload_at_speed(id, preload, 0.0)
+    }
+
+    /// Changes normal load and gap of a contact.
+    pub(super) fn change_preload(&mut self, id: usize, preload: f64, gap: f64) -> Result<()> {
         let count = self.contacts.len();
         let Some(contact) = self.contacts.get_mut(id) else {
             return fail!(Index, "contact id = {id}, but the model has {count} contacts");
@@ -302,11 +322,33 @@ impl Model {
         }
         let changed = Contact {
             preload,
+            gap,
             ..contact.clone()
         };
         changed.check_constants()?;
         *contact = changed;
         Ok(())
+    }
+
+    /// Normal loads that depend on the speed.
+    pub(crate) fn speed_loads(&self) -> &[SpeedLoad] {
+        &self.speed_loads
+    }
+
+    pub(super) fn speed_loads_mut(&mut self) -> &mut Vec<SpeedLoad> {
+        &mut self.speed_loads
+    }
+
+    pub(super) fn contact_mut(&mut self, id: usize) -> Option<&mut Contact> {
+        self.contacts.get_mut(id)
+    }
+
+    pub(super) fn add_unbalance_forces(&mut self, forces: [(usize, Complex64); 2]) -> Result<()> {
+        self.excitation.add_unbalance(forces)
+    }
+
+    pub(super) fn fix_unbalance(&mut self, omega: f64) {
+        self.excitation.fix_unbalance(omega);
     }
 
     /// Adds the force Re(value·e^{i·harmonic·ωt}) on a degree of freedom (of sector 1; the others
@@ -326,7 +368,17 @@ impl Model {
     /// Adds the forces of one harmonic, times `scale`, to a vector over the independent degrees of freedom. A force
     /// on the right face acts on the next sector; one on a fixed degree of freedom has no effect.
     pub(crate) fn add_forces_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
-        for f in self.excitation.forces().iter().filter(|f| f.harmonic == harmonic) {
+        self.add_to(harmonic, scale, false, vector);
+    }
+
+    /// The same for the amplitudes of the forces that grow with ω².
+    pub(crate) fn add_unbalance_to(&self, harmonic: usize, scale: f64, vector: &mut [Complex64]) {
+        self.add_to(harmonic, scale, true, vector);
+    }
+
+    fn add_to(&self, harmonic: usize, scale: f64, per_omega2: bool, vector: &mut [Complex64]) {
+        let forces = self.excitation.forces().iter();
+        for f in forces.filter(|f| f.harmonic == harmonic && f.per_omega2 == per_omega2) {
             let (sector, terms) = self.structure.degrees().image(f.dof);
             let value = f.value * scale * self.structure.phase(harmonic, -sector);
             for (dof, c) in terms {
@@ -345,6 +397,11 @@ impl Model {
     #[must_use]
     pub fn structure(&self) -> &Structure {
         &self.structure
+    }
+
+    /// The same, for the parts of a model.
+    pub(super) fn structure_mut(&mut self) -> &mut Structure {
+        &mut self.structure
     }
 
     /// The contacts in the order in which they were added.

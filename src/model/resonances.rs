@@ -113,8 +113,18 @@ impl Model {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
         let structure = self.structure();
+        if structure.is_gyroscopic() && structure.tied_to_frequency(Wave::Harmonic(h))?.is_none() {
+            // Gyroscopic forces at a fixed speed are no small damping.
+            return Ok(None);
+        }
         let stiffness = self.stiffness_at_small_motion(Wave::Harmonic(h), contacts)?;
-        let mass = structure.wave_matrix(MatrixKind::Mass, h)?;
+        let mass = structure.inertia(Wave::Harmonic(h))?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, h)?;
+        let terms = [
+            (Complex64::ONE, &stiffness, Form::Plain),
+            (Complex64::I, &structural, Form::Plain),
+        ];
+        let stiffness = Csc::sum(mass.rows, &terms)?;
         damped_frequencies(
             h,
             (low, high),

@@ -1,7 +1,7 @@
 //! Matrices on the independent degrees of freedom: K₀ = T₀ᵀ K T₀ + T₁ᵀ K T₁, K₁ = T₀ᵀ K T₁, K₋₁ = T₁ᵀ K T₀.
 
 use crate::error::{Error, Result};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use num_complex::Complex64;
@@ -10,11 +10,11 @@ const CONTEXT: &str = "the matrices of the sector";
 
 type Entries = Vec<(usize, usize, Complex64)>;
 
-/// The blocks of a matrix of the sector. Where it is `hermitian`, so is its own block, exactly.
+/// The blocks of a matrix of the sector. Its own block has the symmetry of the matrix exactly.
 ///
 /// # Errors
 /// `OutOfMemory`.
-pub(super) fn blocks(map: &DegreeMap, a: &Csc, hermitian: bool) -> Result<Blocks> {
+pub(super) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blocks> {
     // A block per pair of sectors: rows and columns in the same one, in this and the next, in the next and this.
     let which = |row: i64, column: i64| match (row, column) {
         (0, 1) => 1,
@@ -30,24 +30,25 @@ pub(super) fn blocks(map: &DegreeMap, a: &Csc, hermitian: bool) -> Result<Blocks
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
     }
     let mut complex = false;
+    let has_mirror = matches!(symmetry, Symmetry::Hermitian | Symmetry::Plain);
     visit(map, a, |(row, p), (column, q), v| {
         let block = which(row, column);
         complex |= v.im != 0.0;
         // One triangle decides, so that rounding leaves the block symmetric.
-        if !(hermitian && (block == 2 || (block == 0 && p > q))) {
+        if !(has_mirror && (block == 2 || (block == 0 && p > q))) {
             entries[block].push((p, q, v));
         }
     });
     let n = map.independent();
     let [own, next, previous] = entries;
     let own = Csc::from_triplets(n, n, own)?;
-    let own = if hermitian { mirrored(&own)? } else { own };
+    let own = if has_mirror { mirrored(&own, symmetry)? } else { own };
     let next = Csc::from_triplets(n, n, next)?;
-    let previous = match hermitian {
-        false => Some(Csc::from_triplets(n, n, previous)?),
-        true if complex => Some(adjoint(&next)?),
+    let previous = match symmetry {
+        Symmetry::None | Symmetry::Skew => Some(Csc::from_triplets(n, n, previous)?),
+        Symmetry::Hermitian if complex => Some(adjoint(&next)?),
         // The transpose of the coupling to the next sector.
-        true => None,
+        Symmetry::Hermitian | Symmetry::Plain => None,
     };
     let coupled = map.faces().is_some();
     Ok(Blocks {
@@ -73,8 +74,8 @@ fn visit(map: &DegreeMap, a: &Csc, mut take: impl FnMut((i64, usize), (i64, usiz
     }
 }
 
-/// The Hermitian matrix of an upper triangle.
-fn mirrored(upper: &Csc) -> Result<Csc> {
+/// The Hermitian or symmetric matrix of an upper triangle.
+fn mirrored(upper: &Csc, symmetry: Symmetry) -> Result<Csc> {
     let n = upper.cols;
     let mut entries = Vec::new();
     let count = 2 * upper.values.len();
@@ -83,10 +84,10 @@ fn mirrored(upper: &Csc) -> Result<Csc> {
         .map_err(|_| Error::out_of_memory(CONTEXT))?;
     for j in 0..n {
         for (i, v) in upper.column(j) {
-            if i == j {
-                entries.push((i, j, v.re.into()));
-            } else {
-                entries.extend([(i, j, v), (j, i, v.conj())]);
+            match symmetry {
+                Symmetry::Hermitian if i == j => entries.push((i, j, v.re.into())),
+                _ if i == j => entries.push((i, j, v)),
+                _ => entries.extend([(i, j, v), (j, i, symmetry.mirror(v))]),
             }
         }
     }

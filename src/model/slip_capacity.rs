@@ -2,7 +2,7 @@
 //! has no bounded response.
 //!
 //! Let φ be a motion that the structure without its contacts does not resist at hω: φᴴ Z = 0 with Z = K − h²ω²M +
-//! ihωC. Projected on φ, harmonic h of the equation of motion, Z X + Wᴴ f = F, becomes, for any motion,
+//! ihωC + iD. Projected on φ, harmonic h of the equation of motion, Z X + Wᴴ f = F, becomes, for any motion,
 //!
 //! > φᴴ F = Σ conj(w φ) f,
 //!
@@ -71,13 +71,14 @@ impl Model {
     /// # Errors
     /// `OutOfMemory`, and those of [`Self::sprung_stiffness`]; `StoppedByCaller`.
     pub fn overload(&self, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
+        let at_frequency = self.at_frequency(omega)?;
         let mut last = None;
         for force in self.excitation().forces() {
             if last == Some(force.harmonic) || force.value == Complex64::ZERO {
                 continue;
             }
             last = Some(force.harmonic);
-            let found = self.resonance(omega, force.harmonic, interrupt)?;
+            let found = at_frequency.resonance(omega, force.harmonic, interrupt)?;
             if found.as_ref().is_some_and(Resonance::is_overloaded) {
                 return Ok(found);
             }
@@ -98,6 +99,7 @@ impl Model {
         let springs = self.contacts().iter().filter(|c| c.role() == Role::Spring);
         let stiffness = self.sprung_stiffness(wave, springs)?;
         let damping = structure.wave_matrix(MatrixKind::Damping, harmonic)?;
+        let structural = structure.wave_matrix(MatrixKind::Structural, harmonic)?;
         let mass = structure.wave_matrix(MatrixKind::Mass, harmonic)?;
         let w = harmonic as f64 * omega;
         let square = omega * omega * (harmonic.max(1) as f64).powi(2);
@@ -105,6 +107,7 @@ impl Model {
             let terms = [
                 (Complex64::ONE, &stiffness, Form::Plain),
                 (Complex64::new(0.0, w), &damping, Form::Plain),
+                (Complex64::I, &structural, Form::Plain),
                 (inertia.into(), &mass, Form::Plain),
             ];
             Csc::sum(n, &terms)

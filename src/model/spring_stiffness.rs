@@ -6,16 +6,8 @@ use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::Row;
 use crate::model::structure::MatrixKind;
+pub use crate::model::wave::Wave;
 use num_complex::Complex64;
-
-/// A wave on the structure, which determines the phase of a sector offset and the stiffness matrix.
-#[derive(Clone, Copy, Debug)]
-pub enum Wave {
-    /// Harmonic of the engine-order wave.
-    Harmonic(usize),
-    /// Nodal diameter, sector s + 1 lagging.
-    Diameter(usize),
-}
 
 impl Model {
     /// Rows of force and motion, and stiffness, of the springs of the model and of the `stuck` contacts in a wave.
@@ -50,17 +42,21 @@ impl Model {
         Ok(rows)
     }
 
-    /// K of a wave with the springs of the model and those of the `stuck` contacts.
+    /// K of a wave, at a fixed speed with Ω²K₁, with the springs of the model and those of the `stuck` contacts.
     ///
     /// # Errors
     /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
     pub fn sprung_stiffness<'c>(&self, wave: Wave, stuck: impl Iterator<Item = &'c Contact>) -> Result<Csc> {
         let structure = self.structure();
         let n = structure.ndof();
-        let own = match wave {
-            Wave::Harmonic(h) => structure.wave_matrix(MatrixKind::Stiffness, h)?,
-            Wave::Diameter(d) => structure.diameter_matrix(MatrixKind::Stiffness, d)?,
-        };
+        let mut own = structure.of_wave(MatrixKind::Stiffness, wave)?;
+        if let Some(of_speed) = structure.stiffness_of_speed(wave)? {
+            let terms = [
+                (Complex64::ONE, &own, Form::Plain),
+                (Complex64::ONE, &of_speed, Form::Plain),
+            ];
+            own = Csc::sum(n, &terms)?;
+        }
         let mut entries = Vec::new();
         for (force, motion, stiffness) in self.spring_rows(wave, stuck)? {
             for (p, x) in force.iter().flatten() {

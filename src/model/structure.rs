@@ -3,11 +3,13 @@
 
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
+use crate::model::speed::Speed;
+use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Largest accepted number of degrees of freedom.
@@ -25,7 +27,16 @@ pub enum MatrixKind {
     Damping = 1,
     /// K
     Stiffness = 2,
+    /// D of the structural damping iD in harmonics above 0.
+    Structural = 3,
+    /// G of the gyroscopic term ΩG ẋ, skew-symmetric.
+    Gyroscopic = 4,
+    /// K₁ of the stiffness K + Ω²K₁ at speed; that of softening is negative.
+    StiffnessSpeed2 = 5,
 }
+
+/// Number of kinds of matrices.
+const KINDS: usize = 6;
 
 impl MatrixKind {
     pub(super) fn name(self) -> &'static str {
@@ -33,6 +44,9 @@ impl MatrixKind {
             Self::Mass => "mass",
             Self::Damping => "damping",
             Self::Stiffness => "stiffness",
+            Self::Structural => "structural damping",
+            Self::Gyroscopic => "gyroscopic",
+            Self::StiffnessSpeed2 => "stiffness_speed2",
         }
     }
 }
@@ -44,8 +58,14 @@ pub struct Structure {
     sectors: usize,
     engine_order: i64,
     /// Shared with copies until one of them changes it.
-    pub(super) blocks: Arc<[Blocks; 3]>,
+    pub(super) blocks: Arc<[Blocks; KINDS]>,
     pub(crate) rayleigh: (f64, f64),
+    /// Loss factor η of the stiffness of the structure.
+    pub(super) loss_factor: f64,
+    /// Speed of rotation.
+    pub(super) speed: Speed,
+    /// Modal damping as a matrix per nodal diameter 0 ..= N/2; empty: none.
+    pub(super) modal_damping: Vec<Option<Csc>>,
 }
 
 impl Structure {
@@ -62,13 +82,58 @@ impl Structure {
             engine_order: 0,
             blocks: Arc::default(),
             rayleigh: (0.0, 0.0),
+            loss_factor: 0.0,
+            speed: Speed::Fixed(0.0),
+            modal_damping: Vec::new(),
         })
     }
 
     /// Whether any damping was given.
     #[must_use]
     pub fn is_damped(&self) -> bool {
-        self.rayleigh != (0.0, 0.0) || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
+        self.rayleigh != (0.0, 0.0)
+            || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
+            || !self.modal_damping.is_empty()
+            || self.has_structural_damping()
+    }
+
+    /// Whether damping without a causal law was given: a loss factor or a structural matrix.
+    #[must_use]
+    pub fn has_structural_damping(&self) -> bool {
+        self.loss_factor != 0.0 || self.has_structural_matrix()
+    }
+
+    /// Whether a structural matrix was given.
+    #[must_use]
+    pub fn has_structural_matrix(&self) -> bool {
+        self.parts(MatrixKind::Structural).any(|a| !a.is_empty())
+    }
+
+    /// Whether the matrices depend on a speed that is not zero.
+    #[must_use]
+    pub fn is_rotating(&self) -> bool {
+        self.is_gyroscopic()
+            || (!matches!(self.speed, Speed::Fixed(0.0) | Speed::PerOmega(0.0))
+                && self.parts(MatrixKind::StiffnessSpeed2).any(|a| !a.is_empty()))
+    }
+
+    /// Whether gyroscopic forces act.
+    #[must_use]
+    pub fn is_gyroscopic(&self) -> bool {
+        !matches!(self.speed, Speed::Fixed(0.0) | Speed::PerOmega(0.0))
+            && self.parts(MatrixKind::Gyroscopic).any(|a| !a.is_empty())
+    }
+
+    /// Whether damping ratios of modes were given.
+    #[must_use]
+    pub fn has_modal_damping(&self) -> bool {
+        !self.modal_damping.is_empty()
+    }
+
+    /// Loss factor of the stiffness of the structure.
+    #[must_use]
+    pub fn loss_factor(&self) -> f64 {
+        self.loss_factor
     }
 
     /// Whether a matrix was given in any form.
@@ -83,17 +148,41 @@ impl Structure {
         kinds.into_iter().flat_map(|kind| self.parts(kind)).all(Csc::is_real)
     }
 
+    /// Whether the matrices of a nodal diameter can be made of what was given.
+    pub(super) fn has_diameter(&self, diameter: usize) -> bool {
+        let given = |b: &Blocks| b.diameters.is_empty() || b.diameters.get(diameter).is_some_and(Option::is_some);
+        self.blocks.iter().all(given)
+    }
+
     /// The blocks of a matrix that were given.
     fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &Csc> {
         let b = &self.blocks[kind as usize];
         [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters).flatten()
     }
 
+    /// A copy that shares the matrices, allocated fallibly.
+    pub(super) fn try_clone(&self) -> Result<Self> {
+        let mut modal_damping = Vec::new();
+        for a in &self.modal_damping {
+            let copy = a.as_ref().map(Csc::try_clone).transpose()?;
+            try_push(&mut modal_damping, copy, "the modal damping")?;
+        }
+        Ok(Self {
+            degrees: self.degrees.clone(),
+            blocks: Arc::clone(&self.blocks),
+            modal_damping,
+            ..*self
+        })
+    }
+
     /// The blocks of a matrix for a change, copied where others use them.
     fn blocks_mut(&mut self, which: MatrixKind) -> Result<&mut Blocks> {
         if Arc::get_mut(&mut self.blocks).is_none() {
-            let [mass, damping, stiffness] = &*self.blocks;
-            self.blocks = Arc::new([mass.try_clone()?, damping.try_clone()?, stiffness.try_clone()?]);
+            let mut blocks: [Blocks; KINDS] = Default::default();
+            for (copy, own) in blocks.iter_mut().zip(self.blocks.iter()) {
+                *copy = own.try_clone()?;
+            }
+            self.blocks = Arc::new(blocks);
         }
         match Arc::get_mut(&mut self.blocks) {
             Some(blocks) => Ok(&mut blocks[which as usize]),
@@ -126,10 +215,11 @@ impl Structure {
     /// # Errors
     /// As [`DegreeMap::fixing`].
     pub(super) fn fixing(&self, dofs: &[usize]) -> Result<Self> {
+        self.refuse_modal_damping("degrees of freedom are fixed")?;
         let degrees = self.degrees.fixing(dofs)?;
         let keep = |a: &Option<Csc>| a.as_ref().map(|a| restricted(&self.degrees, &degrees, a)).transpose();
-        let mut blocks: [Blocks; 3] = Default::default();
-        for (new, old) in blocks.iter_mut().zip(&*self.blocks) {
+        let mut blocks: [Blocks; KINDS] = Default::default();
+        for (new, old) in blocks.iter_mut().zip(self.blocks.iter()) {
             (new.own, new.next, new.previous) = (keep(&old.own)?, keep(&old.next)?, keep(&old.previous)?);
             for a in &old.diameters {
                 try_push(&mut new.diameters, keep(a)?, "the matrices per diameter")?;
@@ -138,6 +228,7 @@ impl Structure {
         Ok(Self {
             degrees,
             blocks: Arc::new(blocks),
+            modal_damping: Vec::new(),
             ..*self
         })
     }
@@ -168,10 +259,48 @@ impl Structure {
         Ok(())
     }
 
+    pub(super) fn set_loss_factor(&mut self, loss_factor: f64) -> Result<()> {
+        if !loss_factor.is_finite() {
+            return fail!(NotFinite, "loss_factor = {loss_factor}, needs a finite number >= 0");
+        }
+        if loss_factor < 0.0 {
+            return fail!(
+                Argument,
+                "loss_factor = {loss_factor}, needs a number >= 0: positive dissipates"
+            );
+        }
+        self.loss_factor = loss_factor;
+        Ok(())
+    }
+
+    /// Refuses a change of what the modes of the modal damping depend on.
+    fn refuse_modal_damping(&self, change: &str) -> Result<()> {
+        if self.modal_damping.is_empty() {
+            return Ok(());
+        }
+        fail!(
+            Argument,
+            "{change} after the modal damping was set, whose modes depend on it: remove that (n = 0) or set it last"
+        )
+    }
+
+    /// The same for a matrix that is set.
+    fn refuse_modal_matrix(&self, which: MatrixKind) -> Result<()> {
+        match which {
+            MatrixKind::Mass => self.refuse_modal_damping("mass is set"),
+            MatrixKind::Stiffness => self.refuse_modal_damping("stiffness is set"),
+            MatrixKind::Damping | MatrixKind::Structural | MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2 => {
+                Ok(())
+            }
+        }
+    }
+
     pub(super) fn set_own(&mut self, which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {
         Self::refuse_general_mass(which, a)?;
+        self.refuse_modal_matrix(which)?;
         self.refuse_diameters(which)?;
-        let own = a.copy_in(which.name(), self.degrees.given())?;
+        let own = self.copied(which, a)?;
+        Self::check_mass(which, a, &own)?;
         if which == MatrixKind::Mass
             && let Some(i) = (0..own.cols).find(|&i| own.get(i, i).re < 0.0)
         {
@@ -184,7 +313,7 @@ impl Structure {
             );
         }
         if self.degrees.faces().is_some() {
-            let blocks = sector_matrices::blocks(&self.degrees, &own, a.part != Part::General)?;
+            let blocks = sector_matrices::blocks(&self.degrees, &own, Self::symmetry(which, a))?;
             *self.blocks_mut(which)? = blocks;
         } else {
             let own = of_independent(&self.degrees, own)?;
@@ -193,17 +322,37 @@ impl Structure {
         Ok(())
     }
 
+    /// The matrix of a view, its symmetry checked.
+    fn copied(&self, which: MatrixKind, a: &MatrixView<'_>) -> Result<Csc> {
+        if which == MatrixKind::Gyroscopic {
+            return a.copy_in_skew(which.name(), self.degrees.given());
+        }
+        a.copy_in(which.name(), self.degrees.given())
+    }
+
+    fn symmetry(which: MatrixKind, a: &MatrixView<'_>) -> Symmetry {
+        if which == MatrixKind::Gyroscopic {
+            return Symmetry::Skew;
+        }
+        a.part.symmetry()
+    }
+
     pub(super) fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
         let next = self.coupling(which, to_next)?;
+        if which == MatrixKind::Gyroscopic {
+            let previous = Csc::sum(next.rows, &[(-Complex64::ONE, &next, Form::Transposed)])?;
+            self.blocks_mut(which)?.previous = Some(previous);
+        }
         self.blocks_mut(which)?.next = Some(next);
         Ok(())
     }
 
     pub(super) fn set_coupling_previous(&mut self, which: MatrixKind, to_previous: &MatrixView<'_>) -> Result<()> {
-        if which == MatrixKind::Mass {
+        if which == MatrixKind::Mass || which == MatrixKind::Gyroscopic {
             return fail!(
                 Unsupported,
-                "mass is symmetric: its coupling to the previous sector follows from the next one"
+                "{} has a symmetry: its coupling to the previous sector follows from the next one",
+                which.name()
             );
         }
         let previous = self.coupling(which, to_previous)?;
@@ -219,10 +368,11 @@ impl Structure {
                 "a plain structure has no neighbouring sector; use a cyclic model"
             );
         }
+        self.refuse_modal_matrix(which)?;
         self.refuse_faces(which)?;
         self.refuse_diameters(which)?;
         let part = match a.part {
-            Part::Full => Part::General,
+            Part::Full | Part::Symmetric => Part::General,
             other => other,
         };
         let given = a.part(part).copy_in(which.name(), self.degrees.given())?;
@@ -231,6 +381,7 @@ impl Structure {
 
     pub(super) fn set_diameter(&mut self, which: MatrixKind, diameter: usize, a: &MatrixView<'_>) -> Result<()> {
         Self::refuse_general_mass(which, a)?;
+        self.refuse_modal_matrix(which)?;
         let highest = self.sectors / 2;
         if diameter > highest {
             return fail!(
@@ -249,7 +400,8 @@ impl Structure {
             );
         }
         self.refuse_faces(which)?;
-        let matrix = a.copy_in(which.name(), self.degrees.given())?;
+        let matrix = self.copied(which, a)?;
+        Self::check_mass(which, a, &matrix)?;
         let matrix = of_independent(&self.degrees, matrix)?;
         let blocks = self.blocks_mut(which)?;
         if blocks.diameters.is_empty() {
@@ -279,6 +431,20 @@ impl Structure {
             "{} was given per nodal diameter; it cannot be given by sector blocks too",
             which.name()
         )
+    }
+
+    /// A mass matrix that is symmetric must be real.
+    fn check_mass(which: MatrixKind, a: &MatrixView<'_>, copied: &Csc) -> Result<()> {
+        if which == MatrixKind::Mass
+            && a.part.symmetry() == Symmetry::Plain
+            && copied.values.iter().any(|v| v.im != 0.0)
+        {
+            return fail!(
+                NotHermitian,
+                "mass must be real symmetric or Hermitian, but was passed as complex SYMMETRIC"
+            );
+        }
+        Ok(())
     }
 
     fn refuse_general_mass(which: MatrixKind, a: &MatrixView<'_>) -> Result<()> {

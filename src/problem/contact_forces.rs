@@ -5,7 +5,7 @@ mod coupling;
 mod ranges;
 
 use crate::aft::{Evaluation, Evaluator};
-use crate::condense::Condensed;
+use crate::condense::{Condensed, LoadedLaw};
 use crate::error::{Result, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -152,14 +152,18 @@ impl<'a> ContactForces<'a> {
             let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
-            let y = gather(at, m, &self.scaled, &mut self.gathered);
-            if at.len() == 1 && prepared != at[0] {
+            let here = assembled.at(omega);
+            let y = gather_scaled(at, (m, here.of_motion), &self.scaled, &mut self.gathered);
+            if at.len() == 1 && (prepared != at[0] || here.of_motion.is_some()) {
                 self.evaluator.prepare(set, y);
-                prepared = at[0];
+                prepared = if here.of_motion.is_none() { at[0] } else { usize::MAX };
             }
             self.evaluator
-                .evaluate(&*assembled.law, set, y, omega, found, self.interrupt)
+                .evaluate(here.law, set, y, omega, found, self.interrupt)
                 .map_err(|e| e.at(format_args!("contact {}", assembled.contact)))?;
+            if !here.is_plain {
+                apply_load(&here, found);
+            }
             self.slip_fractions[k] = found.slip_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
@@ -284,6 +288,45 @@ fn gather<'m>(at: &[usize], m: usize, motion: &'m [f64], gathered: &'m mut [f64]
         y.copy_from_slice(&motion[c * m..(c + 1) * m]);
     }
     &gathered[..at.len() * m]
+}
+
+/// The same over the factor by which motion scales with the load of a law.
+fn gather_scaled<'m>(
+    at: &[usize],
+    (m, factor): (usize, Option<f64>),
+    motion: &'m [f64],
+    gathered: &'m mut [f64],
+) -> &'m [f64] {
+    let Some(factor) = factor else {
+        return gather(at, m, motion, gathered);
+    };
+    for (to, &c) in gathered.chunks_exact_mut(m).zip(at) {
+        for (to, y) in to.iter_mut().zip(&motion[c * m..(c + 1) * m]) {
+            *to = y / factor;
+        }
+    }
+    &gathered[..at.len() * m]
+}
+
+/// Turns the evaluation of the law of a reference load into that of the load at a frequency.
+fn apply_load(here: &LoadedLaw<'_>, found: &mut Evaluation) {
+    for (i, by_omega) in found.by_omega.iter_mut().enumerate() {
+        // By the load, at a motion that does not change.
+        let by_load = if here.of_motion.is_some() {
+            found.offset[i]
+        } else {
+            found.force[i]
+        };
+        *by_omega = here.factor * *by_omega + here.slope * by_load;
+    }
+    for value in found.force.iter_mut().chain(&mut found.offset) {
+        *value *= here.factor;
+    }
+    if here.of_motion.is_none() {
+        for value in &mut found.jacobian {
+            *value *= here.factor;
+        }
+    }
 }
 
 /// sum += factor·term

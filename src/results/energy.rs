@@ -27,7 +27,7 @@ pub struct Balance {
     /// Mean strain energy of the linear structure, with springs and contacts that never slip, without the other
     /// contacts.
     pub potential_mean: f64,
-    /// Work per cycle that damping, and stiffness without symmetry, dissipate.
+    /// Work per cycle that viscous and structural damping, and stiffness without symmetry, dissipate.
     pub structural_loss: f64,
     /// Work per cycle of the contacts that may slip.
     pub friction_loss: f64,
@@ -45,14 +45,21 @@ pub fn balance(condensed: &Condensed, omega: f64, x: &[Complex64], forces: &[f64
         let h = block.number as f64;
         let pattern = &block.reference;
         let stiffness = form(pattern, &block.stiffness, x);
+        let of_speed = match &block.tied {
+            Some(tied) => omega * omega * form(pattern, &tied.stiffness, x).re,
+            None => 0.0,
+        };
         if block.number == 0 {
-            sum.potential_mean += 0.5 * stiffness.re;
+            sum.potential_mean += 0.5 * (stiffness.re + of_speed);
             continue;
         }
         let hw = h * omega;
         sum.twice_mean_kinetic += 0.5 * hw * hw * form(pattern, &block.mass, x).re;
-        sum.potential_mean += 0.25 * stiffness.re;
+        sum.potential_mean += 0.25 * (stiffness.re + of_speed);
         sum.structural_loss += PI * h * (stiffness.im + hw * form(pattern, &block.damping, x).re);
+        if let Some(structural) = &block.structural {
+            sum.structural_loss += PI * h * form(pattern, structural, x).re;
+        }
     }
     let set = condensed.set();
     let packed = set.packed_len().max(1);
@@ -129,6 +136,13 @@ pub fn peaks(condensed: &Condensed, omega: f64, x: &[Complex64], interrupt: &Int
             }
             for (conjugate, sum) in conjugate.iter_mut().zip(&sums) {
                 *conjugate = sum.total();
+            }
+            if let (false, Some(tied)) = (kinetic, &block.tied) {
+                sums.fill(ComplexSum::default());
+                product(&block.reference, &tied.stiffness, moved, &mut sums);
+                for (conjugate, sum) in conjugate.iter_mut().zip(&sums) {
+                    *conjugate += omega * omega * sum.total();
+                }
             }
             for (force, motion, k) in block.springs.iter().filter(|_| !kinetic) {
                 let pull = along(motion, moved) * k;

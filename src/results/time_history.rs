@@ -10,6 +10,7 @@ use crate::results::contact_loops::Orbit;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// Largest number of times of a loop or a history.
 pub const MOST_TIMES: usize = 1 << 24;
@@ -172,10 +173,22 @@ impl Branch {
             }
             // The load is largest where the motion of side a against side b is smallest.
             let (low, high) = kept.normal_direction().map_or((0.0, 0.0), |k| ranges[k]);
+            let at_speed = self.contact_at_speed(point, contact);
+            let kept = at_speed.as_ref().unwrap_or(kept);
             summary.load_min = kept.normal_load(high * length);
             summary.load_max = kept.normal_load(low * length);
             Ok(summary)
         })
+    }
+
+    /// A contact under the load at the frequency of a point; `None` where its load does not depend on that.
+    fn contact_at_speed(&self, point: usize, contact: usize) -> Option<Contact> {
+        let laws = self.condensed_at(point).laws();
+        let found = laws
+            .binary_search_by_key(&contact, |assembled| assembled.contact)
+            .ok()?;
+        let load = laws[found].load.as_ref()?;
+        Some(load.contact_at(self.omega[point]))
     }
 
     /// Number of relative motions of a contact in [`Self::contact_loop`].
@@ -230,7 +243,12 @@ impl Branch {
             let all = self.motion_at(point).unwrap_or(&[]);
             try_extend(&mut motion, &all[c * m..(c + 1) * m], "the motion of a contact")?;
         }
-        let orbit = Orbit::new(set, &motion, &*assembled.law, self.omega[point], self.samples_at(point));
+        let omega = self.omega[point];
+        let law = match &assembled.load {
+            None => Arc::clone(&assembled.law),
+            Some(load) => load.contact_at(omega).law(condensed.length())?,
+        };
+        let orbit = Orbit::new(set, &motion, &*law, omega, self.samples_at(point));
         use_it(&orbit, condensed.length())
     }
 

@@ -8,7 +8,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
-use crate::model::structure::MatrixKind;
+use crate::model::structure::{MatrixKind, Structure};
 use crate::time_integration::event_law::{Element, Spring, unroll};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -115,7 +115,9 @@ impl<'s> System<'s> {
     /// The same without the forces of the model.
     pub fn unforced(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
         interrupt.phase(Phase::Setup, 0.0)?;
+        let model = &*model.at_frequency(omega)?;
         let structure = model.structure();
+        refuse_structural_damping(structure, omega)?;
         let (ndof, sectors) = (structure.ndof(), structure.repeating_sectors());
         let (mut springs, mut elements) = (Vec::new(), Vec::new());
         for spring in model.springs() {
@@ -284,4 +286,27 @@ impl Mass {
             buffer: try_vec(m.cols, Complex64::ZERO, CONTEXT)?,
         })
     }
+}
+
+/// Structural damping defines no motion in time: its force follows the future of the motion, too (Crandall 1970,
+/// doi:10.1016/0022-460X(70)90105-5).
+fn refuse_structural_damping(structure: &Structure, omega: f64) -> Result<()> {
+    const REASON: &str = "structural damping has no causal law in time, only harmonics, and is not integrated";
+    let eta = structure.loss_factor();
+    if structure.has_structural_matrix() {
+        return fail!(
+            Unsupported,
+            "{REASON}; its viscous equivalent at angular frequency {omega} is the damping matrix D/{omega} instead of \
+             the structural matrix D"
+        );
+    }
+    if eta != 0.0 {
+        return fail!(
+            Unsupported,
+            "{REASON}; the viscous equivalent of the loss factor {eta} at angular frequency {omega} is Rayleigh \
+             damping with beta_stiffness = {:.6e}",
+            eta / omega
+        );
+    }
+    Ok(())
 }

@@ -54,8 +54,8 @@ static void matrices(hbvib_model *model)
     a = matrix(NDOF, MASS);
     a.part = HBVIB_GENERAL;
     REFUSED("27", hbvib_model_set_matrix(model, HBVIB_MASS, &a), HBVIB_E_NOT_HERMITIAN, 3, "GENERAL");
-    a.part = 4;
-    REFUSED("54", hbvib_model_set_matrix(model, HBVIB_MASS, &a), HBVIB_E_ARGUMENT, 3, "part = 4");
+    a.part = 7;
+    REFUSED("54", hbvib_model_set_matrix(model, HBVIB_MASS, &a), HBVIB_E_ARGUMENT, 3, "part = 7");
     a.part = 0;
     a.scalar = -1;
     REFUSED("54", hbvib_model_set_matrix(model, HBVIB_MASS, &a), HBVIB_E_ARGUMENT, 3, "scalar = -1");
@@ -63,7 +63,7 @@ static void matrices(hbvib_model *model)
     a.storage = 3;
     REFUSED("54", hbvib_model_set_matrix(model, HBVIB_MASS, &a), HBVIB_E_ARGUMENT, 3, "storage = 3");
     a.storage = 0;
-    REFUSED("54", hbvib_model_set_matrix(model, 3, &a), HBVIB_E_ARGUMENT, 2, "which = 3");
+    REFUSED("54", hbvib_model_set_matrix(model, 6, &a), HBVIB_E_ARGUMENT, 2, "which = 6");
     REFUSED("54", hbvib_model_set_matrix(model, -1, &a), HBVIB_E_ARGUMENT, 2, "which = -1");
     a.reserved = 1;
     REFUSED("68", hbvib_model_set_matrix(model, HBVIB_MASS, &a), HBVIB_E_ARGUMENT, 3, "reserved = 1");

@@ -5,4 +5,5 @@ mod common;
 
 mod damped_mode;
 mod natural_frequencies;
+mod rotating_modes;
 mod start_mode;

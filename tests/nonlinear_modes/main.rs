@@ -12,6 +12,7 @@ mod mode_forced;
 mod mode_linear_range;
 mod mode_range;
 mod mode_reference;
+mod mode_structural;
 mod mode_synthesis;
 mod mode_turning;
 mod mode_veering;

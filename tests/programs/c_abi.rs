@@ -148,6 +148,11 @@ fn many_contacts_and_springs_are_added_at_once() {
 }
 
 #[test]
+fn rotation_and_damping_are_those_of_closed_forms() {
+    silent("rotation", |_| vec![]);
+}
+
+#[test]
 fn laws_elements_and_patches_are_those_of_closed_forms() {
     silent("laws", |_| vec![]);
 }

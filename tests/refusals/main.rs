@@ -4,6 +4,7 @@
 mod common;
 
 mod bad_input;
+mod damping_input;
 mod explained;
 mod mode_bad_input;
 mod options;

@@ -25,7 +25,7 @@ pub const SECTIONS: [Section; 12] = [
     Section {
         title: "Model",
         about: "structures, their matrices, springs and forces",
-        files: &["model"],
+        files: &["model", "model_damping", "model_rotation"],
     },
     Section {
         title: "Cyclic structures",
@@ -61,7 +61,13 @@ pub const SECTIONS: [Section; 12] = [
     Section {
         title: "Modes",
         about: "linear and nonlinear modes, responses synthesised from them",
-        files: &["modes_linear", "modes", "modes_results", "modes_synthesis"],
+        files: &[
+            "modes_linear",
+            "modes_damped",
+            "modes",
+            "modes_results",
+            "modes_synthesis",
+        ],
     },
     Section {
         title: "Time",

@@ -3,7 +3,7 @@
 use crate::contacts::contacts;
 use crate::job::{Amplitude, FacesPart, FrameName, Job};
 use crate::node_table::node_dofs;
-use hbvib::{MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Storage, Values};
+use hbvib::{MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Speed, Storage, Values};
 use hbvib_io::{Dof, Matrix, Symmetry};
 use num_complex::Complex64;
 use std::fmt::Display;
@@ -57,13 +57,34 @@ pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
     if let Some([alpha, beta]) = part.rayleigh {
         model.set_rayleigh(alpha, beta).map_err(|e| format!("[model]: {e}"))?;
     }
+    if let Some(loss_factor) = part.loss_factor {
+        model
+            .set_loss_factor(loss_factor)
+            .map_err(|e| format!("[model]: {e}"))?;
+    }
+    model
+        .set_modal_damping(&part.modal_damping)
+        .map_err(|e| format!("[model], modal_damping: {e}"))?;
     let table = node_dofs(&given.dofs);
     let mut names = Names::new();
     for (i, part) in job.contact.iter().enumerate() {
         let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
         let first = model.contacts().len();
         for contact in contacts(job, part, &table).map_err(|e| said(&e))? {
-            model.add_contact(&contact).map_err(|e| said(&e))?;
+            let id = model.add_contact(&contact).map_err(|e| said(&e))?;
+            if part.per_speed2 != 0.0 {
+                // An area multiplies all of them alike.
+                let pairs = [
+                    (contact.kt, part.kt),
+                    (contact.kn, part.kn),
+                    (contact.preload, part.preload),
+                ];
+                let given = pairs.into_iter().find(|(_, given)| *given != 0.0);
+                let share = given.map_or(1.0, |(of_pair, given)| of_pair / given);
+                model
+                    .set_preload_at_speed(id, contact.preload, part.per_speed2 * share)
+                    .map_err(|e| said(&e))?;
+            }
         }
         let name = part.name.clone().unwrap_or_else(|| (i + 1).to_string());
         if names.iter().any(|(other, _)| *other == name) {
@@ -83,6 +104,18 @@ pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
             .add_force(force.dof, force.harmonic, value)
             .map_err(|e| format!("[[force]] {}: {e}", i + 1))?;
     }
+    for (i, one) in job.unbalance.iter().enumerate() {
+        model
+            .add_unbalance(one.dof_x, one.dof_y, one.m_e, one.phase)
+            .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
+    }
+    let speed = match (part.speed, part.speed_per_omega) {
+        (None, None) => return Ok((model, names)),
+        (Some(speed), None) => Speed::Fixed(speed),
+        (None, Some(per_omega)) => Speed::PerOmega(per_omega),
+        (Some(_), Some(_)) => return Err("[model]: names speed and speed_per_omega; needs one of them".into()),
+    };
+    model.set_speed(speed).map_err(|e| format!("[model]: {e}"))?;
     Ok((model, names))
 }
 
@@ -117,6 +150,9 @@ fn matrices(job: &Job) -> Outcome<Given> {
         (MatrixKind::Stiffness, &part.stiffness),
         (MatrixKind::Mass, &part.mass),
         (MatrixKind::Damping, &part.damping),
+        (MatrixKind::Structural, &part.structural),
+        (MatrixKind::Gyroscopic, &part.gyroscopic),
+        (MatrixKind::StiffnessSpeed2, &part.stiffness_speed2),
     ] {
         if let Some(path) = path {
             given.own.retain(|(other, _)| *other != kind);
@@ -135,6 +171,8 @@ fn matrices(job: &Job) -> Outcome<Given> {
     for (kind, path) in [
         (MatrixKind::Stiffness, &part.coupling_stiffness),
         (MatrixKind::Mass, &part.coupling_mass),
+        (MatrixKind::Gyroscopic, &part.coupling_gyroscopic),
+        (MatrixKind::StiffnessSpeed2, &part.coupling_stiffness_speed2),
     ] {
         if let Some(path) = path {
             given.next.push((kind, one(path)?.0));
@@ -174,10 +212,6 @@ fn with_view<R>(a: &Matrix, take: impl FnOnce(&MatrixView<'_>) -> R) -> R {
     let row_idx: Vec<i64> = entries.iter().map(|&(i, ..)| i64::from(i)).collect();
     let real: Vec<f64> = entries.iter().map(|(_, _, v)| v.re).collect();
     let complex: Vec<Complex64> = entries.iter().map(|(_, _, v)| *v).collect();
-    let symmetric = !matches!(
-        (a.symmetry, a.is_complex),
-        (Symmetry::Skew, _) | (Symmetry::Symmetric, true)
-    );
     take(&MatrixView {
         rows: a.rows,
         cols: a.columns,
@@ -190,7 +224,11 @@ fn with_view<R>(a: &Matrix, take: impl FnOnce(&MatrixView<'_>) -> R) -> R {
         } else {
             Values::Real(&real)
         },
-        part: if symmetric { Part::Full } else { Part::General },
+        part: match a.symmetry {
+            Symmetry::Skew => Part::General,
+            Symmetry::Symmetric => Part::Symmetric,
+            Symmetry::General | Symmetry::Hermitian => Part::Full,
+        },
         index_base: 0,
     })
 }

@@ -14,14 +14,29 @@ pub struct Job {
     pub contact: Vec<ContactPart>,
     #[serde(default)]
     pub force: Vec<ForcePart>,
+    #[serde(default)]
+    pub unbalance: Vec<UnbalancePart>,
     pub forced: Option<ForcedPart>,
     pub mode: Option<ModePart>,
     pub verify: Option<VerifyPart>,
+    pub campbell: Option<CampbellPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
     #[serde(skip)]
     pub folder: PathBuf,
+}
+
+/// An unbalance that rotates with the frequency of the response.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct UnbalancePart {
+    pub dof_x: usize,
+    pub dof_y: usize,
+    /// Mass times eccentricity.
+    pub m_e: f64,
+    #[serde(default)]
+    pub phase: f64,
 }
 
 /// Matrices and symmetry.
@@ -33,11 +48,28 @@ pub struct ModelPart {
     pub stiffness: Option<PathBuf>,
     pub mass: Option<PathBuf>,
     pub damping: Option<PathBuf>,
+    /// D of structural damping iD in harmonics above 0.
+    pub structural: Option<PathBuf>,
+    /// G of the gyroscopic forces, skew-symmetric.
+    pub gyroscopic: Option<PathBuf>,
+    /// K1 of the stiffness K + speed^2 K1.
+    pub stiffness_speed2: Option<PathBuf>,
     /// Coupling to the next sector.
     pub coupling_stiffness: Option<PathBuf>,
     pub coupling_mass: Option<PathBuf>,
+    pub coupling_gyroscopic: Option<PathBuf>,
+    pub coupling_stiffness_speed2: Option<PathBuf>,
     /// C += alpha M + beta K
     pub rayleigh: Option<[f64; 2]>,
+    /// Structural damping i loss_factor K in harmonics above 0.
+    pub loss_factor: Option<f64>,
+    /// Damping ratios of the lowest natural modes without contacts, of each nodal diameter.
+    #[serde(default)]
+    pub modal_damping: Vec<f64>,
+    /// Speed of rotation, rad per time unit.
+    pub speed: Option<f64>,
+    /// Speed over the frequency of the response, instead: 1 / EO.
+    pub speed_per_omega: Option<f64>,
     #[serde(default = "one")]
     pub sectors: usize,
     #[serde(default)]
@@ -112,6 +144,9 @@ pub struct ContactPart {
     pub mu: f64,
     #[serde(default)]
     pub preload: f64,
+    /// Growth of the preload with the square of the speed.
+    #[serde(default)]
+    pub per_speed2: f64,
     #[serde(default)]
     pub gap: f64,
     #[serde(default)]
@@ -199,6 +234,41 @@ pub struct ModePart {
     pub estimate_error: bool,
 }
 
+/// Contacts of a linear analysis.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum StateName {
+    #[default]
+    Stuck,
+    Free,
+}
+
+/// Natural frequencies over the speed of rotation, and where engine orders meet them; times are seconds.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CampbellPart {
+    pub from_rpm: f64,
+    pub to_rpm: f64,
+    #[serde(default = "speeds")]
+    pub points: usize,
+    /// Number of modes.
+    #[serde(default = "modes")]
+    pub count: usize,
+    #[serde(default = "first_order")]
+    pub engine_orders: Vec<i64>,
+    #[serde(default)]
+    pub diameter: usize,
+    #[serde(default)]
+    pub contacts: StateName,
+    pub csv: Option<PathBuf>,
+    /// SVG
+    pub figure: Option<PathBuf>,
+    /// Frequencies over nodal diameter with the engine orders (SAFE diagram), SVG.
+    pub interference_figure: Option<PathBuf>,
+    /// Speed of the interference figure; that of to_rpm unless given.
+    pub interference_rpm: Option<f64>,
+}
+
 /// Points of a branch.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -279,6 +349,18 @@ fn z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
 }
 
+fn speeds() -> usize {
+    41
+}
+
+fn modes() -> usize {
+    6
+}
+
+fn first_order() -> Vec<i64> {
+    vec![1]
+}
+
 fn samples() -> usize {
     256
 }
@@ -297,9 +379,9 @@ impl Job {
         let mut job: Self = toml::from_str(&text)
             .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
         path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
-        if job.forced.is_none() && job.mode.is_none() {
+        if job.forced.is_none() && job.mode.is_none() && job.campbell.is_none() {
             return Err(format!(
-                "{}: names no analysis: needs [forced] or [mode]",
+                "{}: names no analysis: needs [forced], [mode] or [campbell]",
                 path.display()
             ));
         }

@@ -8,6 +8,7 @@
 //! ```
 
 mod build;
+mod campbell;
 mod contact_figures;
 mod contact_tables;
 mod contacts;
@@ -118,6 +119,21 @@ fn run(path: &Path) -> Outcome<ExitCode> {
     let stop = Arc::new(AtomicBool::new(false));
     let handler = Arc::clone(&stop);
     ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed)).map_err(|e| format!("Ctrl-C: {e}"))?;
+    if let Some(part) = &job.campbell {
+        let cancelled = || stop.load(Ordering::Relaxed);
+        let mut hooks = Hooks {
+            cancelled: Some(&cancelled),
+            ..Hooks::default()
+        };
+        let (text, written) = campbell::write(&job, part, &model, &mut hooks)?;
+        print(&text)?;
+        for path in written {
+            print(&format!("wrote {}\n", path.display()))?;
+        }
+        if job.forced.is_none() && job.mode.is_none() {
+            return Ok(ExitCode::SUCCESS);
+        }
+    }
     let branch = solve(&job, &model, &stop)?;
     let mut written = output::write(&job, &branch)?;
     written.extend(contact_tables::write(&job, &branch, &names)?);

@@ -24,7 +24,10 @@ pub struct SynthesisPoint {
 /// Force and additional damping that act on the mode.
 pub(super) struct Load {
     pub force: Vec<Complex64>,
+    /// Forces over ω² of unbalances, taken at the natural frequency of each amplitude.
+    pub unbalance: Vec<Complex64>,
     pub damping: Option<Csc>,
+    pub structural: Option<Csc>,
     pub ratio: f64,
     /// Row of the response degree of freedom in the fundamental.
     pub response: MotionRow,
@@ -49,26 +52,33 @@ impl Load {
     pub fn state(&self, omega: f64, point: &ModePoint, x: &[Complex64]) -> State {
         let square = point.modal_amplitude * point.modal_amplitude;
         let mut damping = point.damping_ratio + self.ratio;
-        if let Some(c) = &self.damping {
-            // xᴴ C x = 2Dω·xᴴ M x
-            let mut form = 0.0;
-            for (j, xj) in x.iter().enumerate() {
-                for (i, v) in c.column(j) {
-                    form += (x[i].conj() * v * xj).re;
-                }
+        // xᴴ (ωC + D) x = 2Dω²·xᴴ M x with the damping ratio D on the right.
+        for (matrix, factor) in [(&self.damping, omega), (&self.structural, 1.0)] {
+            if let Some(a) = matrix {
+                damping += 0.5 * factor * form(a, x) / (omega * omega * square);
             }
-            damping += 0.5 * form / (omega * square);
         }
         State {
             omega,
             damping,
             square,
-            work: inner(x, &self.force),
+            work: inner(x, &self.force) + inner(x, &self.unbalance) * (omega * omega),
             response: self.response.along(x),
             log10: point.log10_amplitude,
             fundamental_share: point.fundamental_share,
         }
     }
+}
+
+/// Re xᴴ A x
+fn form(a: &Csc, x: &[Complex64]) -> f64 {
+    let mut form = 0.0;
+    for (j, xj) in x.iter().enumerate() {
+        for (i, v) in a.column(j) {
+            form += (x[i].conj() * v * xj).re;
+        }
+    }
+    form
 }
 
 impl State {

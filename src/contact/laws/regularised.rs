@@ -70,6 +70,10 @@ impl ContactLaw for RegularisedContact {
         true
     }
 
+    fn load_scales_motion(&self) -> bool {
+        false
+    }
+
     fn normal_load(&self, _y: f64) -> f64 {
         self.preload
     }

@@ -2,7 +2,7 @@
 
 use crate::contact::linearisation::Range;
 use crate::error::{Error, Result, try_push};
-use crate::problem::contact_forces::{ContactForces, gather};
+use crate::problem::contact_forces::{ContactForces, gather_scaled};
 
 impl ContactForces<'_> {
     /// Relative change of the forces with the number of samples: ‖F_N − F_M‖/‖F_N‖ over the forces of all sampled
@@ -25,7 +25,8 @@ impl ContactForces<'_> {
         let m = set.packed_len();
         let (mut difference, mut size) = (0.0, 0.0);
         for assembled in self.condensed.laws() {
-            let (law, at) = (&*assembled.law, &assembled.coordinates);
+            let here = assembled.at(omega);
+            let (law, at) = (here.law, &assembled.coordinates);
             if !self.evaluator.samples(law) {
                 continue;
             }
@@ -33,7 +34,7 @@ impl ContactForces<'_> {
             let Some(found) = self.found.get_mut(at.len() - 1).and_then(Option::as_mut) else {
                 continue;
             };
-            let y = gather(at, m, motion, &mut self.gathered);
+            let y = gather_scaled(at, (m, here.of_motion), motion, &mut self.gathered);
             if at.len() == 1 {
                 self.evaluator.prepare(set, y);
                 other.prepare(set, y);
@@ -46,8 +47,8 @@ impl ContactForces<'_> {
             checked.copy_from_slice(&found.force);
             other.evaluate(law, set, y, omega, found, interrupt).map_err(reported)?;
             for (a, b) in checked.iter().zip(&found.force) {
-                difference += (a - b) * (a - b);
-                size += a * a;
+                difference += here.factor * here.factor * (a - b) * (a - b);
+                size += here.factor * here.factor * a * a;
             }
         }
         Ok(if size == 0.0 { 0.0 } else { f64::sqrt(difference / size) })
@@ -74,12 +75,20 @@ impl ContactForces<'_> {
         let mut largest = 0.0_f64;
         for assembled in self.condensed.laws() {
             own.clear();
+            let here = assembled.at(omega);
             let mut reference = f64::INFINITY;
             for &c in &assembled.coordinates {
-                try_push(&mut own, ranges[c], "the contacts")?;
+                let Range { half, mean, speed } = ranges[c];
+                let of_motion = here.of_motion.unwrap_or(1.0);
+                let range = Range {
+                    half: half / of_motion,
+                    mean: mean / of_motion,
+                    speed: speed / of_motion,
+                };
+                try_push(&mut own, range, "the contacts")?;
                 reference = reference.min(self.condensed.stiffness(c));
             }
-            largest = largest.max(assembled.law.linearisation_scale(&own, reference));
+            largest = largest.max(here.law.linearisation_scale(&own, reference));
         }
         Ok(largest)
     }

@@ -254,6 +254,34 @@ void nonlinear_mode() {
   claim(largest <= foretold.at(0).amplitude * (1 + 1e-9) && largest > 0.5 * foretold.at(0).amplitude, "stays below its resonance");
 }
 
+/// Stodola's rotor, a loss factor, modal damping, a load of the speed.
+void rotation() {
+  const double mass[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 0.3, 0}, {0, 0, 0, 0.3}};
+  const double stiffness[4][4] = {{1, 0, 0.4, 0}, {0, 1, 0, 0.4}, {0.4, 0, 0.8, 0}, {0, 0.4, 0, 0.8}};
+  const double gyroscopic[4][4] = {{0, 0, 0, 0}, {0, 0, 0, 0}, {0, 0, 0, 0.5}, {0, 0, -0.5, 0}};
+  auto rotor = Model::plain(4);
+  rotor.set_matrix(HBVIB_MASS, mass);
+  rotor.set_matrix(HBVIB_STIFFNESS, stiffness);
+  rotor.set_matrix(HBVIB_GYROSCOPIC, gyroscopic);
+  rotor.set_speed(1);
+  const auto modes = rotor.damped_modes(0, HBVIB_CONTACTS_FREE, 4);
+  claim(std::abs(modes.omega(1) - 0.917055456) < 1e-9 && modes.direction[1] == 1, "a rotor whirls forward");
+  claim(std::abs(modes.damping_ratio(0)) < 1e-12, "without damping");
+  const auto diagram = rotor.campbell(std::vector<double>{0.8, 1.0}, 0, HBVIB_CONTACTS_FREE, 4, std::vector<hbvib::Index>{1});
+  claim(diagram.crossings.size() == 1 && std::abs(diagram.crossings[0].speed - 0.9135225809938965) < 1e-12, "at one critical speed");
+  rotor.set_rayleigh(0, 0.02);
+  rotor.add_unbalance(0, 1, 0.1, 0.3);
+  rotor.set_speed_per_omega(1);
+  const double tied = rotor.forced_response({}, {0.8, 0.8}).field(HBVIB_AMPLITUDE)[0];
+  rotor.set_speed(0.8);
+  near(rotor.forced_response({}, {0.8, 0.8}).field(HBVIB_AMPLITUDE)[0], tied, 1e-12, "a speed of the frequency is that speed");
+  rotor.set_loss_factor(0.02);
+  claim(rotor.damped_modes(0, HBVIB_CONTACTS_FREE, 1).damping_ratio(0) > 0.01, "a loss factor damps");
+  rotor.set_modal_damping(std::vector<double>{0.01, 0.01});
+  const hbvib::Index contact = rotor.add_contact(hbvib::Contact::jenkins(0, HBVIB_GROUND, 1, 0.3, 1));
+  rotor.set_preload(contact, 0.5, 0.1);
+}
+
 }  // namespace
 
 int main() {
@@ -266,5 +294,6 @@ int main() {
     forces();
     alike();
     nonlinear_mode();
+    rotation();
   });
 }

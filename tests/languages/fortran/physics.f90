@@ -78,6 +78,7 @@ program physics
    call one_law_in_many_words()
    call never_slipping()
    call faces()
+   call rotation()
    call ieee_get_halting_mode(ieee_usual, traps)
    call expect('the caller''s traps are as they were', all(traps))
    call works(model%free(), 'free')
@@ -421,5 +422,44 @@ contains
       call works(model%add_iwan(1, HBVIB_GROUND, 1._dp, 2._dp, -0.5_dp, 0.1_dp, elements=20, first_id=id), 'an Iwan joint')
       call expect('an Iwan joint is as many contacts', all([id, model%contacts()] == [2, 21]))
    end subroutine one_law_in_many_words
+
+   !> Stodola's rotor, its critical speed, unbalance, and damping by numbers.
+   subroutine rotation()
+      real(dp), parameter :: o = 0, e = 1
+      complex(dp) :: eigenvalue(4), shapes(4, 4)
+      integer(c_int64_t) :: direction(4), sense(8)
+      real(dp) :: omega(4, 2), speed(8), frequency(8)
+      real(dp), pointer, contiguous :: view(:)
+      real(dp) :: tied
+      integer :: found
+      call works(model%new(4), 'a rotor')
+      call works(model%set_matrix(HBVIB_MASS, reshape([e, o, o, o, o, e, o, o, o, o, 0.3_dp, o, o, o, o, 0.3_dp], [4, 4])), 'mass')
+      call works(model%set_matrix(HBVIB_STIFFNESS, reshape([e, o, 0.4_dp, o, o, e, o, 0.4_dp, 0.4_dp, o, 0.8_dp, o, &
+                                                            o, 0.4_dp, o, 0.8_dp], [4, 4])), 'stiffness')
+      call works(model%set_matrix(HBVIB_GYROSCOPIC, reshape([o, o, o, o, o, o, o, o, o, o, o, -0.5_dp, o, o, 0.5_dp, o], &
+                                                             [4, 4])), 'gyroscopic')
+      call works(model%set_speed(e), 'a speed')
+      call works(model%damped_modes(eigenvalue, shapes, direction), 'damped modes')
+      call expect('a rotor whirls', abs(aimag(eigenvalue(2)) - 0.917055456_dp) < 1e-9_dp .and. all(direction == [-1, 1, -1, 1]))
+      call works(model%campbell([0.8_dp, 1._dp], omega), 'a Campbell diagram')
+      call expect('at the speed', abs(omega(2, 2) - 0.917055456_dp) < 1e-9_dp)
+      call works(model%campbell_crossings([0.8_dp, 1._dp], 4, 1, speed, frequency, found, sense), 'critical speeds')
+      call expect('one of them', found == 1)
+      call expect('forward', sense(1) == 1 .and. abs(speed(1) - 0.9135225809938965_dp) < 1e-12_dp)
+      call works(model%set_rayleigh(o, 0.02_dp), 'damping')
+      call works(model%add_unbalance(1, 2, 0.1_dp, phase=0.3_dp), 'unbalance')
+      call works(model%set_speed_per_omega(e), 'a speed of the frequency')
+      call works(model%forced_response(branch, 0.8_dp, 0.8_dp), 'its response')
+      call works(branch%field(HBVIB_AMPLITUDE, view), 'amplitude')
+      tied = view(1)
+      call works(model%set_speed(0.8_dp), 'that speed')
+      call works(model%forced_response(branch, 0.8_dp, 0.8_dp), 'its response')
+      call works(branch%field(HBVIB_AMPLITUDE, view), 'amplitude')
+      call expect('is the same', close(view(1), tied, 1e-12_dp))
+      call works(model%set_loss_factor(0.02_dp), 'a loss factor')
+      call works(model%set_modal_damping([0.01_dp, 0.01_dp]), 'modal damping')
+      call works(model%add_jenkins([1], [1._dp], [0.3_dp], [1._dp]), 'friction')
+      call works(model%set_preload(1, 0.5_dp, per_speed2=0.1_dp), 'a load of the speed')
+   end subroutine rotation
 
 end program physics

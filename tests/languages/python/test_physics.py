@@ -22,6 +22,47 @@ for diameter in (0, 1, 5, 12):
         [math.sqrt(0.1 + 2 - 2 * math.cos(diameter * HZ / 24))],
         1e-13,
     )
+rotor = hbvib.Model(mass=np.diag([1, 1, 0.3, 0.3]), stiffness=np.kron([[1, 0.4], [0.4, 0.8]], np.eye(2)))
+gyroscopic = np.zeros((4, 4))
+gyroscopic[2, 3], gyroscopic[3, 2] = 0.5, -0.5
+rotor.set_matrix("gyroscopic", gyroscopic)
+rotor.set_matrix("stiffness_speed2", np.zeros((4, 4)))
+rotor.set_speed(1.0)
+stodola = [0.693911507, 0.917055456, 1.246325060, 2.689847777]
+whirl = rotor.damped_modes(4)
+close("Stodola's rotor", whirl.omega, stodola, 1e-9)
+close("the same as linear modes", rotor.linear_modes(4, contacts="free").omega, stodola, 1e-9)
+check("backward and forward", list(whirl.direction) == [-1, 1, -1, 1])
+diagram = rotor.campbell([0.5, 1.0, 1.5], 4, engine_orders=[1])
+close("a row of its Campbell diagram", diagram.omega[1], stodola, 1e-9)
+close(
+    "its forward critical speed",
+    diagram.crossings.speed[diagram.crossings.direction == 1],
+    [0.9135225809938965],
+    1e-12,
+)
+rotor.set_rayleigh(0, 0.02)
+rotor.add_unbalance(0, 1, 0.1, phase=0.3)
+rotor.set_speed(per_omega=1)
+tied = rotor.forced_response(0.8).harmonics(0)
+rotor.set_speed(0.8)
+close("a speed of the frequency is that speed", rotor.forced_response(0.8).harmonics(0), tied, 1e-12)
+damped = hbvib.Model(mass=2, stiffness=50)
+damped.set_loss_factor(0.02)
+close("half the loss factor", damped.damped_modes(1).damping_ratio, [math.sin(0.5 * math.atan(0.02))], 1e-12)
+damped.set_loss_factor(0)
+damped.set_matrix("structural", [[1.0]], part="symmetric_lower")
+close("the same by a matrix", damped.damped_modes(1).damping_ratio, [math.sin(0.5 * math.atan(0.02))], 1e-12)
+damped.set_matrix("structural", [[0.0]])
+damped.set_modal_damping([0.03])
+close("a modal ratio", damped.damped_modes(1).damping_ratio, [0.03], 1e-12)
+ring_load = hbvib.Model(mass=1, stiffness=1)
+friction = ring_load.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+ring_load.add_force(0, 0.4)
+slipping = ring_load.forced_response(1.2, harmonics=5).harmonics(0)
+ring_load.set_preload(friction, 0.75, per_speed2=0.0625)
+ring_load.set_speed(2.0)
+close("a load of the speed", ring_load.forced_response(1.2, harmonics=5).harmonics(0), slipping, 1e-12)
 waves = hbvib.Model.cyclic(1, sectors=24, mass=1)
 waves.set_diameter("stiffness", 5, ring.linear_modes(1, 5).omega[0] ** 2)
 close("the same by the matrix of a diameter", waves.linear_modes(1, 5).omega, ring.linear_modes(1, 5).omega, 1e-14)

@@ -1,0 +1,185 @@
+//! Campbell diagram: damped modes over the speed of rotation, and the speeds at which engine orders meet them.
+
+use crate::analysis::damped_modes::{DampedModes, at_present_speed};
+use crate::error::{Result, fail, try_push};
+use crate::hooks::Hooks;
+use crate::interrupt::{Interrupt, Phase};
+use crate::model::Model;
+use crate::model::linear_modes::ContactState;
+use crate::model::speed::Speed;
+
+/// Relative accuracy of a crossing.
+const TOLERANCE: f64 = 1e-13;
+
+/// Largest number of steps towards a crossing.
+const MAX_STEPS: usize = 200;
+
+const CONTEXT: &str = "the Campbell diagram";
+
+/// Modes over speeds; every list has the modes of one speed after those of the other.
+#[derive(Clone, Debug, Default)]
+pub struct Campbell {
+    /// Speeds.
+    pub speeds: Vec<f64>,
+    /// Modes per speed.
+    pub count: usize,
+    /// Damped angular frequencies, rising at each speed; NaN where fewer motions oscillate.
+    pub omega: Vec<f64>,
+    /// Damping ratios.
+    pub damping_ratio: Vec<f64>,
+    /// Directions as in [`DampedModes::direction`].
+    pub direction: Vec<i64>,
+    /// Speeds at which EO·Ω is a natural frequency, by engine order, then by speed.
+    pub crossings: Vec<Crossing>,
+}
+
+/// An engine order at the frequency of a mode.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Crossing {
+    /// EO
+    pub engine_order: i64,
+    /// Ω
+    pub speed: f64,
+    /// ω = EO·Ω
+    pub omega: f64,
+    /// Direction of the mode.
+    pub direction: i64,
+}
+
+/// The `count` lowest damped modes at each of `speeds`, which rise, and the speeds between them at which one of
+/// `engine_orders` meets a mode. The speed of the model has no effect.
+///
+/// # Errors
+/// `Dimension`, `NotFinite` or `Argument` for the speeds, the count or an engine order; those of
+/// [`damped_modes`](crate::analysis::damped_modes::damped_modes); `StoppedByCaller`.
+pub fn campbell(
+    model: &Model,
+    speeds: &[f64],
+    (diameter, contacts, count): (usize, ContactState, usize),
+    engine_orders: &[i64],
+    hooks: &mut Hooks<'_>,
+) -> Result<Campbell> {
+    check(speeds, engine_orders)?;
+    let interrupt = hooks.interrupt();
+    let mut rotating = model.try_clone()?;
+    let mut at = |speed: f64| {
+        rotating.set_speed(Speed::Fixed(speed))?;
+        at_present_speed(&rotating, diameter, contacts, count, &interrupt)
+    };
+    let mut found = Campbell {
+        count,
+        ..Campbell::default()
+    };
+    for (i, &speed) in speeds.iter().enumerate() {
+        interrupt.part(Phase::Modes, i, speeds.len())?;
+        let modes = at(speed)?;
+        try_push(&mut found.speeds, speed, CONTEXT)?;
+        for k in 0..count {
+            let known = k < modes.count();
+            let omega = if known { modes.omega(k) } else { f64::NAN };
+            let ratio = if known { modes.damping_ratio(k) } else { f64::NAN };
+            try_push(&mut found.omega, omega, CONTEXT)?;
+            try_push(&mut found.damping_ratio, ratio, CONTEXT)?;
+            try_push(
+                &mut found.direction,
+                modes.direction.get(k).copied().unwrap_or(0),
+                CONTEXT,
+            )?;
+        }
+    }
+    for &engine_order in engine_orders {
+        let order = engine_order as f64;
+        let first = found.crossings.len();
+        for i in 1..speeds.len() {
+            for k in 0..count {
+                let gap = |i: usize| (speeds[i], found.omega[i * count + k] - order * speeds[i]);
+                let (low, high) = (gap(i - 1), gap(i));
+                // A crossing at a speed itself belongs to the interval that it ends.
+                let is_first = i == 1 && low.1 == 0.0;
+                let meets = low.1 * high.1 < 0.0 || (high.1 == 0.0 && low.1 != 0.0);
+                if !(is_first || meets) {
+                    continue;
+                }
+                interrupt.check()?;
+                let Some((speed, modes)) = meet(&mut at, k, order, (low, high), &interrupt)? else {
+                    continue;
+                };
+                let crossing = Crossing {
+                    engine_order,
+                    speed,
+                    omega: modes.omega(k),
+                    direction: modes.direction[k],
+                };
+                try_push(&mut found.crossings, crossing, CONTEXT)?;
+            }
+        }
+        found.crossings[first..].sort_by(|a, b| a.speed.total_cmp(&b.speed));
+    }
+    Ok(found)
+}
+
+fn check(speeds: &[f64], engine_orders: &[i64]) -> Result<()> {
+    if speeds.is_empty() {
+        return fail!(Dimension, "no speeds are given, needs at least 1");
+    }
+    for (i, speed) in speeds.iter().enumerate() {
+        if !speed.is_finite() {
+            return fail!(NotFinite, "speeds[{i}] = {speed}, needs a finite number");
+        }
+        if i > 0 && *speed <= speeds[i - 1] {
+            return fail!(
+                Argument,
+                "speeds[{i}] = {speed}, needs more than speeds[{}] = {}",
+                i - 1,
+                speeds[i - 1]
+            );
+        }
+    }
+    if let Some(i) = engine_orders.iter().position(|&order| order < 1) {
+        return fail!(Argument, "engine_orders[{i}] = {}, needs at least 1", engine_orders[i]);
+    }
+    Ok(())
+}
+
+/// The speed between two at which mode k has the frequency EO·Ω, by the Illinois variant of regula falsi, and the
+/// modes there; `None` where the mode is lost.
+fn meet(
+    at: &mut impl FnMut(f64) -> Result<DampedModes>,
+    k: usize,
+    order: f64,
+    (mut a, mut b): ((f64, f64), (f64, f64)),
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<(f64, DampedModes)>> {
+    if a.1 == 0.0 || b.1 == 0.0 {
+        let speed = if a.1 == 0.0 { a.0 } else { b.0 };
+        return Ok(Some((speed, at(speed)?)));
+    }
+    let mut side = 0;
+    let mut best = None;
+    for _ in 0..MAX_STEPS {
+        interrupt.check()?;
+        let speed = (a.0 * b.1 - b.0 * a.1) / (b.1 - a.1);
+        let modes = at(speed)?;
+        if k >= modes.count() {
+            return Ok(None);
+        }
+        let gap = modes.omega(k) - order * speed;
+        let done = gap.abs() <= TOLERANCE * modes.omega(k) || (b.0 - a.0).abs() <= TOLERANCE * speed.abs();
+        best = Some((speed, modes));
+        if done {
+            break;
+        }
+        let same_as_a = gap * a.1 > 0.0;
+        let (moved, other, this) = if same_as_a {
+            (&mut a, &mut b, -1)
+        } else {
+            (&mut b, &mut a, 1)
+        };
+        *moved = (speed, gap);
+        if side == this {
+            other.1 *= 0.5;
+        }
+        side = this;
+    }
+    Ok(best)
+}

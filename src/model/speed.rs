@@ -1,0 +1,76 @@
+//! The speed of rotation Ω, fixed or tied to the frequency of the response, and normal loads N₀ + cΩ².
+
+use crate::contact::Contact;
+
+/// Speed of rotation Ω in rad per time unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Speed {
+    /// Ω
+    Fixed(f64),
+    /// Ω = pω with the angular frequency ω of the response: p = 1/EO for an excitation of engine order EO.
+    PerOmega(f64),
+}
+
+impl Speed {
+    /// Ω at the angular frequency ω of the response.
+    #[must_use]
+    pub fn at(self, omega: f64) -> f64 {
+        match self {
+            Self::Fixed(speed) => speed,
+            Self::PerOmega(p) => p * omega,
+        }
+    }
+}
+
+/// A normal load that depends on the speed: N₀ + cΩ².
+#[derive(Clone, Copy, Debug)]
+pub struct SpeedLoad {
+    /// Number of the contact.
+    pub contact: usize,
+    /// N₀
+    pub preload: f64,
+    /// Gap of the contact as the caller gave it.
+    pub gap: f64,
+    /// c
+    pub per_speed2: f64,
+}
+
+impl SpeedLoad {
+    /// The contact under the load at a speed. A negative load opens a gap, or leaves friction under a constant load
+    /// without force.
+    #[must_use]
+    pub fn at(&self, contact: &Contact, speed: f64) -> Contact {
+        self.under(contact, self.preload + self.per_speed2 * speed * speed)
+    }
+
+    fn under(&self, contact: &Contact, load: f64) -> Contact {
+        let opening = if load < 0.0 && contact.kn > 0.0 {
+            -load / contact.kn
+        } else {
+            0.0
+        };
+        Contact {
+            preload: load.max(0.0),
+            gap: self.gap + opening,
+            ..contact.clone()
+        }
+    }
+
+    /// n₀ of a load n₀ + c Ω² with the gap counted in.
+    #[must_use]
+    pub fn load_at_rest(&self, contact: &Contact) -> f64 {
+        self.preload - contact.kn * self.gap
+    }
+
+    /// A load that stands for all speeds Ω = pω: |n₀| + |c|p², above zero.
+    #[must_use]
+    pub fn reference(&self, contact: &Contact, p: f64) -> f64 {
+        self.load_at_rest(contact).abs() + (self.per_speed2 * p * p).abs()
+    }
+
+    /// The contact under ± this load, without any other gap.
+    #[must_use]
+    pub fn referred(&self, contact: &Contact, load: f64) -> Contact {
+        Self { gap: 0.0, ..*self }.under(contact, load)
+    }
+}

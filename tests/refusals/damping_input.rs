@@ -1,0 +1,239 @@
+//! Damping that is refused: triangles of complex symmetric matrices, factors out of range, modal damping without
+//! modes, and structural damping in time.
+
+use crate::common::refusal::refused;
+use crate::common::{BASE, harmonics, solve_at};
+use hbvib::analysis::time_response::time_response;
+use hbvib::analysis::verify;
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::model::Model;
+use hbvib::model::rotation::Speed;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{TimeOptions, VerifyOptions};
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+
+fn complex(k: [f64; 4]) -> [Complex64; 4] {
+    k.map(|k| k * Complex64::new(1.0, 0.05))
+}
+
+#[test]
+fn a_triangle_of_a_complex_symmetric_matrix_is_no_hermitian_one() {
+    let k = complex([2.0, -1.0, -1.0, 2.0]);
+    let mut model = Model::new(2).unwrap();
+    for (part, words) in [
+        (
+            Part::Lower,
+            ["stiffness[0,0] has the imaginary part 1.000e-1", "SYMMETRIC_LOWER"],
+        ),
+        (
+            Part::Upper,
+            ["stiffness[0,0] has the imaginary part 1.000e-1", "SYMMETRIC_UPPER"],
+        ),
+        (Part::Full, ["differ by", "say SYMMETRIC if that is meant"]),
+    ] {
+        let view = MatrixView::dense_complex(2, &k).part(part);
+        refused(
+            model.set_matrix(MatrixKind::Stiffness, &view),
+            Status::NotHermitian,
+            &words,
+        );
+    }
+    let hermitian = [
+        2.0.into(),
+        Complex64::new(-1.0, 0.3),
+        Complex64::new(-1.0, -0.3),
+        2.0.into(),
+    ];
+    let view = MatrixView::dense_complex(2, &hermitian).part(Part::Symmetric);
+    refused(
+        model.set_matrix(MatrixKind::Stiffness, &view),
+        Status::NotHermitian,
+        &["stiffness[", "differ by", "GENERAL"],
+    );
+    let one = complex([2.0, -1.0, 0.0, 2.0]);
+    let view = MatrixView::dense_complex(2, &one).part(Part::Symmetric);
+    refused(
+        model.set_matrix(MatrixKind::Stiffness, &view),
+        Status::NotHermitian,
+        &["SYMMETRIC_LOWER or SYMMETRIC_UPPER"],
+    );
+    let view = MatrixView::dense_complex(2, &k).part(Part::Symmetric);
+    refused(
+        model.set_matrix(MatrixKind::Mass, &view),
+        Status::NotHermitian,
+        &["mass must be real symmetric or Hermitian"],
+    );
+    // Rounding on the diagonal of a Hermitian triangle is none of this.
+    let mut rounded = hermitian;
+    rounded[3].im = 1e-16;
+    let view = MatrixView::dense_complex(2, &rounded).part(Part::Lower);
+    model.set_matrix(MatrixKind::Stiffness, &view).unwrap();
+}
+
+#[test]
+fn numbers_of_damping_out_of_range_are_refused() {
+    let mut model = BASE.sector();
+    refused(
+        model.set_loss_factor(-0.1),
+        Status::Argument,
+        &["loss_factor = -0.1", ">= 0"],
+    );
+    refused(
+        model.set_loss_factor(f64::NAN),
+        Status::NotFinite,
+        &["loss_factor = NaN"],
+    );
+    refused(
+        model.set_modal_damping(&[0.01, -0.02]),
+        Status::Argument,
+        &["ratios[1] = -0.02", ">= 0"],
+    );
+    refused(
+        model.set_modal_damping(&[0.01, f64::INFINITY]),
+        Status::NotFinite,
+        &["ratios[1] = inf"],
+    );
+    refused(
+        model.set_modal_damping(&[0.01; 5]),
+        Status::Argument,
+        &["ratios[4] = 0.01", "has 4"],
+    );
+    model.set_modal_damping(&[0.01]).unwrap();
+    let mass = [1.0; 16];
+    for which in [MatrixKind::Mass, MatrixKind::Stiffness] {
+        refused(
+            model.set_matrix(which, &MatrixView::dense(4, &mass)),
+            Status::Argument,
+            &["modal damping", "set it last"],
+        );
+    }
+    refused(model.fix(&[0]), Status::Argument, &["modal damping", "set it last"]);
+    let mut large = Model::new(2001).unwrap();
+    refused(
+        large.set_modal_damping(&[0.01]),
+        Status::Unsupported,
+        &["2001", "at most 2000", "Rayleigh"],
+    );
+}
+
+#[test]
+fn structural_damping_is_refused_in_time_with_its_viscous_equivalent() {
+    let omega = TAU * 208.85;
+    for matrix in [false, true] {
+        let mut model = BASE.sector();
+        let words: &[&str] = if matrix {
+            let d = [
+                1e3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+            ];
+            model
+                .set_matrix(MatrixKind::Structural, &MatrixView::dense(4, &d))
+                .unwrap();
+            &["no causal law", "viscous equivalent", "D/1312"]
+        } else {
+            model.set_loss_factor(0.01).unwrap();
+            &["no causal law", "viscous equivalent", "beta_stiffness = 7.62"]
+        };
+        let options = TimeOptions {
+            omega,
+            ..TimeOptions::default()
+        };
+        refused(
+            time_response(&model, &options, &mut Hooks::default()),
+            Status::Unsupported,
+            words,
+        );
+        let branch = solve_at(&model, &harmonics(3), omega);
+        refused(
+            verify::verify(&model, &branch, 0, &VerifyOptions::default(), &mut Hooks::default()),
+            Status::Unsupported,
+            words,
+        );
+    }
+}
+
+#[test]
+fn a_rotation_out_of_range_is_refused_by_name() {
+    let mut model = BASE.sector();
+    let symmetric = [
+        0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
+    ];
+    for (part, words) in [
+        (Part::Full, ["gyroscopic must be skew-symmetric", "2.000e0"]),
+        (Part::General, ["gyroscopic must be skew-symmetric", "2.000e0"]),
+        (
+            Part::Symmetric,
+            ["gyroscopic must be skew-symmetric", "passed as SYMMETRIC"],
+        ),
+    ] {
+        let view = MatrixView::dense(4, &symmetric).part(part);
+        refused(
+            model.set_matrix(MatrixKind::Gyroscopic, &view),
+            Status::NotHermitian,
+            &words,
+        );
+    }
+    // One triangle of a skew-symmetric matrix is enough.
+    let view = MatrixView::dense(4, &symmetric).part(Part::Lower);
+    model.set_matrix(MatrixKind::Gyroscopic, &view).unwrap();
+    let previous = MatrixView::dense(4, &symmetric);
+    refused(
+        model.set_coupling_previous(MatrixKind::Gyroscopic, &previous),
+        Status::Unsupported,
+        &["gyroscopic has a symmetry"],
+    );
+    refused(
+        model.set_speed(Speed::Fixed(f64::NAN)),
+        Status::NotFinite,
+        &["speed = NaN"],
+    );
+    refused(
+        model.set_speed(Speed::PerOmega(f64::INFINITY)),
+        Status::NotFinite,
+        &["per_omega = inf"],
+    );
+    refused(
+        model.set_preload_at_speed(0, 1.0, f64::NAN),
+        Status::NotFinite,
+        &["per_speed2 = NaN"],
+    );
+    refused(
+        model.set_preload_at_speed(0, -1.0, 1.0),
+        Status::Argument,
+        &["preload = -1", ">= 0"],
+    );
+    refused(
+        model.set_preload_at_speed(0, f64::INFINITY, 1.0),
+        Status::Argument,
+        &["preload = inf", "finite"],
+    );
+    refused(
+        model.set_preload_at_speed(7, 1.0, 1.0),
+        Status::Index,
+        &["id = 7", "1 contacts"],
+    );
+    model.set_preload_at_speed(0, 1.0, -1.0).unwrap();
+    refused(
+        model.set_speed(Speed::PerOmega(0.5)),
+        Status::Argument,
+        &["per_speed2 = -1 of contact 0", ">= 0"],
+    );
+    model.set_preload(0, 1.0).unwrap();
+    model.set_speed(Speed::PerOmega(0.5)).unwrap();
+    refused(
+        model.set_preload_at_speed(0, 1.0, -1.0),
+        Status::Argument,
+        &["per_speed2 = -1", ">= 0"],
+    );
+    for (x, y, m_e, phase, status, words) in [
+        (4, 1, 1.0, 0.0, Status::Index, ["dof_x = 4", "0 .. 3"]),
+        (0, 9, 1.0, 0.0, Status::Index, ["dof_y = 9", "0 .. 3"]),
+        (1, 1, 1.0, 0.0, Status::Argument, ["both 1", "different"]),
+        (0, 1, f64::NAN, 0.0, Status::NotFinite, ["m_e = NaN", "finite"]),
+        (0, 1, 1.0, f64::INFINITY, Status::NotFinite, ["phase = inf", "finite"]),
+    ] {
+        refused(model.add_unbalance(x, y, m_e, phase), status, &words);
+    }
+}
