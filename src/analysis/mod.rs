@@ -10,6 +10,7 @@ pub mod nonlinear_mode;
 pub mod point_error;
 mod residual_numbering;
 mod sampling;
+mod static_solution;
 pub mod synthesis;
 pub mod time_response;
 mod unbounded_response;

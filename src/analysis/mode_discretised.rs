@@ -112,7 +112,7 @@ impl<'a> ModeDiscretised<'a> {
         let (omega, damping) = Epmc::frequency_and_damping(self.start.linear, point.unknowns());
         let solved = Solved {
             condensed,
-            motion: &equations.motion,
+            motion: &equations.vibration,
             omega,
             response: equations.response[condensed.set().fundamental()] * condensed.length(),
             sticks: Some(equations.problem.forces().all_stuck()),

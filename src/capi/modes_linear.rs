@@ -105,7 +105,7 @@ pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
     })
 }
 
-fn contact_state(value: i32) -> Result<ContactState> {
+fn contact_state(value: i32) -> Result<ContactState<'static>> {
     const FREE: i32 = hbvib_contact_state::HBVIB_CONTACTS_FREE as i32;
     const STUCK: i32 = hbvib_contact_state::HBVIB_CONTACTS_STUCK as i32;
     match value {

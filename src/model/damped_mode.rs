@@ -68,16 +68,17 @@ impl Model {
     /// artificial damping of the stiffness type does not act on the mode; `Dimension` for a shape
     /// of another length; `OutOfMemory`.
     pub fn damped_mode(&self, start: &SelectedMode, form: DampingForm) -> Result<DampedMode> {
-        self.damped_mode_with(start, form, &Interrupt::none())
+        self.damped_mode_with(start, ContactState::Stuck, form, &Interrupt::none())
     }
 
-    /// The same as [`Self::damped_mode`], and the caller may stop it.
+    /// The same as [`Self::damped_mode`] with contacts stuck or about a static state, and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::damped_mode`]; `StoppedByCaller`.
     pub fn damped_mode_with(
         &self,
         start: &SelectedMode,
+        contacts: ContactState<'_>,
         form: DampingForm,
         interrupt: &Interrupt<'_>,
     ) -> Result<DampedMode> {
@@ -93,7 +94,7 @@ impl Model {
         let structure = self.structure();
         let problem = Damped {
             form,
-            stiffness: self.stiffness_at_small_motion(Wave::Harmonic(1), ContactState::Stuck)?,
+            stiffness: self.stiffness_at_small_motion(Wave::Harmonic(1), contacts)?,
             own: structure.wave_matrix(MatrixKind::Stiffness, 1)?,
             damping: structure.wave_matrix(MatrixKind::Damping, 1)?,
             mass: structure.wave_matrix(MatrixKind::Mass, 1)?,

@@ -20,6 +20,7 @@ pub mod sector_motion;
 pub mod slip_capacity;
 pub mod spring;
 pub mod spring_stiffness;
+pub mod static_tangents;
 pub mod structure;
 
 pub use mechanical_model::Model;

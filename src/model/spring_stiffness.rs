@@ -23,6 +23,20 @@ impl Model {
     /// # Errors
     /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
     pub fn sprung_stiffness<'c>(&self, wave: Wave, stuck: impl Iterator<Item = &'c Contact>) -> Result<Csc> {
+        self.stiffness_with(wave, stuck.map(|c| (c, c)), |c, k, l| c.stiffness_at_small_motion(k, l))
+    }
+
+    /// The same with the stiffness of contacts between the motions of their directions k and l as given, for
+    /// whatever names a contact.
+    ///
+    /// # Errors
+    /// As [`Self::sprung_stiffness`].
+    pub(super) fn stiffness_with<'c, T: Copy>(
+        &self,
+        wave: Wave,
+        contacts: impl Iterator<Item = (T, &'c Contact)>,
+        stiffness: impl Fn(T, usize, usize) -> f64,
+    ) -> Result<Csc> {
         let structure = self.structure();
         let n = structure.ndof();
         let own = match wave {
@@ -45,11 +59,11 @@ impl Model {
             let row = structure.row(&structure.spring_motion(s), wave);
             add(&row, &row, s.stiffness)?;
         }
-        for c in stuck {
+        for (name, c) in contacts {
             let row = |k| structure.row(&structure.contact_motion(c, k), wave);
             for k in 0..c.directions() {
                 for l in 0..c.directions() {
-                    add(&row(k), &row(l), c.stiffness_at_small_motion(k, l))?;
+                    add(&row(k), &row(l), stiffness(name, k, l))?;
                 }
             }
         }

@@ -22,6 +22,9 @@ pub struct ContactForces<'a> {
     other: Option<Evaluator>,
     /// s, where every law is scaled to s·f(y/s).
     factor: f64,
+    /// Static motion per coordinate and packed static forces from which motions and forces count; empty: zero.
+    rest: Vec<f64>,
+    rest_force: Vec<f64>,
     /// y/s of all coordinates, and of those of one law.
     scaled: Vec<f64>,
     gathered: Vec<f64>,
@@ -92,6 +95,8 @@ impl<'a> ContactForces<'a> {
             evaluator,
             other: None,
             factor: 1.0,
+            rest: Vec::new(),
+            rest_force: Vec::new(),
             scaled: try_vec(size, 0.0, CONTEXT)?,
             gathered: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
             checked: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
@@ -122,6 +127,22 @@ impl<'a> ContactForces<'a> {
         self.factor = factor;
     }
 
+    /// Counts motions and forces from a static motion `rest` per coordinate, in the unit of the condensed model, whose
+    /// laws are evaluated at `omega`: a law f becomes s·(f(rest + y/s) − f(rest)).
+    ///
+    /// # Errors
+    /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
+    pub fn set_rest(&mut self, rest: Vec<f64>, omega: f64) -> Result<()> {
+        const CONTEXT: &str = "the static state";
+        let still = try_vec(self.force.len(), 0.0, CONTEXT)?;
+        self.rest_force = try_vec(self.force.len(), 0.0, CONTEXT)?;
+        self.rest = rest;
+        self.set_scale(1.0);
+        self.evaluate(&still, omega)?;
+        self.rest_force.copy_from_slice(&self.force);
+        Ok(())
+    }
+
     /// Evaluates all laws at packed motions, coordinate after coordinate, and an angular frequency.
     ///
     /// # Errors
@@ -143,6 +164,9 @@ impl<'a> ContactForces<'a> {
         let unit = if s.is_infinite() { 0.0 } else { s };
         for (scaled, y) in self.scaled.iter_mut().zip(motion) {
             *scaled = y / s;
+        }
+        for (scaled, rest) in self.scaled.iter_mut().step_by(m).zip(&self.rest) {
+            *scaled += rest;
         }
         let mut blocks = 0;
         let mut prepared = usize::MAX;
@@ -187,10 +211,30 @@ impl<'a> ContactForces<'a> {
                 add(&mut self.by_omega[here], &found.by_omega[law], unit);
             }
         }
+        if !self.rest.is_empty() {
+            self.count_from_rest(unit);
+        }
         if s.is_infinite() {
             self.linearise(motion);
         }
         Ok(())
+    }
+
+    /// Subtracts the static forces: with F and J at Y the derivative by ln s of s·(F − F₀) is
+    /// s·(F − J Y) + s·(J Y₀ − F₀).
+    fn count_from_rest(&mut self, unit: f64) {
+        let m = self.condensed.set().packed_len();
+        for (c, rest) in self.rest.iter().enumerate() {
+            let here = c * m..(c + 1) * m;
+            let of_rest = &self.rest_force[here.clone()];
+            add(&mut self.force[here.clone()], of_rest, -unit);
+            add(&mut self.offset[here.clone()], of_rest, -unit);
+            for (by, block) in self.jacobians.of_force(c) {
+                add(&mut self.offset[here.clone()], &block[..m], unit * self.rest[by]);
+            }
+            let size = norm(of_rest) + self.condensed.stiffness(c) * rest.abs();
+            self.rounding[c] += f64::EPSILON * unit * size;
+        }
     }
 
     /// The forces of the laws at rest, linear in the motion.
@@ -235,8 +279,9 @@ impl<'a> ContactForces<'a> {
         self.part(&self.force, coordinate, i) - self.condensed.kappa(coordinate, i) * y
     }
 
-    /// Rounding of the force of a coordinate if its contacts are near-rigid, otherwise 0. In a stick phase the force
-    /// is kt times a difference of motions that are known to their own rounding.
+    /// Rounding of the force of a coordinate if its contacts are near-rigid, or if it counts from a static one,
+    /// otherwise 0. In a stick phase the force is kt times a difference of motions that are known to their own
+    /// rounding.
     #[must_use]
     pub fn rounding(&self, coordinate: usize) -> f64 {
         self.rounding[coordinate]

@@ -20,11 +20,13 @@ use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness};
 use crate::contact::laws::friction_3d_step::{NO_LOAD, step};
 use crate::contact::laws::friction_3d_stuck::{Disc, stuck_slider};
 use crate::contact::linearisation::Range;
+use crate::contact::onset::{Onset, slip_in_plane};
 use crate::contact::march::{March, Sticking, StuckState};
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::contact::samples::automatic_samples;
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
+use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Friction in a plane of the caller.
@@ -206,6 +208,22 @@ impl Law for Friction3d {
             [x1, x2] => self.kt * f64::hypot(x1.size(), x2.size()) / (self.mu * self.load),
             ranges => self.kn * (ranges[2].half - ranges[2].mean).max(0.0) / -self.load,
         }
+    }
+
+    fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
+        let load = self.pressure(rest);
+        let (closing, of_limit) = if self.has_normal && self.kn > 0.0 {
+            let closing = Onset::of_closing(load / self.kn, motion[2]);
+            (closing, self.mu * self.kn * motion[2])
+        } else {
+            (Onset::NEVER, Complex64::ZERO)
+        };
+        if load < 0.0 || !self.sticks() {
+            return closing;
+        }
+        let force = [self.kt * rest[0], self.kt * rest[1]];
+        let vibrating = [self.kt * motion[0], self.kt * motion[1]];
+        closing.with_slip(slip_in_plane(force, self.mu * load, vibrating, of_limit))
     }
 }
 
