@@ -23,6 +23,18 @@ impl StaticTangents {
         Ok(Self { of_contacts })
     }
 
+    /// A copy, allocated fallibly.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
+        let mut copy = Self::new(self.of_contacts.len())?;
+        for (contact, tangent) in self.of_contacts.iter().enumerate() {
+            copy.set(contact, tangent)?;
+        }
+        Ok(copy)
+    }
+
     /// Sets the tangent of a contact, row-major.
     ///
     /// # Errors

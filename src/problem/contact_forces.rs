@@ -6,11 +6,12 @@ mod ranges;
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::Condensed;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::contact_jacobian::Blocks;
+use crate::problem::static_state::StaticState;
 use num_complex::Complex64;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
@@ -25,6 +26,10 @@ pub struct ContactForces<'a> {
     /// Static motion per coordinate and packed static forces from which motions and forces count; empty: zero.
     rest: Vec<f64>,
     rest_force: Vec<f64>,
+    /// Tangent stiffness of the laws at the static motion, law after law and row-major.
+    tangents: Vec<f64>,
+    /// Share of the laws; the rest of the force is that of the tangents.
+    share: Option<f64>,
     /// y/s of all coordinates, and of those of one law.
     scaled: Vec<f64>,
     gathered: Vec<f64>,
@@ -97,6 +102,8 @@ impl<'a> ContactForces<'a> {
             factor: 1.0,
             rest: Vec::new(),
             rest_force: Vec::new(),
+            tangents: Vec::new(),
+            share: None,
             scaled: try_vec(size, 0.0, CONTEXT)?,
             gathered: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
             checked: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
@@ -127,20 +134,33 @@ impl<'a> ContactForces<'a> {
         self.factor = factor;
     }
 
-    /// Counts motions and forces from a static motion `rest` per coordinate, in the unit of the condensed model, whose
-    /// laws are evaluated at `omega`: a law f becomes s·(f(rest + y/s) − f(rest)).
+    /// Counts motions and forces from a static motion, in the unit of the condensed model, whose laws are evaluated at
+    /// `omega`: a law f becomes s·(f(y₀ + y/s) − f(y₀)).
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
-    pub fn set_rest(&mut self, rest: Vec<f64>, omega: f64) -> Result<()> {
+    pub fn set_rest(&mut self, state: &StaticState, omega: f64) -> Result<()> {
         const CONTEXT: &str = "the static state";
         let still = try_vec(self.force.len(), 0.0, CONTEXT)?;
         self.rest_force = try_vec(self.force.len(), 0.0, CONTEXT)?;
-        self.rest = rest;
+        self.rest = try_copy(&state.motion, CONTEXT)?;
+        for assembled in self.condensed.laws() {
+            let d = assembled.law.directions();
+            for k in 0..d * d {
+                let stiffness = state.tangents.stiffness(assembled.contact, k / d, k % d);
+                try_push(&mut self.tangents, stiffness.unwrap_or(0.0), CONTEXT)?;
+            }
+        }
         self.set_scale(1.0);
         self.evaluate(&still, omega)?;
         self.rest_force.copy_from_slice(&self.force);
         Ok(())
+    }
+
+    /// Replaces all laws f by α f + (1 − α) T y with their tangents T at the static motion, `share` = α; `None`: the
+    /// laws themselves. [`Self::d_ln_scale`] is then the derivative by α.
+    pub fn set_share(&mut self, share: Option<f64>) {
+        self.share = share;
     }
 
     /// Evaluates all laws at packed motions, coordinate after coordinate, and an angular frequency.
@@ -214,6 +234,9 @@ impl<'a> ContactForces<'a> {
         if !self.rest.is_empty() {
             self.count_from_rest(unit);
         }
+        if let Some(share) = self.share {
+            self.mix_with_tangents(share, motion);
+        }
         if s.is_infinite() {
             self.linearise(motion);
         }
@@ -234,6 +257,32 @@ impl<'a> ContactForces<'a> {
             }
             let size = norm(of_rest) + self.condensed.stiffness(c) * rest.abs();
             self.rounding[c] += f64::EPSILON * unit * size;
+        }
+    }
+
+    fn mix_with_tangents(&mut self, share: f64, motion: &[f64]) {
+        let m = self.condensed.set().packed_len();
+        self.jacobians.scale(share);
+        for x in &mut self.by_omega {
+            *x *= share;
+        }
+        self.offset.copy_from_slice(&self.force);
+        for x in &mut self.force {
+            *x *= share;
+        }
+        let mut tangents = self.tangents.as_slice();
+        let mut blocks = 0;
+        for assembled in self.condensed.laws() {
+            let at = &assembled.coordinates;
+            let (own, others) = tangents.split_at(at.len() * at.len());
+            tangents = others;
+            blocks = self.jacobians.add_springs(blocks, at.len(), |k| (1.0 - share) * own[k]);
+            for (k, &stiffness) in own.iter().enumerate() {
+                let (force, by) = (at[k / at.len()], at[k % at.len()]);
+                let (here, y) = (force * m..(force + 1) * m, &motion[by * m..(by + 1) * m]);
+                add(&mut self.force[here.clone()], y, (1.0 - share) * stiffness);
+                add(&mut self.offset[here], y, -stiffness);
+            }
         }
     }
 

@@ -114,7 +114,7 @@ impl<'a> Epmc<'a> {
         let mut forces = ContactForces::new(condensed, samples, interrupt)?;
         if linear.rest.is_loaded() {
             let rest = linear.rest.in_units(condensed.length())?;
-            forces.set_rest(rest.motion, linear.omega)?;
+            forces.set_rest(&rest, linear.omega)?;
         }
         Ok(Self {
             condensed,
@@ -420,9 +420,16 @@ impl Jacobian for Epmc<'_> {
 }
 
 impl AlongPath for Epmc<'_> {
-    /// The fixed parameter is log₁₀ a; along the path s = e^p/a.
-    fn evaluate_along(&mut self, _path: Path, log10: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        self.evaluate_scaled(u, 10f64.powf(-log10) * p.exp(), 1.0, out)
+    /// The fixed parameter is log₁₀ a; along the path of scaled laws s = e^p/a.
+    fn evaluate_along(&mut self, path: Path, log10: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
+        let unit = 10f64.powf(-log10);
+        if path == Path::FromTangents {
+            self.forces.set_share(Some(p));
+            let evaluated = self.evaluate_scaled(u, unit, 1.0, out);
+            self.forces.set_share(None);
+            return evaluated;
+        }
+        self.evaluate_scaled(u, unit * p.exp(), 1.0, out)
     }
 
     fn observe_along(&self, _path: Path, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
@@ -452,10 +459,13 @@ impl Problem for Epmc<'_> {
     fn homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<Homotopy<'_>>> {
         if self.linear.rest.is_loaded() {
             let start = LN_10 * (p - self.linear_about_static(p)?.1);
-            if !(start > 0.0 && start.is_finite()) {
-                return Ok(None);
-            }
-            return Ok(Some(PathHomotopy::between((start, 0.0), self, Path::ScaledLaws, p)));
+            // A contact that only touches at rest is linear at no amplitude.
+            let (ends, path) = if start > 0.0 && start.is_finite() {
+                ((start, 0.0), Path::ScaledLaws)
+            } else {
+                ((0.0, 1.0), Path::FromTangents)
+            };
+            return Ok(Some(PathHomotopy::between(ends, self, path, p)));
         }
         let mut factor = self.forces.linearisation_scale(&u[..u.len() - 2], self.linear.omega)?;
         if self.forces.have_known_linear_range() {

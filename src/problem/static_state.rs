@@ -21,7 +21,7 @@ impl StaticState {
         !self.structure.is_empty()
     }
 
-    /// The motions in another unit of lengths, without the tangents.
+    /// The same in another unit of lengths.
     ///
     /// # Errors
     /// `OutOfMemory`.
@@ -36,7 +36,7 @@ impl StaticState {
         Ok(Self {
             motion: scaled(&self.motion)?,
             structure: scaled(&self.structure)?,
-            tangents: StaticTangents::default(),
+            tangents: self.tangents.try_clone()?,
         })
     }
 }
