@@ -6,6 +6,7 @@ pub mod forced_response;
 pub mod harmonic_residual;
 mod mode_discretised;
 mod mode_equations;
+mod mode_onset;
 pub mod nonlinear_mode;
 pub mod point_error;
 mod residual_numbering;

@@ -93,6 +93,8 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
         engine_order: model.structure().engine_order(),
         amplitude: range.amplitude,
         linear_up_to: f64::NEG_INFINITY,
+        slip_from: f64::INFINITY,
+        lift_off_from: f64::INFINITY,
         stuck: Vec::new(),
         free: Vec::new(),
     };
@@ -195,6 +197,8 @@ fn on_wave(
             engine_order: model.structure().engine_order(),
             amplitude: range.amplitude,
             linear_up_to,
+            slip_from: f64::INFINITY,
+            lift_off_from: f64::INFINITY,
             stuck: chosen.stuck,
             free: chosen.free,
         },

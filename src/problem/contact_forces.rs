@@ -51,6 +51,9 @@ pub struct ContactForces<'a> {
     /// Per coordinate, whether all its laws stick and none acts along its normal, where a load acts at rest.
     inactive: Vec<bool>,
     slip_fractions: Vec<f64>,
+    open_fractions: Vec<f64>,
+    /// Per law whether it presses at the static motion.
+    presses: Vec<bool>,
     /// Per coordinate, the rounding of the force of near-rigid contacts.
     rounding: Vec<f64>,
 }
@@ -117,6 +120,8 @@ impl<'a> ContactForces<'a> {
             linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
             inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
             slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
+            open_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
+            presses: Vec::new(),
             rounding: try_vec(condensed.coordinates(), 0.0, CONTEXT)?,
         })
     }
@@ -154,6 +159,9 @@ impl<'a> ContactForces<'a> {
         self.set_scale(1.0);
         self.evaluate(&still, omega)?;
         self.rest_force.copy_from_slice(&self.force);
+        for open in &self.open_fractions {
+            try_push(&mut self.presses, *open == 0.0, CONTEXT)?;
+        }
         Ok(())
     }
 
@@ -205,6 +213,7 @@ impl<'a> ContactForces<'a> {
                 .evaluate(&*assembled.law, set, y, omega, found, self.interrupt)
                 .map_err(|e| e.at(format_args!("contact {}", assembled.contact)))?;
             self.slip_fractions[k] = found.slip_fraction;
+            self.open_fractions[k] = found.open_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
             let closed = 1.0 - found.open_fraction;
@@ -305,6 +314,12 @@ impl<'a> ContactForces<'a> {
     #[must_use]
     pub fn slip_fractions(&self) -> &[f64] {
         &self.slip_fractions
+    }
+
+    /// Share of the period that each law is open which presses at the static motion.
+    pub fn lifted_shares(&self) -> impl Iterator<Item = f64> {
+        let laws = self.open_fractions.iter().zip(&self.presses);
+        laws.filter(|(_, presses)| **presses).map(|(open, _)| *open)
     }
 
     /// Whether every law sticks, or is open, at the motion evaluated last.
