@@ -238,9 +238,9 @@ module hbvib
 
    !> Start of a nonlinear mode.
    type, bind(c) :: hbvib_mode_info
-      integer(c_int32_t) :: struct_size = 64, multiple = 0
+      integer(c_int32_t) :: struct_size = 80, multiple = 0
       integer(c_int64_t) :: mode_index = 0, multiplicity = 0, reference_dof = 0, engine_order = 0, amplitude_contact = -1
-      real(c_double) :: omega = 0, linear_up_to = 0
+      real(c_double) :: omega = 0, linear_up_to = 0, slip_from = 0, lift_off_from = 0
    end type hbvib_mode_info
 
    !> Options of a synthesised response.

@@ -1939,9 +1939,15 @@ typedef struct {
   int64_t amplitude_contact;
   /// Angular frequency of the linear mode without damping.
   double omega;
-  /// log10 of the largest amplitude at which all contacts stick; minus infinity where a law is
-  /// never linear, or the call was stopped before this was known.
+  /// log10 of the largest amplitude at which all contacts stick, or keep their state at rest;
+  /// minus infinity where a law is never linear, or the call was stopped before this was known.
   double linear_up_to;
+  /// log10 of the amplitude at which the first contact begins to slip. Infinity: none slips on
+  /// this branch. Minus infinity: one slips at the first point already, and it is not known from
+  /// which amplitude on, or at every amplitude.
+  double slip_from;
+  /// The same for the first contact that presses at rest and lifts off.
+  double lift_off_from;
 } hbvib_mode_info;
 
 /// Fills the description of a mode with zeros, amplitude_contact with -1.

@@ -282,7 +282,7 @@ mode_options: uint32 struct_size; int32 damping_form; double log10_start log10_s
 mode_point: uint32 struct_size; int32 reserved; double log10_amplitude omega damping_ratio modal_amplitude energy
     fundamental_share friction_loss structural_loss energy_damping_ratio assurance
 mode_info: uint32 struct_size; int32 multiple; int64 mode_index multiplicity reference_dof engine_order
-    amplitude_contact; double omega linear_up_to
+    amplitude_contact; double omega linear_up_to slip_from lift_off_from
 synthesis_options: uint32 struct_size; int32 model_damping; double force_factor damping_ratio
 time_options: uint32 struct_size; int32 method; double omega; int64 harmonics samples; double tolerance; int64
     max_periods; pointer start; int64 start_len
