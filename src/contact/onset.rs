@@ -1,18 +1,22 @@
 //! Amplitudes at which a law ceases to be linear when it vibrates about a static motion.
 
 use num_complex::Complex64;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Factors a of a vibration y₀ + a·Re(Y e^{iτ}) at which something begins; infinite where it never does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Onset {
     /// The law is linear up to this factor: 0 where it is not linear at any.
     pub linear: f64,
-    /// Slip begins, as far as the contact neither opened nor closed before.
+    /// Slip begins in each period, if the law is linear up to there; infinite also where it begins later. A slider
+    /// that is dragged along on one side alone sticks again: the mean of its force has changed.
     pub slip: f64,
     /// A contact that presses at rest opens.
     pub lift_off: f64,
 }
+
+/// Relative difference of factors that count as equal.
+const BOTH: f64 = 1e-9;
 
 /// Points of the period between which the earliest slip in a plane is sought.
 const POINTS: usize = 256;
@@ -45,12 +49,15 @@ impl Onset {
         }
     }
 
-    /// The same law with slip from a factor on.
+    /// The same law with a slider that is dragged from a factor on in one direction, and at another in the opposite
+    /// one.
     #[must_use]
-    pub fn with_slip(self, slip: f64) -> Self {
+    pub fn with_slider(self, [one, other]: [f64; 2]) -> Self {
+        let dragged = one.min(other);
+        let on_both_sides = (one - other).abs() <= BOTH * dragged;
         Self {
-            linear: self.linear.min(slip),
-            slip,
+            linear: self.linear.min(dragged),
+            slip: if on_both_sides { dragged } else { f64::INFINITY },
             ..self
         }
     }
@@ -71,18 +78,20 @@ fn first(room: f64, motion: f64) -> f64 {
     if motion == 0.0 { f64::INFINITY } else { room.max(0.0) / motion }
 }
 
-/// Onset of slip of friction f = kt·x in one direction under the load N = N₀ − kn·y, at the static force `force` and
-/// load `load`, for a vibration of the forces kt·X and the load kn·Y: the first of |f| = μN.
+/// Factors of f = μN and f = −μN for friction f = kt·x in one direction under the load N = N₀ − kn·y: at the static
+/// force `force` and limit μN₀, for a vibration of the force kt·X and of the limit −μkn·Y.
 #[must_use]
-pub fn slip_in_line(force: f64, limit: f64, of_force: Complex64, of_limit: Complex64) -> f64 {
-    let upper = first(limit - force, (of_force + of_limit).norm());
-    let lower = first(limit + force, (of_force - of_limit).norm());
-    upper.min(lower)
+pub fn slider_in_line(force: f64, limit: f64, of_force: Complex64, of_limit: Complex64) -> [f64; 2] {
+    [
+        first(limit - force, (of_force + of_limit).norm()),
+        first(limit + force, (of_force - of_limit).norm()),
+    ]
 }
 
-/// The same in a plane: the least a over the period with |f₀ + a f(τ)| = μN₀ − a·μkn·y(τ).
+/// The same in a plane: the least a over the period with |f₀ + a f(τ)| = μN₀ − a·μkn·y(τ), and that half a period
+/// later.
 #[must_use]
-pub fn slip_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of_limit: Complex64) -> f64 {
+pub fn slider_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of_limit: Complex64) -> [f64; 2] {
     let at = |tau: f64| {
         let turn = Complex64::cis(tau);
         let vibrating = of_force.map(|f| (f * turn).re);
@@ -113,5 +122,6 @@ pub fn slip_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of_l
             low = left;
         }
     }
-    least.0.min(at(0.5 * (low + high)))
+    let tau = 0.5 * (low + high);
+    [least.0.min(at(tau)), at(tau + PI)]
 }

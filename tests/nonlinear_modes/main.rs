@@ -5,6 +5,7 @@
 mod common;
 
 mod derivatives_of_modes;
+mod mode_about_static;
 mod mode_balance;
 mod mode_closed_forms;
 mod mode_conservative;
@@ -12,6 +13,7 @@ mod mode_forced;
 mod mode_linear_range;
 mod mode_range;
 mod mode_reference;
+mod mode_stop;
 mod mode_synthesis;
 mod mode_turning;
 mod mode_veering;

@@ -27,7 +27,7 @@ use crate::contact::laws::friction_2d_events::Slider;
 use crate::contact::laws::friction_2d_slider::{Phase, Play, Walk};
 use crate::contact::laws::unilateral::Unilateral;
 use crate::contact::linearisation::Range;
-use crate::contact::onset::{Onset, slip_in_line};
+use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
@@ -189,14 +189,14 @@ impl Law for Friction2d {
     fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
         if self.kn == 0.0 {
             let limit = self.mu * self.load;
-            return Onset::NEVER.with_slip(self.slip_onset(rest[0], limit, [motion[0], Complex64::ZERO]));
+            return Onset::NEVER.with_slider(self.slider_onset(rest[0], limit, [motion[0], Complex64::ZERO]));
         }
         let load = self.load_at(rest[1]);
         let closing = Onset::of_closing(load / self.kn, motion[1]);
         if load < 0.0 {
             return closing;
         }
-        closing.with_slip(self.slip_onset(rest[0], self.mu * load, [motion[0], motion[1]]))
+        closing.with_slider(self.slider_onset(rest[0], self.mu * load, [motion[0], motion[1]]))
     }
 }
 
@@ -247,12 +247,12 @@ impl VaryingNormalLoad for Friction2d {
 }
 
 impl Friction2d {
-    /// First factor of the vibration [x, y] at which the contact, closed, slips.
-    fn slip_onset(&self, rest: f64, limit: f64, [x, y]: [Complex64; 2]) -> f64 {
+    /// Factors of the vibration [x, y] from which on the slider of the closed contact is dragged.
+    fn slider_onset(&self, rest: f64, limit: f64, [x, y]: [Complex64; 2]) -> [f64; 2] {
         if self.kt == 0.0 || self.mu == 0.0 {
-            return f64::INFINITY;
+            return [f64::INFINITY; 2];
         }
-        slip_in_line(self.kt * rest, limit, self.kt * x, self.mu * self.kn * y)
+        slider_in_line(self.kt * rest, limit, self.kt * x, self.mu * self.kn * y)
     }
 
     /// Pieces of the normal force.

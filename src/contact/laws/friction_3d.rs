@@ -20,7 +20,7 @@ use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness};
 use crate::contact::laws::friction_3d_step::{NO_LOAD, step};
 use crate::contact::laws::friction_3d_stuck::{Disc, stuck_slider};
 use crate::contact::linearisation::Range;
-use crate::contact::onset::{Onset, slip_in_plane};
+use crate::contact::onset::{Onset, slider_in_plane};
 use crate::contact::march::{March, Sticking, StuckState};
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::contact::samples::automatic_samples;
@@ -223,7 +223,7 @@ impl Law for Friction3d {
         }
         let force = [self.kt * rest[0], self.kt * rest[1]];
         let vibrating = [self.kt * motion[0], self.kt * motion[1]];
-        closing.with_slip(slip_in_plane(force, self.mu * load, vibrating, of_limit))
+        closing.with_slider(slider_in_plane(force, self.mu * load, vibrating, of_limit))
     }
 }
 

@@ -12,7 +12,7 @@ use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::laws::friction_2d_events::Slider;
 use crate::contact::linearisation::Range;
-use crate::contact::onset::{Onset, slip_in_line};
+use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::Piece;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
@@ -175,7 +175,7 @@ impl Law for Jenkins {
 
     fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
         let k = self.stiffness;
-        Onset::NEVER.with_slip(slip_in_line(k * rest[0], self.limit, k * motion[0], Complex64::ZERO))
+        Onset::NEVER.with_slider(slider_in_line(k * rest[0], self.limit, k * motion[0], Complex64::ZERO))
     }
 }
 
