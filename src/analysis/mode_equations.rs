@@ -111,7 +111,11 @@ impl<'a> Equations<'a> {
             *r = a * along(&condensed.motion_row(i, dof), x);
             if condensed.blocks()[i].number == 0 && self.rest.is_loaded() {
                 let still = condensed.motion_row(i, dof);
-                *r += still.iter().flatten().map(|&(p, a)| a * self.rest.structure[p]).sum::<Complex64>();
+                *r += still
+                    .iter()
+                    .flatten()
+                    .map(|&(p, a)| a * self.rest.structure[p])
+                    .sum::<Complex64>();
             }
         }
         Ok(())

@@ -5,8 +5,8 @@ use crate::continuation::special_points::Locator;
 use crate::continuation::{Point, Settings};
 use crate::error::Result;
 use crate::interrupt::Interrupt;
-use crate::problem::{Problem, Residual};
 use crate::problem::epmc::Epmc;
+use crate::problem::{Problem, Residual};
 
 /// Width of log₁₀ of the amplitude to which an onset is located.
 const WIDTH: f64 = 1e-7;

@@ -14,10 +14,10 @@ use crate::model::Model;
 use crate::model::excitation::Force;
 use crate::model::static_tangents::StaticTangents;
 use crate::options::SolverOptions;
-use crate::problem::{Problem, Residual};
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::static_force::static_force;
 use crate::problem::static_state::StaticState;
+use crate::problem::{Problem, Residual};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the static state";
@@ -34,9 +34,7 @@ const OMEGA: f64 = 1.0;
 /// `NoConvergence` or `Singular` if there is no equilibrium; those of callbacks; `OutOfMemory`; `StoppedByCaller`.
 pub(super) fn static_state(model: &Model, solver: &SolverOptions, interrupt: &Interrupt<'_>) -> Result<StaticState> {
     let degrees = model.structure().degrees();
-    let constant = |f: &Force| {
-        f.harmonic == 0 && f.value.re != 0.0 && !degrees.is_fixed(f.dof)
-    };
+    let constant = |f: &Force| f.harmonic == 0 && f.value.re != 0.0 && !degrees.is_fixed(f.dof);
     let loaded = model.excitation().forces().iter().any(constant) || model.contacts().iter().any(Contact::is_preloaded);
     if !loaded && !needs_evaluation(model)? {
         return Ok(StaticState::default());

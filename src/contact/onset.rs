@@ -75,7 +75,11 @@ impl Onset {
 
 /// Factor at which a vibration of size `motion` takes up `room`.
 fn first(room: f64, motion: f64) -> f64 {
-    if motion == 0.0 { f64::INFINITY } else { room.max(0.0) / motion }
+    if motion == 0.0 {
+        f64::INFINITY
+    } else {
+        room.max(0.0) / motion
+    }
 }
 
 /// Factors of f = μN and f = −μN for friction f = kt·x in one direction under the load N = N₀ − kn·y: at the static
@@ -102,7 +106,11 @@ pub fn slider_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of
         let room = (limit * limit - force[0] * force[0] - force[1] * force[1]).max(0.0);
         // square·a² + 2 half·a − room = 0, the least positive root without cancellation.
         let root = (half * half + square * room).max(0.0).sqrt();
-        if half + root > 0.0 { room / (half + root) } else { f64::INFINITY }
+        if half + root > 0.0 {
+            room / (half + root)
+        } else {
+            f64::INFINITY
+        }
     };
     let step = TAU / POINTS as f64;
     let mut least = (f64::INFINITY, 0.0);
@@ -115,7 +123,10 @@ pub fn slider_in_plane(force: [f64; 2], limit: f64, of_force: [Complex64; 2], of
     let (mut low, mut high) = (least.1 - step, least.1 + step);
     for _ in 0..BISECTIONS {
         // Golden section.
-        let (left, right) = (high - 0.618_033_988_75 * (high - low), low + 0.618_033_988_75 * (high - low));
+        let (left, right) = (
+            high - 0.618_033_988_75 * (high - low),
+            low + 0.618_033_988_75 * (high - low),
+        );
         if at(left) < at(right) {
             high = right;
         } else {

@@ -150,7 +150,11 @@ impl Model {
     /// # Errors
     /// As [`Self::sprung_stiffness`].
     pub fn stiffness_at_small_motion(&self, wave: Wave, contacts: ContactState<'_>) -> Result<Csc> {
-        let acting = self.contacts().iter().enumerate().filter(|(_, c)| c.role() != Role::Inert);
+        let acting = self
+            .contacts()
+            .iter()
+            .enumerate()
+            .filter(|(_, c)| c.role() != Role::Inert);
         match contacts {
             ContactState::Free => self.sprung_stiffness(wave, core::iter::empty()),
             ContactState::Stuck => self.sprung_stiffness(wave, acting.map(|(_, c)| c)),

@@ -8,9 +8,9 @@ use hbvib::condense::Condensed;
 use hbvib::contact::Contact;
 use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
+use hbvib::model::static_tangents::StaticTangents;
 use hbvib::options::{DampingForm, SolverOptions};
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
-use hbvib::model::static_tangents::StaticTangents;
 use hbvib::problem::homotopy::{Path, PathHomotopy};
 use hbvib::problem::static_state::StaticState;
 use hbvib::problem::{Problem, Residual};
@@ -120,8 +120,14 @@ impl Loaded {
             reference_dof: self.highest % N,
         };
         let form = (DampingForm::Mass, true);
-        let (condensed, _) =
-            Condensed::for_mode(&model, &harmonics(self.highest), form, &linear.shape, &Interrupt::none()).unwrap();
+        let (condensed, _) = Condensed::for_mode(
+            &model,
+            &harmonics(self.highest),
+            form,
+            &linear.shape,
+            &Interrupt::none(),
+        )
+        .unwrap();
         prop_assert!(condensed.set().has_mean());
         let mut rest = linear.clone();
         rest.rest.motion.truncate(condensed.coordinates());

@@ -9,6 +9,7 @@ mod mode_about_static;
 mod mode_balance;
 mod mode_closed_forms;
 mod mode_conservative;
+mod mode_decay;
 mod mode_forced;
 mod mode_linear_range;
 mod mode_range;

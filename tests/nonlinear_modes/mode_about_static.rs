@@ -99,11 +99,24 @@ fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
     let cases: [(&str, Vec<Contact>, [f64; 3], usize); 7] = [
         ("friction in line", vec![in_line(0.3, 1.0)], [0.0; 3], 0),
         ("constant forces", vec![in_line(0.3, 1.0)], [0.1, -0.3, 0.2], 1),
-        ("pressed by a force over a gap", vec![Contact { gap: 0.2, ..in_line(0.3, 0.0) }], [0.1, -2.0, 0.0], 0),
+        (
+            "pressed by a force over a gap",
+            vec![Contact {
+                gap: 0.2,
+                ..in_line(0.3, 0.0)
+            }],
+            [0.1, -2.0, 0.0],
+            0,
+        ),
         ("statically slipping", vec![in_line(0.3, 0.5)], [2.0, 0.0, 0.0], 0),
         ("friction in a plane", vec![in_plane(0.8)], [0.2, 0.0, -0.1], 0),
         ("with a stop", vec![in_line(0.4, 1.0), stop], [0.0, 0.0, 0.1], 2),
-        ("with a cubic spring", vec![Contact::jenkins(0, None, 1.0, 0.3, 1.0), cubic], [0.1, 0.0, 0.4], 0),
+        (
+            "with a cubic spring",
+            vec![Contact::jenkins(0, None, 1.0, 0.3, 1.0), cubic],
+            [0.1, 0.0, 0.4],
+            0,
+        ),
     ];
     for (name, contacts, constant, index) in cases {
         let model = pressed(&contacts, constant);
@@ -117,7 +130,10 @@ fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
             let branch = follow(&model, &harmonics(h), &range);
             let (gap, compared) = worst(&model, &harmonics(h), &branch);
             println!("{name}, H = {h}: {gap:.1e} at {compared} points");
-            assert!(gap < 1e-9 && compared >= 4, "{name}, H = {h}: {gap:e}, {compared} points");
+            assert!(
+                gap < 1e-9 && compared >= 4,
+                "{name}, H = {h}: {gap:e}, {compared} points"
+            );
         }
     }
 }
@@ -181,7 +197,10 @@ fn a_pressed_sector_vibrates_as_the_wheel_does_about_the_mean_of_diameter_0() {
             compared += 1;
         }
         println!("EO {engine_order}: {gap:.1e} at {compared} points");
-        assert!(gap < 1e-9 && compared >= 3, "EO {engine_order}: {gap:e}, {compared} points");
+        assert!(
+            gap < 1e-9 && compared >= 3,
+            "EO {engine_order}: {gap:e}, {compared} points"
+        );
     }
 }
 

@@ -42,7 +42,10 @@ impl Stop {
 
     /// Equilibria of the open and of the closed oscillator.
     fn centres(&self) -> (f64, f64) {
-        (self.force / self.k, (self.force - self.kn * self.clearance()) / (self.k + self.kn))
+        (
+            self.force / self.k,
+            (self.force - self.kn * self.clearance()) / (self.k + self.kn),
+        )
     }
 
     fn at_rest(&self) -> f64 {
@@ -78,8 +81,7 @@ impl Stop {
             }
         };
         let part = |centre: f64, size: f64, own: f64, p: f64, a: f64, b: f64| {
-            centre * integral(w, 0.0, a, b)
-                + 0.5 * size * (integral(own + w, p, a, b) + integral(own - w, p, a, b))
+            centre * integral(w, 0.0, a, b) + 0.5 * size * (integral(own + w, p, a, b) + integral(own - w, p, a, b))
         };
         let sum = part(open, first, w1, 0.0, 0.0, t1) + part(closed, second, w2, phase - w2 * t1, t1, t1 + t2);
         (w, 2.0 * w / PI * sum)
@@ -104,14 +106,56 @@ impl Stop {
 }
 
 const CASES: [Stop; 7] = [
-    Stop { k: 1.0, kn: 2.0, preload: 0.5, gap: 0.0, force: 0.0 },
-    Stop { k: 1.0, kn: 2.0, preload: 0.0, gap: 0.5, force: 0.0 },
-    Stop { k: 1.0, kn: 2.0, preload: 0.0, gap: 0.5, force: -2.0 },
-    Stop { k: 1.0, kn: 2.0, preload: 0.3, gap: 0.2, force: -1.0 },
-    Stop { k: 3.0, kn: 0.7, preload: 0.3, gap: 0.0, force: 0.5 },
+    Stop {
+        k: 1.0,
+        kn: 2.0,
+        preload: 0.5,
+        gap: 0.0,
+        force: 0.0,
+    },
+    Stop {
+        k: 1.0,
+        kn: 2.0,
+        preload: 0.0,
+        gap: 0.5,
+        force: 0.0,
+    },
+    Stop {
+        k: 1.0,
+        kn: 2.0,
+        preload: 0.0,
+        gap: 0.5,
+        force: -2.0,
+    },
+    Stop {
+        k: 1.0,
+        kn: 2.0,
+        preload: 0.3,
+        gap: 0.2,
+        force: -1.0,
+    },
+    Stop {
+        k: 3.0,
+        kn: 0.7,
+        preload: 0.3,
+        gap: 0.0,
+        force: 0.5,
+    },
     // Large and small numbers, as in N and m.
-    Stop { k: 4e8, kn: 9e8, preload: 2e3, gap: 0.0, force: 150.0 },
-    Stop { k: 4e8, kn: 9e8, preload: 0.0, gap: 1e-6, force: -2e3 },
+    Stop {
+        k: 4e8,
+        kn: 9e8,
+        preload: 2e3,
+        gap: 0.0,
+        force: 150.0,
+    },
+    Stop {
+        k: 4e8,
+        kn: 9e8,
+        preload: 0.0,
+        gap: 1e-6,
+        force: -2e3,
+    },
 ];
 
 /// A length near which the stop opens or closes.
@@ -152,8 +196,19 @@ fn a_stop_under_constant_loads_has_the_period_of_the_closed_form() {
 
 #[test]
 fn a_stop_that_touches_without_a_load_has_one_frequency_at_every_amplitude() {
-    for (k, kn, h, tolerance) in [(1.0, 2.0, 63, 1e-9), (2e7, 4e7, 63, 1e-9), (1.0, 50.0, 101, 1e-9), (1.0, 50.0, 9, 2e-4)] {
-        let stop = Stop { k, kn, preload: 0.0, gap: 0.0, force: 0.0 };
+    for (k, kn, h, tolerance) in [
+        (1.0, 2.0, 63, 1e-9),
+        (2e7, 4e7, 63, 1e-9),
+        (1.0, 50.0, 101, 1e-9),
+        (1.0, 50.0, 9, 2e-4),
+    ] {
+        let stop = Stop {
+            k,
+            kn,
+            preload: 0.0,
+            gap: 0.0,
+            force: 0.0,
+        };
         let range = ModeOptions {
             log10_start: if h > 100 { 2.0 } else { -8.0 },
             log10_stop: 3.0,
@@ -161,12 +216,21 @@ fn a_stop_that_touches_without_a_load_has_one_frequency_at_every_amplitude() {
         };
         let branch = follow(&stop.model(), &harmonics(h), &range);
         let info = branch.mode().unwrap();
-        assert_eq!((info.linear_up_to, info.lift_off_from), (f64::NEG_INFINITY, f64::NEG_INFINITY));
+        assert_eq!(
+            (info.linear_up_to, info.lift_off_from),
+            (f64::NEG_INFINITY, f64::NEG_INFINITY)
+        );
         let (w1, w2) = (k.sqrt(), (k + kn).sqrt());
         let exact = 2.0 * w1 * w2 / (w1 + w2);
         let first = branch.omega()[0];
-        let spread = branch.omega().iter().fold(0.0_f64, |m, w| m.max((w / first - 1.0).abs()));
-        println!("k = {k}, kn = {kn}, H = {h}: {:.1e}, spread {spread:.1e}", first / exact - 1.0);
+        let spread = branch
+            .omega()
+            .iter()
+            .fold(0.0_f64, |m, w| m.max((w / first - 1.0).abs()));
+        println!(
+            "k = {k}, kn = {kn}, H = {h}: {:.1e}, spread {spread:.1e}",
+            first / exact - 1.0
+        );
         assert!((first / exact - 1.0).abs() < tolerance && spread < 1e-10);
     }
 }

@@ -247,9 +247,15 @@ impl Law for Table {
     }
 
     fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
-        let nearest = self.levels().fold(f64::INFINITY, |near, x| near.min((x - rest[0]).abs()));
+        let nearest = self
+            .levels()
+            .fold(f64::INFINITY, |near, x| near.min((x - rest[0]).abs()));
         Onset {
-            linear: if motion[0].norm() == 0.0 { f64::INFINITY } else { nearest / motion[0].norm() },
+            linear: if motion[0].norm() == 0.0 {
+                f64::INFINITY
+            } else {
+                nearest / motion[0].norm()
+            },
             ..Onset::NEVER
         }
     }
