@@ -2038,7 +2038,7 @@ hbvib_status hbvib_branch_synthesis_with_hooks(const hbvib_branch *branch,
 
 /// Reasons to doubt a synthesised resonance: bits of a sum.
 typedef enum {
-  /// No reason for doubt was found.
+  /// No reason for doubt was found, and the computed resonance has the same amplitude within 1 %.
   HBVIB_SYNTHESIS_VALID = 0,
   /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear
   /// mode.
@@ -2048,6 +2048,9 @@ typedef enum {
   HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
   /// The amplitude falls as the force rises: a detached response begins here.
   HBVIB_SYNTHESIS_FALLING = 4,
+  /// The amplitude differs by 1 % or more from that of the computed resonance next to it, or no
+  /// such resonance was found.
+  HBVIB_SYNTHESIS_INACCURATE = 8,
 } hbvib_synthesis_flag;
 
 /// Resonances of a synthesised response, refined on the equations of the mode, in the order of the
@@ -2063,6 +2066,8 @@ typedef enum {
 /// damping_ratio           receives the total damping ratios there, or NULL.
 /// other_mode              receives the distance to the nearest other natural frequency of the wave
 ///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// error                   receives the amplitudes over those of the computed resonances next to
+///                         them, minus 1, NaN where none was found; or NULL.
 /// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// Errors and threads: as for hbvib_branch_synthesis.
@@ -2075,6 +2080,7 @@ hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
                                           double *log10_amplitude,
                                           double *damping_ratio,
                                           double *other_mode,
+                                          double *error,
                                           int32_t *flags,
                                           int64_t *count);
 
@@ -2091,6 +2097,8 @@ hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
 /// damping_ratio           receives the total damping ratios there, or NULL.
 /// other_mode              receives the distance to the nearest other natural frequency of the wave
 ///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// error                   receives the amplitudes over those of the computed resonances next to
+///                         them, minus 1, NaN where none was found; or NULL.
 /// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// hooks                   phase, log and cancellation; progress is not called. NULL: none.
@@ -2104,6 +2112,7 @@ hbvib_status hbvib_branch_synthesis_peaks_with_hooks(const hbvib_branch *branch,
                                                      double *log10_amplitude,
                                                      double *damping_ratio,
                                                      double *other_mode,
+                                                     double *error,
                                                      int32_t *flags,
                                                      int64_t *count,
                                                      const hbvib_hooks *hooks);

@@ -17,6 +17,7 @@ mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
+mod under_force;
 pub mod wave_modes;
 
 pub use condensed::{Condensed, Reference};
