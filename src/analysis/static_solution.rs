@@ -75,7 +75,7 @@ fn solve(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let first = initial_point::solve(&mut problem, &settings, interrupt).map_err(explained)?;
+    let first = initial_point::solve(&mut problem, &settings, interrupt).map_err(|e| explained(e, solver))?;
     let u = first.point.unknowns();
     let mut at = Residual::new(u.len())?;
     problem.evaluate(u, OMEGA, &mut at)?;
@@ -142,11 +142,15 @@ fn tangents(
     Ok(tangents)
 }
 
-fn explained(e: Error) -> Error {
+fn explained(e: Error, solver: &SolverOptions) -> Error {
     match e.status {
         Status::NoConvergence | Status::Singular => Error::new(
             e.status,
-            format_args!("the static state under constant forces and preload was not found: {e}"),
+            format_args!(
+                "no static state under constant forces and preload was found: structure and contacts may not hold them, \
+                 or max_newton = {} is too few",
+                solver.max_newton
+            ),
         ),
         _ => e,
     }
