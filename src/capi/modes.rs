@@ -115,7 +115,8 @@ pub unsafe extern "C" fn hbvib_mode_options_init(o: *mut hbvib_mode_options, siz
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
 /// out of range, a mode that moves no contact, a mode of frequency 0, and a reference at a node of
 /// the mode; HBVIB_E_NOT_POSITIVE_DEFINITE and HBVIB_E_NOT_HERMITIAN for matrices, also missing
-/// ones; HBVIB_E_NO_CONVERGENCE where no static state or no first point was found; HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// ones; HBVIB_E_NO_CONVERGENCE where no static state or no first point was found;
+/// HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.
