@@ -29,6 +29,7 @@ mod table;
 
 mod fe_input;
 mod fe_modes;
+mod fe_pressed;
 mod fe_sector;
 mod fe_stops;
 mod friction_patch;

@@ -1,0 +1,84 @@
+//! The nonlinear mode of a finite-element sector whose 30 pairs of nodes press with a normal load that varies and may
+//! vanish, about its static state: one harmonic and the mean, over four decades of amplitude.
+
+use crate::common::harmonics;
+use crate::common::processor_time;
+use crate::sector::{Interface, Sector, Size};
+use hbvib::analysis::{nonlinear_mode, synthesise};
+use hbvib::contact::Contact;
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::model::Model;
+use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::time::Instant;
+
+/// The sector with friction in a plane at each pair of nodes, under a force at the tip.
+fn pressed(force: f64) -> (Model, usize) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
+    let sector = Sector::read(&folder, Size::Reduced).unwrap();
+    let mut model = sector.model(Interface::Absent).unwrap();
+    for pair in &sector.pairs {
+        let [along, across] = &pair.friction;
+        let contact = Contact::friction_3d(
+            [along.dof_a[0], across.dof_a[0], pair.normal.dof_a],
+            [along.dof_b[0], across.dof_b[0], pair.normal.dof_b],
+            (along.kt, pair.normal.stiffness),
+            along.mu,
+            along.preload,
+        );
+        model.add_contact(&contact).unwrap();
+    }
+    let tip = sector.size.tip();
+    model.add_force(tip, 1, Complex64::from(force)).unwrap();
+    (model, tip)
+}
+
+fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
+    let solver = SolverOptions {
+        response_dof: Some(tip),
+        ..harmonics(harmonic)
+    };
+    let range = ModeOptions {
+        choice: ModeChoice::Near(530.0 * TAU),
+        log10_start: -7.0,
+        log10_stop: -3.0,
+        ..ModeOptions::default()
+    };
+    nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
+}
+
+#[test]
+fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_sliding() {
+    let (model, tip) = pressed(2.0);
+    let begin = (Instant::now(), processor_time(Instant::now()));
+    let branch = mode(&model, tip, 1);
+    println!(
+        "{} points in {:.1} s of processor time, {:?}",
+        branch.points(),
+        (processor_time(begin.0) - begin.1).as_secs_f64(),
+        branch.status()
+    );
+    let info = branch.mode().unwrap();
+    println!("{} Hz, linear up to {}, slip from {}, lift-off from {}", info.omega / TAU, info.linear_up_to, info.slip_from, info.lift_off_from);
+    let damping = branch.mode_field(ModeField::DampingRatio).unwrap();
+    for point in (0..branch.points()).step_by(6) {
+        println!("{:.3} {:.4} Hz D {:.4e}", branch.mode_at(point).unwrap().log10_amplitude, branch.omega()[point] / TAU, damping[point]);
+    }
+    assert_eq!(branch.status(), Status::Ok);
+    let largest = damping.iter().fold(0.0_f64, |m, d| m.max(*d));
+    for (point, d) in damping.iter().enumerate() {
+        let check = branch.mode_at(point).unwrap().energy_damping_ratio();
+        assert!((check - d).abs() < 1e-8 * largest, "point {point}: {check} {d}");
+    }
+    let begin = processor_time(Instant::now());
+    let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
+    for peak in &found.peaks {
+        println!("resonance at {} Hz: {:?}", peak.at.omega / TAU, peak.validity);
+    }
+    println!("synthesis in {:.1} s", (processor_time(Instant::now()) - begin).as_secs_f64());
+}
