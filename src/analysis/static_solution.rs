@@ -10,6 +10,7 @@ use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
+use crate::linalg::norm;
 use crate::model::Model;
 use crate::model::excitation::Force;
 use crate::model::static_tangents::StaticTangents;
@@ -24,6 +25,9 @@ const CONTEXT: &str = "the static state";
 
 /// Tolerance of the residual: an error of the static state is one of every amplitude.
 const TOLERANCE: f64 = 1e-13;
+
+/// Residual at zero, relative to the motion under the forces with linear contacts, at which zero is the solution.
+const BALANCED: f64 = 1e-12;
 
 /// Angular frequency that laws are told; nothing moves, so that none has an effect.
 const OMEGA: f64 = 1.0;
@@ -75,10 +79,17 @@ fn solve(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let first = initial_point::solve(&mut problem, &settings, interrupt).map_err(|e| explained(e, solver))?;
-    let u = first.point.unknowns();
-    let mut at = Residual::new(u.len())?;
-    problem.evaluate(u, OMEGA, &mut at)?;
+    let n = condensed.unknowns();
+    let mut at = Residual::new(n)?;
+    let mut u = try_vec(n, 0.0, CONTEXT)?;
+    problem.evaluate(&u, OMEGA, &mut at)?;
+    // Constant forces may balance the preload at zero, to which no motion is small.
+    if norm(&at.values) > BALANCED * at.scale {
+        let first = initial_point::solve(&mut problem, &settings, interrupt).map_err(|e| explained(e, solver))?;
+        u.copy_from_slice(first.point.unknowns());
+        problem.evaluate(&u, OMEGA, &mut at)?;
+    }
+    let u = &u[..];
     let coordinates = condensed.coordinates();
     let mut w = try_vec(coordinates, Complex64::ZERO, CONTEXT)?;
     let mut x = try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?;

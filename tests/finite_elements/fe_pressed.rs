@@ -32,6 +32,10 @@ fn pressed(force: f64) -> (Model, usize) {
             along.preload,
         );
         model.add_contact(&contact).unwrap();
+        // The preload of the table acts in the deformed state: constant forces keep the structure there.
+        for (dof, force) in [(pair.normal.dof_a, -along.preload), (pair.normal.dof_b, along.preload)] {
+            model.add_force(dof.unwrap(), 0, Complex64::from(force)).unwrap();
+        }
     }
     let tip = sector.size.tip();
     model.add_force(tip, 1, Complex64::from(force)).unwrap();
@@ -49,7 +53,25 @@ fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
         log10_stop: -3.0,
         ..ModeOptions::default()
     };
-    nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
+    let begin = Instant::now();
+    let mut progress = |p: &hbvib::hooks::Progress| {
+        eprintln!(
+            "{:.2}s {} p {:.6} res {:.1e} step {:.1e}",
+            begin.elapsed().as_secs_f64(),
+            p.point,
+            p.parameter,
+            p.residual,
+            p.step
+        );
+        false
+    };
+    let cancelled = || begin.elapsed().as_secs_f64() > 480.0;
+    let mut hooks = Hooks {
+        progress: Some(&mut progress),
+        cancelled: Some(&cancelled),
+        ..Hooks::default()
+    };
+    nonlinear_mode(model, &solver, &range, &mut hooks).unwrap()
 }
 
 #[test]
@@ -64,10 +86,21 @@ fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_sliding() {
         branch.status()
     );
     let info = branch.mode().unwrap();
-    println!("{} Hz, linear up to {}, slip from {}, lift-off from {}", info.omega / TAU, info.linear_up_to, info.slip_from, info.lift_off_from);
+    println!(
+        "{} Hz, linear up to {}, slip from {}, lift-off from {}",
+        info.omega / TAU,
+        info.linear_up_to,
+        info.slip_from,
+        info.lift_off_from
+    );
     let damping = branch.mode_field(ModeField::DampingRatio).unwrap();
     for point in (0..branch.points()).step_by(6) {
-        println!("{:.3} {:.4} Hz D {:.4e}", branch.mode_at(point).unwrap().log10_amplitude, branch.omega()[point] / TAU, damping[point]);
+        println!(
+            "{:.3} {:.4} Hz D {:.4e}",
+            branch.mode_at(point).unwrap().log10_amplitude,
+            branch.omega()[point] / TAU,
+            damping[point]
+        );
     }
     assert_eq!(branch.status(), Status::Ok);
     let largest = damping.iter().fold(0.0_f64, |m, d| m.max(*d));
@@ -80,5 +113,8 @@ fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_sliding() {
     for peak in &found.peaks {
         println!("resonance at {} Hz: {:?}", peak.at.omega / TAU, peak.validity);
     }
-    println!("synthesis in {:.1} s", (processor_time(Instant::now()) - begin).as_secs_f64());
+    println!(
+        "synthesis in {:.1} s",
+        (processor_time(Instant::now()) - begin).as_secs_f64()
+    );
 }

@@ -16,6 +16,7 @@ mod mode_range;
 mod mode_reference;
 mod mode_stop;
 mod mode_synthesis;
+mod mode_synthesis_error;
 mod mode_turning;
 mod mode_veering;
 mod mode_wheel;
