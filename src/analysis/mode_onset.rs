@@ -64,8 +64,8 @@ impl OnsetSearch {
     ) -> Result<bool> {
         let shown = Self::shown(problem);
         let mut moved = false;
-        for kind in 0..KINDS {
-            if self.found[kind].is_some() || !shown[kind] {
+        for (kind, shown) in shown.into_iter().enumerate() {
+            if self.found[kind].is_some() || !shown {
                 continue;
             }
             self.found[kind] = Some(match &self.before {

@@ -23,7 +23,7 @@ impl Model {
     /// # Errors
     /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
     pub fn sprung_stiffness<'c>(&self, wave: Wave, stuck: impl Iterator<Item = &'c Contact>) -> Result<Csc> {
-        self.stiffness_with(wave, stuck.map(|c| (c, c)), |c, k, l| c.stiffness_at_small_motion(k, l))
+        self.stiffness_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
     }
 
     /// The same with the stiffness of contacts between the motions of their directions k and l as given, for

@@ -184,7 +184,7 @@ impl Skewed {
     }
 
     /// Places mass and stiffness all around a wheel.
-    pub fn place_in(&self, wheel: &mut Wheel) {
+    pub fn place_in(wheel: &mut Wheel) {
         wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
         wheel.set(MatrixKind::Stiffness, &STIFFNESS, Some(&STIFFNESS_NEXT), None);
     }

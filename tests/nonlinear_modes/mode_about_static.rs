@@ -207,7 +207,7 @@ fn a_pressed_sector_vibrates_as_the_wheel_does_about_the_mean_of_diameter_0() {
 /// The wheel of a sector with the constant forces of the test.
 fn wheel_of(skewed: &Skewed, sectors: usize) -> Wheel {
     let mut wheel = Wheel::new(N, sectors);
-    skewed.place_in(&mut wheel);
+    Skewed::place_in(&mut wheel);
     for contact in &skewed.contacts {
         wheel.add_contact(contact);
     }

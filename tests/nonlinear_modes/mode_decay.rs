@@ -57,13 +57,13 @@ impl State {
 
     /// One step of the method of Störmer and Verlet under ẍ = a + c v.
     fn step(&mut self, a: &mut [f64; 2], dt: f64, c: f64) {
-        for i in 0..2 {
-            self.v[i] += 0.5 * dt * (a[i] + c * self.v[i]);
-            self.x[i] += dt * self.v[i];
+        for ((x, v), a) in self.x.iter_mut().zip(&mut self.v).zip(&*a) {
+            *v += 0.5 * dt * (a + c * *v);
+            *x += dt * *v;
         }
         *a = self.acceleration();
-        for i in 0..2 {
-            self.v[i] = (self.v[i] + 0.5 * dt * a[i]) / (1.0 - 0.5 * dt * c);
+        for (v, a) in self.v.iter_mut().zip(&*a) {
+            *v = (*v + 0.5 * dt * a) / (1.0 - 0.5 * dt * c);
         }
     }
 }

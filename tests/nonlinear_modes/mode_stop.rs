@@ -177,11 +177,11 @@ fn a_stop_under_constant_loads_has_the_period_of_the_closed_form() {
         let branch = follow(&stop.model(), &harmonics(63), &range);
         let info = branch.mode().unwrap();
         assert!((10f64.powf(info.linear_up_to) / unit - 1.0).abs() < 1e-8, "{stop:?}");
-        assert_eq!(info.slip_from, f64::INFINITY);
+        assert!(info.slip_from.is_infinite() && info.slip_from > 0.0);
         if stop.at_rest() < -stop.clearance() {
             assert!((10f64.powf(info.lift_off_from) / unit - 1.0).abs() < 1e-12, "{stop:?}");
         } else {
-            assert_eq!(info.lift_off_from, f64::INFINITY);
+            assert!(info.lift_off_from.is_infinite() && info.lift_off_from > 0.0);
         }
         let mut worst = 0.0_f64;
         for (i, a) in at.iter().enumerate() {
@@ -216,10 +216,9 @@ fn a_stop_that_touches_without_a_load_has_one_frequency_at_every_amplitude() {
         };
         let branch = follow(&stop.model(), &harmonics(h), &range);
         let info = branch.mode().unwrap();
-        assert_eq!(
-            (info.linear_up_to, info.lift_off_from),
-            (f64::NEG_INFINITY, f64::NEG_INFINITY)
-        );
+        for never in [info.linear_up_to, info.lift_off_from] {
+            assert!(never.is_infinite() && never < 0.0);
+        }
         let (w1, w2) = (k.sqrt(), (k + kn).sqrt());
         let exact = 2.0 * w1 * w2 / (w1 + w2);
         let first = branch.omega()[0];
