@@ -45,6 +45,7 @@ fn pressed(force: f64) -> (Model, usize) {
 fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
     let solver = SolverOptions {
         response_dof: Some(tip),
+        tol_residual: 1e-12,
         ..harmonics(harmonic)
     };
     let range = ModeOptions {
@@ -87,10 +88,14 @@ fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_lift_off() {
     }
     assert_eq!(branch.status(), Status::Ok);
     let largest = damping.iter().fold(0.0_f64, |m, d| m.max(*d));
+    let mut worst = 0.0_f64;
     for (point, d) in damping.iter().enumerate() {
         let check = branch.mode_at(point).unwrap().energy_damping_ratio();
+        worst = worst.max((check - d).abs() / largest);
         assert!((check - d).abs() < 1e-8 * largest, "point {point}: {check} {d}");
     }
+    // It follows the residual: 1e-6 with the default tolerance, a hundred times larger.
+    println!("balance of work: {worst:.1e}");
     assert!(info.slip_from < info.lift_off_from && info.lift_off_from < -5.5);
     let begin = processor_time(Instant::now());
     let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
