@@ -83,7 +83,7 @@ module hbvib
       HBVIB_MODE_FIRST = 3
    ! hbvib_synthesis_flag
    integer(c_int32_t), parameter, public :: HBVIB_SYNTHESIS_VALID = 0, HBVIB_SYNTHESIS_ANOTHER_MODE = 1, &
-      HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2, HBVIB_SYNTHESIS_FALLING = 4
+      HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2, HBVIB_SYNTHESIS_FALLING = 4, HBVIB_SYNTHESIS_INACCURATE = 8
    ! hbvib_steady_method
    integer(c_int32_t), parameter, public :: HBVIB_SHOOTING = 0, HBVIB_MARCHING = 1
    ! hbvib_waves
@@ -253,9 +253,9 @@ module hbvib
 
    !> Start of a nonlinear mode.
    type, bind(c) :: hbvib_mode_info
-      integer(c_int32_t) :: struct_size = 64, multiple = 0
+      integer(c_int32_t) :: struct_size = 80, multiple = 0
       integer(c_int64_t) :: mode_index = 0, multiplicity = 0, reference_dof = 0, engine_order = 0, amplitude_contact = -1
-      real(c_double) :: omega = 0, linear_up_to = 0
+      real(c_double) :: omega = 0, linear_up_to = 0, slip_from = 0, lift_off_from = 0
    end type hbvib_mode_info
 
    !> Options of a synthesised response.
@@ -1087,24 +1087,26 @@ module hbvib
       end function hbvib_branch_synthesis_with_hooks
 
       function hbvib_branch_synthesis_peaks(branch, model, options, capacity, omega, amplitude, log10_amplitude, damping_ratio, &
-         other_mode, flags, count) bind(c) result(status)
+         other_mode, error, flags, count) bind(c) result(status)
          import
          type(c_ptr), value :: branch, model
          type(hbvib_synthesis_options), intent(in), optional :: options
          integer(c_int64_t), value :: capacity
-         real(c_double), intent(inout), optional :: omega(*), amplitude(*), log10_amplitude(*), damping_ratio(*), other_mode(*)
+         real(c_double), intent(inout), optional :: omega(*), amplitude(*), log10_amplitude(*), damping_ratio(*), other_mode(*), &
+            error(*)
          integer(c_int32_t), intent(inout), optional :: flags(*)
          integer(c_int64_t), intent(inout) :: count
          integer(c_int32_t) :: status
       end function hbvib_branch_synthesis_peaks
 
       function hbvib_branch_synthesis_peaks_with_hooks(branch, model, options, capacity, omega, amplitude, log10_amplitude, &
-         damping_ratio, other_mode, flags, count, hooks) bind(c) result(status)
+         damping_ratio, other_mode, error, flags, count, hooks) bind(c) result(status)
          import
          type(c_ptr), value :: branch, model
          type(hbvib_synthesis_options), intent(in), optional :: options
          integer(c_int64_t), value :: capacity
-         real(c_double), intent(inout), optional :: omega(*), amplitude(*), log10_amplitude(*), damping_ratio(*), other_mode(*)
+         real(c_double), intent(inout), optional :: omega(*), amplitude(*), log10_amplitude(*), damping_ratio(*), other_mode(*), &
+            error(*)
          integer(c_int32_t), intent(inout), optional :: flags(*)
          integer(c_int64_t), intent(inout) :: count
          type(hbvib_hooks), intent(in), optional :: hooks
@@ -3019,12 +3021,14 @@ contains
       if (present(modal_amplitude)) modal_amplitude = a(:n)
    end function branch_synthesis
 
-   !> Resonances of the synthesised response; flags are sums of HBVIB_SYNTHESIS_ANOTHER_MODE and so on.
+   !> Resonances of the synthesised response; flags are sums of HBVIB_SYNTHESIS_ANOTHER_MODE and so on, error is the
+   !> amplitude over that of the computed resonance next to it, minus 1.
    function branch_synthesis_peaks(self, model, omega, amplitude, log10_amplitude, damping_ratio, other_mode, flags, options, &
-                                   hooks) result(status)
+                                   hooks, error) result(status)
       class(hbvib_branch), intent(in) :: self
       type(hbvib_model), intent(in) :: model
       real(dp), allocatable, intent(inout), optional :: omega(:), amplitude(:), log10_amplitude(:), damping_ratio(:), other_mode(:)
+      real(dp), allocatable, intent(inout), optional :: error(:)
       integer(i32), allocatable, intent(inout), optional :: flags(:)
       type(hbvib_synthesis_options), intent(in), optional :: options
       type(hbvib_hooks), intent(in), optional :: hooks
@@ -3036,11 +3040,11 @@ contains
       n = hbvib_branch_points(self%handle)
       status = int(min(n, 0_i64), i32)
       do while (status == HBVIB_OK)
-         allocate (x(n, 5), bits(n), stat=stat)
+         allocate (x(n, 6), bits(n), stat=stat)
          status = made(stat)
          if (status == HBVIB_OK) status = hbvib_branch_synthesis_peaks_with_hooks(self%handle, model%handle, options, n, &
                                                                                  x(:, 1), x(:, 2), x(:, 3), x(:, 4), &
-                                                                                 x(:, 5), bits, n, hooks)
+                                                                                 x(:, 5), x(:, 6), bits, n, hooks)
          if (status /= HBVIB_E_DIMENSION .or. n <= size(bits)) exit
          deallocate (x, bits)
          status = HBVIB_OK
@@ -3051,6 +3055,7 @@ contains
       if (present(log10_amplitude)) log10_amplitude = x(:n, 3)
       if (present(damping_ratio)) damping_ratio = x(:n, 4)
       if (present(other_mode)) other_mode = x(:n, 5)
+      if (present(error)) error = x(:n, 6)
       if (present(flags)) flags = bits(:n)
    end function branch_synthesis_peaks
 

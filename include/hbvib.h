@@ -2034,8 +2034,9 @@ hbvib_status hbvib_mode_options_init(hbvib_mode_options *o, size_t size_of_o);
 /// Follows a nonlinear mode over a range of amplitude, from contacts that stick to contacts that
 /// slide, by the extended periodic motion concept (EPMC, Krack 2015) and arc-length continuation:
 /// artificial damping balances the loss in friction and structure, and its damping ratio D belongs
-/// to the result. The forces of the model have no effect. Turns in amplitude are passed, largest
-/// damping ratios refined.
+/// to the result. The mode vibrates about the static state under the constant forces of the model
+/// and the preload of its contacts; amplitude and potential energy count from it. Vibrating forces
+/// have no effect. Turns in amplitude are passed, largest damping ratios refined.
 ///
 /// solver  options; NULL: the defaults. harmonics must be at least 1.
 /// mode    the linear mode to start from, the measure of the amplitude, its range.
@@ -2046,8 +2047,8 @@ hbvib_status hbvib_mode_options_init(hbvib_mode_options *o, size_t size_of_o);
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
 /// out of range, a mode that moves no contact, a mode of frequency 0, and a reference at a node of
 /// the mode; HBVIB_E_NOT_POSITIVE_DEFINITE and HBVIB_E_NOT_HERMITIAN for matrices, also missing
-/// ones; HBVIB_E_UNSUPPORTED for constant forces; HBVIB_E_NO_CONVERGENCE where no first point was
-/// found; HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// ones; HBVIB_E_NO_CONVERGENCE where no static state or no first point was found;
+/// HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.
@@ -2137,9 +2138,15 @@ typedef struct {
   int64_t amplitude_contact;
   /// Angular frequency of the linear mode without damping.
   double omega;
-  /// log10 of the largest amplitude at which all contacts stick; minus infinity where a law is
-  /// never linear, or the call was stopped before this was known.
+  /// log10 of the largest amplitude at which all contacts stick, or keep their state at rest;
+  /// minus infinity where a law is never linear, or the call was stopped before this was known.
   double linear_up_to;
+  /// log10 of the amplitude at which the first contact begins to slip. Infinity: none slips on
+  /// this branch. Minus infinity: one slips at the first point already, and it is not known from
+  /// which amplitude on, or at every amplitude.
+  double slip_from;
+  /// The same for the first contact that presses at rest and lifts off.
+  double lift_off_from;
 } hbvib_mode_info;
 
 /// Fills the description of a mode with zeros, amplitude_contact with -1.
@@ -2230,7 +2237,7 @@ hbvib_status hbvib_branch_synthesis_with_hooks(const hbvib_branch *branch,
 
 /// Reasons to doubt a synthesised resonance: bits of a sum.
 typedef enum {
-  /// No reason for doubt was found.
+  /// No reason for doubt was found, and the computed resonance has the same amplitude within 1 %.
   HBVIB_SYNTHESIS_VALID = 0,
   /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear
   /// mode.
@@ -2240,6 +2247,9 @@ typedef enum {
   HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
   /// The amplitude falls as the force rises: a detached response begins here.
   HBVIB_SYNTHESIS_FALLING = 4,
+  /// The amplitude differs by 1 % or more from that of the computed resonance next to it, or no
+  /// such resonance was found.
+  HBVIB_SYNTHESIS_INACCURATE = 8,
 } hbvib_synthesis_flag;
 
 /// Resonances of a synthesised response, refined on the equations of the mode, in the order of the
@@ -2255,6 +2265,8 @@ typedef enum {
 /// damping_ratio           receives the total damping ratios there, or NULL.
 /// other_mode              receives the distance to the nearest other natural frequency of the wave
 ///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// error                   receives the amplitudes over those of the computed resonances next to
+///                         them, minus 1, NaN where none was found; or NULL.
 /// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// Errors and threads: as for hbvib_branch_synthesis.
@@ -2267,6 +2279,7 @@ hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
                                           double *log10_amplitude,
                                           double *damping_ratio,
                                           double *other_mode,
+                                          double *error,
                                           int32_t *flags,
                                           int64_t *count);
 
@@ -2283,6 +2296,8 @@ hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
 /// damping_ratio           receives the total damping ratios there, or NULL.
 /// other_mode              receives the distance to the nearest other natural frequency of the wave
 ///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// error                   receives the amplitudes over those of the computed resonances next to
+///                         them, minus 1, NaN where none was found; or NULL.
 /// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// hooks                   phase, log and cancellation; progress is not called. NULL: none.
@@ -2296,6 +2311,7 @@ hbvib_status hbvib_branch_synthesis_peaks_with_hooks(const hbvib_branch *branch,
                                                      double *log10_amplitude,
                                                      double *damping_ratio,
                                                      double *other_mode,
+                                                     double *error,
                                                      int32_t *flags,
                                                      int64_t *count,
                                                      const hbvib_hooks *hooks);

@@ -695,7 +695,7 @@ struct Synthesis {
 };
 /// A synthesised resonance; flags is a sum of hbvib_synthesis_flag.
 struct SynthesisPeak {
-  double omega, amplitude, log10_amplitude, damping_ratio, other_mode;
+  double omega, amplitude, log10_amplitude, damping_ratio, other_mode, error;
   std::int32_t flags;
 };
 /// Damped natural modes.
@@ -1174,15 +1174,15 @@ inline std::vector<SynthesisPeak> Branch::synthesis_peaks(const Model& model, co
                                                           const Hooks& hooks) const {
   const auto keep = model.core_;
   Index count = 0;
-  use_whole(hooks, hbvib_branch_synthesis_peaks_with_hooks, model.get(), &options, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &count);
+  use_whole(hooks, hbvib_branch_synthesis_peaks_with_hooks, model.get(), &options, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &count);
   const std::size_t n = detail::extent(count);
-  std::vector<double> omega(n), amplitude(n), log10_amplitude(n), damping_ratio(n), other_mode(n);
+  std::vector<double> omega(n), amplitude(n), log10_amplitude(n), damping_ratio(n), other_mode(n), error(n);
   std::vector<std::int32_t> flags(n);
   use_whole(hooks, hbvib_branch_synthesis_peaks_with_hooks, model.get(), &options, count, omega.data(), amplitude.data(), log10_amplitude.data(),
-      damping_ratio.data(), other_mode.data(), flags.data(), &count);
+      damping_ratio.data(), other_mode.data(), error.data(), flags.data(), &count);
   std::vector<SynthesisPeak> all;
   for (std::size_t i = 0; i < n; i++)
-    all.push_back({omega[i], amplitude[i], log10_amplitude[i], damping_ratio[i], other_mode[i], flags[i]});
+    all.push_back({omega[i], amplitude[i], log10_amplitude[i], damping_ratio[i], other_mode[i], error[i], flags[i]});
   return all;
 }
 

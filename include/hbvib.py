@@ -245,12 +245,15 @@ class ModeMultiple(enum.IntEnum):
 
 class SynthesisFlag(enum.IntFlag):
     """Reasons to doubt a synthesised resonance: bits of a sum."""
-    VALID = 0  #: No reason for doubt was found.
+    VALID = 0  #: No reason for doubt was found, and the computed resonance has the same amplitude within 1 %.
     ANOTHER_MODE = 1  #: Another mode lies within the half-power bandwidth, or shares the frequency of the linear mode.
     #: Higher harmonics hold more than 1 % of the kinetic energy, or the point lies where the amplitude falls along the
     #: branch, beyond a fold.
     INTERNAL_RESONANCE = 2
     FALLING = 4  #: The amplitude falls as the force rises: a detached response begins here.
+    #: The amplitude differs by 1 % or more from that of the computed resonance next to it, or no such resonance was
+    #: found.
+    INACCURATE = 8
 
 
 class SteadyMethod(enum.IntEnum):
@@ -320,7 +323,7 @@ mode_options: uint32 struct_size; int32 damping_form; double log10_start log10_s
 mode_point: uint32 struct_size; int32 reserved; double log10_amplitude omega damping_ratio modal_amplitude energy
     fundamental_share friction_loss structural_loss energy_damping_ratio assurance
 mode_info: uint32 struct_size; int32 multiple; int64 mode_index multiplicity reference_dof engine_order
-    amplitude_contact; double omega linear_up_to
+    amplitude_contact; double omega linear_up_to slip_from lift_off_from
 synthesis_options: uint32 struct_size; int32 model_damping; double force_factor damping_ratio
 time_options: uint32 struct_size; int32 method; double omega; int64 harmonics samples; double tolerance; int64
     max_periods; pointer start; int64 start_len
@@ -432,8 +435,8 @@ branch_mode_info: h mode_info
 synthesis_options_init: synthesis_options z
 branch_synthesis: h h synthesis_options l p p p p
 branch_synthesis_with_hooks: h h synthesis_options l p p p p hooks
-branch_synthesis_peaks: h h synthesis_options l p p p p p p p
-branch_synthesis_peaks_with_hooks: h h synthesis_options l p p p p p p p hooks
+branch_synthesis_peaks: h h synthesis_options l p p p p p p p p
+branch_synthesis_peaks_with_hooks: h h synthesis_options l p p p p p p p p hooks
 time_options_init: time_options z
 time_info_init: time_info z
 time_response: h time_options hooks p l p l time_info
@@ -571,11 +574,11 @@ if TYPE_CHECKING:
         def hbvib_branch_synthesis_with_hooks(self, branch: Any, model: Any, options: Any, capacity: int, omega: Any,
             response: Any, modal_amplitude: Any, count: Any, hooks: Any) -> int: ...
         def hbvib_branch_synthesis_peaks(self, branch: Any, model: Any, options: Any, capacity: int, omega: Any,
-            amplitude: Any, log10_amplitude: Any, damping_ratio: Any, other_mode: Any, flags: Any, count:
+            amplitude: Any, log10_amplitude: Any, damping_ratio: Any, other_mode: Any, error: Any, flags: Any, count:
             Any) -> int: ...
         def hbvib_branch_synthesis_peaks_with_hooks(self, branch: Any, model: Any, options: Any, capacity: int, omega:
-            Any, amplitude: Any, log10_amplitude: Any, damping_ratio: Any, other_mode: Any, flags: Any, count: Any,
-            hooks: Any) -> int: ...
+            Any, amplitude: Any, log10_amplitude: Any, damping_ratio: Any, other_mode: Any, error: Any, flags: Any,
+            count: Any, hooks: Any) -> int: ...
         def hbvib_time_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_time_info_init(self, i: Any, size_of_i: int) -> int: ...
         def hbvib_time_response(self, model: Any, options: Any, hooks: Any, harmonics: Any, harmonics_len: int, samples:
@@ -968,7 +971,7 @@ Points = namedtuple("Points", "omega amplitude point")
 Wanted = namedtuple("Wanted", "amplitude point")
 Loop = namedtuple("Loop", "motion force state")
 Synthesis = namedtuple("Synthesis", "omega response modal_amplitude")
-SynthesisPeaks = namedtuple("SynthesisPeaks", "omega amplitude log10_amplitude damping_ratio other_mode flags")
+SynthesisPeaks = namedtuple("SynthesisPeaks", "omega amplitude log10_amplitude damping_ratio other_mode error flags")
 Residual = namedtuple("Residual", "residual jacobian d_omega")
 ContactForce = namedtuple("ContactForce", "force jacobian")
 TimeResponse = namedtuple("TimeResponse", "harmonics samples info status")
@@ -2016,8 +2019,9 @@ class Branch(_Owner):
 
     def synthesis_peaks(self, model: Model, **options: Any) -> SynthesisPeaks:
         """The resonances of a synthesised response; `flags` are sums of SynthesisFlag, other_mode the distance of the
-        nearest other mode over the half-power bandwidth. Options as for synthesis."""
-        return SynthesisPeaks(*self._synthesis("synthesis_peaks", model, options, [float] * 5 + [np.int32]))
+        nearest other mode over the half-power bandwidth, error the amplitude over that of the computed resonance next
+        to it, minus 1. Options as for synthesis."""
+        return SynthesisPeaks(*self._synthesis("synthesis_peaks", model, options, [float] * 6 + [np.int32]))
 
     def _synthesis(self, name: str, model: Model, options: dict, dtypes: Sequence) -> list:
         stop = {key: options.pop(key, None) for key in ("phase", "cancel")}

@@ -31,6 +31,7 @@ use hbvib::model::structure::MatrixKind;
 use hbvib::options::{DampingForm, ModeChoice, SolverOptions};
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
 use hbvib::problem::harmonic_balance::HarmonicBalance;
+use hbvib::problem::static_state::StaticState;
 use hbvib::problem::{InitialGuess, Problem, Residual};
 use hbvib::results::energy::balance;
 use num_complex::Complex64;
@@ -156,19 +157,31 @@ fn an_evaluation_of_a_mode_allocates_nothing() {
     let start = model.select_mode(ModeChoice::Index(0)).unwrap();
     for form in [DampingForm::Mass, DampingForm::Stiffness] {
         let damped = model.damped_mode(&start, form).unwrap();
-        let linear = LinearMode {
-            omega: damped.omega,
-            damping: damped.damping,
-            shape: damped.shape,
-        };
         let gauge = Gauge {
             contact: None,
             reference_dof: 0,
         };
-        for (highest, samples) in WAYS {
+        for ((highest, samples), loaded) in WAYS.into_iter().flat_map(|way| [(way, false), (way, true)]) {
             let options = options(highest, samples);
             let (condensed, _) =
-                Condensed::for_mode(&model, &options, form, &linear.shape, &Interrupt::none()).unwrap();
+                Condensed::for_mode(&model, &options, (form, loaded), &damped.shape, &Interrupt::none()).unwrap();
+            let still = |n: usize| {
+                if loaded {
+                    vec![0.1 * condensed.length(); n]
+                } else {
+                    Vec::new()
+                }
+            };
+            let linear = LinearMode {
+                omega: damped.omega,
+                damping: damped.damping,
+                shape: damped.shape.clone(),
+                rest: StaticState {
+                    motion: still(condensed.coordinates()),
+                    structure: still(condensed.ndof()),
+                    ..StaticState::default()
+                },
+            };
             let interrupt = Interrupt::none();
             let mut problem = Epmc::new(&condensed, &gauge, &linear, samples, &interrupt).unwrap();
             let n = problem.size();

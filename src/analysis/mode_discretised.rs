@@ -5,7 +5,9 @@ use crate::adaptivity::discretised::{Assessment, Discretised, Recorder};
 use crate::adaptivity::estimate_spacing::share_of_highest;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
+use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::mode_equations::{Equations, LinearStart};
+use crate::analysis::mode_onset::OnsetSearch;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, try_copy};
@@ -37,6 +39,7 @@ pub(super) struct ModeDiscretised<'a> {
     damping: f64,
     /// Fundamental of the previous point of the curve.
     before: Vec<Complex64>,
+    onsets: OnsetSearch,
 }
 
 /// Quantities of a point besides its motion.
@@ -60,6 +63,7 @@ impl<'a> ModeDiscretised<'a> {
     ) -> Result<Self> {
         let equations = Equations::new(levels.at(level)?, &start, &settings)?;
         Ok(Self {
+            onsets: OnsetSearch::new(equations.problem.onset()?),
             resolutions: Resolutions::new(levels, level, equations)?,
             recorder: BranchRecorder::new(branch, solver.tolerance),
             start,
@@ -89,7 +93,16 @@ impl<'a> ModeDiscretised<'a> {
     }
 
     /// The complete branch.
-    pub fn finish(self, model: &Model, solver: &SolverOptions, ending: &Ending, estimates: usize) -> Result<Branch> {
+    pub fn finish(
+        mut self,
+        model: &Model,
+        solver: &SolverOptions,
+        ending: &Ending,
+        estimates: usize,
+    ) -> Result<Branch> {
+        if let Some(data) = self.recorder.branch_mut().mode_data_mut() {
+            [data.info.slip_from, data.info.lift_off_from] = self.onsets.found();
+        }
         let reduction = self
             .resolutions
             .reduction(model, solver, self.recorder.branch().reduction())?;
@@ -102,6 +115,27 @@ impl<'a> ModeDiscretised<'a> {
         self.resolutions.current.evaluate(point, response_dof)
     }
 
+    /// Locates onsets between the point evaluated last and the one recorded before.
+    fn note_onsets(&mut self, point: &Point) -> Result<()> {
+        let Self {
+            onsets,
+            resolutions,
+            settings,
+            start,
+            ..
+        } = self;
+        let (levels, index) = (resolutions.levels, resolutions.index());
+        let transfer = |before: &Point, from: usize| {
+            let (from, to) = (levels.at(from)?, levels.at(index)?);
+            transferred_point(before, &from.condensed, &to.condensed, 3, false)
+        };
+        let problem = &mut resolutions.current.problem;
+        if onsets.note(problem, (point, index), transfer, settings, start.interrupt)? {
+            self.evaluate(point)?;
+        }
+        Ok(())
+    }
+
     /// Estimate of the point evaluated last.
     fn estimate_error(&mut self, point: &Point) -> Result<Option<Estimate>> {
         let Some(estimator) = &mut self.estimator else {
@@ -112,7 +146,7 @@ impl<'a> ModeDiscretised<'a> {
         let (omega, damping) = Epmc::frequency_and_damping(self.start.linear, point.unknowns());
         let solved = Solved {
             condensed,
-            motion: &equations.motion,
+            motion: &equations.vibration,
             omega,
             response: equations.response[condensed.set().fundamental()] * condensed.length(),
             sticks: Some(equations.problem.forces().all_stuck()),
@@ -247,6 +281,7 @@ impl Discretised for ModeDiscretised<'_> {
 impl Recorder for ModeDiscretised<'_> {
     fn record(&mut self, point: &Point) -> Result<()> {
         self.evaluate(point)?;
+        self.note_onsets(point)?;
         // Every step that may fail comes before the storage.
         let numbers = self.measure(point, false)?;
         self.damping = self.damping.max(numbers.mode.damping_ratio.abs());

@@ -7,6 +7,7 @@ use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
+use crate::problem::static_state::StaticState;
 use crate::problem::{Problem, Residual};
 use crate::results::Resolution;
 use crate::results::energy::{self, Balance};
@@ -29,8 +30,11 @@ pub(super) struct Equations<'a> {
     pub problem: Epmc<'a>,
     pub corrector: Corrector,
     at: Residual,
-    /// Packed relative motions of the point evaluated last.
+    /// Packed relative motions of the point evaluated last, about the static state and in total.
+    pub vibration: Vec<f64>,
     pub motion: Vec<f64>,
+    /// The static state in the units of the solver.
+    rest: StaticState,
     forces: Vec<f64>,
     /// Carried harmonics of the response degree of freedom there.
     pub response: Vec<Complex64>,
@@ -52,7 +56,9 @@ impl<'a> Equations<'a> {
         Ok(Self {
             corrector: Corrector::new(unknowns, settings.tolerance, settings.max_iterations)?,
             at: Residual::new(unknowns)?,
+            vibration: try_vec(unknowns - 2, 0.0, CONTEXT)?,
             motion: try_vec(unknowns - 2, 0.0, CONTEXT)?,
+            rest: start.linear.rest.in_units(condensed.length())?,
             forces: try_vec(unknowns - 2, 0.0, CONTEXT)?,
             weighted: try_vec(condensed.ndof(), Complex64::ZERO, CONTEXT)?,
             response: try_vec(condensed.blocks().len(), Complex64::ZERO, CONTEXT)?,
@@ -90,13 +96,22 @@ impl<'a> Equations<'a> {
         let (u, p) = (point.unknowns(), point.parameter());
         self.problem.evaluate(u, p, &mut self.at)?;
         let a = 10f64.powf(p);
-        for (m, u) in self.motion.iter_mut().zip(u) {
+        for (m, u) in self.vibration.iter_mut().zip(u) {
             *m = a * u;
+        }
+        self.motion.copy_from_slice(&self.vibration);
+        let packed = self.resolution.condensed.set().packed_len();
+        for (m, rest) in self.motion.iter_mut().step_by(packed).zip(&self.rest.motion) {
+            *m += rest;
         }
         let condensed = &self.resolution.condensed;
         let harmonics = self.problem.shape().chunks_exact(condensed.ndof());
         for (i, (r, x)) in self.response.iter_mut().zip(harmonics).enumerate() {
-            *r = a * condensed.motion_row(i, dof)?.along(x);
+            let row = condensed.motion_row(i, dof)?;
+            *r = a * row.along(x);
+            if condensed.blocks()[i].number == 0 && self.rest.is_loaded() {
+                *r += row.terms().map(|&(p, a)| a * self.rest.structure[p]).sum::<Complex64>();
+            }
         }
         Ok(())
     }

@@ -8,8 +8,8 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::mode_equations::LinearStart;
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
+use crate::analysis::static_solution::static_state;
 use crate::condense::Condensed;
-use crate::contact::Contact;
 use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
@@ -18,15 +18,15 @@ use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
+use crate::model::linear_modes::ContactState;
 use crate::model::repeated_modes::Multiple;
 use crate::model::spring::along;
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
 use crate::problem::Problem;
 use crate::problem::epmc::{Gauge, LinearMode};
-use crate::problem::static_force::static_force;
+use crate::problem::static_state::StaticState;
 use crate::results::mode_branch::{ModeData, ModeInfo};
 use crate::results::{Branch, SpecialKind};
-use num_complex::Complex64;
 
 /// Motion that counts as zero, relative to the largest of the mode.
 const NODE: f64 = 1e-9;
@@ -41,14 +41,15 @@ const BELOW_ONSET: f64 = 3.0;
 
 /// Follows a nonlinear mode of `model` from `range.log10_start` to `range.log10_stop`.
 ///
-/// The forces of the model have no effect. A branch that ends early is returned with a positive [`Branch::status`]
+/// The mode vibrates about the static state under the constant forces of the model and the preload of its contacts;
+/// vibrating forces have no effect. A branch that ends early is returned with a positive [`Branch::status`]
 /// and every point found. Its peaks are the points of largest damping ratio, its folds those where the amplitude
 /// turns.
 ///
 /// # Errors
 /// Bad options and models ([`SolverOptions::check`], [`ModeOptions::check`], [`Model::select_mode`]), `Argument` for
-/// a mode that moves no contact and for a reference degree of freedom at a node of the mode, `Unsupported` for
-/// constant forces, `NoConvergence` if no first point was found.
+/// a mode that moves no contact and for a reference degree of freedom at a node of the mode, `NoConvergence` if no
+/// static state or no first point was found.
 pub fn nonlinear_mode(
     model: &Model,
     solver: &SolverOptions,
@@ -63,21 +64,6 @@ pub fn nonlinear_mode(
         return fail!(Argument, "harmonics = 0, a nonlinear mode needs at least 1");
     }
     model.check_response_dof(solver.response_dof)?;
-    let constant = |f: &&crate::model::excitation::Force| f.harmonic == 0 && f.value != Complex64::ZERO;
-    if let Some(force) = model.excitation().forces().iter().find(constant) {
-        return fail!(
-            Unsupported,
-            "a constant force of {} acts on dof {}; nonlinear modes under constant forces are not provided yet",
-            force.value.re,
-            force.dof
-        );
-    }
-    if let Some(id) = model.contacts().iter().position(Contact::is_preloaded) {
-        return fail!(
-            Unsupported,
-            "contact {id} presses at rest; nonlinear modes under constant forces are not provided yet"
-        );
-    }
     let other_wave;
     let model = match range.diameter {
         None => model,
@@ -107,6 +93,8 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
         engine_order: model.structure().engine_order(),
         amplitude: range.amplitude,
         linear_up_to: f64::NEG_INFINITY,
+        slip_from: f64::INFINITY,
+        lift_off_from: f64::INFINITY,
         stuck: Vec::new(),
         free: Vec::new(),
     };
@@ -114,6 +102,7 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
         omega: 0.0,
         damping: 0.0,
         shape: Vec::new(),
+        rest: StaticState::default(),
     };
     let gauge = Gauge {
         contact: None,
@@ -133,17 +122,25 @@ fn on_wave(
     interrupt: &Interrupt<'_>,
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
-    let chosen = model.select_mode_with(range.choice, interrupt)?;
-    let damped = model.damped_mode_with(&chosen, range.damping_form, interrupt)?;
+    let rest = static_state(model, solver, interrupt)?;
+    let contacts = if rest.is_loaded() {
+        ContactState::AboutStatic(&rest.tangents)
+    } else {
+        ContactState::Stuck
+    };
+    let chosen = model.select_mode_with(range.choice, contacts, interrupt)?;
+    let damped = model.damped_mode_with(&chosen, contacts, range.damping_form, interrupt)?;
     let mut linear = LinearMode {
         omega: damped.omega,
         damping: damped.damping,
         shape: damped.shape,
+        rest,
     };
     let gauge = gauge(model, range, &mut linear)?;
     let levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
-        Ok(Condensed::for_mode(model, &options, range.damping_form, &linear.shape, interrupt)?.0)
+        let form = (range.damping_form, linear.rest.is_loaded());
+        Ok(Condensed::for_mode(model, &options, form, &linear.shape, interrupt)?.0)
     })?;
     let level = levels.first(solver.harmonics);
     let resolution = levels.at(level)?;
@@ -161,12 +158,6 @@ fn on_wave(
             "mode {} (angular frequency {}) moves no contact that can slip: largest relative motion {motion} of {largest}; it is linear",
             chosen.index,
             chosen.omega
-        );
-    }
-    if let Some(id) = static_force(condensed, linear.omega, resolution.samples, interrupt)? {
-        return fail!(
-            Unsupported,
-            "contact {id} has a force at rest; nonlinear modes under constant forces are not provided yet"
         );
     }
     let reference_dof = model.structure().degrees().origin(gauge.reference_dof);
@@ -206,6 +197,8 @@ fn on_wave(
             engine_order: model.structure().engine_order(),
             amplitude: range.amplitude,
             linear_up_to,
+            slip_from: f64::INFINITY,
+            lift_off_from: f64::INFINITY,
             stuck: chosen.stuck,
             free: chosen.free,
         },

@@ -9,6 +9,7 @@
 //!
 //! These are two frequencies at each amplitude; they meet at the resonance, where the root vanishes.
 
+mod computed_peak;
 mod oscillator;
 mod resonance;
 
@@ -17,6 +18,7 @@ use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::analysis::synthesis::resonance::Refinement;
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
+use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::SynthesisOptions;
@@ -36,7 +38,13 @@ pub struct Validity {
     pub repeated: bool,
     /// True if the amplitude falls along the branch here, beyond a fold.
     pub turned: bool,
+    /// Amplitude over that of the computed resonance next to it, minus 1: of the response degree of freedom, with the
+    /// harmonics of the mode. NaN where no computed resonance was found, or none was sought.
+    pub error: f64,
 }
+
+/// Error of the amplitude above which a resonance is inaccurate.
+const INACCURATE: f64 = 0.01;
 
 /// Share of the kinetic energy outside the fundamental above which a higher harmonic resonates.
 const OUTSIDE: f64 = 0.01;
@@ -46,6 +54,12 @@ impl Validity {
     #[must_use]
     pub fn another_mode(&self) -> bool {
         self.repeated || self.other_mode <= 1.0
+    }
+
+    /// Whether the computed amplitude differs by more than 1 %, or is not known.
+    #[must_use]
+    pub fn inaccurate(&self) -> bool {
+        self.error.is_nan() || self.error.abs() >= INACCURATE
     }
 
     /// Whether the mode resonates with another one in a higher harmonic.
@@ -161,11 +175,27 @@ pub fn synthesise_with(
         }
         if let Some(state) = refinement.between(k - 1, a, b)? {
             let backwards = states[k].log10 < states[k - 1].log10;
+            let at = state.at_peak();
+            let error = if options.compare {
+                let damping = |h: usize| -> Result<Option<Csc>> {
+                    Ok(if options.model_damping {
+                        Some(model.structure().wave_matrix(MatrixKind::Damping, h)?)
+                    } else {
+                        None
+                    })
+                };
+                computed_peak::error(&refinement.at_peak(&state, at.omega), &load, damping, interrupt)?
+            } else {
+                f64::NAN
+            };
             let peak = SynthesisPeak {
-                at: state.at_peak(),
+                at,
                 log10_amplitude: state.log10,
                 rising: a < 0.0,
-                validity: validity(data, &state, backwards),
+                validity: Validity {
+                    error,
+                    ..validity(data, &state, backwards)
+                },
             };
             try_push(&mut synthesis.peaks, peak, CONTEXT)?;
         }
@@ -221,5 +251,6 @@ fn validity(data: &ModeData, state: &State, backwards: bool) -> Validity {
         fundamental_share: state.fundamental_share,
         repeated: info.multiplicity > 1,
         turned: backwards,
+        error: f64::NAN,
     }
 }

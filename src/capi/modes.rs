@@ -102,8 +102,9 @@ pub unsafe extern "C" fn hbvib_mode_options_init(o: *mut hbvib_mode_options, siz
 /// Follows a nonlinear mode over a range of amplitude, from contacts that stick to contacts that
 /// slide, by the extended periodic motion concept (EPMC, Krack 2015) and arc-length continuation:
 /// artificial damping balances the loss in friction and structure, and its damping ratio D belongs
-/// to the result. The forces of the model have no effect. Turns in amplitude are passed, largest
-/// damping ratios refined.
+/// to the result. The mode vibrates about the static state under the constant forces of the model
+/// and the preload of its contacts; amplitude and potential energy count from it. Vibrating forces
+/// have no effect. Turns in amplitude are passed, largest damping ratios refined.
 ///
 /// solver  options; NULL: the defaults. harmonics must be at least 1.
 /// mode    the linear mode to start from, the measure of the amplitude, its range.
@@ -114,8 +115,8 @@ pub unsafe extern "C" fn hbvib_mode_options_init(o: *mut hbvib_mode_options, siz
 /// Errors: HBVIB_E_ARGUMENT, HBVIB_E_DIMENSION, HBVIB_E_INDEX and HBVIB_E_NOT_FINITE for options
 /// out of range, a mode that moves no contact, a mode of frequency 0, and a reference at a node of
 /// the mode; HBVIB_E_NOT_POSITIVE_DEFINITE and HBVIB_E_NOT_HERMITIAN for matrices, also missing
-/// ones; HBVIB_E_UNSUPPORTED for constant forces; HBVIB_E_NO_CONVERGENCE where no first point was
-/// found; HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// ones; HBVIB_E_NO_CONVERGENCE where no static state or no first point was found;
+/// HBVIB_E_SINGULAR, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.

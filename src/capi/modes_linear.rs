@@ -106,7 +106,7 @@ pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
 }
 
 /// The state of contacts by its number.
-pub(super) fn contact_state_of(value: i32, argument: i32) -> Result<ContactState> {
+pub(super) fn contact_state_of(value: i32, argument: i32) -> Result<ContactState<'static>> {
     const FREE: i32 = hbvib_contact_state::HBVIB_CONTACTS_FREE as i32;
     const STUCK: i32 = hbvib_contact_state::HBVIB_CONTACTS_STUCK as i32;
     match value {

@@ -153,9 +153,15 @@ pub struct hbvib_mode_info {
     pub amplitude_contact: i64,
     /// Angular frequency of the linear mode without damping.
     pub omega: f64,
-    /// log10 of the largest amplitude at which all contacts stick; minus infinity where a law is
-    /// never linear, or the call was stopped before this was known.
+    /// log10 of the largest amplitude at which all contacts stick, or keep their state at rest;
+    /// minus infinity where a law is never linear, or the call was stopped before this was known.
     pub linear_up_to: f64,
+    /// log10 of the amplitude at which the first contact begins to slip. Infinity: none slips on
+    /// this branch. Minus infinity: one slips at the first point already, and it is not known from
+    /// which amplitude on, or at every amplitude.
+    pub slip_from: f64,
+    /// The same for the first contact that presses at rest and lifts off.
+    pub lift_off_from: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_mode_info {
@@ -173,6 +179,8 @@ unsafe impl VersionedStruct for hbvib_mode_info {
             amplitude_contact: -1,
             omega: 0.0,
             linear_up_to: 0.0,
+            slip_from: 0.0,
+            lift_off_from: 0.0,
         }
     }
 }
@@ -221,6 +229,8 @@ pub unsafe extern "C" fn hbvib_branch_mode_info(
             },
             omega: info.omega,
             linear_up_to: info.linear_up_to,
+            slip_from: info.slip_from,
+            lift_off_from: info.lift_off_from,
             ..hbvib_mode_info::defaults()
         };
         unsafe { fill_out(out, value) };

@@ -138,7 +138,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_with_hooks(
         let omega = optional((omega, 5), "omega")?;
         let response = optional((response, 6), "response")?;
         let modal = optional((modal_amplitude, 7), "modal_amplitude")?;
-        let found = unsafe { synthesis(branch, model, options, &hooks) }?.points;
+        let found = unsafe { synthesis((branch, model, options), false, &hooks) }?.points;
         let none = omega.is_none() && response.is_none() && modal.is_none();
         if !none && capacity < found.len() {
             unsafe { count.write(found.len() as i64) };
@@ -177,7 +177,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_with_hooks(
 /// Reasons to doubt a synthesised resonance: bits of a sum.
 #[repr(C)]
 pub enum hbvib_synthesis_flag {
-    /// No reason for doubt was found.
+    /// No reason for doubt was found, and the computed resonance has the same amplitude within 1 %.
     HBVIB_SYNTHESIS_VALID = 0,
     /// Another mode lies within the half-power bandwidth, or shares the frequency of the linear
     /// mode.
@@ -187,6 +187,9 @@ pub enum hbvib_synthesis_flag {
     HBVIB_SYNTHESIS_INTERNAL_RESONANCE = 2,
     /// The amplitude falls as the force rises: a detached response begins here.
     HBVIB_SYNTHESIS_FALLING = 4,
+    /// The amplitude differs by 1 % or more from that of the computed resonance next to it, or no
+    /// such resonance was found.
+    HBVIB_SYNTHESIS_INACCURATE = 8,
 }
 
 /// Resonances of a synthesised response, refined on the equations of the mode, in the order of the
@@ -202,6 +205,8 @@ pub enum hbvib_synthesis_flag {
 /// damping_ratio           receives the total damping ratios there, or NULL.
 /// other_mode              receives the distance to the nearest other natural frequency of the wave
 ///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// error                   receives the amplitudes over those of the computed resonances next to
+///                         them, minus 1, NaN where none was found; or NULL.
 /// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// Errors and threads: as for hbvib_branch_synthesis.
@@ -217,6 +222,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
     log10_amplitude: *mut f64,
     damping_ratio: *mut f64,
     other_mode: *mut f64,
+    error: *mut f64,
     flags: *mut i32,
     count: *mut i64,
 ) -> hbvib_status {
@@ -231,6 +237,7 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
             log10_amplitude,
             damping_ratio,
             other_mode,
+            error,
             flags,
             count,
             core::ptr::null(),
@@ -251,6 +258,8 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks(
 /// damping_ratio           receives the total damping ratios there, or NULL.
 /// other_mode              receives the distance to the nearest other natural frequency of the wave
 ///                         over the half-power bandwidth, infinite where none is known; or NULL.
+/// error                   receives the amplitudes over those of the computed resonances next to
+///                         them, minus 1, NaN where none was found; or NULL.
 /// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// hooks                   phase, log and cancellation; progress is not called. NULL: none.
@@ -267,28 +276,32 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks_with_hooks(
     log10_amplitude: *mut f64,
     damping_ratio: *mut f64,
     other_mode: *mut f64,
+    error: *mut f64,
     flags: *mut i32,
     count: *mut i64,
     hooks: *const hbvib_hooks,
 ) -> hbvib_status {
     call(|| {
-        let hooks = unsafe { load_hooks(hooks, 12) }?;
+        let hooks = unsafe { load_hooks(hooks, 13) }?;
         let capacity = arrays::count(capacity, 4, "capacity")?;
-        check_pointer(count, 11, "count")?;
-        let columns: [(*mut f64, i32, &str, Column); 5] = [
+        check_pointer(count, 12, "count")?;
+        let columns: [(*mut f64, i32, &str, Column); 6] = [
             (omega, 5, "omega", |p| p.at.omega),
             (amplitude, 6, "amplitude", |p| p.at.response.norm()),
             (log10_amplitude, 7, "log10_amplitude", |p| p.log10_amplitude),
             (damping_ratio, 8, "damping_ratio", |p| p.at.damping_ratio),
             (other_mode, 9, "other_mode", |p| p.validity.other_mode),
+            (error, 10, "error", |p| p.validity.error),
         ];
         let mut wanted = false;
         for (p, argument, name, _) in &columns {
             wanted |= optional((*p, *argument), name)?.is_some();
         }
-        let flags = optional((flags, 10), "flags")?;
+        let flags = optional((flags, 11), "flags")?;
         wanted |= flags.is_some();
-        let found = unsafe { synthesis(branch, model, options, &hooks) }?.peaks;
+        // The computed resonances take their time, which a caller who only counts does not need.
+        let compare = flags.is_some() || !error.is_null();
+        let found = unsafe { synthesis((branch, model, options), compare, &hooks) }?.peaks;
         unsafe { count.write(found.len() as i64) };
         if wanted && capacity < found.len() {
             return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(4);
@@ -309,19 +322,22 @@ pub unsafe extern "C" fn hbvib_branch_synthesis_peaks_with_hooks(
 
 /// The common first part of both functions.
 unsafe fn synthesis(
-    branch: *const hbvib_branch,
-    model: *const hbvib_model,
-    options: *const hbvib_synthesis_options,
+    (branch, model, options): (*const hbvib_branch, *const hbvib_model, *const hbvib_synthesis_options),
+    compare: bool,
     hooks: &hbvib_hooks,
 ) -> Result<Synthesis> {
     let kept = read::<KeptBranch>(branch, 1)?;
     let model = read::<Model>(model, 2)?;
-    let mut chosen = SynthesisOptions::default();
+    let mut chosen = SynthesisOptions {
+        compare,
+        ..SynthesisOptions::default()
+    };
     if !options.is_null() {
         let o = unsafe { load(options, 3) }?;
         chosen = SynthesisOptions {
             force_factor: o.force_factor,
             damping_ratio: o.damping_ratio,
+            compare,
             model_damping: match o.model_damping {
                 0 => false,
                 1 => true,
@@ -355,6 +371,7 @@ fn bits(peak: &SynthesisPeak) -> i32 {
             Flag::HBVIB_SYNTHESIS_INTERNAL_RESONANCE as i32,
         ),
         (!peak.rising, Flag::HBVIB_SYNTHESIS_FALLING as i32),
+        (peak.validity.inaccurate(), Flag::HBVIB_SYNTHESIS_INACCURATE as i32),
     ] {
         if set {
             sum += flag;

@@ -20,13 +20,13 @@ use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, Status, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::power_of_two;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
-use crate::options::{DampingForm, SolverOptions};
+use crate::options::{DampingForm, Flexibility, SolverOptions};
 use num_complex::Complex64;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
@@ -113,31 +113,84 @@ impl Condensed {
         Ok(condensed)
     }
 
-    /// Condenses a model without its forces for a nonlinear mode with artificial damping of the given form,
-    /// starting from a linear mode of the given shape. Also returns the largest relative motion of that shape at an
-    /// active contact, which sets the unit of lengths.
+    /// Condenses a model for its static state under constant forces and preload. The unit of lengths is near the
+    /// largest motion under the forces, with every contact at its reference stiffness, or of the compression by the
+    /// preload.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn for_static(model: &Model, options: &SolverOptions, interrupt: &Interrupt<'_>) -> Result<Self> {
+        let options = SolverOptions {
+            harmonics: 0,
+            // A basis is good at the frequencies of a sweep.
+            flexibility: Flexibility::Direct,
+            ..*options
+        };
+        let (mut condensed, assembled) = Self::unscaled(model, &options, (&[0], 0.0.into()), (None, None), interrupt)?;
+        condensed.add_constant_forces(model, 1.0);
+        let mut workspace = Workspace::new(&condensed, None)?;
+        let evaluated = workspace.evaluate(&condensed, 0, 0.0, false, interrupt).map(|_| ());
+        let mut motion = match evaluated {
+            // The solution will tell.
+            Err(e) if e.status == Status::Singular => 0.0,
+            evaluated => {
+                evaluated?;
+                condensed.largest(0, workspace.excited())?
+            }
+        };
+        for at in &assembled {
+            let contact = &model.contacts()[at.contact];
+            let stiffness = contact.stiffness(at.direction);
+            if contact.normal_direction() == Some(at.direction) && stiffness > 0.0 {
+                motion = motion.max(contact.normal_load(0.0) / stiffness);
+            }
+        }
+        let length = power_of_two(motion);
+        for f in condensed.blocks.iter_mut().flat_map(|block| &mut block.force) {
+            *f /= length;
+        }
+        condensed.set_length(model, length, &assembled)?;
+        Ok(condensed)
+    }
+
+    /// Adds the constant forces of a model, for the unit `length`.
+    fn add_constant_forces(&mut self, model: &Model, length: f64) {
+        for block in self.blocks.iter_mut().filter(|b| b.number == 0) {
+            model.add_forces_to(0, 1.0 / length, &mut block.force);
+        }
+    }
+
+    /// Condenses a model without its vibrating forces for a nonlinear mode with artificial damping of the given form,
+    /// starting from a linear mode of the given shape; `loaded` if constant forces or preload act, so that the mean is
+    /// carried with all harmonics. Also returns the largest relative motion of that shape at an active contact, which
+    /// sets the unit of lengths.
     ///
     /// # Errors
     /// As [`Self::new`].
     pub fn for_mode(
         model: &Model,
         options: &SolverOptions,
-        form: DampingForm,
+        (form, loaded): (DampingForm, bool),
         shape: &[Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<(Self, f64)> {
+        let forced: &[usize] = if loaded { &[0, 1] } else { &[1] };
         // A mode has a linear frequency, so that the stiffness of the structure alone sets the scale.
         let (mut condensed, assembled) = Self::unscaled(
             model,
             options,
-            (&[1], 0.0.into()),
+            (forced, 0.0.into()),
             (Some((form, shape)), None),
             interrupt,
         )?;
         let fundamental = condensed.blocks.iter().find(|b| b.number == 1);
         let rows = fundamental.map_or(&[][..], |b| &b.rows);
         let motion = rows.iter().fold(0.0_f64, |m, row| m.max(row.along(shape).norm()));
-        condensed.set_length(model, power_of_two(motion), &assembled)?;
+        let length = power_of_two(motion);
+        if loaded {
+            condensed.add_constant_forces(model, length);
+        }
+        condensed.set_length(model, length, &assembled)?;
         Ok((condensed, motion))
     }
 

@@ -24,6 +24,7 @@ mod resolution;
 pub mod resonance_poles;
 mod sweep;
 mod tied_load;
+mod under_force;
 pub mod wave_modes;
 mod wave_reduction;
 

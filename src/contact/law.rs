@@ -11,6 +11,7 @@ use crate::contact::contact_state::State;
 use crate::contact::coupled_search::CoupledSearch;
 use crate::contact::linearisation::Range;
 use crate::contact::march::March;
+use crate::contact::onset::Onset;
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::contact::plane_path::PlanePath;
 use crate::contact::samples::Samples;
@@ -148,6 +149,13 @@ pub trait Law: Debug + Send + Sync {
     /// The factor s from which on s·f(x/s) is (nearly) linear, for motions of the given ranges: friction
     /// sticks, a polynomial term is small against the stiffness `reference`.
     fn linearisation_scale(&self, ranges: &[Range], reference: f64) -> f64;
+
+    /// Factors of a vibration in the fundamental, one amplitude per direction, about the static motion `rest` at which
+    /// the law slips, opens or ceases to be linear; as of a slider that was loaded slowly.
+    fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
+        let _ = (rest, motion);
+        Onset::SMOOTH
+    }
 
     /// Whether [`Self::linearisation_scale`] is known for any motion; else it is a guess from the size of
     /// the motions that matter.

@@ -10,6 +10,7 @@ pub mod law;
 pub mod laws;
 pub mod linearisation;
 pub mod march;
+pub mod onset;
 pub mod patch;
 pub mod piece;
 pub mod plane_path;

@@ -87,7 +87,14 @@ impl<'a> ModeEstimator<'a> {
 
     fn condensed(&self, highest: usize) -> Result<Condensed> {
         let options = extended_options(&self.options, highest);
-        Ok(Condensed::for_mode(self.model, &options, self.form, &self.linear.shape, self.interrupt)?.0)
+        Ok(Condensed::for_mode(
+            self.model,
+            &options,
+            (self.form, self.linear.rest.is_loaded()),
+            &self.linear.shape,
+            self.interrupt,
+        )?
+        .0)
     }
 
     fn extend(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Option<Estimate>> {

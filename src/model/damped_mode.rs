@@ -69,16 +69,17 @@ impl Model {
     /// artificial damping of the stiffness type does not act on the mode; `Dimension` for a shape
     /// of another length; `OutOfMemory`.
     pub fn damped_mode(&self, start: &SelectedMode, form: DampingForm) -> Result<DampedMode> {
-        self.damped_mode_with(start, form, &Interrupt::none())
+        self.damped_mode_with(start, ContactState::Stuck, form, &Interrupt::none())
     }
 
-    /// The same as [`Self::damped_mode`], and the caller may stop it.
+    /// The same as [`Self::damped_mode`] with contacts stuck or about a static state, and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::damped_mode`]; `StoppedByCaller`.
     pub fn damped_mode_with(
         &self,
         start: &SelectedMode,
+        contacts: ContactState<'_>,
         form: DampingForm,
         interrupt: &Interrupt<'_>,
     ) -> Result<DampedMode> {
@@ -92,7 +93,7 @@ impl Model {
             );
         }
         let structure = self.structure();
-        let stuck = self.stiffness_at_small_motion(Wave::Harmonic(1), ContactState::Stuck)?;
+        let stuck = self.stiffness_at_small_motion(Wave::Harmonic(1), contacts)?;
         let structural = structure.wave_matrix(MatrixKind::Structural, 1)?;
         let problem = Damped {
             form,

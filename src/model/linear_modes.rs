@@ -12,17 +12,20 @@ use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::quadratic_modes::Quadratic;
 use crate::model::spring_stiffness::Wave;
+use crate::model::static_tangents::StaticTangents;
 use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 
 /// State of the contacts in a linear analysis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ContactState {
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ContactState<'a> {
     /// Without force.
     Free,
     /// Linear springs of their stiffness at small motion.
     Stuck,
+    /// Linear springs of their tangent stiffness at a static motion.
+    AboutStatic(&'a StaticTangents),
 }
 
 /// Natural modes in ascending order of frequency.
@@ -67,7 +70,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::linear_modes`]; `Argument` for a count of 0.
-    pub fn lowest_modes(&self, diameter: usize, contacts: ContactState, count: usize) -> Result<LinearModes> {
+    pub fn lowest_modes(&self, diameter: usize, contacts: ContactState<'_>, count: usize) -> Result<LinearModes> {
         self.lowest_modes_with(diameter, contacts, count, &Interrupt::none())
     }
 
@@ -78,7 +81,7 @@ impl Model {
     pub fn lowest_modes_with(
         &self,
         diameter: usize,
-        contacts: ContactState,
+        contacts: ContactState<'_>,
         count: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<LinearModes> {
@@ -100,7 +103,7 @@ impl Model {
     /// # Errors
     /// `Argument` for a diameter out of range, `NotHermitian` when K or M is not, and those of
     /// [`eigen::generalised`].
-    pub fn linear_modes(&self, diameter: usize, contacts: ContactState) -> Result<LinearModes> {
+    pub fn linear_modes(&self, diameter: usize, contacts: ContactState<'_>) -> Result<LinearModes> {
         self.check_matrices(true)?;
         let modes = self
             .pencil(Wave::Diameter(diameter), contacts)?
@@ -156,16 +159,27 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::sprung_stiffness`].
-    pub fn stiffness_at_small_motion(&self, wave: Wave, contacts: ContactState) -> Result<Csc> {
-        let stuck = self
+    pub fn stiffness_at_small_motion(&self, wave: Wave, contacts: ContactState<'_>) -> Result<Csc> {
+        let acting = self
             .contacts()
             .iter()
-            .filter(|c| contacts == ContactState::Stuck && c.role() != Role::Inert);
-        self.sprung_stiffness(wave, stuck)
+            .enumerate()
+            .filter(|(_, c)| c.role() != Role::Inert);
+        match contacts {
+            ContactState::Free => self.sprung_stiffness(wave, core::iter::empty()),
+            ContactState::Stuck => self.sprung_stiffness(wave, acting.map(|(_, c)| c)),
+            ContactState::AboutStatic(tangents) => {
+                let stiffness = |id: usize, k, l| {
+                    let known = tangents.stiffness(id, k, l);
+                    known.unwrap_or_else(|| self.contacts()[id].stiffness_at_small_motion(k, l))
+                };
+                self.stiffness_with(wave, acting, stiffness)
+            }
+        }
     }
 
     /// K and M of a wave, checked.
-    pub(super) fn pencil(&self, wave: Wave, contacts: ContactState) -> Result<Pencil> {
+    pub(super) fn pencil(&self, wave: Wave, contacts: ContactState<'_>) -> Result<Pencil> {
         let structure = self.structure();
         let highest = structure.sectors() / 2;
         let mass = match wave {

@@ -25,6 +25,7 @@ pub mod slip_capacity;
 pub mod speed;
 pub mod spring;
 pub mod spring_stiffness;
+pub mod static_tangents;
 pub mod structure;
 pub mod wave;
 

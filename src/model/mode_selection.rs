@@ -57,14 +57,19 @@ impl Model {
     /// rigid-body or unstable mode, or a shape without mass; `NotHermitian`,
     /// `NotPositiveDefinite` for the matrices; `NoConvergence`, `Singular`, `OutOfMemory`.
     pub fn select_mode(&self, choice: ModeChoice<'_>) -> Result<SelectedMode> {
-        self.select_mode_with(choice, &Interrupt::none())
+        self.select_mode_with(choice, ContactState::Stuck, &Interrupt::none())
     }
 
-    /// The same as [`Self::select_mode`], and the caller may stop it.
+    /// The same as [`Self::select_mode`] with contacts stuck or about a static state, and the caller may stop it.
     ///
     /// # Errors
     /// As [`Self::select_mode`]; `StoppedByCaller`.
-    pub fn select_mode_with(&self, choice: ModeChoice<'_>, interrupt: &Interrupt<'_>) -> Result<SelectedMode> {
+    pub fn select_mode_with(
+        &self,
+        choice: ModeChoice<'_>,
+        contacts: ContactState<'_>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<SelectedMode> {
         interrupt.phase(Phase::Modes, 0.0)?;
         choice.check(self.ndof())?;
         let mut restricted;
@@ -76,7 +81,7 @@ impl Model {
             }
             other => other,
         };
-        let pencil = self.pencil(Wave::Harmonic(1), ContactState::Stuck)?;
+        let pencil = self.pencil(Wave::Harmonic(1), contacts)?;
         let (known, chosen) = KnownModes::find(&pencil, choice, interrupt)?;
         known.check_frequency(chosen.index)?;
         let n = self.structure().ndof();

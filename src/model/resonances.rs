@@ -63,7 +63,7 @@ impl Model {
     pub fn forced_resonances(
         &self,
         range: (f64, f64),
-        contacts: ContactState,
+        contacts: ContactState<'_>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
         let mut found = Vec::new();
@@ -96,7 +96,7 @@ impl Model {
         &self,
         h: usize,
         (low, high): (f64, f64),
-        contacts: ContactState,
+        contacts: ContactState<'_>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
         match self.damped_frequencies(h, (low, high), contacts, interrupt) {
@@ -109,7 +109,7 @@ impl Model {
         &self,
         h: usize,
         (low, high): (f64, f64),
-        contacts: ContactState,
+        contacts: ContactState<'_>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Vec<Resonance>>> {
         let structure = self.structure();

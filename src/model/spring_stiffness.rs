@@ -19,6 +19,17 @@ impl Model {
         wave: Wave,
         stuck: impl Iterator<Item = &'c Contact>,
     ) -> Result<Vec<(Row, Row, f64)>> {
+        self.spring_rows_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
+    }
+
+    /// The same with the stiffness of contacts between the motions of their directions k and l as given, for
+    /// whatever names a contact.
+    fn spring_rows_with<'c, T: Copy>(
+        &self,
+        wave: Wave,
+        contacts: impl Iterator<Item = (T, &'c Contact)>,
+        stiffness: impl Fn(T, usize, usize) -> f64,
+    ) -> Result<Vec<(Row, Row, f64)>> {
         let structure = self.structure();
         let mut rows = Vec::new();
         let mut add = |force: Row, motion: Row, stiffness: f64| -> Result<()> {
@@ -31,11 +42,11 @@ impl Model {
             let row = structure.row(&structure.spring_motion(s), wave);
             add(row, row, s.stiffness)?;
         }
-        for c in stuck {
+        for (name, c) in contacts {
             let row = |k| structure.row(&structure.contact_motion(c, k), wave);
             for k in 0..c.directions() {
                 for l in 0..c.directions() {
-                    add(row(k), row(l), c.stiffness_at_small_motion(k, l))?;
+                    add(row(k), row(l), stiffness(name, k, l))?;
                 }
             }
         }
@@ -47,6 +58,19 @@ impl Model {
     /// # Errors
     /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
     pub fn sprung_stiffness<'c>(&self, wave: Wave, stuck: impl Iterator<Item = &'c Contact>) -> Result<Csc> {
+        self.stiffness_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
+    }
+
+    /// The same with the stiffness of contacts as in [`Self::spring_rows_with`].
+    ///
+    /// # Errors
+    /// As [`Self::sprung_stiffness`].
+    pub(super) fn stiffness_with<'c, T: Copy>(
+        &self,
+        wave: Wave,
+        contacts: impl Iterator<Item = (T, &'c Contact)>,
+        stiffness: impl Fn(T, usize, usize) -> f64,
+    ) -> Result<Csc> {
         let structure = self.structure();
         let n = structure.ndof();
         let mut own = structure.of_wave(MatrixKind::Stiffness, wave)?;
@@ -58,7 +82,7 @@ impl Model {
             own = Csc::sum(n, &terms)?;
         }
         let mut entries = Vec::new();
-        for (force, motion, stiffness) in self.spring_rows(wave, stuck)? {
+        for (force, motion, stiffness) in self.spring_rows_with(wave, contacts, stiffness)? {
             for (p, x) in force.iter().flatten() {
                 for (q, y) in motion.iter().flatten() {
                     try_push(&mut entries, (*p, *q, x.conj() * y * stiffness), "the springs")?;

@@ -161,7 +161,10 @@ impl Structure {
     }
 
     /// A copy that shares the matrices, allocated fallibly.
-    pub(super) fn try_clone(&self) -> Result<Self> {
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn try_clone(&self) -> Result<Self> {
         let mut modal_damping = Vec::new();
         for a in &self.modal_damping {
             let copy = a.as_ref().map(Csc::try_clone).transpose()?;

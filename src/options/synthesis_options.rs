@@ -11,6 +11,8 @@ pub struct SynthesisOptions {
     pub damping_ratio: f64,
     /// Add the damping of the model's C, which is right for a mode that was computed without it.
     pub model_damping: bool,
+    /// Compute the resonance next to each synthesised one, which tells its error.
+    pub compare: bool,
 }
 
 impl Default for SynthesisOptions {
@@ -19,6 +21,7 @@ impl Default for SynthesisOptions {
             force_factor: 1.0,
             damping_ratio: 0.0,
             model_damping: false,
+            compare: true,
         }
     }
 }

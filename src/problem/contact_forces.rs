@@ -6,11 +6,12 @@ mod ranges;
 
 use crate::aft::{Evaluation, Evaluator};
 use crate::condense::{Condensed, LoadedLaw};
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::contact_jacobian::Blocks;
+use crate::problem::static_state::StaticState;
 use num_complex::Complex64;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
@@ -22,6 +23,13 @@ pub struct ContactForces<'a> {
     other: Option<Evaluator>,
     /// s, where every law is scaled to s·f(y/s).
     factor: f64,
+    /// Static motion per coordinate and packed static forces from which motions and forces count; empty: zero.
+    rest: Vec<f64>,
+    rest_force: Vec<f64>,
+    /// Tangent stiffness of the laws at the static motion, law after law and row-major.
+    tangents: Vec<f64>,
+    /// Share of the laws; the rest of the force is that of the tangents.
+    share: Option<f64>,
     /// y/s of all coordinates, and of those of one law.
     scaled: Vec<f64>,
     gathered: Vec<f64>,
@@ -43,6 +51,9 @@ pub struct ContactForces<'a> {
     /// Per coordinate, whether all its laws stick and none acts along its normal, where a load acts at rest.
     inactive: Vec<bool>,
     slip_fractions: Vec<f64>,
+    open_fractions: Vec<f64>,
+    /// Per law whether it presses at the static motion.
+    presses: Vec<bool>,
     /// Per coordinate, the rounding of the force of near-rigid contacts.
     rounding: Vec<f64>,
 }
@@ -92,6 +103,10 @@ impl<'a> ContactForces<'a> {
             evaluator,
             other: None,
             factor: 1.0,
+            rest: Vec::new(),
+            rest_force: Vec::new(),
+            tangents: Vec::new(),
+            share: None,
             scaled: try_vec(size, 0.0, CONTEXT)?,
             gathered: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
             checked: try_vec(most.saturating_mul(m), 0.0, CONTEXT)?,
@@ -105,6 +120,8 @@ impl<'a> ContactForces<'a> {
             linear: try_vec(condensed.coordinates(), false, CONTEXT)?,
             inactive: try_vec(condensed.coordinates(), false, CONTEXT)?,
             slip_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
+            open_fractions: try_vec(condensed.laws().len(), 0.0, CONTEXT)?,
+            presses: Vec::new(),
             rounding: try_vec(condensed.coordinates(), 0.0, CONTEXT)?,
         })
     }
@@ -120,6 +137,38 @@ impl<'a> ContactForces<'a> {
     /// homotopy that finds a first point.
     pub fn set_scale(&mut self, factor: f64) {
         self.factor = factor;
+    }
+
+    /// Counts motions and forces from a static motion, in the unit of the condensed model, whose laws are evaluated at
+    /// `omega`: a law f becomes s·(f(y₀ + y/s) − f(y₀)).
+    ///
+    /// # Errors
+    /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
+    pub fn set_rest(&mut self, state: &StaticState, omega: f64) -> Result<()> {
+        const CONTEXT: &str = "the static state";
+        let still = try_vec(self.force.len(), 0.0, CONTEXT)?;
+        self.rest_force = try_vec(self.force.len(), 0.0, CONTEXT)?;
+        self.rest = try_copy(&state.motion, CONTEXT)?;
+        for assembled in self.condensed.laws() {
+            let d = assembled.law.directions();
+            for k in 0..d * d {
+                let stiffness = state.tangents.stiffness(assembled.contact, k / d, k % d);
+                try_push(&mut self.tangents, stiffness.unwrap_or(0.0), CONTEXT)?;
+            }
+        }
+        self.set_scale(1.0);
+        self.evaluate(&still, omega)?;
+        self.rest_force.copy_from_slice(&self.force);
+        for open in &self.open_fractions {
+            try_push(&mut self.presses, *open == 0.0, CONTEXT)?;
+        }
+        Ok(())
+    }
+
+    /// Replaces all laws f by α f + (1 − α) T y with their tangents T at the static motion, `share` = α; `None`: the
+    /// laws themselves. [`Self::d_ln_scale`] is then the derivative by α.
+    pub fn set_share(&mut self, share: Option<f64>) {
+        self.share = share;
     }
 
     /// Evaluates all laws at packed motions, coordinate after coordinate, and an angular frequency.
@@ -144,6 +193,9 @@ impl<'a> ContactForces<'a> {
         for (scaled, y) in self.scaled.iter_mut().zip(motion) {
             *scaled = y / s;
         }
+        for (scaled, rest) in self.scaled.iter_mut().step_by(m).zip(&self.rest) {
+            *scaled += rest;
+        }
         let mut blocks = 0;
         let mut prepared = usize::MAX;
         for (k, assembled) in self.condensed.laws().iter().enumerate() {
@@ -165,6 +217,7 @@ impl<'a> ContactForces<'a> {
                 apply_load(&here, found);
             }
             self.slip_fractions[k] = found.slip_fraction;
+            self.open_fractions[k] = found.open_fraction;
             blocks = self.jacobians.add(blocks, at.len(), &mut found.jacobian);
             self.all_stuck &= found.stuck;
             let closed = 1.0 - found.open_fraction;
@@ -191,10 +244,59 @@ impl<'a> ContactForces<'a> {
                 add(&mut self.by_omega[here], &found.by_omega[law], unit);
             }
         }
+        if !self.rest.is_empty() {
+            self.count_from_rest(unit);
+        }
+        if let Some(share) = self.share {
+            self.mix_with_tangents(share, motion);
+        }
         if s.is_infinite() {
             self.linearise(motion);
         }
         Ok(())
+    }
+
+    /// Subtracts the static forces: with F and J at Y the derivative by ln s of s·(F − F₀) is
+    /// s·(F − J Y) + s·(J Y₀ − F₀).
+    fn count_from_rest(&mut self, unit: f64) {
+        let m = self.condensed.set().packed_len();
+        for (c, rest) in self.rest.iter().enumerate() {
+            let here = c * m..(c + 1) * m;
+            let of_rest = &self.rest_force[here.clone()];
+            add(&mut self.force[here.clone()], of_rest, -unit);
+            add(&mut self.offset[here.clone()], of_rest, -unit);
+            for (by, block) in self.jacobians.of_force(c) {
+                add(&mut self.offset[here.clone()], &block[..m], unit * self.rest[by]);
+            }
+            let size = norm(of_rest) + self.condensed.stiffness(c) * rest.abs();
+            self.rounding[c] += f64::EPSILON * unit * size;
+        }
+    }
+
+    fn mix_with_tangents(&mut self, share: f64, motion: &[f64]) {
+        let m = self.condensed.set().packed_len();
+        self.jacobians.scale(share);
+        for x in &mut self.by_omega {
+            *x *= share;
+        }
+        self.offset.copy_from_slice(&self.force);
+        for x in &mut self.force {
+            *x *= share;
+        }
+        let mut tangents = self.tangents.as_slice();
+        let mut blocks = 0;
+        for assembled in self.condensed.laws() {
+            let at = &assembled.coordinates;
+            let (own, others) = tangents.split_at(at.len() * at.len());
+            tangents = others;
+            blocks = self.jacobians.add_springs(blocks, at.len(), |k| (1.0 - share) * own[k]);
+            for (k, &stiffness) in own.iter().enumerate() {
+                let (force, by) = (at[k / at.len()], at[k % at.len()]);
+                let (here, y) = (force * m..(force + 1) * m, &motion[by * m..(by + 1) * m]);
+                add(&mut self.force[here.clone()], y, (1.0 - share) * stiffness);
+                add(&mut self.offset[here], y, -stiffness);
+            }
+        }
     }
 
     /// The forces of the laws at rest, linear in the motion.
@@ -218,6 +320,12 @@ impl<'a> ContactForces<'a> {
         &self.slip_fractions
     }
 
+    /// Share of the period that each law is open which presses at the static motion.
+    pub fn lifted_shares(&self) -> impl Iterator<Item = f64> {
+        let laws = self.open_fractions.iter().zip(&self.presses);
+        laws.filter(|(_, presses)| **presses).map(|(open, _)| *open)
+    }
+
     /// Whether every law sticks, or is open, at the motion evaluated last.
     #[must_use]
     pub fn all_stuck(&self) -> bool {
@@ -239,8 +347,9 @@ impl<'a> ContactForces<'a> {
         self.part(&self.force, coordinate, i) - self.condensed.kappa(coordinate, i) * y
     }
 
-    /// Rounding of the force of a coordinate if its contacts are near-rigid, otherwise 0. In a stick phase the force
-    /// is kt times a difference of motions that are known to their own rounding.
+    /// Rounding of the force of a coordinate if its contacts are near-rigid, or if it counts from a static one,
+    /// otherwise 0. In a stick phase the force is kt times a difference of motions that are known to their own
+    /// rounding.
     #[must_use]
     pub fn rounding(&self, coordinate: usize) -> f64 {
         self.rounding[coordinate]

@@ -118,6 +118,26 @@ impl Blocks {
         from + d * d
     }
 
+    /// Multiplies all blocks by a factor.
+    pub fn scale(&mut self, factor: f64) {
+        for x in &mut self.values {
+            *x *= factor;
+        }
+    }
+
+    /// Adds springs to the blocks of a law of `d` directions that begin at `from` in the list of all laws' blocks:
+    /// `stiffness` per block; returns where those of the next law begin.
+    pub fn add_springs(&mut self, from: usize, d: usize, stiffness: impl Fn(usize) -> f64) -> usize {
+        let m = self.order;
+        for k in 0..d * d {
+            let at = self.of_laws[from + k] * m * m;
+            for x in self.values[at..at + m * m].iter_mut().step_by(m + 1) {
+                *x += stiffness(k);
+            }
+        }
+        from + d * d
+    }
+
     /// Exchanges all blocks for stored ones.
     pub fn swap(&mut self, values: &mut Vec<f64>) {
         core::mem::swap(&mut self.values, values);

@@ -13,7 +13,8 @@
 
 use crate::condense::Condensed;
 use crate::condense::modal_flexibility::Modal;
-use crate::error::{Result, fail, try_vec};
+use crate::contact::onset::Onset;
+use crate::error::{Result, fail, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
 use crate::linalg::{inner, norm};
@@ -21,6 +22,7 @@ use crate::model::spring::{Row, along};
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};
+use crate::problem::static_state::StaticState;
 use num_complex::Complex64;
 use std::f64::consts::LN_10;
 
@@ -43,6 +45,13 @@ const OF_MOTION: f64 = 1e-2;
 /// in the round-off of the stiffness.
 const VANISHED: f64 = 1e-5;
 
+/// Residual of the linear mode, relative to its size, at which it is a reliable initial guess.
+const NEARLY: f64 = 1e-3;
+
+/// Steps of log₁₀ of the amplitude towards smaller ones in which such an amplitude is sought.
+const NEARLY_STEP: f64 = 0.5;
+const NEARLY_STEPS: u8 = 40;
+
 /// Normalisation of a mode: its amplitude and phase.
 #[derive(Clone, Debug)]
 pub struct Gauge {
@@ -61,6 +70,8 @@ pub struct LinearMode {
     pub damping: f64,
     /// Fundamental of all degrees of freedom, in the caller's units.
     pub shape: Vec<Complex64>,
+    /// The static state about which it vibrates.
+    pub rest: StaticState,
 }
 
 /// A nonlinear mode of a condensed model.
@@ -100,9 +111,14 @@ impl<'a> Epmc<'a> {
         const CONTEXT: &str = "the nonlinear mode";
         let n = condensed.ndof();
         let unknowns = condensed.coordinates().saturating_mul(condensed.set().packed_len()) + 2;
+        let mut forces = ContactForces::new(condensed, samples, interrupt)?;
+        if linear.rest.is_loaded() {
+            let rest = linear.rest.in_units(condensed.length())?;
+            forces.set_rest(&rest, linear.omega)?;
+        }
         Ok(Self {
             condensed,
-            forces: ContactForces::new(condensed, samples, interrupt)?,
+            forces,
             modal: Modal::new(condensed)?,
             gauge,
             linear,
@@ -183,6 +199,46 @@ impl<'a> Epmc<'a> {
         }
     }
 
+    /// Amplitudes of the linear mode about the static state at which a contact slips, opens, or ceases to be linear.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn onset(&self) -> Result<Onset> {
+        let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
+        self.linear_start(&mut u);
+        let set = self.condensed.set();
+        let (m, fundamental) = (set.packed_len(), set.fundamental());
+        let mut motion = Vec::new();
+        for y in u[..u.len() - 2].chunks_exact(m) {
+            try_push(&mut motion, set.get(y, fundamental), "the nonlinear mode")?;
+        }
+        self.forces.onset(&motion)
+    }
+
+    /// The same as [`Self::linear_up_to`] about a loaded static state, where no law states its nearly linear range.
+    fn linear_about_static(&mut self, first: f64) -> Result<(f64, f64)> {
+        let exactly = self.onset()?.linear.log10();
+        if exactly.is_finite() {
+            // Contacts stick there despite round-off.
+            return Ok((exactly - ONSET_ROUNDING, exactly - ONSET_ROUNDING));
+        }
+        let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
+        self.linear_start(&mut u);
+        let mut at = Residual::new(u.len())?;
+        for step in 0..NEARLY_STEPS {
+            let p = first - NEARLY_STEP * f64::from(step);
+            self.evaluate(&u, p, &mut at)?;
+            // Below, round-off of the static forces hides the vibration.
+            if at.rounding > NEARLY * at.scale {
+                break;
+            }
+            if norm(&at.values) <= NEARLY * at.scale {
+                return Ok((f64::NEG_INFINITY, p));
+            }
+        }
+        Ok((f64::NEG_INFINITY, f64::NEG_INFINITY))
+    }
+
     /// log₁₀ of the amplitudes up to which all laws are linear, −∞ if one of them never is, and up to which they
     /// nearly are, so that the linear mode is a reliable initial guess. If a law does not state its linear range, the
     /// second follows from `first`, the log₁₀ of the first requested amplitude.
@@ -190,6 +246,9 @@ impl<'a> Epmc<'a> {
     /// # Errors
     /// `OutOfMemory`.
     pub fn linear_up_to(&mut self, first: f64) -> Result<(f64, f64)> {
+        if self.linear.rest.is_loaded() {
+            return self.linear_about_static(first);
+        }
         let mut u = try_vec(self.size(), 0.0, "the nonlinear mode")?;
         self.linear_start(&mut u);
         let motion = &u[..u.len() - 2];
@@ -364,9 +423,16 @@ impl Jacobian for Epmc<'_> {
 }
 
 impl AlongPath for Epmc<'_> {
-    /// The fixed parameter is log₁₀ a; along the path s = e^p/a.
-    fn evaluate_along(&mut self, _path: Path, log10: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        self.evaluate_scaled(u, 10f64.powf(-log10) * p.exp(), 1.0, out)
+    /// The fixed parameter is log₁₀ a; along the path of scaled laws s = e^p/a.
+    fn evaluate_along(&mut self, path: Path, log10: f64, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
+        let unit = 10f64.powf(-log10);
+        if path == Path::FromTangents {
+            self.forces.set_share(Some(p));
+            let evaluated = self.evaluate_scaled(u, unit, 1.0, out);
+            self.forces.set_share(None);
+            return evaluated;
+        }
+        self.evaluate_scaled(u, unit * p.exp(), 1.0, out)
     }
 
     fn observe_along(&self, _path: Path, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
@@ -394,6 +460,16 @@ impl Problem for Epmc<'_> {
     }
 
     fn homotopy(&mut self, p: f64, u: &[f64]) -> Result<Option<Homotopy<'_>>> {
+        if self.linear.rest.is_loaded() {
+            let start = LN_10 * (p - self.linear_about_static(p)?.1);
+            // A contact that only touches at rest is linear at no amplitude.
+            let (ends, path) = if start > 0.0 && start.is_finite() {
+                ((start, 0.0), Path::ScaledLaws)
+            } else {
+                ((0.0, 1.0), Path::FromTangents)
+            };
+            return Ok(Some(PathHomotopy::between(ends, self, path, p)));
+        }
         let mut factor = self.forces.linearisation_scale(&u[..u.len() - 2], self.linear.omega)?;
         if self.forces.have_known_linear_range() {
             factor *= 10f64.powf(p);

@@ -119,7 +119,7 @@ impl<'a> HarmonicBalance<'a> {
     fn evaluate_at(&mut self, u: &[f64], omega: f64, path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
         let scale = match path {
             Some((Path::ScaledLaws, p)) => p.exp(),
-            Some((Path::GrowingLoad, _)) | None => 1.0,
+            Some((Path::GrowingLoad | Path::FromTangents, _)) | None => 1.0,
         };
         self.forces.set_scale(scale);
         let interrupt = self.forces.interrupt();
@@ -170,7 +170,7 @@ impl<'a> HarmonicBalance<'a> {
                             put(&mut out.d_parameter, r, mean, slope);
                         }
                         Some((Path::ScaledLaws, _)) => put(&mut out.d_parameter, r, mean, g * by_scale),
-                        Some((Path::GrowingLoad, _)) => {}
+                        Some((Path::GrowingLoad | Path::FromTangents, _)) => {}
                     }
                 }
             }
@@ -201,7 +201,7 @@ impl<'a> HarmonicBalance<'a> {
             dw += match path {
                 None => self.forces.by_omega(c, i) * along_p,
                 Some(Path::ScaledLaws) => self.forces.d_ln_scale(c, i) * along_p,
-                Some(Path::GrowingLoad) => Complex64::ZERO,
+                Some(Path::GrowingLoad | Path::FromTangents) => Complex64::ZERO,
             };
             z -= g * w;
             dz -= g * dw + rate(table.slope[c * outputs + coordinates]) * w;

@@ -2,7 +2,8 @@
 //!
 //! Scaled laws: every law is replaced by s·f(y/s), with ln s as the parameter. A large s selects the laws at small
 //! motion, where contacts stick; s = 1 selects the laws themselves. Growing load: a factor on the forces that
-//! vibrate, from the static solution under constant loads, for preloaded contacts.
+//! vibrate, from the static solution under constant loads, for preloaded contacts. Share of the laws: from springs of
+//! their tangent stiffness at the static state to the laws, for contacts that are linear at no amplitude.
 
 use crate::error::Result;
 use crate::linalg::linear_system::{Jacobian, MatrixFree};
@@ -16,6 +17,8 @@ pub enum Path {
     ScaledLaws,
     /// Factor on the forces that vibrate; constant ones act in full.
     GrowingLoad,
+    /// Share α of the laws in α f + (1 − α) T y, T their tangents at the static state; of nonlinear modes only.
+    FromTangents,
 }
 
 /// A problem that can be evaluated along a path at a fixed parameter of its own.

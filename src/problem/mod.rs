@@ -12,5 +12,6 @@ pub mod homotopy;
 pub mod newton_products;
 mod parametric_problem;
 pub mod static_force;
+pub mod static_state;
 
 pub use parametric_problem::{Homotopy, InitialGuess, Problem, Residual};

@@ -25,6 +25,11 @@ pub struct ModeInfo {
     pub amplitude: Amplitude,
     /// log₁₀ of the amplitude up to which all contacts stick; −∞ if a law is never linear.
     pub linear_up_to: f64,
+    /// log₁₀ of the amplitude at which the first contact slips: ∞ if none does on the branch, −∞ if one does at every
+    /// amplitude, or at the first point and at which amplitude it began is not known.
+    pub slip_from: f64,
+    /// The same of the first contact that presses at rest and lifts off.
+    pub lift_off_from: f64,
     /// Natural frequencies of the wave with stuck contacts, as far as they were found.
     pub stuck: Vec<f64>,
     /// The same with the contacts removed.

@@ -7,7 +7,8 @@ use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 
 /// Energies and losses of one point, in the caller's units. Potential energy is that of the linear
-/// structure with its springs and contacts that never slip; contacts that may slip are left out.
+/// structure with its springs and contacts that never slip; contacts that may slip are left out. In a nonlinear
+/// mode it counts from the static state.
 /// For a plain structure the values per sector are those of the whole.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Energy {
@@ -44,6 +45,16 @@ impl Branch {
         self.energy_at_with(point, &Interrupt::none())
     }
 
+    /// Subtracts the static motion of a nonlinear mode, from which its potential energy counts, from a harmonic of the
+    /// independent degrees of freedom.
+    fn count_from_static(&self, harmonic: usize, x: &mut [Complex64]) {
+        if let Some(data) = self.mode_data().filter(|_| harmonic == 0) {
+            for (x, rest) in x.iter_mut().zip(&data.linear.rest.structure) {
+                *x -= rest;
+            }
+        }
+    }
+
     /// The same as [`Self::energy_at`], and the caller may stop it.
     ///
     /// # Errors
@@ -58,6 +69,7 @@ impl Branch {
         for (i, x) in x.chunks_exact_mut(n).enumerate() {
             interrupt.part(Phase::Results, i, carried)?;
             recovery.coordinates(i, x)?;
+            self.count_from_static(condensed.set().numbers()[i], x);
             // In the units of the solver, whose scale is a power of two and costs no digit.
             for z in x {
                 *z /= length;

@@ -129,7 +129,7 @@ static void struct_sizes(void)
     REFUSED("66", hbvib_energy_init(&energy, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_options_init(&mode, 88), HBVIB_E_STRUCT_SIZE, 2, "needs 96");
     REFUSED("66", hbvib_mode_point_init(&point, 80), HBVIB_E_STRUCT_SIZE, 2, "needs 88");
-    REFUSED("66", hbvib_mode_info_init(&info, 56), HBVIB_E_STRUCT_SIZE, 2, "needs 64");
+    REFUSED("66", hbvib_mode_info_init(&info, 56), HBVIB_E_STRUCT_SIZE, 2, "needs 80");
     memset(&s, 0xAA, sizeof s);
     REFUSED("67", with(&s, &o, NULL), HBVIB_E_STRUCT_SIZE, 2, "hbvib_solver_options_init");
     memset(&o, 0xAA, sizeof o);

@@ -156,10 +156,10 @@ static void of_a_mode(const hbvib_hooks *none, const hbvib_hooks *stop)
     STOPS("synthesis", hbvib_branch_synthesis_with_hooks(branch, the_model, NULL, CAPACITY, omega, NULL, NULL, &count, stop));
     EXPECT("synthesis", count == -1);
     WORKS("synthesis", hbvib_branch_synthesis_with_hooks(branch, the_model, NULL, CAPACITY, omega, NULL, NULL, &count, none));
-    STOPS("peaks", hbvib_branch_synthesis_peaks_with_hooks(branch, the_model, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL,
+    STOPS("peaks", hbvib_branch_synthesis_peaks_with_hooks(branch, the_model, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL,
                                                            &peaks, stop));
     EXPECT("peaks", peaks == -1);
-    WORKS("peaks", hbvib_branch_synthesis_peaks_with_hooks(branch, the_model, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL,
+    WORKS("peaks", hbvib_branch_synthesis_peaks_with_hooks(branch, the_model, NULL, 0, NULL, NULL, NULL, NULL, NULL, NULL, NULL,
                                                            &peaks, none));
     EXPECT("synthesis", count > 0 && peaks == 1);
     WORKS("mode", hbvib_branch_free(branch));

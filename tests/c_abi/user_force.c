@@ -447,8 +447,10 @@ static void states_and_loads(void)
     range.log10_start = -2;
     range.log10_stop = 0;
     branches[0] = NULL;
-    REFUSED("109", hbvib_nonlinear_mode(models[0], NULL, &range, NULL, &branches[0]), HBVIB_E_UNSUPPORTED, 0,
-            "contact 0 has a force at rest");
+    /* The mode vibrates about the static state under that force. */
+    WORKS("109", hbvib_nonlinear_mode(models[0], NULL, &range, NULL, &branches[0]));
+    EXPECT("109", hbvib_branch_points(branches[0]) > 5);
+    WORKS("109", hbvib_branch_free(branches[0]));
     WORKS("109", hbvib_model_free(models[0]));
 }
 

@@ -1,7 +1,7 @@
 //! Shared code of the tests of nonlinear modes: models without structural damping, sectors without mirror symmetry,
 //! and a separate solver for the linear problems with two real unknowns.
 
-use crate::common::{Blisk, SECTORS, all_harmonics, phase};
+use crate::common::{Blisk, SECTORS, Wheel, all_harmonics, phase};
 use hbvib::analysis::nonlinear_mode;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
@@ -181,6 +181,12 @@ impl Skewed {
             model.add_contact(contact).unwrap();
         }
         model
+    }
+
+    /// Places mass and stiffness all around a wheel.
+    pub fn place_in(wheel: &mut Wheel) {
+        wheel.set(MatrixKind::Mass, &MASS, Some(&MASS_NEXT), None);
+        wheel.set(MatrixKind::Stiffness, &STIFFNESS, Some(&STIFFNESS_NEXT), None);
     }
 
     /// Matrices of harmonic h.

@@ -31,6 +31,7 @@ mod table;
 
 mod fe_input;
 mod fe_modes;
+mod fe_pressed;
 mod fe_sector;
 mod fe_stops;
 mod friction_patch;

@@ -8,8 +8,11 @@ use hbvib::condense::Condensed;
 use hbvib::contact::Contact;
 use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
+use hbvib::model::static_tangents::StaticTangents;
 use hbvib::options::{DampingForm, SolverOptions};
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
+use hbvib::problem::homotopy::{Path, PathHomotopy};
+use hbvib::problem::static_state::StaticState;
 use hbvib::problem::{Problem, Residual};
 use num_complex::Complex64;
 use proptest::prelude::*;
@@ -67,6 +70,85 @@ struct Case {
     homotopy: bool,
 }
 
+/// A mode about a static state, which need not be one of equilibrium for its derivatives.
+#[derive(Debug)]
+struct Loaded {
+    numbers: Vec<f64>,
+    engine_order: i64,
+    highest: usize,
+    in_plane: bool,
+    log10: f64,
+    /// Share of the laws along the path from their tangents; the scale of the laws along the other path.
+    share: f64,
+}
+
+impl Loaded {
+    fn check(&self) -> Checked {
+        let mut next = self.numbers.iter().copied().cycle();
+        let mut real = move || next.next().unwrap_or(0.0);
+        let mut skewed = Skewed::new(self.engine_order);
+        skewed.sectors = 5;
+        skewed.contacts[0] = if self.in_plane {
+            Contact::friction_3d([Some(0), Some(1), Some(2)], [None; 3], (1.0, 1.3), 0.4, 1.0)
+        } else {
+            Contact::friction_2d([Some(0), Some(2)], [None; 2], (1.0, 1.3), 0.4, 1.0)
+        };
+        skewed.contacts.push(Contact {
+            preload: 0.4,
+            ..Contact::unilateral(Some(1), None, 2.0, 0.1)
+        });
+        skewed.contacts.push(Contact::cubic(2, None, 0.5, 1.5));
+        let model = skewed.model(true);
+        let mut tangents = StaticTangents::new(model.contacts().len()).unwrap();
+        for (id, contact) in model.contacts().iter().enumerate() {
+            let d = contact.directions();
+            let tangent: Vec<f64> = (0..d * d).map(|_| real()).collect();
+            tangents.set(id, &tangent).unwrap();
+        }
+        let linear = LinearMode {
+            omega: 2.0 + real(),
+            damping: 0.05 * real(),
+            shape: (0..N).map(|_| Complex64::new(real(), real())).collect(),
+            rest: StaticState {
+                motion: (0..9).map(|_| 0.4 * real()).collect(),
+                structure: vec![0.0; N],
+                tangents,
+            },
+        };
+        let gauge = Gauge {
+            contact: None,
+            reference_dof: self.highest % N,
+        };
+        let form = (DampingForm::Mass, true);
+        let (condensed, _) = Condensed::for_mode(
+            &model,
+            &harmonics(self.highest),
+            form,
+            &linear.shape,
+            &Interrupt::none(),
+        )
+        .unwrap();
+        prop_assert!(condensed.set().has_mean());
+        let mut rest = linear.clone();
+        rest.rest.motion.truncate(condensed.coordinates());
+        let interrupt = Interrupt::none();
+        let mut problem = Epmc::new(&condensed, &gauge, &rest, 0, &interrupt).unwrap();
+        let n = problem.size();
+        let mut u: Vec<f64> = (0..n).map(|_| 2.0 * real()).collect();
+        for v in &mut u[n - 2..] {
+            *v *= 0.3;
+        }
+        let direction: Vec<f64> = (0..=n).map(|_| real()).collect();
+        let p = self.log10 - condensed.length().log10();
+        for (path, at) in [(Path::FromTangents, self.share), (Path::ScaledLaws, 2.0 * self.share)] {
+            let homotopy = PathHomotopy::between((0.0, 1.0), &mut problem, path, p);
+            let mut along = homotopy.problem;
+            check_problem(&mut *along, &u, at, &direction)?;
+        }
+        check_problem(&mut problem, &u, p, &direction)
+    }
+}
+
 impl Case {
     fn check(&self) -> Checked {
         let mut next = self.numbers.iter().copied().cycle();
@@ -88,6 +170,7 @@ impl Case {
             omega: 2.0 + real(),
             damping: 0.05 * real(),
             shape: (0..N).map(|_| Complex64::new(real(), real())).collect(),
+            rest: StaticState::default(),
         };
         let contact = self.by_contact.map(|id| {
             let c = &skewed.contacts[id];
@@ -102,7 +185,7 @@ impl Case {
             ..harmonics(self.highest)
         };
         let (condensed, _) =
-            Condensed::for_mode(&model, &solver, self.form, &linear.shape, &Interrupt::none()).unwrap();
+            Condensed::for_mode(&model, &solver, (self.form, false), &linear.shape, &Interrupt::none()).unwrap();
         assert_eq!(condensed.set().has_mean(), self.keep_even);
         let play = model
             .contacts()
@@ -133,6 +216,18 @@ impl Case {
 
 proptest! {
     #![proptest_config(config(120))]
+
+    #[test]
+    fn the_derivatives_of_the_equations_of_a_mode_about_a_static_state(
+        numbers in prop::collection::vec(-1.0..1.0_f64, 89),
+        engine_order in -7_i64..=7,
+        highest in 1_usize..=4,
+        in_plane in any::<bool>(),
+        log10 in -1.0..0.5_f64,
+        share in 0.0..1.0_f64,
+    ) {
+        Loaded { numbers, engine_order, highest, in_plane, log10, share }.check()?;
+    }
 
     #[test]
     fn the_derivatives_of_the_equations_of_a_mode(

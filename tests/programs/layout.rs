@@ -51,7 +51,7 @@ fn in_rust() -> String {
         hbvib_contact_summary { struct_size, reserved, work, slip_share, open_share, half_range, motion_min, motion_max, load_min, load_max, directions, all_min, all_max }
         hbvib_mode_options { struct_size, damping_form, log10_start, log10_stop, diameter, mode_index, near_omega, shape, shape_len, amplitude_contact, at, at_len, reference_dof }
         hbvib_mode_point { struct_size, reserved, log10_amplitude, omega, damping_ratio, modal_amplitude, energy, fundamental_share, friction_loss, structural_loss, energy_damping_ratio, assurance }
-        hbvib_mode_info { struct_size, multiple, mode_index, multiplicity, reference_dof, engine_order, amplitude_contact, omega, linear_up_to }
+        hbvib_mode_info { struct_size, multiple, mode_index, multiplicity, reference_dof, engine_order, amplitude_contact, omega, linear_up_to, slip_from, lift_off_from }
         hbvib_synthesis_options { struct_size, model_damping, force_factor, damping_ratio }
         hbvib_time_options { struct_size, method, omega, harmonics, samples, tolerance, max_periods, start, start_len }
         hbvib_time_info { struct_size, reserved, period, residual, periods, events }

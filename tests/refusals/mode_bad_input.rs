@@ -248,7 +248,7 @@ fn mass_that_is_not_positive_and_modes_without_frequency_are_refused() {
 }
 
 #[test]
-fn bad_solver_options_and_constant_forces_are_refused() {
+fn bad_solver_options_are_refused() {
     let model = BASE.sector();
     let with = |solver: &SolverOptions| nonlinear_mode(&model, solver, &RANGE, &mut Hooks::default());
     refused(with(&harmonics(0)), Status::Argument, &["harmonics = 0", "at least 1"]);
@@ -262,13 +262,43 @@ fn bad_solver_options_and_constant_forces_are_refused() {
         ..harmonics(3)
     };
     refused(with(&bad), Status::Index, &["response_dof = 4", "0 .. 3"]);
-    let mut loaded = BASE.sector();
-    loaded.set_wave(0);
-    loaded.add_force(1, 0, 3.0.into()).unwrap();
+}
+
+#[test]
+fn a_constant_load_that_nothing_holds_is_refused() {
+    // A mass without a spring, pulled from a pressed stop, or along friction beyond its limit.
+    let stop = Contact {
+        preload: 0.5,
+        ..Contact::unilateral(Some(0), None, 1.0, 0.0)
+    };
+    for contact in [stop, Contact::jenkins(0, None, 1.0, 0.5, 1.0)] {
+        let mut model = Model::new(1).unwrap();
+        for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 0.0)] {
+            model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+        }
+        model.add_contact(&contact).unwrap();
+        model.add_force(0, 0, 2.0.into()).unwrap();
+        refused(
+            follow(&model, &RANGE),
+            Status::NoConvergence,
+            &["no static state", "constant forces and preload"],
+        );
+    }
+}
+
+#[test]
+fn a_static_state_without_stability_is_refused() {
+    let mut model = Model::new(1).unwrap();
+    for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
+        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model.add_contact(&Contact::cubic(0, None, 0.0, -1.0)).unwrap();
+    // The spring x − x³ holds 0.385 at most; beyond lies only an unstable equilibrium.
+    model.add_force(0, 0, 2.0.into()).unwrap();
     refused(
-        follow(&loaded, &RANGE),
-        Status::Unsupported,
-        &["constant force", "3", "dof 1"],
+        follow(&model, &RANGE),
+        Status::Argument,
+        &["mode 0", "statically unstable"],
     );
 }
 

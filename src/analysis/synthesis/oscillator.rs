@@ -103,21 +103,28 @@ impl State {
             return None;
         }
         let omega = square.sqrt();
-        // The phase of X₁ is the one at which the force does the required work.
-        let stiffness = Complex64::new(w2 - square, 2.0 * d * self.omega * omega);
-        let phase = self.work / stiffness;
-        let turn = if phase.norm() > 0.0 {
-            phase / phase.norm()
-        } else {
-            Complex64::ONE
-        };
         Some(SynthesisPoint {
             omega,
-            response: self.response * turn,
+            response: self.response * self.turn(omega),
             modal_amplitude: self.square.sqrt(),
             natural_omega: self.omega,
             damping_ratio: d,
         })
+    }
+
+    /// Phase of the response at frequency `omega` over that of the mode: the one at which the force does the required
+    /// work.
+    pub fn turn(&self, omega: f64) -> Complex64 {
+        let stiffness = Complex64::new(
+            self.omega * self.omega - omega * omega,
+            2.0 * self.damping * self.omega * omega,
+        );
+        let phase = self.work / stiffness;
+        if phase.norm() > 0.0 {
+            phase / phase.norm()
+        } else {
+            Complex64::ONE
+        }
     }
 
     pub fn at_peak(&self) -> SynthesisPoint {

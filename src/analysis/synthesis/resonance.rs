@@ -1,6 +1,7 @@
 //! The resonance between two points of a mode's branch, solved on the mode's equations.
 
 use crate::adaptivity::transfer::transferred;
+use crate::analysis::synthesis::computed_peak::AtPeak;
 use crate::analysis::synthesis::oscillator::{Load, State};
 use crate::condense::Condensed;
 use crate::continuation::special_points::Locator;
@@ -33,12 +34,15 @@ pub(super) struct Refinement<'a> {
     interrupt: &'a Interrupt<'a>,
     solver: Solver<'a>,
     x: Vec<Complex64>,
+    /// Packed total motion of the state solved last, in the units of its condensed model.
+    motion: Vec<f64>,
 }
 
 /// The mode's equations with the harmonics of one stored point.
 struct Solver<'a> {
     resolution: usize,
     condensed: &'a Condensed,
+    samples: usize,
     problem: Epmc<'a>,
     locator: Locator,
     at: Residual,
@@ -65,6 +69,7 @@ impl<'a> Solver<'a> {
         Ok(Self {
             resolution: branch.resolution_index(point),
             condensed,
+            samples: branch.samples_at(point),
             at: Residual::new(n)?,
             locator: Locator::new(n, settings)?,
             problem,
@@ -81,6 +86,7 @@ impl<'a> Refinement<'a> {
             interrupt,
             solver: Solver::new(branch, data, 0, interrupt)?,
             x: try_vec(branch.condensed_at(0).ndof(), Complex64::ZERO, CONTEXT)?,
+            motion: Vec::new(),
         })
     }
 
@@ -124,6 +130,18 @@ impl<'a> Refinement<'a> {
         Ok(found)
     }
 
+    /// The state solved last, at the frequency `omega` of the force.
+    pub fn at_peak<'s>(&'s self, state: &'s State, omega: f64) -> AtPeak<'s> {
+        AtPeak {
+            state,
+            omega,
+            condensed: self.solver.condensed,
+            samples: self.solver.samples,
+            motion: &self.motion,
+            response_dof: self.branch.response_dof(),
+        }
+    }
+
     /// A point of the curve as the continuation stored it, transferred to the current harmonics.
     fn point(&self, k: usize) -> Result<Option<Point>> {
         let Some((v, tangent)) = self.data.state(k) else {
@@ -163,6 +181,15 @@ impl<'a> Refinement<'a> {
             return Ok(None);
         }
         problem.evaluate(&v[..n], p, at)?;
+        let rest = self.data.linear.rest.in_units(condensed.length())?;
+        self.motion = try_copy(&v[..n - 2], CONTEXT)?;
+        for y in &mut self.motion {
+            *y *= 10f64.powf(p);
+        }
+        let packed = condensed.set().packed_len().max(1);
+        for (y, rest) in self.motion.iter_mut().step_by(packed).zip(&rest.motion) {
+            *y += rest;
+        }
         let (omega, damping_ratio) = Epmc::frequency_and_damping(&self.data.linear, &v[..n]);
         let unit = 10f64.powf(p) * condensed.length();
         let dofs = condensed.ndof();

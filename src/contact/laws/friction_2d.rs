@@ -27,10 +27,12 @@ use crate::contact::laws::friction_2d_events::Slider;
 use crate::contact::laws::friction_2d_slider::{Phase, Play, Walk};
 use crate::contact::laws::unilateral::Unilateral;
 use crate::contact::linearisation::Range;
+use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, jet};
+use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -183,6 +185,19 @@ impl Law for Friction2d {
     fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
         self.kn * (ranges[1].half - ranges[1].mean).max(0.0) / -self.load
     }
+
+    fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
+        if self.kn == 0.0 {
+            let limit = self.mu * self.load;
+            return Onset::NEVER.with_slider(self.slider_onset(rest[0], limit, [motion[0], Complex64::ZERO]));
+        }
+        let load = self.load_at(rest[1]);
+        let closing = Onset::of_closing(load / self.kn, motion[1]);
+        if load < 0.0 {
+            return closing;
+        }
+        closing.with_slider(self.slider_onset(rest[0], self.mu * load, [motion[0], motion[1]]))
+    }
 }
 
 impl VaryingNormalLoad for Friction2d {
@@ -232,6 +247,14 @@ impl VaryingNormalLoad for Friction2d {
 }
 
 impl Friction2d {
+    /// Factors of the vibration [x, y] from which on the slider of the closed contact is dragged.
+    fn slider_onset(&self, rest: f64, limit: f64, [x, y]: [Complex64; 2]) -> [f64; 2] {
+        if self.kt == 0.0 || self.mu == 0.0 {
+            return [f64::INFINITY; 2];
+        }
+        slider_in_line(self.kt * rest, limit, self.kt * x, self.mu * self.kn * y)
+    }
+
     /// Pieces of the normal force.
     fn normal_pieces(&self, set: &HarmonicSet, y: &[f64], search: &mut CoupledSearch, pieces: &mut Vec<Piece>) {
         if self.kn == 0.0 {

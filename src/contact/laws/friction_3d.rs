@@ -18,11 +18,13 @@ use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PlaneFriction, Varyi
 use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness};
 use crate::contact::laws::friction_3d_period;
 use crate::contact::linearisation::Range;
+use crate::contact::onset::{Onset, slider_in_plane};
 use crate::contact::piece::{CoupledPiece, Piece};
 use crate::contact::plane_path::{PlanePath, Repetition};
 use crate::error::{Result, fail};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
+use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Friction in a plane of the caller.
@@ -190,6 +192,26 @@ impl Law for Friction3d {
             [x1, x2] => self.kt * f64::hypot(x1.size(), x2.size()) / (self.mu * self.load),
             ranges => self.kn * (ranges[2].half - ranges[2].mean).max(0.0) / -self.load,
         }
+    }
+
+    fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
+        let load = if self.has_normal {
+            self.load_at(rest[2])
+        } else {
+            self.load
+        };
+        let (closing, of_limit) = if self.has_normal && self.kn > 0.0 {
+            let closing = Onset::of_closing(load / self.kn, motion[2]);
+            (closing, self.mu * self.kn * motion[2])
+        } else {
+            (Onset::NEVER, Complex64::ZERO)
+        };
+        if load < 0.0 || self.kt == 0.0 || self.mu == 0.0 {
+            return closing;
+        }
+        let force = [self.kt * rest[0], self.kt * rest[1]];
+        let vibrating = [self.kt * motion[0], self.kt * motion[1]];
+        closing.with_slider(slider_in_plane(force, self.mu * load, vibrating, of_limit))
     }
 }
 

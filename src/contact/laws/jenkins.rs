@@ -12,10 +12,12 @@ use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::laws::friction_2d_events::Slider;
 use crate::contact::linearisation::Range;
+use crate::contact::onset::{Onset, slider_in_line};
 use crate::contact::piece::Piece;
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, crossing};
+use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -169,6 +171,11 @@ impl Law for Jenkins {
 
     fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
         self.stiffness * ranges[0].half / self.limit
+    }
+
+    fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
+        let k = self.stiffness;
+        Onset::NEVER.with_slider(slider_in_line(k * rest[0], self.limit, k * motion[0], Complex64::ZERO))
     }
 }
 

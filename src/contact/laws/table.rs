@@ -8,11 +8,13 @@
 use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::linearisation::Range;
+use crate::contact::onset::Onset;
 use crate::contact::piece::Piece;
 use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
 use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, crossing};
+use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -242,6 +244,20 @@ impl Law for Table {
     fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
         let nearest = self.levels().fold(f64::INFINITY, |near, x| near.min(x.abs()));
         ranges[0].size() / nearest
+    }
+
+    fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
+        let nearest = self
+            .levels()
+            .fold(f64::INFINITY, |near, x| near.min((x - rest[0]).abs()));
+        Onset {
+            linear: if motion[0].norm() == 0.0 {
+                f64::INFINITY
+            } else {
+                nearest / motion[0].norm()
+            },
+            ..Onset::NEVER
+        }
     }
 }
 

@@ -10,11 +10,13 @@ use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::linearisation::Range;
+use crate::contact::onset::Onset;
 use crate::contact::piece::Piece;
 use crate::contact::time_piece::{Instant, Mode, TimePiece, Zeros, margin_of_level};
 use crate::error::Result;
 use crate::fourier::HarmonicSet;
 use crate::fourier::{Extremum, crossing};
+use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -139,6 +141,10 @@ impl Law for Unilateral {
 
     fn linearisation_scale(&self, ranges: &[Range], _reference: f64) -> f64 {
         (ranges[0].half - ranges[0].mean).max(0.0) / self.gap
+    }
+
+    fn onset(&self, rest: &[f64], motion: &[Complex64]) -> Onset {
+        Onset::of_closing(-rest[0] - self.gap, motion[0])
     }
 }
 

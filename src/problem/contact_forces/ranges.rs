@@ -1,8 +1,10 @@
 //! Properties of the laws at other motions and other samples: their linear ranges, and their sampling error.
 
 use crate::contact::linearisation::Range;
+use crate::contact::onset::Onset;
 use crate::error::{Error, Result, try_push};
 use crate::problem::contact_forces::{ContactForces, gather_scaled};
+use num_complex::Complex64;
 
 impl ContactForces<'_> {
     /// Relative change of the forces with the number of samples: ‖F_N − F_M‖/‖F_N‖ over the forces of all sampled
@@ -52,6 +54,27 @@ impl ContactForces<'_> {
             }
         }
         Ok(if size == 0.0 { 0.0 } else { f64::sqrt(difference / size) })
+    }
+
+    /// Factors of a vibration in the fundamental, one amplitude per coordinate, about the static motion at which a law
+    /// slips, opens or ceases to be linear.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn onset(&self, motion: &[Complex64]) -> Result<Onset> {
+        const CONTEXT: &str = "the contacts";
+        let mut onset = Onset::NEVER;
+        let (mut rest, mut own) = (Vec::new(), Vec::new());
+        for assembled in self.condensed.laws() {
+            rest.clear();
+            own.clear();
+            for &c in &assembled.coordinates {
+                try_push(&mut rest, self.rest.get(c).copied().unwrap_or(0.0), CONTEXT)?;
+                try_push(&mut own, motion[c], CONTEXT)?;
+            }
+            onset = onset.earliest(assembled.law.onset(&rest, &own));
+        }
+        Ok(onset)
     }
 
     /// The factor of [`Self::set_scale`] from which on the forces of the given motion are (nearly) linear.

@@ -347,6 +347,8 @@ contains
       call field('amplitude_contact', c_loc(s), c_loc(s%amplitude_contact), c_sizeof(s%amplitude_contact))
       call field('omega', c_loc(s), c_loc(s%omega), c_sizeof(s%omega))
       call field('linear_up_to', c_loc(s), c_loc(s%linear_up_to), c_sizeof(s%linear_up_to))
+      call field('slip_from', c_loc(s), c_loc(s%slip_from), c_sizeof(s%slip_from))
+      call field('lift_off_from', c_loc(s), c_loc(s%lift_off_from), c_sizeof(s%lift_off_from))
    end subroutine mode_info
 
    subroutine synthesis_options()

@@ -1,0 +1,105 @@
+//! A condensed mode under a force in its fundamental: the forced response with the same harmonics and contacts.
+
+use crate::condense::Condensed;
+use crate::condense::harmonic_block::{Artificial, HarmonicBlock, TiedValues};
+use crate::error::{Result, try_copy, try_push};
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::structure::Structure;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the matrices per harmonic";
+
+impl Condensed {
+    /// The structure of a mode under the force `force` in the fundamental, in the caller's unit, without artificial
+    /// damping. To the damping of harmonic h are added `damping(h)` and `by_mass` times the mass matrix.
+    ///
+    /// # Errors
+    /// Those of `damping`; `OutOfMemory`.
+    pub fn under_force(
+        &self,
+        force: &[Complex64],
+        damping: impl Fn(usize) -> Result<Option<Csc>>,
+        by_mass: f64,
+    ) -> Result<Self> {
+        let mut blocks = Vec::new();
+        for block in &self.blocks {
+            let mut forced = block.with_damping(damping(block.number)?.as_ref(), by_mass)?;
+            if block.number == 1 {
+                for (to, f) in forced.force.iter_mut().zip(force) {
+                    *to = f / self.length;
+                }
+            }
+            try_push(&mut blocks, forced, CONTEXT)?;
+        }
+        let mut laws = Vec::new();
+        for assembled in &self.laws {
+            try_push(&mut laws, assembled.clone(), CONTEXT)?;
+        }
+        Ok(Self {
+            set: self.set.try_clone()?,
+            degrees: self.degrees.clone(),
+            blocks,
+            laws,
+            stiffness: try_copy(&self.stiffness, CONTEXT)?,
+            reference_stiffness: try_copy(&self.reference_stiffness, CONTEXT)?,
+            can_stick: try_copy(&self.can_stick, CONTEXT)?,
+            share: try_copy(&self.share, CONTEXT)?,
+            contact_classes: self.contact_classes.clone(),
+            structure: self.structure.as_ref().map(Structure::try_clone).transpose()?,
+            ..*self
+        })
+    }
+}
+
+impl HarmonicBlock {
+    /// The block with more damping and without the artificial one.
+    fn with_damping(&self, added: Option<&Csc>, by_mass: f64) -> Result<Self> {
+        let n = self.reference.rows;
+        let mut terms = Vec::new();
+        try_push(&mut terms, (Complex64::ONE, &self.reference, Form::Plain), CONTEXT)?;
+        if let Some(added) = added {
+            // A zero factor adds the pattern alone.
+            try_push(&mut terms, (Complex64::ZERO, added, Form::Plain), CONTEXT)?;
+        }
+        let reference = Csc::sum(n, &terms)?;
+        let aligned = |values: &[Complex64]| -> Result<Vec<Complex64>> {
+            let mut own = self.reference.try_clone()?;
+            own.values.copy_from_slice(values);
+            own.aligned(&reference)
+        };
+        let mass = aligned(&self.mass)?;
+        let mut damping = aligned(&self.damping)?;
+        for (c, m) in damping.iter_mut().zip(&mass) {
+            *c += by_mass * m;
+        }
+        if let Some(added) = added {
+            for (c, more) in damping.iter_mut().zip(added.aligned(&reference)?) {
+                *c += more;
+            }
+        }
+        Ok(Self {
+            number: self.number,
+            next: self.next,
+            stiffness: aligned(&self.stiffness)?,
+            damping,
+            mass,
+            artificial: Artificial::None,
+            force: try_copy(&self.force, CONTEXT)?,
+            rows: self.rows.clone(),
+            structural_rows: try_copy(&self.structural_rows, CONTEXT)?,
+            linear_rows: self.linear_rows.clone(),
+            springs: try_copy(&self.springs, CONTEXT)?,
+            structural: self.structural.as_deref().map(&aligned).transpose()?,
+            unbalance: None,
+            tied: match &self.tied {
+                Some(tied) => Some(TiedValues {
+                    stiffness: aligned(&tied.stiffness)?,
+                    gyroscopic: aligned(&tied.gyroscopic)?,
+                }),
+                None => None,
+            },
+            view: self.view.clone(),
+            reference,
+        })
+    }
+}

@@ -1,0 +1,109 @@
+//! The nonlinear mode of a finite-element sector whose 30 pairs of nodes press with a normal load that varies and may
+//! vanish, about its static state: one harmonic and the mean, from stuck contacts to the first that lift off.
+
+use crate::common::harmonics;
+use crate::common::processor_time;
+use crate::sector::{Interface, Sector, Size};
+use hbvib::analysis::{nonlinear_mode, synthesise};
+use hbvib::contact::Contact;
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::model::Model;
+use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::results::Branch;
+use hbvib::results::mode_branch::ModeField;
+use num_complex::Complex64;
+use std::f64::consts::TAU;
+use std::path::Path;
+use std::time::Instant;
+
+/// The sector with friction in a plane at each pair of nodes, under a force at the tip.
+fn pressed(force: f64) -> (Model, usize) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
+    let sector = Sector::read(&folder, Size::Reduced).unwrap();
+    let mut model = sector.model(Interface::Absent).unwrap();
+    for pair in &sector.pairs {
+        let [along, across] = &pair.friction;
+        let contact = Contact::friction_3d(
+            [along.dof_a[0], across.dof_a[0], pair.normal.dof_a],
+            [along.dof_b[0], across.dof_b[0], pair.normal.dof_b],
+            (along.kt, pair.normal.stiffness),
+            along.mu,
+            along.preload,
+        );
+        model.add_contact(&contact).unwrap();
+        // The preload of the table acts in the deformed state: constant forces keep the structure there.
+        for (dof, force) in [(pair.normal.dof_a, -along.preload), (pair.normal.dof_b, along.preload)] {
+            model.add_force(dof.unwrap(), 0, Complex64::from(force)).unwrap();
+        }
+    }
+    let tip = sector.size.tip();
+    model.add_force(tip, 1, Complex64::from(force)).unwrap();
+    (model, tip)
+}
+
+fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
+    let solver = SolverOptions {
+        response_dof: Some(tip),
+        tol_residual: 1e-12,
+        ..harmonics(harmonic)
+    };
+    let range = ModeOptions {
+        choice: ModeChoice::Near(530.0 * TAU),
+        log10_start: -7.0,
+        log10_stop: -5.5,
+        ..ModeOptions::default()
+    };
+    nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
+}
+
+#[test]
+#[ignore = "half a minute of processor time; run by tests/deep.sh"]
+fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_lift_off() {
+    let (model, tip) = pressed(2.0);
+    let begin = (Instant::now(), processor_time(Instant::now()));
+    let branch = mode(&model, tip, 1);
+    println!(
+        "{} points in {:.1} s of processor time, {:?}",
+        branch.points(),
+        processor_time(begin.0).saturating_sub(begin.1).as_secs_f64(),
+        branch.status()
+    );
+    let info = branch.mode().unwrap();
+    println!(
+        "{} Hz, linear up to {}, slip from {}, lift-off from {}",
+        info.omega / TAU,
+        info.linear_up_to,
+        info.slip_from,
+        info.lift_off_from
+    );
+    let damping = branch.mode_field(ModeField::DampingRatio).unwrap();
+    for point in (0..branch.points()).step_by(6) {
+        println!(
+            "{:.3} {:.4} Hz D {:.4e}",
+            branch.mode_at(point).unwrap().log10_amplitude,
+            branch.omega()[point] / TAU,
+            damping[point]
+        );
+    }
+    assert_eq!(branch.status(), Status::Ok);
+    let largest = damping.iter().fold(0.0_f64, |m, d| m.max(*d));
+    let mut worst = 0.0_f64;
+    for (point, d) in damping.iter().enumerate() {
+        let check = branch.mode_at(point).unwrap().energy_damping_ratio();
+        worst = worst.max((check - d).abs() / largest);
+        assert!((check - d).abs() < 1e-8 * largest, "point {point}: {check} {d}");
+    }
+    // It follows the residual: 1e-6 with the default tolerance, a hundred times larger.
+    println!("balance of work: {worst:.1e}");
+    assert!(info.slip_from < info.lift_off_from && info.lift_off_from < -5.5);
+    let begin = processor_time(Instant::now());
+    let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
+    for peak in &found.peaks {
+        println!("resonance at {} Hz: {:?}", peak.at.omega / TAU, peak.validity);
+    }
+    println!(
+        "synthesis in {:.1} s",
+        processor_time(Instant::now()).saturating_sub(begin).as_secs_f64()
+    );
+}

@@ -1,0 +1,217 @@
+//! Nonlinear modes about the static state of pressed contacts against forced responses: an undamped structure under
+//! its constant forces and the force that does the work of the artificial damping answers with the mode itself.
+
+use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic};
+use crate::common::{self, Wheel, all_harmonics, harmonics, phase, relative_gap};
+use hbvib::analysis::forced_response::forced_response;
+use hbvib::contact::Contact;
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
+use hbvib::results::Branch;
+use nalgebra::{DMatrix, DVector};
+use num_complex::Complex64;
+
+/// Forces per harmonic.
+type Forces = Vec<(usize, DVector<Complex64>)>;
+
+/// F_h = 2Dω·(ihω) M X_h at a point of the mode.
+fn balancing(branch: &Branch, point: usize, mass: impl Fn(usize) -> DMatrix<Complex64>) -> Forces {
+    let (omega, d) = (branch.omega()[point], damping(branch)[point]);
+    let force = |&h: &usize| {
+        let x = harmonic(branch, point, h);
+        (h, mass(h) * x * (Complex64::I * (2.0 * d * h as f64 * omega * omega)))
+    };
+    let carried = branch.carried_at(point).unwrap().iter();
+    carried.filter(|h| **h > 0).map(force).collect()
+}
+
+/// The answer of a model, which has its constant forces, to more forces at one frequency, from a guess.
+fn answer(model: &Model, solver: &SolverOptions, omega: f64, forces: &Forces, guess: &[Complex64]) -> Vec<Complex64> {
+    let mut model = model.try_clone().unwrap();
+    for (h, force) in forces {
+        for (dof, f) in force.iter().enumerate() {
+            model.add_force(dof, *h, *f).unwrap();
+        }
+    }
+    let range = ForcedOptions {
+        omega_start: omega,
+        omega_stop: omega,
+        at: &[],
+        guess: Some(guess),
+    };
+    let answer = forced_response(&model, solver, &range, &mut Hooks::default()).unwrap();
+    assert_eq!(answer.status(), Status::Ok);
+    all_harmonics(&answer, 0)
+}
+
+/// Three masses, of which the first touches the ground along t1 and n or along t1, t2 and n.
+fn pressed(contacts: &[Contact], constant: [f64; 3]) -> Model {
+    const STIFFNESS: [f64; 9] = [2.0, -0.4, 0.3, -0.4, 3.0, -0.5, 0.3, -0.5, 2.5];
+    const MASS: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.4, 0.0, 0.0, 0.0, 0.8];
+    let mut model = Model::new(3).unwrap();
+    for (kind, values) in [(MatrixKind::Mass, MASS), (MatrixKind::Stiffness, STIFFNESS)] {
+        model.set_matrix(kind, &MatrixView::dense(3, &values)).unwrap();
+    }
+    for contact in contacts {
+        model.add_contact(contact).unwrap();
+    }
+    for (dof, f) in constant.into_iter().enumerate() {
+        model.add_force(dof, 0, f.into()).unwrap();
+    }
+    model
+}
+
+fn mass_of_three(_: usize) -> DMatrix<Complex64> {
+    DMatrix::from_diagonal(&DVector::from_column_slice(&[1.0, 1.4, 0.8].map(Complex64::from)))
+}
+
+/// Largest gap, in the vibration alone and in all harmonics, over the points that slip or lift off.
+fn worst(model: &Model, solver: &SolverOptions, branch: &Branch) -> (f64, usize) {
+    let (mut worst, mut compared) = (0.0_f64, 0);
+    let linear_up_to = branch.mode().unwrap().linear_up_to;
+    for point in (0..branch.points()).step_by(4) {
+        let p = branch.mode_at(point).unwrap().log10_amplitude;
+        // Without damping the resonance of the linear mode is unbounded.
+        if p <= linear_up_to + 0.05 || common::slip(branch, point) <= 0.01 {
+            continue;
+        }
+        let guess = all_harmonics(branch, point);
+        let forces = balancing(branch, point, mass_of_three);
+        let found = answer(model, solver, branch.omega()[point], &forces, &guess);
+        worst = worst.max(relative_gap(&found, &guess));
+        worst = worst.max(relative_gap(&found[3..], &guess[3..]));
+        compared += 1;
+    }
+    (worst, compared)
+}
+
+#[test]
+fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
+    let (t, n) = (Some(0), Some(1));
+    let in_line = |mu, preload| Contact::friction_2d([t, n], [None; 2], (1.0, 0.8), mu, preload);
+    let in_plane = |preload| Contact::friction_3d([t, Some(2), n], [None; 3], (1.0, 0.8), 0.4, preload);
+    let stop = Contact::unilateral(Some(2), None, 1.5, -0.2);
+    let cubic = Contact::cubic(2, None, 0.2, 0.3);
+    let cases: [(&str, Vec<Contact>, [f64; 3], usize); 7] = [
+        ("friction in line", vec![in_line(0.3, 1.0)], [0.0; 3], 0),
+        ("constant forces", vec![in_line(0.3, 1.0)], [0.1, -0.3, 0.2], 1),
+        (
+            "pressed by a force over a gap",
+            vec![Contact {
+                gap: 0.2,
+                ..in_line(0.3, 0.0)
+            }],
+            [0.1, -2.0, 0.0],
+            0,
+        ),
+        ("statically slipping", vec![in_line(0.3, 0.5)], [2.0, 0.0, 0.0], 0),
+        ("friction in a plane", vec![in_plane(0.8)], [0.2, 0.0, -0.1], 0),
+        ("with a stop", vec![in_line(0.4, 1.0), stop], [0.0, 0.0, 0.1], 2),
+        (
+            "with a cubic spring",
+            vec![Contact::jenkins(0, None, 1.0, 0.3, 1.0), cubic],
+            [0.1, 0.0, 0.4],
+            0,
+        ),
+    ];
+    for (name, contacts, constant, index) in cases {
+        let model = pressed(&contacts, constant);
+        for h in [1, 3, 8] {
+            let range = ModeOptions {
+                choice: ModeChoice::Index(index),
+                log10_start: -2.0,
+                log10_stop: 0.8,
+                ..ModeOptions::default()
+            };
+            let branch = follow(&model, &harmonics(h), &range);
+            let (gap, compared) = worst(&model, &harmonics(h), &branch);
+            println!("{name}, H = {h}: {gap:.1e} at {compared} points");
+            assert!(
+                gap < 1e-9 && compared >= 4,
+                "{name}, H = {h}: {gap:e}, {compared} points"
+            );
+        }
+    }
+}
+
+/// A sector without mirror symmetry, pressed to the ground and to the next sector.
+fn pressed_sector(engine_order: i64) -> Skewed {
+    let mut skewed = Skewed::new(engine_order);
+    skewed.sectors = 5;
+    let mut across = Contact::friction_2d([Some(2), Some(1)], [Some(0), Some(1)], (1.5, 1.0), 0.4, 0.6);
+    across.sector_offset = 1;
+    skewed.contacts = vec![
+        across,
+        Contact::friction_2d([Some(0), Some(2)], [None; 2], (1.0, 1.2), 0.3, 0.9),
+    ];
+    skewed
+}
+
+#[test]
+fn a_pressed_sector_vibrates_as_the_wheel_does_about_the_mean_of_diameter_0() {
+    for engine_order in [1, 2, -2, 5] {
+        let skewed = pressed_sector(engine_order);
+        let mut model = skewed.model(false);
+        model.add_force(0, 0, 0.3.into()).unwrap();
+        model.add_force(2, 0, (-0.2).into()).unwrap();
+        let range = ModeOptions {
+            log10_start: -1.5,
+            log10_stop: 1.0,
+            ..ModeOptions::default()
+        };
+        let solver = harmonics(5);
+        let branch = follow(&model, &solver, &range);
+        let wheel = wheel_of(&skewed, 5);
+        let spread = |x: &[Complex64]| -> Vec<Complex64> {
+            let mut all = Vec::new();
+            for (h, block) in x.chunks_exact(N).enumerate() {
+                for s in 0..5 {
+                    all.extend(block.iter().map(|z| z * phase(h, engine_order, s, 5)));
+                }
+            }
+            all
+        };
+        let (mut gap, mut compared) = (0.0_f64, 0);
+        for point in (0..branch.points()).step_by(6) {
+            if common::slip(&branch, point) <= 0.02 {
+                continue;
+            }
+            let guess = spread(&all_harmonics(&branch, point));
+            let forces = balancing(&branch, point, |h| skewed.matrices(h).mass);
+            let all: Forces = forces
+                .into_iter()
+                .map(|(h, f)| {
+                    let turned = (0..5).flat_map(|s| {
+                        let turn = phase(h, engine_order, s, 5);
+                        f.iter().map(move |z| z * turn).collect::<Vec<_>>()
+                    });
+                    (h, DVector::from_iterator(5 * N, turned))
+                })
+                .collect();
+            let found = answer(&wheel.model, &solver, branch.omega()[point], &all, &guess);
+            gap = gap.max(relative_gap(&found, &guess));
+            compared += 1;
+        }
+        println!("EO {engine_order}: {gap:.1e} at {compared} points");
+        assert!(
+            gap < 1e-9 && compared >= 3,
+            "EO {engine_order}: {gap:e}, {compared} points"
+        );
+    }
+}
+
+/// The wheel of a sector with the constant forces of the test.
+fn wheel_of(skewed: &Skewed, sectors: usize) -> Wheel {
+    let mut wheel = Wheel::new(N, sectors);
+    Skewed::place_in(&mut wheel);
+    for contact in &skewed.contacts {
+        wheel.add_contact(contact);
+    }
+    wheel.add_force(0, 0, 0.3.into(), 0);
+    wheel.add_force(2, 0, (-0.2).into(), 0);
+    wheel
+}
