@@ -192,6 +192,7 @@ fn the_derivatives_of_a_mode_contain_the_speed_that_follows_its_frequency() {
         omega: start.omega,
         damping: 0.01,
         shape: start.shape.clone(),
+        rest: hbvib::problem::static_state::StaticState::default(),
     };
     let gauge = Gauge {
         contact: None,
@@ -199,7 +200,8 @@ fn the_derivatives_of_a_mode_contain_the_speed_that_follows_its_frequency() {
     };
     for form in [DampingForm::Mass, DampingForm::Stiffness] {
         let interrupt = Interrupt::none();
-        let (condensed, _) = Condensed::for_mode(&model, &harmonics(3), form, &start.shape, &interrupt).unwrap();
+        let (condensed, _) =
+            Condensed::for_mode(&model, &harmonics(3), (form, false), &start.shape, &interrupt).unwrap();
         let mut problem = Epmc::new(&condensed, &gauge, &linear, 0, &interrupt).unwrap();
         let n = problem.size();
         let u: Vec<f64> = (0..n).map(|i| (1.7 * i as f64 + 0.4).sin()).collect();
