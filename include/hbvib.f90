@@ -75,7 +75,7 @@ module hbvib
    ! hbvib_state
    integer(c_int32_t), parameter, public :: HBVIB_STATE_STICK = 0, HBVIB_STATE_SLIP = 1, HBVIB_STATE_OPEN = 2
    ! hbvib_contact_state
-   integer(c_int32_t), parameter, public :: HBVIB_CONTACTS_FREE = 0, HBVIB_CONTACTS_STUCK = 1
+   integer(c_int32_t), parameter, public :: HBVIB_CONTACTS_FREE = 0, HBVIB_CONTACTS_STUCK = 1, HBVIB_CONTACTS_STATIC = 2
    ! hbvib_damping_form
    integer(c_int32_t), parameter, public :: HBVIB_DAMPING_MASS = 0, HBVIB_DAMPING_STIFFNESS = 1
    ! hbvib_mode_multiple

@@ -1854,13 +1854,16 @@ typedef enum {
   /// Linear springs, as at small motion: kt of contacts that stick and kn of contacts that press
   /// at rest, the slopes of tables and polynomials; HBVIB_REGULARISED has none.
   HBVIB_CONTACTS_STUCK = 1,
+  /// Linear springs of their tangent stiffness at the static state under constant forces and
+  /// preload; as stuck where nothing loads the model.
+  HBVIB_CONTACTS_STATIC = 2,
 } hbvib_contact_state;
 
 /// Undamped natural modes, in ascending order of frequency. A singular mass matrix has fewer modes
 /// than degrees of freedom.
 ///
 /// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
-/// contacts  HBVIB_CONTACTS_FREE, or HBVIB_CONTACTS_STUCK: linear springs kt.
+/// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
 /// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
@@ -1880,7 +1883,7 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
 /// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
 ///
 /// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
-/// contacts  HBVIB_CONTACTS_FREE, or HBVIB_CONTACTS_STUCK: linear springs kt.
+/// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
 /// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
@@ -1900,7 +1903,7 @@ hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model,
 /// Motions that do not oscillate are not counted. A mode that grows is told to the log.
 ///
 /// diameter    nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain one.
-/// contacts    HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// contacts    HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count       number of requested modes, 1 .. ndof.
 /// eigenvalue  receives `count` complex numbers: the damped angular frequency is the imaginary
 ///             part, the damping ratio minus the real part over the modulus.
@@ -1928,7 +1931,7 @@ hbvib_status hbvib_damped_modes(const hbvib_model *model,
 /// n              number of speeds, at least 1.
 /// speeds         rising speeds, rad per time unit; n numbers.
 /// diameter       nodal diameter 0 .. N/2; 0 for a plain structure.
-/// contacts       HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// contacts       HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count          number of modes at each speed, 1 .. ndof.
 /// omega          receives n * count damped angular frequencies, those of one speed rising, one
 ///                speed after the other; NaN where fewer motions oscillate.
@@ -1954,7 +1957,7 @@ hbvib_status hbvib_campbell(const hbvib_model *model,
 /// n             number of speeds, at least 1.
 /// speeds        rising speeds, rad per time unit; n numbers.
 /// diameter      nodal diameter 0 .. N/2; 0 for a plain structure.
-/// contacts      HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// contacts      HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count         number of modes at each speed, 1 .. ndof.
 /// engine_order  at least 1.
 /// capacity      room of each of the arrays, >= 0; n * count is enough.

@@ -225,6 +225,9 @@ class ContactState(enum.IntEnum):
     #: Linear springs, as at small motion: kt of contacts that stick and kn of contacts that press at rest, the slopes
     #: of tables and polynomials; HBVIB_REGULARISED has none.
     STUCK = 1
+    #: Linear springs of their tangent stiffness at the static state under constant forces and preload; as stuck where
+    #: nothing loads the model.
+    STATIC = 2
 
 
 class DampingForm(enum.IntEnum):
@@ -1591,7 +1594,7 @@ class Model(_Owner):
                      cancel: Optional[CancelFlag] = None) -> Modes:
         """Undamped natural modes: omega (count), ascending, and shapes (count, ndof), complex, phi^H M phi = 1.
 
-        diameter   nodal diameter of the wave, 0 .. sectors / 2.    contacts   "stuck" or "free".
+        diameter   nodal diameter of the wave, 0 .. sectors / 2.    contacts   "stuck", "free" or "static".
         phase, cancel   as in forced_response; Stopped is raised where they stop it."""
         omega, shapes = np.empty(count), np.empty((count, self.ndof), complex)
         _stoppable("hbvib_linear_modes", self.handle, diameter, _member(ContactState, contacts), count, omega, shapes,

@@ -94,6 +94,7 @@ pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
+pub use analysis::linear_contacts::LinearContacts;
 pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};

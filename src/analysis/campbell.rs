@@ -1,11 +1,11 @@
 //! Campbell diagram: damped modes over the speed of rotation, and the speeds at which engine orders meet them.
 
 use crate::analysis::damped_modes::{DampedModes, at_present_speed};
+use crate::analysis::linear_contacts::LinearContacts;
 use crate::error::{Result, fail, try_push};
 use crate::hooks::Hooks;
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::model::linear_modes::ContactState;
 use crate::model::speed::Speed;
 
 /// Relative accuracy of a crossing.
@@ -55,7 +55,7 @@ pub struct Crossing {
 pub fn campbell(
     model: &Model,
     speeds: &[f64],
-    (diameter, contacts, count): (usize, ContactState, usize),
+    (diameter, contacts, count): (usize, LinearContacts, usize),
     engine_orders: &[i64],
     hooks: &mut Hooks<'_>,
 ) -> Result<Campbell> {

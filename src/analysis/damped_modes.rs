@@ -1,13 +1,13 @@
 //! Damped natural modes of the linear structure: eigenvalues λ of λ²M + λ(C + ΩG) + K + Ω²K₁ + iD in the upper half
 //! plane, with the sense in which their frequencies change with the speed.
 
+use crate::analysis::linear_contacts::LinearContacts;
 use crate::error::{Result, fail, try_extend, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
-use crate::model::linear_modes::ContactState;
 use crate::model::quadratic_modes::Quadratic;
 use crate::model::speed::Speed;
 use crate::model::spring_stiffness::Wave;
@@ -65,11 +65,11 @@ impl DampedModes {
 ///
 /// # Errors
 /// `Argument` for a diameter or count out of range and for a speed that is tied to the frequency; those of the
-/// matrices and eigensolvers; `StoppedByCaller`.
+/// matrices and eigensolvers; `NoConvergence` or `Singular` without a static state; `StoppedByCaller`.
 pub fn damped_modes(
     model: &Model,
     diameter: usize,
-    contacts: ContactState,
+    contacts: LinearContacts,
     count: usize,
     hooks: &mut Hooks<'_>,
 ) -> Result<DampedModes> {
@@ -93,7 +93,7 @@ pub fn damped_modes(
 pub(super) fn at_present_speed(
     model: &Model,
     diameter: usize,
-    contacts: ContactState,
+    contacts: LinearContacts,
     count: usize,
     interrupt: &Interrupt<'_>,
 ) -> Result<DampedModes> {
@@ -120,7 +120,8 @@ pub(super) fn at_present_speed(
     let mass = structure.of_wave(MatrixKind::Mass, wave)?;
     let damping = structure.of_wave(MatrixKind::Damping, wave)?;
     let structural = structure.of_wave(MatrixKind::Structural, wave)?;
-    let sprung = model.stiffness_at_small_motion(wave, contacts)?;
+    let contacts = contacts.prepared(model, interrupt)?;
+    let sprung = model.stiffness_at_small_motion(wave, contacts.state())?;
     let terms = [
         (Complex64::ONE, &sprung, Form::Plain),
         (Complex64::I, &structural, Form::Plain),

@@ -7,6 +7,7 @@ pub mod floquet;
 mod forced_discretised;
 pub mod forced_response;
 pub mod harmonic_residual;
+pub mod linear_contacts;
 mod mode_discretised;
 mod mode_equations;
 mod mode_onset;

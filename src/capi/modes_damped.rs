@@ -28,7 +28,7 @@ fn modes(count: i64, model: &Model, argument: i32) -> Result<usize> {
 /// Motions that do not oscillate are not counted. A mode that grows is told to the log.
 ///
 /// diameter    nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain one.
-/// contacts    HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// contacts    HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count       number of requested modes, 1 .. ndof.
 /// eigenvalue  receives `count` complex numbers: the damped angular frequency is the imaginary
 ///             part, the damping ratio minus the real part over the modulus.
@@ -88,7 +88,7 @@ pub unsafe extern "C" fn hbvib_damped_modes(
 /// n              number of speeds, at least 1.
 /// speeds         rising speeds, rad per time unit; n numbers.
 /// diameter       nodal diameter 0 .. N/2; 0 for a plain structure.
-/// contacts       HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// contacts       HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count          number of modes at each speed, 1 .. ndof.
 /// omega          receives n * count damped angular frequencies, those of one speed rising, one
 ///                speed after the other; NaN where fewer motions oscillate.
@@ -146,7 +146,7 @@ pub unsafe extern "C" fn hbvib_campbell(
 /// n             number of speeds, at least 1.
 /// speeds        rising speeds, rad per time unit; n numbers.
 /// diameter      nodal diameter 0 .. N/2; 0 for a plain structure.
-/// contacts      HBVIB_CONTACTS_FREE or HBVIB_CONTACTS_STUCK.
+/// contacts      HBVIB_CONTACTS_FREE, _STUCK or _STATIC.
 /// count         number of modes at each speed, 1 .. ndof.
 /// engine_order  at least 1.
 /// capacity      room of each of the arrays, >= 0; n * count is enough.

@@ -9,9 +9,9 @@ use super::handles::read;
 use super::model::hbvib_model;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_interrupt};
 use super::version_and_errors::hbvib_status;
+use crate::analysis::linear_contacts::{LinearContacts, linear_modes};
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
-use crate::model::linear_modes::ContactState;
 
 /// State of the contacts in a linear analysis.
 #[repr(C)]
@@ -21,13 +21,16 @@ pub enum hbvib_contact_state {
     /// Linear springs, as at small motion: kt of contacts that stick and kn of contacts that press
     /// at rest, the slopes of tables and polynomials; HBVIB_REGULARISED has none.
     HBVIB_CONTACTS_STUCK = 1,
+    /// Linear springs of their tangent stiffness at the static state under constant forces and
+    /// preload; as stuck where nothing loads the model.
+    HBVIB_CONTACTS_STATIC = 2,
 }
 
 /// Undamped natural modes, in ascending order of frequency. A singular mass matrix has fewer modes
 /// than degrees of freedom.
 ///
 /// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
-/// contacts  HBVIB_CONTACTS_FREE, or HBVIB_CONTACTS_STUCK: linear springs kt.
+/// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
 /// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
@@ -52,7 +55,7 @@ pub unsafe extern "C" fn hbvib_linear_modes(
 /// is then HBVIB_STOPPED_BY_CALLER, and what it writes is untouched.
 ///
 /// diameter  nodal diameter 0 .. N/2 of the wave whose sector s + 1 lags; 0 for a plain structure.
-/// contacts  HBVIB_CONTACTS_FREE, or HBVIB_CONTACTS_STUCK: linear springs kt.
+/// contacts  HBVIB_CONTACTS_FREE, _STUCK (linear springs kt) or _STATIC (about the static state).
 /// count     number of requested modes, at least 1.
 /// omega     receives `count` natural angular frequencies.
 /// shapes    receives `count` complex shapes of ndof numbers each, one after the other, with
@@ -84,7 +87,7 @@ pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
         }
         let modes = unsafe {
             with_interrupt(&hooks, |interrupt| {
-                model.lowest_modes_with(diameter, state, wanted, interrupt)
+                linear_modes(&model, diameter, state, wanted, interrupt)
             })
         }?;
         if wanted > modes.omega.len() {
@@ -106,15 +109,17 @@ pub unsafe extern "C" fn hbvib_linear_modes_with_hooks(
 }
 
 /// The state of contacts by its number.
-pub(super) fn contact_state_of(value: i32, argument: i32) -> Result<ContactState<'static>> {
+pub(super) fn contact_state_of(value: i32, argument: i32) -> Result<LinearContacts> {
     const FREE: i32 = hbvib_contact_state::HBVIB_CONTACTS_FREE as i32;
     const STUCK: i32 = hbvib_contact_state::HBVIB_CONTACTS_STUCK as i32;
+    const STATIC: i32 = hbvib_contact_state::HBVIB_CONTACTS_STATIC as i32;
     match value {
-        FREE => Ok(ContactState::Free),
-        STUCK => Ok(ContactState::Stuck),
+        FREE => Ok(LinearContacts::Free),
+        STUCK => Ok(LinearContacts::Stuck),
+        STATIC => Ok(LinearContacts::Static),
         _ => fail!(
             Argument,
-            "contacts = {value}, needs HBVIB_CONTACTS_FREE = 0 or HBVIB_CONTACTS_STUCK = 1"
+            "contacts = {value}, needs HBVIB_CONTACTS_FREE = 0, HBVIB_CONTACTS_STUCK = 1 or HBVIB_CONTACTS_STATIC = 2"
         ),
     }
     .with_argument(argument)

@@ -44,7 +44,7 @@ fn motion(branch: &Branch, point: usize) -> Vec<Complex64> {
 }
 
 #[test]
-fn the_certificate_bounds_the_error_of_all_degrees_of_freedom() {
+fn all_degrees_of_freedom_agree_with_direct_factors_within_the_limit_of_the_certificate() {
     let (plate, model, omega) = plate();
     for at in [0.8 * omega, 1.02 * omega] {
         let reduced = solve(&model, &options(&plate, Flexibility::Automatic), (at, at));

@@ -3,6 +3,7 @@
 
 use crate::common::refusal::refused;
 use crate::common::{BASE, Blisk, SECTORS};
+use hbvib::analysis::linear_contacts::LinearContacts;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
@@ -54,11 +55,11 @@ fn rotor() -> Model {
 }
 
 fn modes(model: &Model, diameter: usize, count: usize) -> DampedModes {
-    damped_modes(model, diameter, ContactState::Stuck, count, &mut Hooks::default()).unwrap()
+    damped_modes(model, diameter, LinearContacts::Stuck, count, &mut Hooks::default()).unwrap()
 }
 
 fn diagram(model: &Model, speeds: &[f64], count: usize, orders: &[i64]) -> Campbell {
-    let at = (0, ContactState::Stuck, count);
+    let at = (0, LinearContacts::Stuck, count);
     campbell(model, speeds, at, orders, &mut Hooks::default()).unwrap()
 }
 
@@ -295,13 +296,13 @@ fn a_mode_that_grows_is_told_and_bad_input_is_refused() {
         log: Some(&mut log),
         ..Hooks::default()
     };
-    let found = damped_modes(&model, 0, ContactState::Free, 4, &mut hooks).unwrap();
+    let found = damped_modes(&model, 0, LinearContacts::Free, 4, &mut hooks).unwrap();
     assert!((0..4).any(|k| found.damping_ratio(k) < 0.0));
     assert!(lines.iter().any(|line| line.contains("grows")), "{lines:?}");
-    let ask = |diameter, count| damped_modes(&model, diameter, ContactState::Free, count, &mut Hooks::default());
+    let ask = |diameter, count| damped_modes(&model, diameter, LinearContacts::Free, count, &mut Hooks::default());
     refused(ask(1, 4), Status::Argument, &["diameter = 1", "0 .. 0"]);
     refused(ask(0, 0), Status::Argument, &["count = 0", "at least 1"]);
-    let at = (0, ContactState::Free, 4);
+    let at = (0, LinearContacts::Free, 4);
     let over = |speeds: &[f64], orders: &[i64]| campbell(&model, speeds, at, orders, &mut Hooks::default());
     refused(over(&[], &[1]), Status::Dimension, &["no speeds", "at least 1"]);
     refused(over(&[0.0, f64::NAN], &[1]), Status::NotFinite, &["speeds[1] = NaN"]);
@@ -317,8 +318,42 @@ fn a_mode_that_grows_is_told_and_bad_input_is_refused() {
     );
     model.set_speed(Speed::PerOmega(1.0)).unwrap();
     refused(
-        damped_modes(&model, 0, ContactState::Free, 4, &mut Hooks::default()),
+        damped_modes(&model, 0, LinearContacts::Free, 4, &mut Hooks::default()),
         Status::Argument,
         &["tied to the frequency", "fixed speed"],
     );
+}
+
+#[test]
+fn contacts_about_the_static_state_follow_the_load_at_each_speed() {
+    // A mass on a spring of 1 with a stop of stiffness 3 beside it, pressed by 1 − Ω²/2: the stop opens at √2.
+    let mut model = Model::new(1).unwrap();
+    for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
+        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    model
+        .add_contact(&Contact::unilateral(Some(0), None, 3.0, 0.0))
+        .unwrap();
+    let frequency = |speed: f64, force: f64| {
+        let mut at = model.try_clone().unwrap();
+        at.set_preload_at_speed(0, 1.0, -0.5).unwrap();
+        at.set_speed(Speed::Fixed(speed)).unwrap();
+        at.clear_forces();
+        at.add_force(0, 0, force.into()).unwrap();
+        damped_modes(&at, 0, LinearContacts::Static, 1, &mut Hooks::default())
+            .unwrap()
+            .omega(0)
+    };
+    // The load at rest is N₀ + cΩ², a constant force opens or closes the stop beside it.
+    for (speed, force, closed) in [
+        (0.0, 0.0, true),
+        (2.0, 0.0, false),
+        (2.0, -4.0, true),
+        (0.0, 4.0, false),
+    ] {
+        let expected = if closed { 2.0 } else { 1.0 };
+        let found = frequency(speed, force);
+        println!("speed {speed}, force {force}: {found}");
+        assert!((found - expected).abs() < 1e-9);
+    }
 }

@@ -3,7 +3,7 @@
 use crate::build::Outcome;
 use crate::job::{CampbellPart, Job, StateName};
 use crate::svg::{bounds, draw};
-use hbvib::{Campbell, ContactState, Hooks, Model, Speed, campbell, damped_modes};
+use hbvib::{Campbell, Hooks, LinearContacts, Model, Speed, campbell, damped_modes};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};
 use plotters::style::{BLACK, Color, Palette, Palette99, RED};
 use std::f64::consts::TAU;
@@ -31,8 +31,9 @@ pub fn write(job: &Job, part: &CampbellPart, model: &Model, hooks: &mut Hooks<'_
         .map(|i| (part.from_rpm + step * i as f64) * RPM)
         .collect();
     let state = match part.contacts {
-        StateName::Stuck => ContactState::Stuck,
-        StateName::Free => ContactState::Free,
+        StateName::Stuck => LinearContacts::Stuck,
+        StateName::Free => LinearContacts::Free,
+        StateName::Static => LinearContacts::Static,
     };
     let count = part.count.min(model.structure().ndof());
     let found = campbell(

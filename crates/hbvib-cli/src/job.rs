@@ -241,6 +241,8 @@ pub enum StateName {
     #[default]
     Stuck,
     Free,
+    /// About the static state under constant forces and preload.
+    Static,
 }
 
 /// Natural frequencies over the speed of rotation, and where engine orders meet them; times are seconds.
