@@ -108,7 +108,7 @@ impl<'s> System<'s> {
     /// The structure of a model at angular frequency `omega`.
     pub fn new(model: &Model, omega: f64, interrupt: &'s Interrupt<'s>) -> Result<Self> {
         let mut system = Self::unforced(model, omega, interrupt)?;
-        system.apply_forces(model)?;
+        system.apply_forces(&*model.at_frequency(omega)?)?;
         Ok(system)
     }
 

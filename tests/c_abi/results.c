@@ -176,7 +176,7 @@ static void modes(hbvib_model *model)
     int i, k;
     WORKS("modes", hbvib_linear_modes(model, 2, HBVIB_CONTACTS_FREE, NDOF, omega, shapes));
     WORKS("modes", hbvib_linear_modes(model, 2, HBVIB_CONTACTS_STUCK, NDOF, stuck, NULL));
-    REFUSED("modes", hbvib_linear_modes(model, 2, 2, NDOF, omega, NULL), HBVIB_E_ARGUMENT, 3, "contacts = 2");
+    REFUSED("modes", hbvib_linear_modes(model, 2, 3, NDOF, omega, NULL), HBVIB_E_ARGUMENT, 3, "contacts = 3");
     for (k = 0; k < NDOF; k++) {
         for (norm = 0, i = 0; i < 2 * NDOF; i++) norm += MASS[5 * (i / 2)] * shapes[2 * NDOF * k + i] * shapes[2 * NDOF * k + i];
         EXPECT("modes", fabs(norm - 1) < 1e-12 && omega[k] <= stuck[k] * (1 + 1e-14));

@@ -256,7 +256,7 @@ impl<'a> Walk<'a> {
             (end, panel) = (from + self.length, None);
         }
         let rate = turn_rate(&self.path.at(from), angle);
-        let solved = loop {
+        let (solved, nodes) = loop {
             let nodes = self.nodes(from, end, panel);
             let weight = nodes.iter().fold(0.0_f64, |m, at| m.max(at.limit)) / self.size;
             let solved = solve(&self.path.tables, &mut self.path.lu, (end - from, angle, rate), &nodes);
@@ -265,18 +265,11 @@ impl<'a> Walk<'a> {
                 Some(solved) if last || solved.tail * weight <= TURN_TOLERANCE => {
                     let eases = solved.tail * weight < EASY * TURN_TOLERANCE;
                     self.length = if eases { 2.0 } else { 1.0 } * (end - from);
-                    break Some((solved, nodes));
+                    break (solved, nodes);
                 }
-                None if last => break None,
+                None if last => break (along_motion(&nodes, angle), nodes),
                 _ => (end, panel) = (from + 0.5 * (end - from), None),
             }
-        };
-        let Some((solved, nodes)) = solved else {
-            return Err(Error::new(
-                Status::NoConvergence,
-                format_args!("friction in a plane turns too fast to be followed"),
-            )
-            .recoverable());
         };
         let stop = if goes_on {
             None
@@ -377,4 +370,23 @@ fn correction(panel: &SlipPanel, nodes: &[PlaneInstant; STAGES], length: f64, be
     let (last, next) = (margin(STAGES - 1), margin(STAGES - 2));
     let step = -last * before * length / (last - next);
     if step.is_finite() { step } else { 0.0 }
+}
+
+/// A panel, too short to matter, over which the force turns to the motion at once: the limit is nearly zero.
+fn along_motion(nodes: &[PlaneInstant; STAGES], angle: f64) -> Solved {
+    let last = nodes[STAGES - 1];
+    let turned = last.rate[1].atan2(last.rate[0]);
+    let (sin, cos) = turned.sin_cos();
+    Solved {
+        panel: SlipPanel {
+            angle,
+            angles: [turned; STAGES],
+            directions: [[cos, sin]; STAGES],
+            limits: nodes.each_ref().map(|at| at.limit.max(f64::MIN_POSITIVE)),
+            along: nodes.each_ref().map(|at| cos * at.rate[0] + sin * at.rate[1]),
+            across: [0.0; STAGES],
+        },
+        tail: 0.0,
+        by_start: 0.0,
+    }
 }

@@ -15,10 +15,10 @@ use crate::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 /// Turns that are followed at most.
-const TURNS: usize = 300;
+const TURNS: usize = 120;
 
 /// Turns after which a force that returns to [`ENOUGH`] is taken.
-const PATIENCE: usize = 100;
+const PATIENCE: usize = 40;
 
 /// Difference of a force that returns, against the largest limit.
 const RETURNS: f64 = 1e-13;
@@ -29,6 +29,9 @@ const SQUARE_RETURNS: f64 = 1e-7;
 /// The same where the difference before promised more, or after [`PATIENCE`] turns.
 const ENOUGH: f64 = 1e-10;
 
+/// The same after all turns.
+const NEARLY: f64 = 1e-5;
+
 /// Searches of the times that hold a slider at rest.
 const ROUNDS: usize = 8;
 
@@ -37,6 +40,8 @@ const SETTLED: f64 = 1e-15;
 
 /// Distance beyond a limit, against the largest motion, that is rounding.
 const ROUNDING: f64 = 1e-13;
+
+const CONTEXT: &str = "the path of a friction force";
 
 /// Times closer than this, against a panel, are the same time found more exactly.
 const NEIGHBOURS: f64 = 0.2;
@@ -50,6 +55,12 @@ pub(super) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt
     if normal.iter().any(|piece| !piece.is_closed()) {
         path.repetition = Repetition::FromNothing;
         return closed_times(normal, path);
+    }
+    if largest_limit(path) <= 0.0 {
+        // The sides touch without load.
+        path.repetition = Repetition::FromNothing;
+        let turn = path.turn;
+        return Walk::new(path).open(0.0, turn);
     }
     if let Some(holds) = rest(path)? {
         path.repetition = Repetition::Rests(holds);
@@ -108,6 +119,15 @@ fn rest(path: &mut PlanePath) -> Result<Option<[Option<Hold>; 2]>> {
     let mut place = [0.0; 2];
     let mut holds = [None; 2];
     look_closer(path, place)?;
+    if path.moments.is_empty() {
+        // A motion whose distance from the limit does not change has no closest time; any will do.
+        let furthest = furthest(path);
+        let at = path.grid[furthest];
+        if at.pull[0].hypot(at.pull[1]) > at.limit {
+            let tau = grid_time(path, furthest);
+            try_push(&mut path.moments, (tau, at), CONTEXT)?;
+        }
+    }
     for _ in 0..ROUNDS {
         let found = stuck_slider(path.moments.len(), |j| disc(&path.moments[j].1));
         let Some(found) = found.filter(|found| found.is_common) else {
@@ -132,7 +152,7 @@ fn rest(path: &mut PlanePath) -> Result<Option<[Option<Hold>; 2]>> {
         }
         look_closer(path, place)?;
     }
-    // A motion whose distance from its limit does not change has no closest time.
+    // A place that the circles at other times exclude is none.
     let beyond = |at: &PlaneInstant| (at.pull[0] - place[0]).hypot(at.pull[1] - place[1]) - at.limit;
     if path.grid.iter().any(|at| beyond(at) > ROUNDING * size) {
         return Ok(None);
@@ -153,7 +173,7 @@ fn rest(path: &mut PlanePath) -> Result<Option<[Option<Hold>; 2]>> {
         force,
         closes: false,
     };
-    try_push(&mut path.pieces, piece, "the path of a friction force")?;
+    try_push(&mut path.pieces, piece, CONTEXT)?;
     Ok(Some(holds))
 }
 
@@ -231,7 +251,7 @@ fn look_closer(path: &mut PlanePath, place: [f64; 2]) -> Result<()> {
                         .position(|(other, _)| apart(*other) < NEIGHBOURS * path.spacing());
                     match same {
                         Some(same) => path.moments[same] = (tau, at),
-                        None => try_push(&mut path.moments, (tau, at), "the path of a friction force")?,
+                        None => try_push(&mut path.moments, (tau, at), CONTEXT)?,
                     }
                 }
             }
@@ -324,6 +344,10 @@ fn repeat(path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
         is_last =
             turn > PATIENCE || factor * defect <= RETURNS * size || (by_newton && defect <= SQUARE_RETURNS * size);
         force = [force[0] + taken[0], force[1] + taken[1]];
+    }
+    // Just beyond the onset of slip the force returns ever more slowly; what is left of it is this small.
+    if before <= NEARLY * size {
+        return Ok(());
     }
     Err(Error::new(
         Status::NoConvergence,

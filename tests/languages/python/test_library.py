@@ -44,6 +44,7 @@ PREFIXES = dict(
     SynthesisFlag="SYNTHESIS_",
     LogLevel="LOG_",
     Phase="PHASE_",
+    Flexibility="FLEXIBILITY_",
     Waves="WAVES_",
     MultiplierClass="MULTIPLIER_",
     Grazing="GRAZING_",
@@ -51,7 +52,7 @@ PREFIXES = dict(
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
     "Status Storage Scalar Part MatrixKind SectorFrame ContactKind ContactState State Tangent Field DampingForm "
-    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Waves MultiplierClass Grazing"
+    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Waves MultiplierClass Grazing"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)

@@ -236,11 +236,8 @@ impl Law {
         }
     }
 
-    /// Samples of the library for friction in a plane with the harmonics used here.
-    const SAMPLES: usize = 512;
-
-    /// Where the slider of friction in a plane rests if it can stick at the samples of the library: at the point
-    /// nearest to where it was before it was loaded.
+    /// Where the slider of friction in a plane rests if it can stick at the times given: at the point nearest to where it
+    /// was before it was loaded.
     fn rest(&self, u: &[f64]) -> Option<Slider> {
         let Self::Plane {
             kt,
@@ -256,7 +253,6 @@ impl Law {
         let d = self.directions();
         let discs: Vec<Disc> = u
             .chunks_exact(d)
-            .step_by(u.len() / d / Self::SAMPLES)
             .map(|u| ([u[0], u[1]], mu * pressure(u) / kt))
             .collect();
         let closed = discs.iter().all(|(_, radius)| *radius > 0.0);
