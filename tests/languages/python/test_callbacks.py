@@ -302,7 +302,8 @@ def at_point(number):
 
 def without_callbacks():
     """What Ctrl-C makes of a solve that calls nobody: another thread sends it when the model is in use. Where it came
-    before the solve had begun, or the solve found the model in use by that thread, it is all done again."""
+    before the solve had begun or after its end, or the solve found the model in use by that thread, it is all done
+    again."""
     for _ in range(10):
         over = threading.Event()
 
@@ -318,7 +319,7 @@ def without_callbacks():
         sender.start()
         try:
             try:
-                return solve(model, harmonics=63, step_max=2e-5, max_points=10**6)
+                solve(model, harmonics=63, step_max=2e-5, max_points=10**6)
             finally:
                 over.set()
                 sender.join()
