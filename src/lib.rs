@@ -36,6 +36,7 @@ mod adaptivity;
 pub mod aft;
 #[doc(hidden)]
 pub mod analysis;
+mod byte_stream;
 #[doc(hidden)]
 pub mod capi;
 #[doc(hidden)]

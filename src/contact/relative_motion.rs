@@ -82,6 +82,22 @@ impl Frame {
         Ok(Self { axes: [t1, t2, n] })
     }
 
+    /// The axes t1, t2 and n.
+    #[must_use]
+    pub(crate) fn axes(&self) -> &[[f64; 3]; 3] {
+        &self.axes
+    }
+
+    /// The frame of three axes whose products differ by at most `accuracy` from those of orthogonal unit vectors.
+    #[must_use]
+    pub(crate) fn of_axes(axes: [[f64; 3]; 3], accuracy: f64) -> Option<Self> {
+        let near = |i: usize, j: usize| {
+            let product = if i == j { 1.0 } else { 0.0 };
+            (dot(axes[i], axes[j]) - product).abs() <= accuracy
+        };
+        (0..3).all(|i| (0..=i).all(|j| near(i, j))).then_some(Self { axes })
+    }
+
     /// One side's motion along t1, t2 or n (0, 1 or 2). Degrees of freedom without share are left out.
     #[must_use]
     pub fn side(&self, dofs: [Option<usize>; 3], direction: usize) -> Side {

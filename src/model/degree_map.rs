@@ -44,7 +44,7 @@ impl DegreeMap {
     ///
     /// # Errors
     /// `Argument` for a pair that is fixed on one side only, and where all are fixed; `OutOfMemory`.
-    fn new(fixed: Vec<bool>, faces: Option<Faces>) -> Result<Self> {
+    pub(super) fn new(fixed: Vec<bool>, faces: Option<Faces>) -> Result<Self> {
         let given = fixed.len();
         let mut place = try_vec(given, Place::Interior, CONTEXT)?;
         if let Some(faces) = &faces {
@@ -130,6 +130,11 @@ impl DegreeMap {
     #[must_use]
     pub fn is_identity(&self) -> bool {
         self.images.is_none()
+    }
+
+    /// Marks of all degrees of freedom that do not move; `None` where every one is independent.
+    pub(super) fn fixed(&self) -> Option<&[bool]> {
+        self.images.as_ref().map(|images| &images.fixed[..])
     }
 
     /// The faces of a sector.

@@ -59,6 +59,15 @@ impl Excitation {
         try_push(&mut self.forces, force, "the forces")
     }
 
+    /// Adds a force that was checked before it was saved, again.
+    pub(super) fn restore(&mut self, ndof: usize, force: Force) -> Result<()> {
+        self.add(ndof, force.dof, force.harmonic, force.value)?;
+        if let Some(last) = self.forces.last_mut() {
+            *last = force;
+        }
+        Ok(())
+    }
+
     /// Adds fundamental forces that grow with ω².
     pub(super) fn add_unbalance(&mut self, forces: [(usize, Complex64); 2]) -> Result<()> {
         let force = |(dof, value)| Force {

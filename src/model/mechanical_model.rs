@@ -35,14 +35,14 @@ pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
 /// 2π·EO/N per harmonic, where EO is the engine order of the wave.
 #[derive(Clone, Debug)]
 pub struct Model {
-    structure: Structure,
+    pub(super) structure: Structure,
     /// What was prepared for these matrices.
-    kept: KeptWaves,
-    contacts: Vec<Contact>,
-    springs: Vec<Spring>,
-    excitation: Excitation,
+    pub(super) kept: KeptWaves,
+    pub(super) contacts: Vec<Contact>,
+    pub(super) springs: Vec<Spring>,
+    pub(super) excitation: Excitation,
     /// Normal loads that depend on the speed.
-    speed_loads: Vec<SpeedLoad>,
+    pub(super) speed_loads: Vec<SpeedLoad>,
 }
 
 impl Model {
@@ -287,7 +287,7 @@ impl Model {
         try_extend(&mut self.springs, springs, "the springs")
     }
 
-    fn check_spring(&self, spring: &Spring) -> Result<()> {
+    pub(super) fn check_spring(&self, spring: &Spring) -> Result<()> {
         if !spring.stiffness.is_finite() {
             return fail!(
                 NotFinite,

@@ -66,13 +66,13 @@ type Vector = [Option<usize>; 3];
 /// The checked faces.
 #[derive(Debug)]
 pub(super) struct Faces {
-    left: Vec<Option<usize>>,
-    right: Vec<Option<usize>>,
-    components: usize,
-    frame: SectorFrame,
-    axis: [f64; 3],
-    forward: bool,
-    sectors: usize,
+    pub(super) left: Vec<Option<usize>>,
+    pub(super) right: Vec<Option<usize>>,
+    pub(super) components: usize,
+    pub(super) frame: SectorFrame,
+    pub(super) axis: [f64; 3],
+    pub(super) forward: bool,
+    pub(super) sectors: usize,
     /// 2π/N about the axis.
     turn: [[f64; 3]; 3],
     /// (degree of freedom, entry of a face), ascending.
@@ -87,6 +87,14 @@ impl Faces {
     /// # Errors
     /// `Dimension`, `Index`, `NotFinite` or `Argument`, naming the pair and the degree of freedom.
     pub fn new(sector: &SectorDescription<'_>) -> Result<Self> {
+        Self::about(sector, unit(sector.axis)?)
+    }
+
+    /// The same about a unit vector, which stands for the axis of the description.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub(super) fn about(sector: &SectorDescription<'_>, axis: [f64; 3]) -> Result<Self> {
         let c = sector.components;
         if sector.sectors < 2 {
             return fail!(Argument, "sectors = {}, needs at least 2", sector.sectors);
@@ -110,7 +118,6 @@ impl Faces {
                 "a face has {left} entries, needs a multiple of its {c} components per node, at least 1 node"
             );
         }
-        let axis = unit(sector.axis)?;
         let mut faces = Self {
             left: try_copy(sector.left, CONTEXT)?,
             right: try_copy(sector.right, CONTEXT)?,

@@ -36,7 +36,7 @@ pub enum MatrixKind {
 }
 
 /// Number of kinds of matrices.
-const KINDS: usize = 6;
+pub(super) const KINDS: usize = 6;
 
 impl MatrixKind {
     pub(super) fn name(self) -> &'static str {
@@ -54,9 +54,9 @@ impl MatrixKind {
 /// Matrices of a structure, plain (one sector) or cyclic.
 #[derive(Clone, Debug)]
 pub struct Structure {
-    degrees: DegreeMap,
-    sectors: usize,
-    engine_order: i64,
+    pub(super) degrees: DegreeMap,
+    pub(super) sectors: usize,
+    pub(super) engine_order: i64,
     /// Shared with copies until one of them changes it.
     pub(super) blocks: Arc<[Blocks; KINDS]>,
     pub(crate) rayleigh: (f64, f64),

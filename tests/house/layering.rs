@@ -6,8 +6,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 20] = [
+const LAYERS: [(&str, u8); 21] = [
     ("error", 0),
+    ("byte_stream", 0),
     ("options", 0),
     ("interrupt", 0),
     ("hooks", 0),
@@ -29,9 +30,10 @@ const LAYERS: [(&str, u8); 20] = [
     ("lib", 10),
 ];
 
-/// Imports inside one layer, (from, to): options and interrupts report errors, hooks hold an interrupt, transforms are
+/// Imports inside one layer, (from, to): options, interrupts and streams of bytes report errors, hooks hold an interrupt, transforms are
 /// products of vectors, and a model has contacts.
-const SAME_LAYER: [(&str, &str); 6] = [
+const SAME_LAYER: [(&str, &str); 7] = [
+    ("byte_stream", "error"),
     ("options", "error"),
     ("interrupt", "error"),
     ("hooks", "error"),

@@ -13,3 +13,4 @@ mod linear_stretches;
 mod near_rigid;
 mod random_points;
 mod random_problems;
+mod saved_models;

@@ -6,6 +6,7 @@
 //! Krack & Gross, Harmonic Balance for Nonlinear Vibration Problems (2019),
 //! doi:10.1007/978-3-030-14023-6, on polynomial forces.
 
+use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::laws::polynomial_terms::{Collector, Factor, Term, Terms, check, power};
 use crate::contact::linearisation::{Range, SMALL};
@@ -124,6 +125,55 @@ impl Polynomial {
             directions: collector.directions(),
             content: Arc::new(collector.finish()?),
             length: 1.0,
+        })
+    }
+
+    /// Writes the polynomial.
+    pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) {
+        out.f64(self.length);
+        out.count(self.directions);
+        out.count(self.content.terms.len());
+        for term in &self.content.terms {
+            out.count(term.direction);
+            out.f64(term.coefficient);
+            out.count(term.count);
+            for factor in &self.content.factors[term.first..term.first + term.count] {
+                out.count(factor.variable);
+                out.u32(factor.power);
+            }
+        }
+    }
+
+    /// Reads a polynomial.
+    ///
+    /// # Errors
+    /// `Argument` for bytes that are none; `OutOfMemory`.
+    pub(crate) fn load_from(input: &mut ByteReader<'_>) -> Result<Self> {
+        let length = input.finite()?;
+        let directions = input.count()?;
+        let mut collector = Collector::new(directions)?;
+        for _ in 0..input.entries(24)? {
+            let (direction, coefficient) = (input.count()?, input.finite()?);
+            collector.powers.clear();
+            for _ in 0..input.entries(12)? {
+                let (variable, power) = (input.count()?, input.u32()?);
+                let follows = collector.powers.last().is_none_or(|last| last.variable < variable);
+                if !follows || variable / 2 >= directions || !(1..=HIGHEST_EXPONENT).contains(&power) {
+                    return Err(input.damaged("powers of a polynomial do not exist"));
+                }
+                try_push(&mut collector.powers, Factor { variable, power }, "a polynomial")?;
+            }
+            if collector.powers.is_empty() || direction >= directions {
+                return Err(input.damaged("a term of a polynomial has no motion"));
+            }
+            collector.add(direction, coefficient)?;
+        }
+        if length <= 0.0 {
+            return Err(input.damaged("a polynomial has no unit of length"));
+        }
+        Ok(Self {
+            length,
+            ..Self::of(collector)?
         })
     }
 

@@ -22,6 +22,7 @@ pub mod unilateral;
 #[path = "user_law.rs"]
 pub mod user_law;
 
+use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::contact::constants::Constants;
 use crate::contact::law::ContactLaw;
 use crate::contact::laws::cubic::CubicContact;
@@ -33,6 +34,7 @@ use crate::contact::laws::regularised::RegularisedContact;
 use crate::contact::laws::table::Table;
 use crate::contact::laws::unilateral::UnilateralContact;
 use crate::contact::laws::user_law::User;
+use crate::error::{Result, fail};
 
 /// The kind of a contact: its law.
 #[derive(Clone, Debug)]
@@ -83,6 +85,36 @@ impl ContactKind {
         }
     }
 
+    /// Writes the kind.
+    ///
+    /// # Errors
+    /// `Unsupported` for a law of the caller.
+    pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) -> Result<()> {
+        match self {
+            Self::Jenkins => out.u8(0),
+            Self::Cubic => out.u8(1),
+            Self::Unilateral => out.u8(2),
+            Self::Friction2d => out.u8(3),
+            Self::Friction3d => out.u8(4),
+            Self::Regularised => out.u8(5),
+            Self::Table(law) => {
+                out.u8(6);
+                law.save_to(out);
+            }
+            Self::Polynomial(law) => {
+                out.u8(7);
+                law.save_to(out);
+            }
+            Self::User(_) => {
+                return fail!(
+                    Unsupported,
+                    "a force of the caller is a function of its program, which cannot be saved"
+                );
+            }
+        }
+        Ok(())
+    }
+
     /// The law of the caller, if it is one.
     #[must_use]
     pub fn user(&self) -> Option<&User> {
@@ -91,4 +123,22 @@ impl ContactKind {
             _ => None,
         }
     }
+}
+
+/// Reads a kind.
+///
+/// # Errors
+/// `Argument` for bytes that are none; `OutOfMemory`.
+pub(crate) fn load_kind(input: &mut ByteReader<'_>) -> Result<ContactKind> {
+    Ok(match input.u8()? {
+        0 => ContactKind::Jenkins,
+        1 => ContactKind::Cubic,
+        2 => ContactKind::Unilateral,
+        3 => ContactKind::Friction2d,
+        4 => ContactKind::Friction3d,
+        5 => ContactKind::Regularised,
+        6 => ContactKind::Table(Table::load_from(input)?),
+        7 => ContactKind::Polynomial(Polynomial::load_from(input)?),
+        _ => return Err(input.damaged("a law is unknown")),
+    })
 }

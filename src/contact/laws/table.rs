@@ -5,6 +5,7 @@
 //! point, once at most from one turning point to the next, so that Fourier integrals are exact as they
 //! are for a unilateral spring, the table of two lines.
 
+use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::contact::contact_state::State;
 use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::linearisation::Range;
@@ -97,6 +98,49 @@ impl Table {
         Ok(Self {
             lines: Arc::new(lines),
             length: 1.0,
+        })
+    }
+
+    /// Writes the table.
+    pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) {
+        out.f64(self.length);
+        out.count(self.lines.len());
+        for line in self.lines.iter() {
+            for value in [line.from, line.slope, line.offset, line.noise] {
+                out.f64(value);
+            }
+        }
+    }
+
+    /// Reads a table.
+    ///
+    /// # Errors
+    /// `Argument` for bytes that are none; `OutOfMemory`.
+    pub(crate) fn load_from(input: &mut ByteReader<'_>) -> Result<Self> {
+        let length = input.finite()?;
+        let mut lines: Vec<Line> = Vec::new();
+        for _ in 0..input.entries(32)? {
+            let line = Line {
+                from: input.f64()?,
+                slope: input.finite()?,
+                offset: input.finite()?,
+                noise: input.finite()?,
+            };
+            let follows = match lines.last() {
+                None => line.from == f64::NEG_INFINITY,
+                Some(last) => line.from.is_finite() && line.from > last.from,
+            };
+            if !follows {
+                return Err(input.damaged("displacements of a table do not ascend"));
+            }
+            try_push(&mut lines, line, "a table")?;
+        }
+        if lines.is_empty() || length <= 0.0 {
+            return Err(input.damaged("a table has no lines"));
+        }
+        Ok(Self {
+            lines: Arc::new(lines),
+            length,
         })
     }
 

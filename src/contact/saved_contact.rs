@@ -1,0 +1,99 @@
+//! A contact as bytes.
+
+use crate::byte_stream::{ByteReader, ByteWriter};
+use crate::contact::description::Contact;
+use crate::contact::laws::registry::load_kind;
+use crate::contact::relative_motion::Frame;
+use crate::error::{Result, try_push};
+
+/// Largest deviation of the products of the axes of a frame from those of unit vectors.
+const SQUARE: f64 = 1e-9;
+
+impl Contact {
+    /// Bytes that a contact has at least: kind, sides, frame, offset, seven constants and the length of its list.
+    pub(crate) const LEAST_BYTES: usize = 1 + 48 + 1 + 8 + 56 + 8;
+
+    /// Writes the contact.
+    ///
+    /// # Errors
+    /// `Unsupported` for a law of the caller.
+    pub(crate) fn save_to(&self, out: &mut ByteWriter<'_>) -> Result<()> {
+        self.kind.save_to(out)?;
+        for dof in self.dof_a.iter().chain(&self.dof_b) {
+            out.optional(*dof);
+        }
+        out.bool(self.frame.is_some());
+        if let Some(frame) = &self.frame {
+            for &x in frame.axes().iter().flatten() {
+                out.f64(x);
+            }
+        }
+        out.i64(self.sector_offset);
+        for value in [
+            self.kt,
+            self.kn,
+            self.mu,
+            self.preload,
+            self.gap,
+            self.cubic,
+            self.velocity,
+        ] {
+            out.f64(value);
+        }
+        out.count(self.dofs.len());
+        for &dof in &self.dofs {
+            out.count(dof);
+        }
+        Ok(())
+    }
+
+    /// Reads a contact; its model checks constants and degrees of freedom.
+    ///
+    /// # Errors
+    /// `Argument` for bytes that are no contact; `OutOfMemory`.
+    pub(crate) fn load_from(input: &mut ByteReader<'_>) -> Result<Self> {
+        let kind = load_kind(input)?;
+        let mut sides = [[None; 3]; 2];
+        for dof in sides.iter_mut().flatten() {
+            *dof = input.optional()?;
+        }
+        let frame = if input.bool()? {
+            let mut axes = [[0.0; 3]; 3];
+            for x in axes.iter_mut().flatten() {
+                *x = input.finite()?;
+            }
+            let Some(frame) = Frame::of_axes(axes, SQUARE) else {
+                return Err(input.damaged("the directions of a contact are not orthogonal"));
+            };
+            Some(frame)
+        } else {
+            None
+        };
+        let sector_offset = input.i64()?;
+        let mut constants = [0.0; 7];
+        for value in &mut constants {
+            *value = input.f64()?;
+        }
+        let [kt, kn, mu, preload, gap, cubic, velocity] = constants;
+        let mut dofs = Vec::new();
+        for _ in 0..input.entries(8)? {
+            try_push(&mut dofs, input.count()?, "a loaded contact")?;
+        }
+        let [dof_a, dof_b] = sides;
+        Ok(Self {
+            kind,
+            dof_a,
+            dof_b,
+            frame,
+            sector_offset,
+            kt,
+            kn,
+            mu,
+            preload,
+            gap,
+            cubic,
+            velocity,
+            dofs,
+        })
+    }
+}
