@@ -520,6 +520,23 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_model_add_unbalance
 
+      function hbvib_model_save(model, capacity, bytes, size) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: capacity
+         type(c_ptr), value :: bytes
+         integer(c_int64_t), intent(inout) :: size
+         integer(c_int32_t) :: status
+      end function hbvib_model_save
+
+      function hbvib_model_load(length, bytes, out) bind(c) result(status)
+         import
+         integer(c_int64_t), value :: length
+         type(c_ptr), value :: bytes
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_model_load
+
       function hbvib_cyclic_new(ndof_sector, sectors, out) bind(c) result(status)
          import
          integer(c_int64_t), value :: ndof_sector, sectors
@@ -1293,6 +1310,8 @@ module hbvib
       procedure :: from_sector => model_from_sector
       procedure :: fix => model_fix
       procedure :: clone => model_clone
+      procedure :: save => model_save
+      procedure :: load => model_load
       procedure :: free => model_free
       procedure :: dofs => model_dofs
       procedure :: sectors => model_sectors
@@ -1378,6 +1397,7 @@ module hbvib
 
    private :: strlen, hooks_of, reach_1, reach_2, reach_3, to_zero, to_zero_all
    private :: same_length, struct_dofs, solver_from_one, made, model_new, model_clone, model_free, model_dofs
+   private :: model_save, model_load
    private :: model_sectors, model_contacts, dense, address, dense_real, dense_complex, sparse, set, couple, set_real
    private :: set_sparse_real, couple_real, couple_sparse_real, set_complex, set_sparse_complex, couple_complex
    private :: couple_sparse_complex, set_struct, couple_struct, model_set_rayleigh, model_set_wave, add_force_complex
@@ -1680,6 +1700,32 @@ contains
       copy%handle = made_now
       status = HBVIB_OK
    end function model_clone
+
+   !> The model as bytes, for load in any process. Write them to a file of access 'stream', or send them.
+   function model_save(self, bytes) result(status)
+      class(hbvib_model), intent(in) :: self
+      integer(c_int8_t), allocatable, target, intent(out) :: bytes(:)
+      integer(i32) :: status
+      integer(i64) :: count
+      integer :: stat
+      count = 0
+      status = hbvib_model_save(self%handle, 0_i64, c_null_ptr, count)
+      if (status /= HBVIB_OK) return
+      allocate (bytes(count), stat=stat)
+      status = made(stat)
+      if (status /= HBVIB_OK) return
+      status = hbvib_model_save(self%handle, count, c_loc(bytes), count)
+   end function model_save
+
+   !> The model that save made bytes of; the one before is freed.
+   function model_load(self, bytes) result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer(c_int8_t), contiguous, target, intent(in) :: bytes(:)
+      integer(i32) :: status
+      status = self%free()
+      if (status == HBVIB_E_BUSY) return
+      status = hbvib_model_load(size(bytes, kind=i64), c_loc(bytes), self%handle)
+   end function model_load
 
    !> Branches solved from the model stay. Freeing an empty variable is a success.
    function model_free(self) result(status)

@@ -483,6 +483,33 @@ hbvib_status hbvib_model_add_unbalance(hbvib_model *model,
                                        double m_e,
                                        double phase);
 
+/// Saves a model as bytes: matrices, faces, contacts, springs, forces, damping and speed. The bytes
+/// begin with the version of their format and end with a checksum; they are the same on all
+/// machines, and a loaded model solves to the same bits. Write them to a file or send them to
+/// another process as they are.
+///
+/// capacity  bytes that fit into `bytes`.
+/// bytes     receives the model, or NULL: then only the size is returned.
+/// size      receives the number of bytes that the model takes.
+/// Errors: HBVIB_E_UNSUPPORTED (a force of the caller, naming its contact), HBVIB_E_DIMENSION
+/// (capacity too small: bytes has no model), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY (being
+/// changed). Threads: any number on one model.
+hbvib_status hbvib_model_save(const hbvib_model *model,
+                              int64_t capacity,
+                              void *bytes,
+                              int64_t *size);
+
+/// Loads a model that hbvib_model_save saved.
+///
+/// length  number of bytes, >= 0.
+/// bytes   the saved model.
+/// out     receives the model; untouched on error. Free it by hbvib_model_free.
+/// Errors: HBVIB_E_ARGUMENT (no saved model, or one that is incomplete or damaged),
+/// HBVIB_E_UNSUPPORTED (saved by a newer library), HBVIB_E_DIMENSION (length), HBVIB_E_NULL,
+/// HBVIB_E_OUT_OF_MEMORY; others where bytes that were not saved by the library describe no model.
+/// Memory is taken in proportion to length at most. Threads: any.
+hbvib_status hbvib_model_load(int64_t length, const void *bytes, hbvib_model **out);
+
 /* ==============================================================================================
  * Cyclic structures: sectors, their faces and couplings, nodal diameters, engine order
  * ============================================================================================== */

@@ -915,6 +915,17 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     return copy;
   }
 
+  /// The model as bytes, for load in any process. Error (HBVIB_E_UNSUPPORTED) for a model with a user force.
+  std::vector<unsigned char> save() const {
+    Index size = 0;
+    use(hbvib_model_save, 0, nullptr, &size);
+    std::vector<unsigned char> bytes(detail::extent(size));
+    use(hbvib_model_save, size, bytes.data(), &size);
+    return bytes;
+  }
+  /// The model that save made bytes of.
+  static Model load(In<unsigned char> bytes) { return make(hbvib_model_load, bytes.length(), bytes.data()); }
+
   Index dofs() const { return use(hbvib_model_dofs); }
   Index sectors() const { return use(hbvib_model_sectors); }
   Index contacts() const { return use(hbvib_model_contacts); }

@@ -375,6 +375,8 @@ model_set_speed: h d
 model_set_speed_per_omega: h d
 model_set_preload_at_speed: h l d d
 model_add_unbalance: h l l d d
+model_save: h l p p
+model_load: l p p
 cyclic_new: l l p
 cyclic_set_coupling: h i matrix
 cyclic_set_coupling_previous: h i matrix
@@ -488,6 +490,8 @@ if TYPE_CHECKING:
         def hbvib_model_set_speed_per_omega(self, model: Any, per_omega: float) -> int: ...
         def hbvib_model_set_preload_at_speed(self, model: Any, id: int, preload: float, per_speed2: float) -> int: ...
         def hbvib_model_add_unbalance(self, model: Any, dof_x: int, dof_y: int, m_e: float, phase: float) -> int: ...
+        def hbvib_model_save(self, model: Any, capacity: int, bytes: Any, size: Any) -> int: ...
+        def hbvib_model_load(self, length: int, bytes: Any, out: Any) -> int: ...
         def hbvib_cyclic_new(self, ndof_sector: int, sectors: int, out: Any) -> int: ...
         def hbvib_cyclic_set_coupling(self, model: Any, which: int, to_next: Any) -> int: ...
         def hbvib_cyclic_set_coupling_previous(self, model: Any, which: int, to_previous: Any) -> int: ...
@@ -1354,6 +1358,41 @@ class Model(_Owner):
 
     def __deepcopy__(self, _: dict) -> Model:
         return self.clone()
+
+    def to_bytes(self) -> bytes:
+        """The model as bytes of a versioned format with a checksum: from_bytes makes it again, in any process, and it
+        solves to the same bits. pickle uses it. UnsupportedError for a model with a user force."""
+        size = ctypes.c_int64()
+        self._call("hbvib_model_save", 0, None, size)
+        room = np.empty(size.value, np.uint8)
+        self._call("hbvib_model_save", room.size, room, size)
+        return room.tobytes()
+
+    @classmethod
+    def from_bytes(cls, data: Any) -> Model:
+        """The model that to_bytes saved. ArgumentError for bytes that are no such model, incomplete or damaged,
+        UnsupportedError for those of a newer format."""
+        given = np.frombuffer(data, np.uint8)
+        model, handle = cls.__new__(cls), ctypes.c_void_p()
+        model._handle = None
+        _call("hbvib_model_load", given.size, given, handle)
+        model._handle, model._kept = handle.value, []
+        return model
+
+    def save(self, path: Any) -> None:
+        """Writes the bytes of the model to a file."""
+        data = self.to_bytes()
+        with open(path, "wb") as file:
+            file.write(data)
+
+    @classmethod
+    def load(cls, path: Any) -> Model:
+        """The model of a file that save wrote."""
+        with open(path, "rb") as file:
+            return cls.from_bytes(file.read())
+
+    def __reduce__(self) -> Any:
+        return type(self).from_bytes, (self.to_bytes(),)
 
     @property
     def ndof(self) -> int:

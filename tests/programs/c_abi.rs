@@ -153,6 +153,11 @@ fn rotation_and_damping_are_those_of_closed_forms() {
 }
 
 #[test]
+fn models_are_saved_and_loaded() {
+    silent("saved", |_| vec![]);
+}
+
+#[test]
 fn laws_elements_and_patches_are_those_of_closed_forms() {
     silent("laws", |_| vec![]);
 }

@@ -427,7 +427,7 @@ fn fortran_feels_native() {
         &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
     ]
     .concat();
-    for name in ["misuse", "physics", "threads"] {
+    for name in ["misuse", "physics", "saved", "threads"] {
         let folder = workshop(&format!("fortran_tests/{name}"));
         let source = root().join(format!("tests/languages/fortran/{name}.f90"));
         let sources = [fortran_module(), common.clone(), source];

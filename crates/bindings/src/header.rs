@@ -25,7 +25,7 @@ pub const SECTIONS: [Section; 12] = [
     Section {
         title: "Model",
         about: "structures, their matrices, springs and forces",
-        files: &["model", "model_damping", "model_rotation"],
+        files: &["model", "model_damping", "model_rotation", "model_saved"],
     },
     Section {
         title: "Cyclic structures",

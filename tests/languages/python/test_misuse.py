@@ -79,7 +79,7 @@ raises("a model without size", TypeError, hbvib.Model)
 raises("a wheel without sectors", TypeError, hbvib.Model.cyclic, 4, 24)
 raises("a model of no size", ValueError, hbvib.Model, 0)
 raises("a model of half a degree of freedom", TypeError, hbvib.Model, 1.5)
-raises("a model cannot be pickled", TypeError, pickle.dumps, model)
+raises("a branch cannot be pickled", TypeError, pickle.dumps, branch)
 for point in (-1, 10**6):
     raises(f"point {point}", IndexError, branch.harmonics, point)
     raises(f"energy of point {point}", IndexError, branch.energy, point)
