@@ -50,11 +50,13 @@ module hbvib
       HBVIB_GYROSCOPIC = 4, HBVIB_STIFFNESS_SPEED2 = 5
    ! hbvib_special_dof
    integer(c_int32_t), parameter, public :: HBVIB_GROUND = -1
+   ! hbvib_block
+   integer(c_int32_t), parameter, public :: HBVIB_BLOCK_OWN = 0, HBVIB_BLOCK_NEXT = 1, HBVIB_BLOCK_PREVIOUS = 2
    ! hbvib_sector_frame
    integer(c_int32_t), parameter, public :: HBVIB_CARTESIAN = 0, HBVIB_CYLINDRICAL = 1
    ! hbvib_contact_kind
    integer(c_int32_t), parameter, public :: HBVIB_JENKINS = 1, HBVIB_FRICTION_2D = 2, HBVIB_FRICTION_3D = 3, &
-      HBVIB_UNILATERAL = 4, HBVIB_CUBIC = 5, HBVIB_REGULARISED = 6
+      HBVIB_UNILATERAL = 4, HBVIB_CUBIC = 5, HBVIB_REGULARISED = 6, HBVIB_TABLE = 7, HBVIB_POLYNOMIAL = 8, HBVIB_CALLER_LAW = 9
    ! hbvib_tangent
    integer(c_int32_t), parameter, public :: HBVIB_DF_DU = 0, HBVIB_DF_DV = 1, HBVIB_DF_DZ = 2, HBVIB_DZ_DZ = 3, &
       HBVIB_DZ_DU_BEFORE = 4, HBVIB_DZ_DU = 5, HBVIB_DZ_DV_BEFORE = 6, HBVIB_DZ_DV = 7, HBVIB_DZ_DOMEGA = 8
@@ -520,6 +522,45 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_model_add_unbalance
 
+      function hbvib_model_wave(model, engine_order) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), intent(inout) :: engine_order
+         integer(c_int32_t) :: status
+      end function hbvib_model_wave
+
+      function hbvib_model_matrix(model, which, block, capacity, row, column, value, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int32_t), value :: which, block
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: row(*), column(*)
+         complex(c_double_complex), intent(inout), optional :: value(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_model_matrix
+
+      function hbvib_model_springs(model, capacity, dof_a, dof_b, sector_offset, stiffness, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: dof_a(*), dof_b(*), sector_offset(*)
+         real(c_double), intent(inout), optional :: stiffness(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_model_springs
+
+      function hbvib_model_forces(model, capacity, dof, harmonic, force, unbalance, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: dof(*), harmonic(*)
+         complex(c_double_complex), intent(inout), optional :: force(*)
+         integer(c_int64_t), intent(inout), optional :: unbalance(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_model_forces
+
       function hbvib_model_save(model, capacity, bytes, size) bind(c) result(status)
          import
          type(c_ptr), value :: model
@@ -694,6 +735,15 @@ module hbvib
          integer(c_int64_t), intent(inout), optional :: first_id
          integer(c_int32_t) :: status
       end function hbvib_model_add_patch
+
+      function hbvib_model_contact(model, id, out, per_speed2) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: id
+         type(hbvib_contact), intent(inout) :: out
+         real(c_double), intent(inout), optional :: per_speed2(*)
+         integer(c_int32_t) :: status
+      end function hbvib_model_contact
 
       function hbvib_user_force_init(o, size_of_o) bind(c) result(status)
          import

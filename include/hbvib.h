@@ -483,6 +483,85 @@ hbvib_status hbvib_model_add_unbalance(hbvib_model *model,
                                        double m_e,
                                        double phase);
 
+/// Blocks of a matrix, by the sectors of their columns.
+typedef enum {
+  /// Rows and columns of the same sector: all of a plain structure.
+  HBVIB_BLOCK_OWN = 0,
+  /// Columns of the next sector.
+  HBVIB_BLOCK_NEXT = 1,
+  /// Columns of the previous sector, where it was given: else the transpose of HBVIB_BLOCK_NEXT.
+  HBVIB_BLOCK_PREVIOUS = 2,
+} hbvib_block;
+
+/// The engine order of a model, as hbvib_cyclic_set_wave takes it; 0 for a plain structure.
+///
+/// engine_order  receives the number; untouched on error.
+/// Errors: HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any number on one model.
+hbvib_status hbvib_model_wave(const hbvib_model *model, int64_t *engine_order);
+
+/// The entries of a matrix of a model, or of a block of it, each once, column after column, without
+/// Rayleigh damping, springs and contacts. Rows and columns of fixed degrees of freedom are empty;
+/// those of the right face of a sector are in the blocks of the left one.
+///
+/// which     HBVIB_MASS .. HBVIB_STIFFNESS_SPEED2.
+/// block     HBVIB_BLOCK_OWN, HBVIB_BLOCK_NEXT or HBVIB_BLOCK_PREVIOUS.
+/// capacity  entries that fit into each array.
+/// row       receives numbers of rows, or NULL.
+/// column    receives numbers of columns, or NULL.
+/// value     receives complex entries, 2 * capacity doubles, or NULL.
+/// count     receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_ARGUMENT (which, block), HBVIB_E_UNSUPPORTED (given per nodal diameter),
+/// HBVIB_E_DIMENSION (capacity), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed).
+/// Threads: any number on one model.
+hbvib_status hbvib_model_matrix(const hbvib_model *model,
+                                int32_t which,
+                                int32_t block,
+                                int64_t capacity,
+                                int64_t *row,
+                                int64_t *column,
+                                double *value,
+                                int64_t *count);
+
+/// The linear springs of a model, in the order in which they were added.
+///
+/// capacity       numbers that fit into each array.
+/// dof_a, dof_b   receive numbers of degrees of freedom or HBVIB_GROUND, or NULL.
+/// sector_offset  receives numbers of sectors from side a to side b, or NULL.
+/// stiffness      receives the stiffnesses, or NULL.
+/// count          receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_DIMENSION (capacity), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: any number on one model.
+hbvib_status hbvib_model_springs(const hbvib_model *model,
+                                 int64_t capacity,
+                                 int64_t *dof_a,
+                                 int64_t *dof_b,
+                                 int64_t *sector_offset,
+                                 double *stiffness,
+                                 int64_t *count);
+
+/// The forces of a model, in the order in which they were added; an unbalance is two of them.
+///
+/// capacity    numbers that fit into each array.
+/// dof         receives numbers of degrees of freedom, or NULL.
+/// harmonic    receives numbers of harmonics, or NULL.
+/// force       receives complex peak values, 2 * capacity doubles, or NULL; over the square of the
+///             angular frequency where unbalance is 1.
+/// unbalance   receives numbers: 1 for a force that grows with the square of the frequency, else 0;
+///             or NULL.
+/// count       receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_DIMENSION (capacity), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: any number on one model.
+hbvib_status hbvib_model_forces(const hbvib_model *model,
+                                int64_t capacity,
+                                int64_t *dof,
+                                int64_t *harmonic,
+                                double *force,
+                                int64_t *unbalance,
+                                int64_t *count);
+
 /// Saves a model as bytes: matrices, faces, contacts, springs, forces, damping and speed. The bytes
 /// begin with the version of their format and end with a checksum; they are the same on all
 /// machines, and a loaded model solves to the same bits. Write them to a file or send them to
@@ -677,6 +756,13 @@ typedef enum {
   /// Smoothed Coulomb friction in one direction:
   /// f = mu * preload * tanh(y' / velocity).
   HBVIB_REGULARISED = 6,
+  /// Read back only (hbvib_model_contact): a spring by hbvib_model_add_table.
+  HBVIB_TABLE = 7,
+  /// Read back only: springs and dampers by hbvib_model_add_spring_damper, _add_polynomial or
+  /// _add_stiffness_tensors.
+  HBVIB_POLYNOMIAL = 8,
+  /// Read back only: a force of the caller, by hbvib_model_add_user_force.
+  HBVIB_CALLER_LAW = 9,
 } hbvib_contact_kind;
 
 /// A contact between two degrees of freedom, or between one and the ground. Fill it by
@@ -937,6 +1023,21 @@ hbvib_status hbvib_model_add_patch(hbvib_model *model,
                                    const double *pressure,
                                    const double *gap,
                                    int64_t *first_id);
+
+/// Describes a contact of a model as hbvib_model_add_contact takes it: preload and gap as they were
+/// given, whatever the speed; normal and tangent as unit vectors; contacts of an Iwan joint or a
+/// patch one by one. HBVIB_TABLE, HBVIB_POLYNOMIAL and HBVIB_CALLER_LAW have no constants; those on
+/// a list of degrees of freedom have no sides.
+///
+/// id          number from hbvib_model_add_contact or another function that adds contacts.
+/// out         receives the description; fill it by hbvib_contact_init before; untouched on error.
+/// per_speed2  receives the load per speed squared of hbvib_model_set_preload_at_speed, or NULL.
+/// Errors: HBVIB_E_INDEX (id), HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
+/// Threads: any number on one model.
+hbvib_status hbvib_model_contact(const hbvib_model *model,
+                                 int64_t id,
+                                 hbvib_contact *out,
+                                 double *per_speed2);
 
 /* ==============================================================================================
  * Laws of the caller: forces computed by a callback, and the check of their derivatives

@@ -35,6 +35,13 @@ pub enum hbvib_contact_kind {
     /// Smoothed Coulomb friction in one direction:
     /// f = mu * preload * tanh(y' / velocity).
     HBVIB_REGULARISED = 6,
+    /// Read back only (hbvib_model_contact): a spring by hbvib_model_add_table.
+    HBVIB_TABLE = 7,
+    /// Read back only: springs and dampers by hbvib_model_add_spring_damper, _add_polynomial or
+    /// _add_stiffness_tensors.
+    HBVIB_POLYNOMIAL = 8,
+    /// Read back only: a force of the caller, by hbvib_model_add_user_force.
+    HBVIB_CALLER_LAW = 9,
 }
 
 /// A contact between two degrees of freedom, or between one and the ground. Fill it by

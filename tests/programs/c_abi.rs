@@ -85,6 +85,11 @@ fn sizes_are_counted_and_indices_may_count_from_one() {
 }
 
 #[test]
+fn models_are_read_back_as_they_were_given() {
+    silent("contents", |_| vec![]);
+}
+
+#[test]
 fn results_are_what_they_say() {
     silent("results", |_| vec![]);
 }

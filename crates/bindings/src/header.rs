@@ -25,7 +25,13 @@ pub const SECTIONS: [Section; 12] = [
     Section {
         title: "Model",
         about: "structures, their matrices, springs and forces",
-        files: &["model", "model_damping", "model_rotation", "model_saved"],
+        files: &[
+            "model",
+            "model_damping",
+            "model_rotation",
+            "model_contents",
+            "model_saved",
+        ],
     },
     Section {
         title: "Cyclic structures",
@@ -35,7 +41,13 @@ pub const SECTIONS: [Section; 12] = [
     Section {
         title: "Contacts",
         about: "friction, unilateral contacts, nonlinear springs and dampers, patches",
-        files: &["contacts", "contacts_batch", "contacts_springs", "contacts_patch"],
+        files: &[
+            "contacts",
+            "contacts_batch",
+            "contacts_springs",
+            "contacts_patch",
+            "contacts_described",
+        ],
     },
     Section {
         title: "Laws of the caller",
