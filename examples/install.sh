@@ -59,7 +59,7 @@ stripped libhbvib.a --strip-debug
 put 644 "$scratch/libhbvib.a" lib/libhbvib.a
 
 for file in hbvib.h hbvib.hpp hbvib.f90; do put 644 "include/$file" "include/$file"; done
-put 644 include/hbvib.py share/hbvib/hbvib.py
+for file in include/hbvib/*.py include/hbvib/py.typed; do put 644 "$file" "share/hbvib/hbvib/${file##*/}"; done
 for file in LICENSE-MIT LICENSE-APACHE; do put 644 "$file" "share/doc/hbvib/$file"; done
 fill hbvib.pc lib/pkgconfig/hbvib.pc
 fill hbvib-config.cmake lib/cmake/hbvib/hbvib-config.cmake

@@ -33,15 +33,19 @@ need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
 need bsdutils script --version
 
-# Python with numpy, scipy, matplotlib, pip and what builds the wheel: the system's, or one of our own. All that comes from
-# the network comes here; the tests work without it.
-complete() { "$1" -c 'import numpy, scipy, matplotlib, pip, hatchling' >/dev/null 2>&1; }
+# Python with numpy, what builds the wheel, what tables and figures need, and type checkers: the system's, or one of our own.
+# All that comes from the network comes here; the tests work without it.
+modules="numpy scipy matplotlib pip hatchling pandas xarray tqdm mypy pyright typing_extensions pycparser"
+complete() { "$1" -c "import $(echo $modules | sed 's/ /, /g')" >/dev/null 2>&1; }
 if { [ -e .venv ] || ! complete python3; } && ! complete .venv/bin/python; then
     need python3-venv python3 -c 'import venv, ensurepip'
-    echo "installing numpy, scipy, matplotlib and hatchling in .venv"
+    # pyright runs on node.
+    pyright=pyright
+    command -v node >/dev/null 2>&1 || pyright='pyright[nodejs]'
+    echo "installing numpy, scipy, matplotlib, pandas, xarray, tqdm, hatchling and type checkers in .venv"
     python3 -m venv .venv
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check numpy scipy matplotlib 'hatchling>=1.24' || {
-        echo "tests/run.sh: no numpy, scipy, matplotlib and hatchling; install them for python3 (pip or apt) and run again" >&2
+    .venv/bin/python -m pip install --quiet --disable-pip-version-check $(echo $modules | sed 's/pip //; s/pyright//') "$pyright" || {
+        echo "tests/run.sh: could not install $modules; install them for python3 (pip or apt) and run again" >&2
         exit 1
     }
 fi

@@ -10,6 +10,7 @@ import argparse
 import math
 import os
 import sys
+from typing import Iterable, Iterator, List, Tuple
 
 import numpy as np
 
@@ -20,7 +21,7 @@ FORCES = (1, 5, 20)  # N
 HZ = 2 * math.pi
 
 
-def ring_damper(force, ring_mass=0.03, rpm=3000):
+def ring_damper(force: float, ring_mass: float = 0.03, rpm: float = 3000) -> hbvib.Model:
     kb2, kb1, kd, kg, kr, radius = 2e6, 1e6, 5e7, 6e5, 2e7, 0.165
     spin = rpm * 2 * math.pi / 60
     stiffness = np.array([[kb2, -kb2, 0, 0],
@@ -36,20 +37,20 @@ def ring_damper(force, ring_mass=0.03, rpm=3000):
     return model
 
 
-def set_force(model, force):
+def set_force(model: hbvib.Model, force: float) -> None:
     model.clear_forces()
     model.add_force(B2, force)
     model.add_force(B1, force)
 
 
-def responses(model):
+def responses(model: hbvib.Model) -> Iterator[Tuple[float, hbvib.Branch]]:
     """A branch for each force."""
     for force in FORCES:
         set_force(model, force)
         yield force, model.forced_response((HZ * 207, HZ * 211), harmonics=63, response_dof=B2)
 
 
-def table(branches):
+def table(branches: Iterable[Tuple[float, hbvib.Branch]]) -> None:
     print("   F/N              f/Hz            |X1|/m")
     for force, branch in branches:
         peaks = branch.peaks()
@@ -57,7 +58,7 @@ def table(branches):
         print(f"{force:6.1f}  {peaks.omega[best] / HZ:16.11f}  {peaks.amplitude[best]:19.12E}")
 
 
-def figures(model, branches, folder):
+def figures(model: hbvib.Model, branches: List[Tuple[float, hbvib.Branch]], folder: str) -> None:
     import matplotlib
     matplotlib.use("Agg")
     from matplotlib import pyplot
@@ -79,7 +80,7 @@ def figures(model, branches, folder):
     figure.savefig(os.path.join(folder, "mode.png"), dpi=150)
 
 
-def main():
+def main() -> None:
     parser = argparse.ArgumentParser(description="Resonances of a bladed disk with a friction ring damper.")
     parser.add_argument("--figures", metavar="FOLDER", help="draw figures into this folder")
     folder = parser.parse_args().figures

@@ -101,6 +101,7 @@ fn prepared(fence: &Fence, number: usize, folder: &Path) -> Command {
                 .arg(source)
                 .env("PYTHONPATH", root().join("include"))
                 .env("PYTHONDONTWRITEBYTECODE", "1")
+                .env("MPLBACKEND", "Agg")
                 .env("HBVIB_LIBRARY", library());
             command
         }
@@ -289,9 +290,11 @@ fn every_name_of_the_interface_exists() {
         "include/hbvib.h",
         "include/hbvib.hpp",
         "include/hbvib.f90",
-        "include/hbvib.py",
+        "include/hbvib/__init__.py",
+        "include/hbvib/_c.py",
+        "include/hbvib/_types.py",
         "include/hbvib_io.h",
-        "include/hbvib_io.py",
+        "include/hbvib/io.py",
         "examples/install/hbvib-config.cmake",
     ] {
         interface += &read(Path::new(path));

@@ -136,11 +136,13 @@ fn the_installation_is_complete_and_may_be_moved() {
         "include/hbvib.h",
         "include/hbvib.hpp",
         "include/hbvib.f90",
-        "share/hbvib/hbvib.py",
+        "share/hbvib/hbvib/__init__.py",
+        "share/hbvib/hbvib/py.typed",
     ] {
         let installed = prefix().join(path);
         assert!(installed.is_file(), "{path} was not installed");
-        let own = root().join("include").join(installed.file_name().unwrap());
+        let rest = path.strip_prefix("share/hbvib/").or(path.strip_prefix("include/"));
+        let own = root().join("include").join(rest.unwrap_or(path));
         assert!(
             !own.is_file() || fs::read(own).unwrap() == fs::read(&installed).unwrap(),
             "{path} is not that of the checkout"
@@ -182,7 +184,7 @@ fn prefixes_may_be_relative_spaced_staged_and_used_again() {
     assert!(installs(&folder, "relative", None) && installs(&folder, "relative", None));
     assert!(folder.join("relative/lib/libhbvib.so").is_file());
     assert!(installs(&folder, "with space", None));
-    assert!(folder.join("with space/share/hbvib/hbvib.py").is_file());
+    assert!(folder.join("with space/share/hbvib/hbvib/__init__.py").is_file());
     let stage = folder.join("stage");
     assert!(installs(&folder, "/opt/hbvib", Some(&stage)));
     assert!(stage.join("opt/hbvib/include/hbvib.h").is_file() && !Path::new("/opt/hbvib").exists());
@@ -467,7 +469,16 @@ fn the_wheel_brings_its_library() {
         .arg(root())
         .current_dir(&folder));
     let installed = folder.join("site/hbvib");
-    assert!(installed.join("libhbvib.so").is_file());
+    for file in [
+        "libhbvib.so",
+        "libhbvib_io.so",
+        "io.py",
+        "py.typed",
+        "include/hbvib.h",
+        "include/hbvib_io.h",
+    ] {
+        assert!(installed.join(file).is_file(), "the wheel has no {file}");
+    }
     assert!(folder.join(format!("site/hbvib-{VERSION}.dist-info")).is_dir());
     let text = printed(
         script(&root().join("examples/python/ring_damper.py"))
@@ -477,7 +488,7 @@ fn the_wheel_brings_its_library() {
     check_table("the wheel", &text);
     let reported = printed(
         Command::new(python())
-            .args(["-c", "import hbvib; print(hbvib.lib._name)"])
+            .args(["-c", "import hbvib, hbvib.io; print(hbvib.lib._name)"])
             .env("PYTHONPATH", folder.join("site"))
             .env_remove("HBVIB_LIBRARY"),
     );

@@ -6,7 +6,7 @@ the code changes no result, not even in its last bit.
     python tests/stored_results --compare old.txt new.txt             status 1 where a number differs
     python tests/stored_results --only 'law/*' 'duffing/*'            some cases; --list names all
 
-Needs numpy and scipy. The library is called through include/hbvib.py. A line is a label and a number; lines of sentences
+Needs numpy and scipy. The library is called through include/hbvib. A line is a label and a number; lines of sentences
 (errors, reasons of an early stop, lines of the log) begin with "sentence" and count as a difference only with
 --sentences, because a sentence may be worded anew where no number changes."""
 

@@ -19,6 +19,7 @@ mod layout;
 mod library;
 mod lists;
 mod python;
+mod python_types;
 mod regions;
 
 use declarations::{Declarations, Result};
@@ -47,7 +48,8 @@ fn write() -> Result<()> {
     let (calls, layouts) = fortran::layouts(&all)?;
     let parts = [
         ("include/hbvib.f90", vec![fortran::module(&all, &defaults)?]),
-        ("include/hbvib.py", vec![python::module(&all)?]),
+        ("include/hbvib/_c.py", vec![python::module(&all)?]),
+        ("include/hbvib/_types.py", vec![python_types::module(&all, &defaults)?]),
         ("tests/programs/layout.rs", vec![lists::layouts(&all)]),
         ("tests/languages/fortran/layout.f90", vec![calls, layouts]),
     ];

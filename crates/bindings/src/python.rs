@@ -7,7 +7,7 @@ const COLUMNS: usize = 120;
 
 /// The generated part of the module.
 pub fn module(all: &Declarations) -> Result<String> {
-    let mut text = String::new();
+    let mut text = public_names(all);
     for e in &all.enums {
         text += &enumeration(e);
     }
@@ -86,7 +86,18 @@ pub fn module(all: &Declarations) -> Result<String> {
     Ok(text)
 }
 
-fn short(name: &str) -> &str {
+/// The list of what the module shows: the enumerations, and constants of enumerations with one member.
+fn public_names(all: &Declarations) -> String {
+    let names = all.enums.iter().map(|e| match &e.members[..] {
+        [(name, ..)] => format!("\"{}\"", name.trim_start_matches("HBVIB_")),
+        _ => format!("\"{}\"", class_name(short(&e.name))),
+    });
+    let names: Vec<_> = names.collect();
+    wrapped(&format!("__all__ = [{}]", names.join(", ")), "    ")
+}
+
+/// A name without its prefix.
+pub fn short(name: &str) -> &str {
     name.trim_start_matches("hbvib_")
 }
 
@@ -129,14 +140,14 @@ fn enumeration(e: &Enum) -> String {
 }
 
 /// The class of hbvib_status_code is Status, that of hbvib_log_level LogLevel.
-fn class_name(name: &str) -> String {
+pub fn class_name(name: &str) -> String {
     let name = name.strip_suffix("_code").unwrap_or(name);
     let words = name.split('_').map(|word| word[..1].to_ascii_uppercase() + &word[1..]);
     words.collect()
 }
 
 /// Length of the common start of all members, up to an underscore.
-fn common_prefix(e: &Enum) -> usize {
+pub fn common_prefix(e: &Enum) -> usize {
     let first = &e.members[0].0;
     let ends = first.match_indices('_').map(|(i, _)| i + 1);
     let common = ends.take_while(|&end| e.members.iter().all(|(name, ..)| name.starts_with(&first[..end])));
@@ -216,7 +227,7 @@ fn stub(all: &Declarations, f: &Function) -> Result<String> {
 }
 
 /// A line, broken at spaces; continuation lines begin with `indent`.
-fn wrapped(line: &str, indent: &str) -> String {
+pub fn wrapped(line: &str, indent: &str) -> String {
     let mut text = String::new();
     let mut rest = line.to_owned();
     while rest.len() > COLUMNS {

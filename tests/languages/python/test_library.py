@@ -11,7 +11,7 @@ import tempfile
 from common import check, finish, hbvib, raises
 
 HERE = os.path.dirname(os.path.abspath(__file__))
-MODULE = os.path.abspath(hbvib.__file__)
+MODULE = os.path.dirname(os.path.abspath(hbvib.__file__))
 with open(os.path.join(HERE, "../../../include/hbvib.h")) as file:
     HEADER = re.sub(r"//[^\n]*|/\*.*?\*/", "", file.read(), flags=re.S)
 
@@ -46,12 +46,13 @@ PREFIXES = dict(
     Phase="PHASE_",
     Flexibility="FLEXIBILITY_",
     Waves="WAVES_",
+    Block="BLOCK_",
     MultiplierClass="MULTIPLIER_",
     Grazing="GRAZING_",
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
-    "Status Storage Scalar Part MatrixKind SectorFrame ContactKind ContactState State Tangent Field DampingForm "
+    "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Waves MultiplierClass Grazing"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
@@ -94,16 +95,16 @@ with tempfile.TemporaryDirectory() as prefix:
     prefix = os.path.realpath(prefix)
     for folder in ("share/hbvib", "lib", "alone"):
         os.makedirs(os.path.join(prefix, folder))
-    installed = shutil.copy(MODULE, os.path.join(prefix, "share/hbvib/hbvib.py"))
+    installed = shutil.copytree(MODULE, os.path.join(prefix, "share/hbvib/hbvib"))
     file = f"libhbvib.so.{version[0]}.{version[1]}"
     os.symlink(path, os.path.join(prefix, "lib", file))
     check("an installed module finds its prefix", imported(installed) == os.path.join(prefix, "lib", file))
-    alone = shutil.copy(MODULE, os.path.join(prefix, "alone/hbvib.py"))
+    alone = shutil.copytree(MODULE, os.path.join(prefix, "alone/hbvib"))
     os.remove(os.path.join(prefix, "lib", file))
     if not ctypes.util.find_library("hbvib"):
         said = imported(alone)
         check("where nothing is found, ImportError names the places", "ImportError" in said and prefix in said, said)
-    os.symlink(path, os.path.join(prefix, "alone", file))
-    check("a library beside the module comes first", imported(alone) == os.path.join(prefix, "alone", file))
+    os.symlink(path, os.path.join(alone, file))
+    check("a library beside the module comes first", imported(alone) == os.path.join(alone, file))
 
 finish(150)

@@ -64,9 +64,17 @@ refused("a flag that is none", TypeError, solve, model, cancel=True)
 refused("a guess of another shape", ValueError, solve, model, guess=np.zeros((10, 3)))
 refused("a guess of another type", TypeError, solve, model, guess=np.full((10, 4), None))
 refused(
-    "directions of another length", ValueError, model.add_contact, "friction_3d", [0, 1, 2], kt=1, kn=1, normal=[0, 1]
+    "directions of another length", ValueError, model.add_contact, "friction_3d", [0, 1, 2], kt=1, kn=1, mu=1,
+    normal=[0, 1]
 )
-refused("more degrees of freedom than a law has", ValueError, model.add_contact, "jenkins", [0, 1], kt=1)
+refused("more degrees of freedom than a law has", ValueError, model.add_contact, "jenkins", [0, 1], kt=1, mu=1, preload=1)
+refused(
+    "a law without its constants", TypeError, model.add_contact, "jenkins", 0, kt=1, words="'jenkins' misses mu, preload"
+)
+refused("a law of several constants", TypeError, hbvib.evaluate_contact, "regularised", [0, 1], mu=1, words="preload, velocity")
+refused("a grid as range", ValueError, model.forced_response, np.linspace(1, 2, 50), words="at=")
+refused("a grid of amplitudes as range", ValueError, model.nonlinear_mode, np.linspace(-6, -2, 9), words="at=")
+refused("a range of one entry", ValueError, model.forced_response, [1.0], words="has 1 entries")
 refused("no user force", TypeError, model.add_user_force, [0], None)
 refused("infinity", ValueError, model.add_force, 0, complex(1, float("inf")), words="inf")
 refused("not a number", ValueError, model.set_preload, 0, float("nan"), words="NaN")
@@ -79,7 +87,6 @@ raises("a model without size", TypeError, hbvib.Model)
 raises("a wheel without sectors", TypeError, hbvib.Model.cyclic, 4, 24)
 raises("a model of no size", ValueError, hbvib.Model, 0)
 raises("a model of half a degree of freedom", TypeError, hbvib.Model, 1.5)
-raises("a branch cannot be pickled", TypeError, pickle.dumps, branch)
 for point in (-1, 10**6):
     raises(f"point {point}", IndexError, branch.harmonics, point)
     raises(f"energy of point {point}", IndexError, branch.energy, point)

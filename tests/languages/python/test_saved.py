@@ -62,7 +62,7 @@ raises("a user force", NotImplementedError, pickle.dumps, forced, words="contact
 check("a copy of it shares the function", copy.deepcopy(forced).contacts == 2)
 
 program = "import pickle, sys; sys.stdout.buffer.write(pickle.load(sys.stdin.buffer).to_bytes())"
-environment = dict(os.environ, PYTHONPATH=os.path.dirname(os.path.abspath(hbvib.__file__)))
+environment = dict(os.environ, PYTHONPATH=os.path.dirname(os.path.dirname(os.path.abspath(hbvib.__file__))))
 found = subprocess.run(
     [sys.executable, "-c", program], input=pickle.dumps(model), stdout=subprocess.PIPE, env=environment, check=True
 )

@@ -20,7 +20,7 @@ __all__ = ["Matrices", "ReadError", "read"]
 Matrices = namedtuple("Matrices", "stiffness mass damping dofs")
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
-_FOLDERS = ("", "../target/release", "../target/debug", "../../lib", "../lib")
+_FOLDERS = ("", "../../target/release", "../../target/debug", "../../../lib", "../../lib")
 
 
 class ReadError(ValueError):
@@ -68,7 +68,7 @@ def _array(address: int, count: int, kind: Any) -> np.ndarray:
 
 
 def _sparse(matrix: _Matrix) -> Any:
-    from scipy import sparse
+    from scipy import sparse  # type: ignore[import-untyped, unused-ignore]
     row, column = (_array(address, matrix.entries, np.uint32).astype(np.int64) for address in (matrix.row, matrix.column))
     kind = np.complex128 if matrix.is_complex else np.float64
     values = _array(matrix.values, matrix.entries, kind)

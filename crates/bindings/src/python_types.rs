@@ -1,0 +1,212 @@
+//! Python: options as typed dictionaries with the defaults of the library, results as named tuples.
+
+use crate::declarations::{Base, Declarations, Result, Struct, Variable};
+use crate::layout::{Defaults, Layout};
+use crate::python::{class_name, common_prefix, short, wrapped};
+use std::fmt::Write as _;
+
+/// Structs of options, and the fields that the methods of the module have as arguments of their own.
+const OPTIONS: [(&str, &[&str]); 6] = [
+    ("hbvib_solver_options", &[]),
+    (
+        "hbvib_time_options",
+        &["method", "omega", "harmonics", "samples", "start", "start_len"],
+    ),
+    ("hbvib_verify_options", &["method"]),
+    ("hbvib_floquet_options", &["waves", "refine"]),
+    ("hbvib_synthesis_options", &[]),
+    ("hbvib_contact", &["kind", "dof_a", "dof_b"]),
+];
+
+/// Structs of results, and the names of their classes where those are not their own.
+const RESULTS: [(&str, &str); 8] = [
+    ("hbvib_energy", "Energy"),
+    ("hbvib_contact_summary", "ContactSummary"),
+    ("hbvib_mode_point", "ModePoint"),
+    ("hbvib_mode_info", "ModeInfo"),
+    ("hbvib_reduction", "Reduction"),
+    ("hbvib_jacobian_gap", "JacobianGap"),
+    ("hbvib_time_info", "TimeInfo"),
+    ("hbvib_verification", "VerificationInfo"),
+];
+
+/// Fields that the module gives and takes in another type than C's.
+const TYPES: [(&str, &str, &str); 7] = [
+    (
+        "hbvib_solver_options",
+        "flexibility",
+        "Union[Flexibility, Literal[\"automatic\", \"direct\", \"krylov\"], int]",
+    ),
+    ("hbvib_mode_info", "multiple", "ModeMultiple"),
+    ("hbvib_jacobian_gap", "tangent", "Tangent"),
+    ("hbvib_reduction", "mean_carried", "bool"),
+    ("hbvib_reduction", "even_removed", "bool"),
+    ("hbvib_verification", "same_solution", "bool"),
+    ("hbvib_verification", "marched", "bool"),
+];
+
+/// The generated part of the module of types.
+pub fn module(all: &Declarations, defaults: &Defaults) -> Result<String> {
+    let taken = OPTIONS.iter().map(|(name, _)| options_class(name));
+    let names: Vec<_> = taken
+        .chain(RESULTS.iter().map(|(_, class)| (*class).to_owned()))
+        .map(|name| format!("\"{name}\""))
+        .collect();
+    let mut text = wrapped(&format!("__all__ = [{}]", names.join(", ")), "    ");
+    for (name, hidden) in OPTIONS {
+        text += &options(all, structure(all, name)?, hidden, defaults)?;
+    }
+    for (name, class) in RESULTS {
+        text += &results(all, structure(all, name)?, class)?;
+    }
+    Ok(text)
+}
+
+fn structure<'a>(all: &'a Declarations, name: &str) -> Result<&'a Struct> {
+    all.structs
+        .iter()
+        .find(|s| s.name == name)
+        .ok_or_else(|| format!("no struct {name}"))
+}
+
+fn is_shown(field: &Variable, hidden: &[&str]) -> bool {
+    !matches!(field.name.as_str(), "struct_size" | "reserved") && !hidden.contains(&field.name.as_str())
+}
+
+/// The name of a class of options.
+fn options_class(name: &str) -> String {
+    match name {
+        "hbvib_contact" => "ContactConstants".to_owned(),
+        _ => class_name(short(name)),
+    }
+}
+
+/// A class of options: each with its meaning and default in the text, as editors and `help` show it.
+fn options(all: &Declarations, s: &Struct, hidden: &[&str], defaults: &Defaults) -> Result<String> {
+    let class = options_class(&s.name);
+    let layout = Layout::of(all, s)?;
+    let bytes = defaults
+        .get(&s.name)
+        .ok_or_else(|| format!("no defaults of {}", s.name))?;
+    let mut docs = String::new();
+    let mut fields = String::new();
+    for (field, place) in s.fields.iter().zip(&layout.places) {
+        if !is_shown(field, hidden) {
+            continue;
+        }
+        let at = |i: usize| &bytes[place.offset + i * place.size..][..place.size];
+        let value = match (all.resolved(&field.kind.base), place.count) {
+            (Base::Double, 1) => format!("{:?}", f64::from_ne_bytes(eight(at(0))?)),
+            (Base::Double, n) => {
+                let numbers: Result<Vec<_>> = (0..n)
+                    .map(|i| Ok(format!("{:?}", f64::from_ne_bytes(eight(at(i))?))))
+                    .collect();
+                format!("({})", numbers?.join(", "))
+            }
+            (Base::Int64, 1) => i64::from_ne_bytes(eight(at(0))?).to_string(),
+            (Base::Int32, 1) => i32::from_ne_bytes(at(0).try_into().map_err(|_| "four bytes")?).to_string(),
+            _ => return Err(format!("{}.{}: no option of Python", s.name, field.name)),
+        };
+        let doc = in_python(all, &field.doc);
+        docs += &wrapped(&format!("    {}   {doc} Default: {value}.", field.name), "        ");
+        writeln!(fields, "    {}: {}", field.name, kind(all, s, field)?).unwrap();
+    }
+    Ok(format!(
+        "\n\nclass {class}(TypedDict, total=False):\n    \"\"\"{}\n\n{docs}    \"\"\"\n{fields}",
+        in_python(all, &first_sentence(&s.doc))
+    ))
+}
+
+/// A class of results.
+fn results(all: &Declarations, s: &Struct, class: &str) -> Result<String> {
+    let mut docs = String::new();
+    let mut fields = String::new();
+    for field in s.fields.iter().filter(|field| is_shown(field, &[])) {
+        docs += &wrapped(
+            &format!("    {}   {}", field.name, in_python(all, &field.doc)),
+            "        ",
+        );
+        writeln!(fields, "    {}: {}", field.name, kind(all, s, field)?).unwrap();
+    }
+    Ok(format!(
+        "\n\nclass {class}(NamedTuple):\n    \"\"\"{}\n\n{docs}    \"\"\"\n{fields}",
+        in_python(all, &first_sentence(&s.doc))
+    ))
+}
+
+fn eight(bytes: &[u8]) -> Result<[u8; 8]> {
+    bytes.try_into().map_err(|_| "a field has not eight bytes".into())
+}
+
+/// The description of a struct without the sentence about its `_init` function.
+fn first_sentence(doc: &str) -> String {
+    crate::declarations::sentence(doc).to_owned()
+}
+
+/// The type of a field in Python.
+fn kind(all: &Declarations, s: &Struct, field: &Variable) -> Result<String> {
+    if let Some((.., known)) = TYPES
+        .iter()
+        .find(|(name, own, _)| *name == s.name && *own == field.name)
+    {
+        return Ok((*known).to_owned());
+    }
+    if s.name == "hbvib_verification" && field.name == "response" {
+        return Ok("complex".to_owned());
+    }
+    let base = match all.resolved(&field.kind.base) {
+        Base::Double => "float",
+        Base::Int32 | Base::Int64 => "int",
+        other => return Err(format!("{}.{}: {other:?} has no type in Python", s.name, field.name)),
+    };
+    Ok(match field.kind.array {
+        None => base.to_owned(),
+        Some(n) => format!("Tuple[{}]", vec![base; n].join(", ")),
+    })
+}
+
+/// A description in which constants have their names in Python: HBVIB_JENKINS is ContactKind.JENKINS.
+fn in_python(all: &Declarations, doc: &str) -> String {
+    let mut text = String::new();
+    let mut word = String::new();
+    for c in doc.chars().chain(['\n']) {
+        if c.is_ascii_alphanumeric() || c == '_' {
+            word.push(c);
+            continue;
+        }
+        text += &renamed(all, &word).unwrap_or_else(|| word.clone());
+        word.clear();
+        text.push(c);
+    }
+    text.trim_end().replace('\\', "\\\\")
+}
+
+fn renamed(all: &Declarations, word: &str) -> Option<String> {
+    if let Some(e) = all.enums.iter().find(|e| e.name == *word) {
+        return Some(class_name(short(&e.name)));
+    }
+    let e = all
+        .enums
+        .iter()
+        .find(|e| e.members.iter().any(|(name, ..)| name == word))?;
+    if let [(name, ..)] = &e.members[..] {
+        return Some(name.trim_start_matches("HBVIB_").to_owned());
+    }
+    Some(format!("{}.{}", class_name(short(&e.name)), &word[common_prefix(e)..]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constants_have_their_names_in_python() {
+        let header = "/// States.\ntypedef enum {\n  /// It sticks.\n  HBVIB_STATE_STICK = 0,\n  /// It slips.\n  \
+                      HBVIB_STATE_SLIP = 1,\n} hbvib_state;\n";
+        let all = Declarations::parse(header).unwrap();
+        assert_eq!(
+            in_python(&all, "As HBVIB_STATE_SLIP, of hbvib_state."),
+            "As State.SLIP, of State."
+        );
+    }
+}

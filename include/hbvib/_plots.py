@@ -1,0 +1,64 @@
+"""Figures of branches and models on matplotlib, which is imported on first use."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Sequence
+
+import numpy as np
+
+from ._results import Campbell
+
+if TYPE_CHECKING:
+    from . import Branch
+
+
+def axes(count: int = 1) -> Any:
+    """New axes above each other, one object if it is one."""
+    try:
+        from matplotlib import pyplot  # type: ignore[import-untyped, unused-ignore]
+    except ImportError:
+        raise ImportError("plots need matplotlib: pip install matplotlib") from None
+    return pyplot.subplots(count, sharex=True, layout="constrained")[1]
+
+
+def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
+    """See Branch.plot."""
+    unit, name = (2 * np.pi, "frequency / Hz") if hertz else (1.0, "angular frequency omega")
+    if branch.is_mode:
+        above, below = axes(2) if ax is None else ax
+        above.semilogx(branch.modal_amplitude, branch.omega / unit, **line)
+        above.set(ylabel=name)
+        below.semilogx(branch.modal_amplitude, 100 * branch.damping_ratio, **line)
+        below.set(xlabel="modal amplitude", ylabel="damping ratio / %")
+        return above, below
+    ax = axes() if ax is None else ax
+    (drawn,) = ax.plot(branch.omega / unit, branch.amplitude, **line)
+    peaks = branch.peaks()
+    ax.plot(peaks.omega / unit, peaks.amplitude, "o", color=drawn.get_color(), markersize=4)
+    ax.set(xlabel=name, ylabel="peak amplitude of harmonic 1")
+    return ax
+
+
+def loop(branch: Branch, point: int, contact: int, direction: int, n: int, ax: Any, line: dict[str, Any]) -> Any:
+    """See Branch.plot_loop."""
+    ax = axes() if ax is None else ax
+    motion, force, _ = branch.loop(point, contact, direction, n)
+    ax.plot(np.append(motion, motion[0]), np.append(force, force[0]), **line)
+    ax.set(xlabel="relative motion", ylabel=f"force of contact {contact}")
+    return ax
+
+
+def campbell(diagram: Campbell, orders: Sequence[int], ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
+    """See Model.plot_campbell."""
+    ax = axes() if ax is None else ax
+    unit, name = (2 * np.pi, "frequency / Hz") if hertz else (1.0, "angular frequency omega")
+    speeds = diagram.speeds / unit
+    ax.plot(speeds, diagram.omega / unit, **line)
+    top = ax.get_ylim()[1]
+    for order in orders:
+        ax.plot(speeds, order * speeds, "--", color="0.6", linewidth=1)
+        at = min(speeds[-1], top / max(abs(order), 1))
+        ax.annotate(f"EO {order}", (at, order * at), ha="right")
+    ax.plot(diagram.crossings.speed / unit, diagram.crossings.omega / unit, "o", color="0.2", markersize=4)
+    ax.set(xlabel=name.replace("angular frequency omega", "speed Omega").replace("frequency", "speed"), ylabel=name,
+           ylim=(0, top))
+    return ax

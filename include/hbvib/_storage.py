@@ -1,0 +1,211 @@
+"""Branches in files and in pickles: everything that was computed, as arrays."""
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any, Callable, NoReturn, Optional, TypeVar
+
+import numpy as np
+
+from . import ArgumentError, Branch, OutOfRangeError, UnsupportedError, __version__
+from ._c import Field, ModeMultiple, Status
+from ._results import LimitCycles, Points, Wanted
+from ._tables import fields
+from ._types import Energy, ModeInfo, ModePoint, Reduction
+
+if TYPE_CHECKING:
+    from ._results import ComplexArray, FloatArray
+
+_FORMAT = 1
+_List = TypeVar("_List", bound="tuple[Any, ...]")
+
+
+def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
+    """All that a file holds of a branch."""
+    stored = branch.stored
+    about: dict[str, Any] = dict(
+        format=_FORMAT, version=__version__, status=int(branch.status), message=branch.message, points=len(branch),
+        stored=stored, is_mode=branch.is_mode, reduction=branch.reduction._asdict(), at=0)
+    arrays: dict[str, np.ndarray] = {"field/" + name: values for name, values in fields(branch).items()}
+    lists: dict[str, Any] = dict(peaks=branch.peaks(), folds=branch.folds())
+    if branch.is_mode:
+        lists["limit_cycles"] = branch.limit_cycles()
+        about["mode_info"] = branch.mode_info._asdict()
+        arrays["mode_point"] = np.array([branch.mode_point(point) for point in range(stored)], float)
+    try:
+        while True:
+            lists[f"at/{about['at']}"] = branch.at(about["at"])
+            about["at"] += 1
+    except OutOfRangeError:
+        pass
+    for name, values in lists.items():
+        arrays.update({f"{name}/{key}": column for key, column in values._asdict().items()})
+    arrays["slip"] = np.array([branch.slip(point) for point in range(stored)]).reshape(stored, -1)
+    arrays["energy"] = np.array([branch.energy(point) for point in range(stored)])
+    if harmonics:
+        arrays["harmonics"] = np.array([branch.harmonics(point) for point in range(stored)])
+    return dict(about=np.array(json.dumps(about)), **arrays)
+
+
+def save(branch: Branch, path: Any, harmonics: bool) -> None:
+    """See Branch.save."""
+    name = os.fspath(path)
+    part = f"{name}.{os.getpid()}.part"
+    try:
+        with open(part, "wb") as file:
+            np.savez(file, **contents(branch, harmonics))  # type: ignore[arg-type]
+        os.replace(part, name)  # a file is complete or not there
+    except BaseException:
+        if os.path.exists(part):
+            os.remove(part)
+        raise
+
+
+def load(path: Any) -> SavedBranch:
+    """Reads a branch that `Branch.save` has written. ValueError for another file, naming it.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "branch.npz")
+    >>> branch.save(path)
+    >>> bool((hbvib.load(path).amplitude == branch.amplitude).all())
+    True
+    """
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            return SavedBranch(dict(file))
+    except (KeyError, ValueError, EOFError) as error:
+        raise ValueError(f"{path} is no branch that hbvib has saved: {error}") from None
+
+
+class SavedBranch(Branch):
+    """A branch from a file or a pickle: fields, special points, harmonics, energies and slip fractions to the last bit.
+
+    Loops, summaries of contacts and syntheses are computed from the solution itself: UnsupportedError. To have them, solve
+    again, from `harmonics(point)` as guess= where that helps."""
+
+    def __init__(self, arrays: dict[str, np.ndarray]) -> None:
+        about = json.loads(str(arrays["about"]))
+        if about["format"] != _FORMAT:
+            raise ValueError(f"format {about['format']}, needs {_FORMAT}: saved by hbvib {about['version']}")
+        super().__init__(0, (), about["message"])
+        self._arrays, self._about, self._handle = arrays, about, None
+        for name, values in arrays.items():
+            values.flags.writeable = False
+
+    def __reduce__(self) -> tuple[Callable[..., SavedBranch], tuple[Any, ...]]:
+        return SavedBranch, (self._arrays,)
+
+    @property
+    def handle(self) -> NoReturn:
+        """There is none: UnsupportedError."""
+        raise UnsupportedError("a branch from a file has no solution in memory: solve again for this", Status.E_UNSUPPORTED)
+
+    @property
+    def is_freed(self) -> bool:
+        """False."""
+        return False
+
+    def free(self) -> None:
+        """Does nothing: the memory is that of arrays."""
+
+    def __len__(self) -> int:
+        """Number of points on the curve."""
+        return int(self._about["points"])
+
+    @property
+    def stored(self) -> int:
+        """Number of all stored points."""
+        return int(self._about["stored"])
+
+    @property
+    def status(self) -> Status:
+        """Status of the solve."""
+        return Status(self._about["status"])
+
+    @property
+    def is_mode(self) -> bool:
+        """Whether the branch is a nonlinear mode."""
+        return bool(self._about["is_mode"])
+
+    def field(self, field: Any) -> np.ndarray:
+        """A field, by Field or name: (points), slip_fraction (points, contacts)."""
+        name = (field if isinstance(field, str) else Field(field).name).lower()
+        if "field/" + name not in self._arrays:
+            Field[name.upper()]
+            raise ArgumentError(f"this branch has no field {name}", Status.E_ARGUMENT)
+        return self._arrays["field/" + name]
+
+    @property
+    def reduction(self) -> Reduction:
+        """Size of the problem that was solved."""
+        return Reduction(**self._about["reduction"])
+
+    @property
+    def mode_info(self) -> ModeInfo:
+        """Where a nonlinear mode started."""
+        if not self.is_mode:
+            raise UnsupportedError("a forced response has no mode_info", Status.E_UNSUPPORTED)
+        values = dict(self._about["mode_info"])
+        return ModeInfo(**dict(values, multiple=ModeMultiple(values["multiple"])))
+
+    def _row(self, name: str, point: int) -> np.ndarray:
+        """The row of a point. IndexError where there is none."""
+        if name not in self._arrays:
+            raise UnsupportedError(f"this file has no {name}", Status.E_UNSUPPORTED)
+        if not 0 <= point < self.stored:
+            raise OutOfRangeError(f"point = {point}, needs 0 .. {self.stored - 1}", Status.E_INDEX, 2)
+        row: np.ndarray = self._arrays[name][point]
+        return row
+
+    def mode_point(self, point: int) -> ModePoint:
+        """Numbers of a point of a nonlinear mode."""
+        return ModePoint(*self._row("mode_point", point).tolist())
+
+    def energy(self, point: int, **_: Any) -> Energy:
+        """Energies and losses of a point."""
+        return Energy(*self._row("energy", point).tolist())
+
+    def slip(self, point: int) -> FloatArray:
+        """Shares of the period that each contact slips at any stored point, (contacts)."""
+        return self._row("slip", point)
+
+    def harmonics(self, point: int, first_dof: int = 0, n_dof: Optional[int] = None, **_: Any) -> ComplexArray:
+        """Harmonics 0 .. H at a point, (H + 1, n_dof) complex. UnsupportedError where they were not saved."""
+        row = self._row("harmonics", point)
+        if not 0 <= first_dof < row.shape[1] or not 0 < (n_dof or 1) <= row.shape[1] - first_dof:
+            raise OutOfRangeError(f"first_dof = {first_dof}, n_dof = {n_dof}, but there are {row.shape[1]}", Status.E_INDEX)
+        return row[:, first_dof:][:, :n_dof].copy()
+
+    def time_history(self, point: int, dof: int, n: int = 256, **_: Any) -> FloatArray:
+        """Motion of a degree of freedom over one period at a point, n equidistant times."""
+        x = self.harmonics(point, dof, 1)[:, 0]
+        phase = 2j * np.pi / n * (np.outer(np.arange(n), np.arange(len(x))) % n)
+        return np.asarray((np.exp(phase) @ x).real)
+
+    def _list(self, kind: type[_List], name: str) -> _List:
+        return kind(*(self._arrays[f"{name}/{key}"].copy() for key in kind._fields))  # type: ignore[attr-defined]
+
+    def peaks(self) -> Points:
+        """As Branch.peaks."""
+        return self._list(Points, "peaks")
+
+    def folds(self) -> Points:
+        """As Branch.folds."""
+        return self._list(Points, "folds")
+
+    def limit_cycles(self) -> LimitCycles:
+        """As Branch.limit_cycles."""
+        if not self.is_mode:
+            raise UnsupportedError("a forced response has no limit cycles", Status.E_UNSUPPORTED)
+        return self._list(LimitCycles, "limit_cycles")
+
+    def at(self, wanted: int) -> Wanted:
+        """As Branch.at."""
+        if not 0 <= wanted < self._about["at"]:
+            raise OutOfRangeError(f"wanted = {wanted}, but {self._about['at']} were requested", Status.E_INDEX, 2)
+        return self._list(Wanted, f"at/{wanted}")

@@ -1,0 +1,127 @@
+"""Branches leave the process: files, pickles and tables have the same bits, and figures show them."""
+
+import hashlib
+import os
+import pickle
+import subprocess
+import sys
+import tempfile
+import warnings
+
+os.environ.setdefault("MPLBACKEND", "Agg")
+
+import numpy as np
+
+from common import bits, check, close, finish, hbvib, oscillator, raises, ring_damper, solve
+
+READ = """
+import hashlib, pickle, sys
+sys.path.append({folder!r})
+import hbvib
+from common import bits
+branch = pickle.load(open({name!r}, "rb")) if {name!r}.endswith("pickle") else hbvib.load({name!r})
+more = [repr(branch.reduction), repr(branch.energy(0)), repr(branch.slip(3).tolist()), branch.status.name]
+print(hashlib.sha256(bits(branch) + "".join(more).encode()).hexdigest())
+"""
+
+
+def digest(branch):
+    more = [repr(branch.reduction), repr(branch.energy(0)), repr(branch.slip(3).tolist()), branch.status.name]
+    return hashlib.sha256(bits(branch) + "".join(more).encode()).hexdigest()
+
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+branch = solve(ring_damper(), at=[1310.0])
+mode = oscillator().nonlinear_mode((-2, 1), at=[-1.0])
+with tempfile.TemporaryDirectory() as folder:
+    names = [os.path.join(folder, name) for name in ("branch.npz", "branch.pickle")]
+    branch.save(names[0])
+    with open(names[1], "wb") as file:
+        pickle.dump(branch, file)
+    for name in names:
+        text = subprocess.run(
+            [sys.executable, "-c", READ.format(folder=HERE, name=name)], capture_output=True, text=True, check=True
+        ).stdout
+        check(f"{os.path.basename(name)} has the same bits in another process", text.strip() == digest(branch), text)
+    check("nothing else is left in the folder", sorted(os.listdir(folder)) == ["branch.npz", "branch.pickle"])
+
+    saved = hbvib.load(names[0])
+    check("special points are saved", all((a == b).all() for a, b in zip(saved.at(0), branch.at(0))))
+    peak = branch.peaks().point[0]
+    close("motions in time follow from harmonics", saved.time_history(peak, 0), branch.time_history(peak, 0), 1e-12)
+    check("a part of the harmonics", (saved.harmonics(peak, 1, 2) == branch.harmonics(peak, 1, 2)).all())
+    check("fields are read-only", not saved.omega.flags.writeable)
+    check("a saved branch is saved again", pickle.loads(pickle.dumps(saved)).omega.tobytes() == branch.omega.tobytes())
+    raises("loops need the solution", NotImplementedError, saved.loop, 0, 0, words="solve again")
+    raises("a point that is not there", IndexError, saved.energy, saved.stored)
+    raises("a request that is not there", IndexError, saved.at, 1)
+    raises("fields of modes are not in a response", ValueError, saved.field, "damping_ratio")
+
+    name = os.path.join(folder, "mode")
+    mode.save(name, harmonics=False)
+    back = hbvib.load(name)
+    check("a file has the very name that was given", os.path.exists(name))
+    check("a mode is a mode", back.is_mode and back.mode_info == mode.mode_info and repr(back) == repr(mode).replace(
+        "hbvib.Branch", "hbvib.SavedBranch"), repr(back))
+    check("points of a mode", back.mode_point(2) == mode.mode_point(2) and not len(back.limit_cycles().point))
+    raises("harmonics that were left out", NotImplementedError, back.harmonics, 0, words="no harmonics")
+    with open(name, "w") as file:
+        file.write("no archive")
+    raises("another file is refused by name", ValueError, hbvib.load, name, words=name)
+    raises("a file that is not there", FileNotFoundError, hbvib.load, name + "2")
+    np.savez(os.path.join(folder, "other.npz"), a=1)
+    raises("another archive is refused", ValueError, hbvib.load, os.path.join(folder, "other.npz"), words="other.npz")
+
+# Tables.
+table = branch.to_dataframe()
+check("a row a point", table.index.name == "point" and len(table) == len(branch))
+check("columns are fields", {"omega", "amplitude", "slip_fraction_0", "error_estimate"} <= set(table.columns), table.columns)
+check("values are the same", (table["amplitude"].to_numpy() == branch.amplitude).all())
+check("status goes along", table.attrs == dict(status="OK", message=""))
+check("a mode has its fields", {"damping_ratio", "modal_amplitude"} <= set(mode.to_dataframe().columns))
+dataset = branch.to_xarray()
+check("a dataset over points and contacts", dict(dataset.sizes) == dict(point=len(branch), contact=1))
+check("its coordinate is the frequency", (dataset["omega"].to_numpy() == branch.omega).all())
+check("that of a mode is the amplitude", "log10_amplitude" in mode.to_xarray().coords)
+
+# In one line and as HTML.
+check("a branch tells range, peak and status", "omega 1300.62 to 1325.75, peak " in repr(branch) and ", OK>" in repr(branch))
+check("a mode tells its damping", "largest damping ratio" in repr(mode), repr(mode))
+check("one is not many", repr(hbvib.Model(1)) == "<hbvib.Model: 1 degree of freedom, 0 contacts>", repr(hbvib.Model(1)))
+wheel = "<hbvib.Model: 4 degrees of freedom, 24 sectors, engine order 2, 1 contact>"
+check("a wheel tells its engine order", repr(ring_damper()) == wheel, repr(ring_damper()))
+check("HTML is a table", branch._repr_html_().startswith("<table>") and "peak" in branch._repr_html_())
+with warnings.catch_warnings():
+    warnings.simplefilter("ignore")
+    stopped = solve(ring_damper(), max_points=5)
+check("a stop is told", "STOPPED_MAX_POINTS: " in repr(stopped) and "max_points" in stopped._repr_html_(), repr(stopped))
+
+# Figures.
+axes = branch.plot(hertz=True, label="5 N")
+close("a figure has the curve", axes.lines[0].get_xydata()[:, 0], branch.omega / (2 * np.pi), 0)
+close("peaks are marked", axes.lines[1].get_xydata()[:, 1], branch.peaks().amplitude, 0)
+check("axes of a call are used", branch.plot(axes) is axes and len(axes.lines) == 4)
+above, below = mode.plot()
+close("damping is in per cent", below.lines[0].get_xydata()[:, 1], 100 * mode.damping_ratio, 0)
+loop = branch.plot_loop(peak, 0).lines[0].get_xydata()
+close("a loop is closed and has the force of the contact", loop[:-1, 1], branch.loop(peak, 0).force, 0)
+check("its end is its beginning", (loop[0] == loop[-1]).all())
+
+# Bars.
+drawn = subprocess.run(
+    [sys.executable, "-c", "import sys; sys.path.append(sys.argv[1])\nif sys.argv[2]: sys.modules['tqdm'] = None\n"
+     "from common import *; oscillator().forced_response((0.8, 1.6), progress=True)", HERE, sys.argv[0]],
+    capture_output=True, text=True, check=True)
+check("a line of progress without tqdm", "100 %" in drawn.stderr and drawn.stdout == "", drawn.stderr)
+
+# Packages that are not there.
+for package, call in (
+    ("pandas", branch.to_dataframe), ("xarray", branch.to_xarray), ("matplotlib", branch.plot), ("matplotlib", mode.plot)
+):
+    kept = {name: sys.modules.pop(name) for name in list(sys.modules) if name.split(".")[0] == package}
+    sys.modules[package] = None
+    raises(f"{package} is named where it is not there", ImportError, call, words="pip install " + package)
+    del sys.modules[package]
+    sys.modules.update(kept)
+
+finish(40)
