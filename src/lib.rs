@@ -66,6 +66,8 @@ pub mod problem;
 #[doc(hidden)]
 pub mod results;
 #[doc(hidden)]
+pub mod sensitivity;
+#[doc(hidden)]
 pub mod stability;
 #[doc(hidden)]
 pub mod time_integration;
@@ -86,6 +88,10 @@ pub use model::speed::Speed;
 pub use model::spring::Spring;
 pub use model::structure::MatrixKind;
 
+// Parameters.
+pub use contact::force_derivative::Constant;
+pub use sensitivity::{Parameter, Reason};
+
 // Analyses.
 pub use analysis::campbell::{Campbell, Crossing, campbell};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
@@ -98,6 +104,7 @@ pub use analysis::harmonic_residual::{
 pub use analysis::linear_contacts::LinearContacts;
 pub use analysis::nonlinear_mode::nonlinear_mode;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
+pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};

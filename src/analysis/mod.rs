@@ -15,6 +15,7 @@ pub mod nonlinear_mode;
 pub mod point_error;
 mod residual_numbering;
 mod sampling;
+pub mod sensitivity_analysis;
 mod static_solution;
 pub mod synthesis;
 pub mod time_response;

@@ -240,6 +240,61 @@ impl Workspace {
         &self.columns[self.columns.len() - self.product.len()..]
     }
 
+    /// Factors Z_κ of the i-th carried harmonic at `omega`, and replaces b by Z_κ⁻ᴴ b: the adjoint motion of a functional
+    /// b of the motion.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn adjoint(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        b: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        self.dynamic
+            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        for z in b.iter_mut() {
+            *z = z.conj();
+        }
+        self.dynamic.solve(condensed, i, omega, b, true, interrupt)?;
+        for z in b.iter_mut() {
+            *z = z.conj();
+        }
+        Ok(())
+    }
+
+    /// Factors Z_κ of the i-th carried harmonic at `omega`, and replaces b by Z_κ⁻¹ b: the motion under a load b.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub fn motion_under(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        b: &mut [Complex64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        self.dynamic
+            .factor(condensed, i, omega.into(), self.damping, interrupt)?;
+        self.dynamic.solve(condensed, i, omega, b, false, interrupt)
+    }
+
+    /// y += ∂Z_κ/∂ω x in the i-th carried harmonic at `omega`.
+    pub fn add_frequency_slope(
+        &self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        x: &[Complex64],
+        y: &mut [Complex64],
+    ) {
+        let at = (omega.into(), self.damping);
+        add_slope_product(condensed, i, at, Variable::Omega, false, x, y);
+    }
+
     /// Motion of all degrees of freedom in the i-th carried harmonic, x = Z_κ⁻¹(F − Wᴴ w), where
     /// `contact_force` holds w = f − κ y per coordinate.
     ///

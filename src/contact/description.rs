@@ -5,6 +5,7 @@
 //! solver evaluates, in the solver's units.
 
 use crate::contact::constants::{Constants, Role};
+use crate::contact::force_derivative::{Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Law, LawInTime};
 use crate::contact::laws::registry::ContactKind;
 use crate::contact::relative_motion::{Direction, Frame};
@@ -212,6 +213,18 @@ impl Contact {
     #[must_use]
     pub fn load_scales_motion(&self) -> bool {
         self.ask(|law| law.load_scales_motion())
+    }
+
+    /// Name of the law in messages.
+    #[must_use]
+    pub fn law_name(&self) -> &'static str {
+        self.ask(|law| law.name())
+    }
+
+    /// The derivative of the force by a constant of the law; `None` for a constant that it does not have.
+    #[must_use]
+    pub fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        self.ask(|law| law.by_constant(constant))
     }
 
     /// A bound of the force in each direction over all motions; infinite where there is none.

@@ -9,6 +9,7 @@
 use crate::contact::constants::Role;
 use crate::contact::contact_state::State;
 use crate::contact::coupled_search::CoupledSearch;
+use crate::contact::force_derivative::{Constant, ForceDerivative};
 use crate::contact::linearisation::Range;
 use crate::contact::march::March;
 use crate::contact::onset::Onset;
@@ -96,6 +97,12 @@ pub trait ContactLaw {
     /// if not, it is proportional to the load.
     fn load_scales_motion(&self) -> bool {
         true
+    }
+
+    /// The derivative of the force by a constant of the law; `None` for a constant that it does not have.
+    fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        let _ = constant;
+        None
     }
 
     /// Whether an infinite normal load is allowed: the contact then sticks for ever.

@@ -6,6 +6,7 @@ mod contact_checks;
 pub mod contact_state;
 pub mod coupled_search;
 mod description;
+pub mod force_derivative;
 pub mod law;
 pub mod laws;
 pub mod linearisation;

@@ -39,7 +39,9 @@ pub enum MatrixKind {
 pub(super) const KINDS: usize = 6;
 
 impl MatrixKind {
-    pub(super) fn name(self) -> &'static str {
+    /// Name of the matrix in messages.
+    #[must_use]
+    pub fn name(self) -> &'static str {
         match self {
             Self::Mass => "mass",
             Self::Damping => "damping",

@@ -11,6 +11,8 @@
 //!
 //! with B = M, or rᴴr where a contact measures the amplitude.
 
+mod functional;
+
 use crate::condense::Condensed;
 use crate::condense::modal_flexibility::Modal;
 use crate::contact::onset::Onset;
@@ -293,7 +295,7 @@ impl<'a> Epmc<'a> {
         let (amplitude, phase) = (n - 2, n - 1);
         let i = self.condensed.set().fundamental();
         let dof = self.gauge.reference_dof;
-        let scale = self.condensed.length() / self.linear.shape[dof].norm();
+        let scale = self.phase_scale();
         let x = self.modal.x();
         out.values[amplitude] = inner(&self.weighted, x).re - 1.0;
         out.values[phase] = scale * x[dof].im;

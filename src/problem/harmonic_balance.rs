@@ -209,6 +209,31 @@ impl<'a> HarmonicBalance<'a> {
         (z, dz)
     }
 
+    /// Index of the observed harmonic among the carried ones.
+    #[must_use]
+    pub fn observed(&self) -> usize {
+        self.observed
+    }
+
+    /// The observed amplitude X at the point last evaluated, and in `gradient` the derivative of |X| by the unknowns.
+    pub fn amplitude_gradient(&self, u: &[f64], gradient: &mut [f64]) -> Complex64 {
+        let coordinates = self.condensed.coordinates();
+        let outputs = coordinates + 1;
+        let i = self.observed;
+        let value = &self.tables.current()[i].value;
+        let mut z = value[coordinates * outputs + coordinates];
+        for c in 0..coordinates {
+            z -= value[c * outputs + coordinates] * self.forces.minus_reference(u, c, i);
+        }
+        let turn = z.conj() / z.norm();
+        gradient.fill(0.0);
+        for c in 0..coordinates {
+            let g = -turn * value[c * outputs + coordinates];
+            self.forces.couple_scalar(i, (0, c), g, gradient, 1);
+        }
+        z
+    }
+
     /// Contact force minus κ y in the i-th carried harmonic of each coordinate, at the point last evaluated.
     pub fn contact_force(&self, u: &[f64], i: usize, w: &mut [Complex64]) {
         for (c, w) in w.iter_mut().enumerate() {

@@ -9,6 +9,7 @@
 //! for Nonlinear Vibration Problems (2019), doi:10.1007/978-3-030-14023-6.
 
 use crate::contact::constants::{Constants, Role};
+use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Spectral};
 use crate::contact::laws::polynomial::Polynomial;
 use crate::contact::linearisation::{Range, SMALL};
@@ -66,6 +67,10 @@ impl ContactLaw for CubicContact {
 
     fn stiffness(&self, _k: usize) -> f64 {
         self.kt
+    }
+
+    fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        (constant == Constant::Kt).then(|| ForceDerivative::tangential(Combination::MOTION))
     }
 
     fn law(&self, length: f64) -> Result<Arc<dyn Law>> {

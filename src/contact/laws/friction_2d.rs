@@ -22,6 +22,7 @@
 
 use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::coupled_search::{Bound, CoupledSearch, find};
+use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear, VaryingNormalLoad};
 use crate::contact::laws::friction_2d_events::Slider;
 use crate::contact::laws::friction_2d_slider::{Phase, Play, Walk};
@@ -43,6 +44,7 @@ pub struct Friction2dContact {
     kn: f64,
     mu: f64,
     preload: f64,
+    gap: f64,
     clearance: f64,
     load: f64,
 }
@@ -54,6 +56,7 @@ impl Friction2dContact {
             kn: constants.kn,
             mu: constants.mu,
             preload: constants.preload,
+            gap: constants.gap,
             clearance: constants.clearance(),
             load: constants.load(),
         }
@@ -70,6 +73,19 @@ pub(super) fn check_normal_stiffness(kn: f64, kt: f64, preload: f64) -> Result<(
         );
     }
     Ok(())
+}
+
+/// The derivative of the forces of friction under a load that varies by one of its constants.
+pub(super) fn under_varying_load(
+    constant: Constant,
+    (kt, kn, mu, gap): (f64, f64, f64, f64),
+) -> ForceDerivative {
+    match constant {
+        Constant::Kt => ForceDerivative::by_factor(kt, Combination::BY_TANGENTIAL),
+        Constant::Mu => ForceDerivative::by_factor(mu, Combination::BY_LIMIT),
+        Constant::Preload | Constant::Kn | Constant::Gap if kn == 0.0 => ForceDerivative::ONE_SIDED,
+        Constant::Preload | Constant::Kn | Constant::Gap => ForceDerivative::of_normal_load(constant, kn, gap),
+    }
 }
 
 impl ContactLaw for Friction2dContact {
@@ -123,6 +139,10 @@ impl ContactLaw for Friction2dContact {
 
     fn is_preloaded(&self) -> bool {
         self.kn > 0.0 && self.load >= 0.0
+    }
+
+    fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        Some(under_varying_load(constant, (self.kt, self.kn, self.mu, self.gap)))
     }
 
     fn normal_load(&self, y: f64) -> f64 {

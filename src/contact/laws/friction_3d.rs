@@ -13,9 +13,10 @@
 //! friction_3d_stuck.rs. The normal force, which has no memory, has exact harmonics.
 
 use crate::contact::constants::{Constants, Role, needs_stiffness};
+use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::coupled_search::CoupledSearch;
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PlaneFriction, VaryingNormalLoad};
-use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness};
+use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness, under_varying_load};
 use crate::contact::laws::friction_3d_period;
 use crate::contact::linearisation::Range;
 use crate::contact::onset::{Onset, slider_in_plane};
@@ -127,6 +128,19 @@ impl ContactLaw for Friction3dContact {
 
     fn is_preloaded(&self) -> bool {
         self.role() == Role::Active && self.constants.kn > 0.0 && self.load >= 0.0
+    }
+
+    fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        let c = &self.constants;
+        if c.has_normal {
+            return Some(under_varying_load(constant, (c.kt, c.kn, c.mu, c.gap)));
+        }
+        match constant {
+            Constant::Kt => Some(ForceDerivative::by_factor(c.kt, Combination::BY_TANGENTIAL)),
+            Constant::Mu => Some(ForceDerivative::by_factor(c.mu, Combination::BY_LIMIT)),
+            Constant::Preload => Some(ForceDerivative::by_factor(c.preload, Combination::BY_LIMIT)),
+            Constant::Kn | Constant::Gap => None,
+        }
     }
 
     fn normal_load(&self, y: f64) -> f64 {

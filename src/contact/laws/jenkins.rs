@@ -9,6 +9,7 @@
 
 use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::contact_state::State;
+use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::laws::friction_2d_events::Slider;
 use crate::contact::linearisation::Range;
@@ -25,6 +26,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug)]
 pub struct JenkinsContact {
     kt: f64,
+    mu: f64,
     preload: f64,
     slip_limit: f64,
 }
@@ -33,6 +35,7 @@ impl JenkinsContact {
     pub(super) fn new(constants: &Constants) -> Self {
         Self {
             kt: constants.kt,
+            mu: constants.mu,
             preload: constants.preload,
             slip_limit: constants.slip_limit(),
         }
@@ -84,6 +87,19 @@ impl ContactLaw for JenkinsContact {
 
     fn has_preload(&self) -> bool {
         true
+    }
+
+    /// A slider that never slips is a spring.
+    fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        let sticks = self.role() == Role::Spring;
+        Some(match constant {
+            Constant::Kt if sticks => ForceDerivative::tangential(Combination::MOTION),
+            Constant::Kt => ForceDerivative::by_factor(self.kt, Combination::BY_TANGENTIAL),
+            Constant::Mu | Constant::Preload if sticks => ForceDerivative::ZERO,
+            Constant::Mu => ForceDerivative::by_factor(self.mu, Combination::BY_LIMIT),
+            Constant::Preload => ForceDerivative::by_factor(self.preload, Combination::BY_LIMIT),
+            Constant::Kn | Constant::Gap => return None,
+        })
     }
 
     fn may_stick_for_ever(&self) -> bool {

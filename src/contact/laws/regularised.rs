@@ -6,6 +6,7 @@
 //! samples that suffices hence depends on V/v₀, which is known with the solution only.
 
 use crate::contact::constants::{Constants, Role};
+use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, Memoryless};
 use crate::contact::linearisation::{Range, SMALL};
 use crate::contact::samples::{Samples, automatic_samples};
@@ -19,6 +20,7 @@ const REFINEMENT: usize = 4;
 #[derive(Clone, Copy, Debug)]
 pub struct RegularisedContact {
     slip_limit: f64,
+    mu: f64,
     preload: f64,
     velocity: f64,
 }
@@ -27,6 +29,7 @@ impl RegularisedContact {
     pub(super) fn new(constants: &Constants) -> Self {
         Self {
             slip_limit: constants.slip_limit(),
+            mu: constants.mu,
             preload: constants.preload,
             velocity: constants.velocity,
         }
@@ -72,6 +75,15 @@ impl ContactLaw for RegularisedContact {
 
     fn load_scales_motion(&self) -> bool {
         false
+    }
+
+    /// The force is proportional to μ and to the load.
+    fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        match constant {
+            Constant::Mu => Some(ForceDerivative::by_factor(self.mu, Combination::FORCE)),
+            Constant::Preload => Some(ForceDerivative::by_factor(self.preload, Combination::FORCE)),
+            Constant::Kt | Constant::Kn | Constant::Gap => None,
+        }
     }
 
     fn normal_load(&self, _y: f64) -> f64 {

@@ -8,6 +8,7 @@
 
 use crate::contact::constants::{Constants, Role, needs_stiffness};
 use crate::contact::contact_state::State;
+use crate::contact::force_derivative::{Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, EventLaw, Form, Law, LawInTime, PiecewiseLinear};
 use crate::contact::linearisation::Range;
 use crate::contact::onset::Onset;
@@ -24,6 +25,7 @@ use std::sync::Arc;
 #[derive(Clone, Copy, Debug)]
 pub struct UnilateralContact {
     kn: f64,
+    gap: f64,
     clearance: f64,
     load: f64,
 }
@@ -32,6 +34,7 @@ impl UnilateralContact {
     pub(super) fn new(constants: &Constants) -> Self {
         Self {
             kn: constants.kn,
+            gap: constants.gap,
             clearance: constants.clearance(),
             load: constants.load(),
         }
@@ -77,6 +80,16 @@ impl ContactLaw for UnilateralContact {
 
     fn is_preloaded(&self) -> bool {
         self.kn > 0.0 && self.load >= 0.0
+    }
+
+    fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
+        match constant {
+            Constant::Preload | Constant::Gap | Constant::Kn if self.kn == 0.0 => Some(ForceDerivative::ONE_SIDED),
+            Constant::Preload | Constant::Gap | Constant::Kn => {
+                Some(ForceDerivative::of_normal_load(constant, self.kn, self.gap))
+            }
+            Constant::Mu | Constant::Kt => None,
+        }
     }
 
     fn normal_load(&self, y: f64) -> f64 {

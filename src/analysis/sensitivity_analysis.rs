@@ -1,0 +1,211 @@
+//! Derivatives of a result at a stored point by parameters of the model; see [`crate::sensitivity`].
+
+use crate::error::{Result, fail, try_copy, try_vec};
+use crate::interrupt::{Interrupt, Phase};
+use crate::model::Model;
+use crate::options::SolverOptions;
+use crate::results::Branch;
+use crate::sensitivity::{
+    Adjoint, ForcedPoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, TotalDerivative, contact_at_onset,
+    peak_shift,
+};
+
+const CONTEXT: &str = "the sensitivities";
+
+/// A result of a branch at a stored point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Quantity {
+    /// Amplitude of a forced response at a fixed frequency.
+    Amplitude,
+    /// Amplitude of a peak, which moves with the parameters.
+    PeakAmplitude,
+    /// Angular frequency of a peak.
+    PeakOmega,
+    /// Angular frequency of a nonlinear mode at a fixed amplitude.
+    ModeOmega,
+    /// Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of that.
+    ModeDamping,
+}
+
+/// Derivatives by parameters, in their order.
+#[derive(Clone, Debug)]
+pub struct Sensitivities {
+    /// The derivatives; NaN where there is none.
+    pub values: Vec<f64>,
+    /// The reasons of NaN.
+    pub reasons: Vec<Reason>,
+}
+
+/// Derivatives of a result at a stored point of a branch by parameters of the model. `model` and `solver` are those of
+/// the computation of the branch.
+///
+/// One adjoint solution gives the derivatives by all parameters; the frequency of a peak takes five. They are exact for
+/// the harmonics of the point: those of the contact forces follow from the exact events of their evaluation.
+///
+/// # Errors
+/// `Index` for an unknown point, `Argument` for another model or other options than those of the branch, and for a
+/// result that the point does not have; those of [`Parameter::check`], naming the parameter; `OutOfMemory`.
+pub fn sensitivity(
+    model: &Model,
+    branch: &Branch,
+    point: usize,
+    parameters: &[Parameter<'_>],
+    of: Quantity,
+) -> Result<Sensitivities> {
+    sensitivity_with(model, branch, point, parameters, of, &Interrupt::none())
+}
+
+/// The same as [`sensitivity`], and the caller may stop it.
+///
+/// # Errors
+/// As [`sensitivity`]; `StoppedByCaller`.
+pub fn sensitivity_with(
+    model: &Model,
+    branch: &Branch,
+    point: usize,
+    parameters: &[Parameter<'_>],
+    of: Quantity,
+    interrupt: &Interrupt<'_>,
+) -> Result<Sensitivities> {
+    let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
+        return fail!(
+            Index,
+            "point = {point}, needs 0 .. {} (points and special points)",
+            branch.stored()
+        );
+    };
+    check_model(model, branch)?;
+    check_quantity(branch, point, of)?;
+    for (i, parameter) in parameters.iter().enumerate() {
+        parameter
+            .check(model)
+            .map_err(|e| e.at(format_args!("parameter {i}")))?;
+    }
+    interrupt.phase(Phase::Results, 0.0)?;
+    let wave;
+    let model = match branch.mode_data() {
+        Some(data) if data.info.engine_order != model.structure().engine_order() => {
+            let mut other = model.try_clone()?;
+            other.set_wave(data.info.engine_order);
+            wave = other;
+            &wave
+        }
+        _ => model,
+    };
+    let at_frequency = model.at_frequency(omega)?;
+    let solution = (branch.condensed_at(point), branch.samples_at(point));
+    let models = (model, &*at_frequency);
+    let absent = |reason| -> Result<Sensitivities> {
+        Ok(Sensitivities {
+            values: try_vec(parameters.len(), f64::NAN, CONTEXT)?,
+            reasons: try_vec(parameters.len(), reason, CONTEXT)?,
+        })
+    };
+    if branch.folds().iter().any(|fold| fold.point == point) && of != Quantity::PeakOmega {
+        return absent(Reason::Fold);
+    }
+    let mut forced = None;
+    let adjoint = match branch.mode_data().zip(branch.mode_at(point)) {
+        Some((data, at)) => ModePointAdjoint {
+            condensed: solution.0,
+            linear: &data.linear,
+            gauge: &data.gauge,
+            samples: solution.1,
+            motion,
+            omega,
+            point: at,
+        }
+        .solve(
+            match of {
+                Quantity::ModeOmega => ModeQuantity::Omega,
+                _ => ModeQuantity::Damping,
+            },
+            interrupt,
+        )?,
+        None => forced
+            .insert(ForcedPoint::new(
+                solution.0,
+                (branch.response_dof(), solution.1),
+                omega,
+                interrupt,
+            )?)
+            .adjoint(motion, omega)?,
+    };
+    let Some(adjoint) = adjoint else {
+        return absent(Reason::Fold);
+    };
+    if let Some(contact) = contact_at_onset(&at_frequency, solution, &adjoint, interrupt)? {
+        return absent(Reason::OnsetOfSlip { contact });
+    }
+    let mut found = absent(Reason::Exists)?;
+    let derivatives = |adjoint: &Adjoint, values: &mut [f64], reasons: &mut [Reason]| -> Result<()> {
+        let mut total = TotalDerivative::new(models, solution, adjoint, interrupt)?;
+        for ((value, reason), parameter) in values.iter_mut().zip(reasons).zip(parameters) {
+            (*value, *reason) = total.by(parameter)?;
+        }
+        Ok(())
+    };
+    match &mut forced {
+        Some(at) if of == Quantity::PeakOmega => {
+            let mut reasons = try_copy(&found.reasons, CONTEXT)?;
+            let amplitude = peak_amplitude(branch, point);
+            found.values = peak_shift(at, (motion, omega, amplitude), parameters.len(), |adjoint, values| {
+                derivatives(adjoint, values, &mut reasons)
+            })?;
+            found.reasons = reasons;
+        }
+        _ => derivatives(&adjoint, &mut found.values, &mut found.reasons)?,
+    }
+    Ok(found)
+}
+
+fn peak_amplitude(branch: &Branch, point: usize) -> f64 {
+    let mut peaks = branch.peaks().iter();
+    peaks.find(|p| p.point == point).map_or(f64::NAN, |p| p.amplitude)
+}
+
+/// Refuses another model than that of the branch, as far as its size and its contacts tell.
+fn check_model(model: &Model, branch: &Branch) -> Result<()> {
+    if model.ndof() != branch.ndof() || model.contacts().len() != branch.contacts() {
+        return fail!(
+            Argument,
+            "the branch has {} degrees of freedom and {} contacts, the model {} and {}: it is another one",
+            branch.ndof(),
+            branch.contacts(),
+            model.ndof(),
+            model.contacts().len()
+        );
+    }
+    let condensed = branch.condensed_at(0);
+    let before = condensed.contact_classes().contacts();
+    for (i, (a, b)) in model.contacts().iter().zip(before).enumerate() {
+        let constants = |c: &crate::contact::Contact| [c.kt, c.kn, c.mu, c.preload, c.gap, c.cubic].map(f64::to_bits);
+        if constants(a) != constants(b) {
+            return fail!(
+                Argument,
+                "contact {i} was changed after the computation of the branch: sensitivities need the model of the branch"
+            );
+        }
+    }
+    Ok(())
+}
+
+/// Refuses a result that the point does not have.
+fn check_quantity(branch: &Branch, point: usize, of: Quantity) -> Result<()> {
+    let is_mode = branch.mode_data().is_some();
+    match of {
+        Quantity::ModeOmega | Quantity::ModeDamping if !is_mode => {
+            fail!(Argument, "the branch is a forced response, which has no frequency or damping of a mode")
+        }
+        Quantity::Amplitude | Quantity::PeakAmplitude | Quantity::PeakOmega if is_mode => {
+            fail!(
+                Argument,
+                "the branch is a nonlinear mode, whose amplitude is its parameter: needs mode_omega or mode_damping"
+            )
+        }
+        Quantity::PeakAmplitude | Quantity::PeakOmega if !branch.peaks().iter().any(|p| p.point == point) => {
+            fail!(Argument, "point = {point} is no peak of the branch")
+        }
+        _ => Ok(()),
+    }
+}

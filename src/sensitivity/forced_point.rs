@@ -1,0 +1,166 @@
+//! The adjoint of the amplitude |X| of the response degree of freedom in a forced response at one frequency.
+//!
+//! One transposed solution of Newton's matrix, and one of the structure per harmonic.
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::Workspace;
+use crate::condense::near_rigid_motion;
+use crate::error::{Result, Status, try_copy, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::linear_system::Jacobian;
+use crate::linalg::lu::Lu;
+use crate::model::reduced_wave::MotionRow;
+use crate::problem::harmonic_balance::HarmonicBalance;
+use crate::problem::{Problem, Residual};
+use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use num_complex::Complex64;
+
+/// The equations of a forced response near one solution.
+pub(crate) struct ForcedPoint<'a> {
+    condensed: &'a Condensed,
+    interrupt: &'a Interrupt<'a>,
+    problem: HarmonicBalance<'a>,
+    workspace: Workspace,
+    /// Newton's matrix at the point linearised last.
+    system: Lu<f64>,
+    active: Vec<bool>,
+    at: Residual,
+    response: MotionRow,
+    /// w = f − κ y of one harmonic.
+    w: Vec<Complex64>,
+    /// ∂F/∂ω − ∂Z/∂ω x − Wᴴ ∂f/∂ω, harmonic after harmonic.
+    by_omega: Vec<Complex64>,
+}
+
+impl<'a> ForcedPoint<'a> {
+    /// The equations of `condensed` near `omega` with response degree of freedom `response`; `samples` as in the
+    /// solution.
+    ///
+    /// # Errors
+    /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
+    pub fn new(
+        condensed: &'a Condensed,
+        (response, samples): (usize, usize),
+        omega: f64,
+        interrupt: &'a Interrupt<'a>,
+    ) -> Result<Self> {
+        let problem = HarmonicBalance::new(condensed, response, (omega, omega), samples, None, interrupt)?;
+        let n = problem.size();
+        let dofs = condensed.ndof().saturating_mul(condensed.blocks().len());
+        Ok(Self {
+            condensed,
+            interrupt,
+            workspace: Workspace::new(condensed, None)?,
+            system: Lu::new(n, 1)?,
+            active: try_vec(n, true, CONTEXT)?,
+            at: Residual::new(n)?,
+            response: condensed.motion_row(problem.observed(), response)?,
+            w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+            by_omega: try_vec(dofs, Complex64::ZERO, CONTEXT)?,
+            problem,
+        })
+    }
+
+    /// The adjoint of the amplitude at the solution `u`; `None` where Newton's matrix is singular, as in a fold.
+    ///
+    /// # Errors
+    /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
+    pub fn adjoint(&mut self, u: &[f64], omega: f64) -> Result<Option<Adjoint>> {
+        let condensed = self.condensed;
+        self.problem.evaluate(u, omega, &mut self.at)?;
+        self.active.fill(true);
+        self.problem.fill(self.system.matrix(), &mut self.active)?;
+        match self.system.factor(self.interrupt) {
+            Err(e) if e.status == Status::Singular => return Ok(None),
+            factored => factored?,
+        }
+        let mut lambda = try_vec(u.len(), 0.0, CONTEXT)?;
+        let amplitude = self.problem.amplitude_gradient(u, &mut lambda);
+        self.system.solve_transposed(&mut lambda);
+        let mut adjoint = Adjoint::new(condensed, (omega, 0.0), try_copy(u, CONTEXT)?)?;
+        let set = condensed.set();
+        let (m, n) = (set.packed_len(), condensed.ndof());
+        let turn = amplitude / amplitude.norm();
+        let independent = condensed.degrees().independent();
+        let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        let mut field = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        for (i, block) in condensed.blocks().iter().enumerate() {
+            self.problem.contact_force(u, i, &mut self.w);
+            self.workspace
+                .recover(condensed, i, omega, &self.w, &mut x, self.interrupt)?;
+            for (c, y) in self.w.iter_mut().enumerate() {
+                *y = set.get(&u[c * m..(c + 1) * m], i);
+            }
+            let at = (i, omega);
+            near_rigid_motion::correct(&mut self.workspace, condensed, at, &self.w, &mut x, self.interrupt)?;
+            field.fill(Complex64::ZERO);
+            for (c, row) in block.rows.iter().enumerate() {
+                let of_row = set.get(&lambda[c * m..(c + 1) * m], i);
+                for &(p, a) in row.terms() {
+                    field[p] += a.conj() * of_row;
+                }
+            }
+            if i == self.problem.observed() {
+                for &(p, a) in self.response.terms() {
+                    field[p] += a.conj() * turn;
+                }
+            }
+            self.workspace
+                .adjoint(condensed, i, omega, &mut field, self.interrupt)?;
+            let load = &mut self.by_omega[i * n..(i + 1) * n];
+            load.fill(Complex64::ZERO);
+            self.workspace.add_frequency_slope(condensed, i, omega, &x, load);
+            for z in load.iter_mut() {
+                *z = -*z;
+            }
+            if let Some(unbalance) = &block.unbalance {
+                for (z, f) in load.iter_mut().zip(unbalance) {
+                    *z += 2.0 * omega * f;
+                }
+            }
+            for (c, row) in block.rows.iter().enumerate() {
+                let of_law = self.problem.forces().by_omega(c, i);
+                for &(p, a) in row.terms() {
+                    load[p] -= a.conj() * of_law;
+                }
+            }
+            let length = condensed.length();
+            for (z, q) in field.iter().zip(&*load) {
+                adjoint.by_omega += length * (z.conj() * q).re;
+            }
+            let range = i * independent..(i + 1) * independent;
+            for z in &mut x {
+                *z *= length;
+            }
+            if block.number == 0 {
+                for z in x.iter_mut().chain(&mut field) {
+                    z.im = 0.0;
+                }
+            }
+            condensed.expand(i, &x, &mut adjoint.motion[range.clone()])?;
+            condensed.expand(i, &field, &mut adjoint.field[range])?;
+        }
+        Ok(Some(adjoint))
+    }
+
+    /// du/dω along the branch at the solution of which the adjoint was made last.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn tangent(&mut self, omega: f64) -> Result<Vec<f64>> {
+        let condensed = self.condensed;
+        let set = condensed.set();
+        let (m, n) = (set.packed_len(), condensed.ndof());
+        let mut tangent = try_vec(condensed.unknowns(), 0.0, CONTEXT)?;
+        for (i, block) in condensed.blocks().iter().enumerate() {
+            let moved = &mut self.by_omega[i * n..(i + 1) * n];
+            self.workspace
+                .motion_under(condensed, i, omega, moved, self.interrupt)?;
+            for (c, row) in block.rows.iter().enumerate() {
+                set.set(&mut tangent[c * m..(c + 1) * m], i, row.along(moved));
+            }
+        }
+        self.system.solve(&mut tangent);
+        Ok(tangent)
+    }
+}

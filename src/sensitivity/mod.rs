@@ -1,0 +1,31 @@
+//! Derivatives of results by parameters of the model, with one adjoint solution for all parameters.
+//!
+//! With the equations R(u, p) = 0 and a result A(u, p) the adjoint λ solves (∂R/∂u)ᵀ λ = ∂A/∂u, and
+//!
+//! > dA/dp = ∂A/∂p − λᵀ ∂R/∂p.
+//!
+//! In terms of the whole structure, whose motion is x = Z⁻¹(F − Wᴴ f), the result depends on p through x alone. The
+//! adjoint motion Λ = Z⁻ᴴ (Wᴴ λ + ∂A/∂x) then gives both terms at once:
+//!
+//! > dA/dp = Re Σ_h Λ_hᴴ (∂F_h/∂p − ∂Z_h/∂p x_h − Wᴴ ∂f_h/∂p).
+//!
+//! `parameter` lists the parameters; `adjoint` has the result of an adjoint solution, `forced_point` and `mode_point` make
+//! it; `contact_products` and `structure_products` are the terms of the sum; `total_derivative` adds them.
+
+mod adjoint;
+mod contact_products;
+mod forced_point;
+mod mode_point;
+mod onset;
+mod parameter;
+mod peak_shift;
+mod structure_products;
+mod total_derivative;
+
+pub(crate) use adjoint::Adjoint;
+pub(crate) use forced_point::ForcedPoint;
+pub(crate) use mode_point::{ModePointAdjoint, ModeQuantity};
+pub(crate) use onset::contact_at_onset;
+pub use parameter::{Parameter, Reason};
+pub(crate) use peak_shift::peak_shift;
+pub(crate) use total_derivative::TotalDerivative;
