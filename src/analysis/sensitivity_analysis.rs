@@ -3,7 +3,6 @@
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
-use crate::options::SolverOptions;
 use crate::results::Branch;
 use crate::sensitivity::{
     Adjoint, ForcedPoint, ModePointAdjoint, ModeQuantity, Parameter, Reason, TotalDerivative, contact_at_onset,
@@ -36,14 +35,14 @@ pub struct Sensitivities {
     pub reasons: Vec<Reason>,
 }
 
-/// Derivatives of a result at a stored point of a branch by parameters of the model. `model` and `solver` are those of
-/// the computation of the branch.
+/// Derivatives of a result at a stored point of a branch by parameters of the model, which must be that of the
+/// computation of the branch.
 ///
 /// One adjoint solution gives the derivatives by all parameters; the frequency of a peak takes five. They are exact for
 /// the harmonics of the point: those of the contact forces follow from the exact events of their evaluation.
 ///
 /// # Errors
-/// `Index` for an unknown point, `Argument` for another model or other options than those of the branch, and for a
+/// `Index` for an unknown point, `Argument` for another model than that of the branch, and for a
 /// result that the point does not have; those of [`Parameter::check`], naming the parameter; `OutOfMemory`.
 pub fn sensitivity(
     model: &Model,

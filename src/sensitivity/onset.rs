@@ -30,7 +30,7 @@ pub(crate) fn contact_at_onset(
         }
         let mut at = ContactMotion::new(model, number, condensed, adjoint)?;
         let Some(law) = at.law.take() else { continue };
-        let mut sticks = |factor: f64| -> Result<bool> {
+        let sticks = |factor: f64| -> Result<bool> {
             let mut motion = crate::error::try_copy(&at.motion, "the sensitivities")?;
             for y in motion.chunks_exact_mut(set.packed_len()) {
                 for y in &mut y[mean..] {

@@ -1,0 +1,10 @@
+//! Design studies: derivatives of results by parameters against closed references, differences and identities.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod absent;
+mod cost;
+mod design;
+mod differences;
+mod ring_damper_preload;
