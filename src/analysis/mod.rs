@@ -30,6 +30,7 @@ pub use crate::analysis::harmonic_residual::{
 };
 pub use crate::analysis::nonlinear_mode::nonlinear_mode;
 pub use crate::analysis::point_error::estimate_at;
+pub use crate::analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use crate::analysis::synthesis::{synthesise, synthesise_with};
 pub use crate::analysis::time_response::time_response;
 pub use crate::analysis::verify::{Verification, verify};

@@ -197,7 +197,11 @@ pub(super) unsafe fn with_matrix<T>(
     then(&view).with_argument(argument)
 }
 
-unsafe fn matrix_view(a: &hbvib_matrix, n: usize, argument: i32) -> Result<MatrixView<'_>> {
+/// The view of a description, whose arrays belong to the caller.
+///
+/// # Safety
+/// As for [`with_matrix`].
+pub(super) unsafe fn matrix_view<'a>(a: &hbvib_matrix, n: usize, argument: i32) -> Result<MatrixView<'a>> {
     const NAME: &str = "hbvib_matrix: values";
     check_reserved(a.reserved, argument, "hbvib_matrix")?;
     if usize::try_from(a.rows) != Ok(n) || usize::try_from(a.cols) != Ok(n) {

@@ -7,9 +7,9 @@
 //! other files are named after the sections of the header (`crates/bindings/src/header.rs` has their order), and a
 //! file lists its items in the order of the header. No file here contains numerics.
 //!
-//! The doc comments of exported items are written for the reader of the header, and the generator reads three words
+//! The doc comments of exported items are written for the reader of the header, and the generator reads four words
 //! in the description of a pointer: an argument that may be `NULL` states that, an array of `complex` numbers too,
-//! and an `int64_t` array that a function fills receives `numbers`.
+//! an `int64_t` array that a function fills receives `numbers`, and several structs are an `array of` them.
 
 #![allow(unsafe_code)]
 // The comments become those of a C header, whose contract ("Conventions") is at its top.
@@ -50,6 +50,7 @@ mod results_contacts;
 mod results_energy;
 mod results_reduction;
 mod results_special_points;
+mod sensitivities;
 mod solve;
 mod solve_hooks;
 mod solve_options;
@@ -84,6 +85,7 @@ pub use results_contacts::*;
 pub use results_energy::*;
 pub use results_reduction::*;
 pub use results_special_points::*;
+pub use sensitivities::*;
 pub use solve::*;
 pub use solve_hooks::*;
 pub use solve_options::*;

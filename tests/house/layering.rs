@@ -24,6 +24,7 @@ const LAYERS: [(&str, u8); 21] = [
     ("error_estimate", 6),
     ("time_integration", 6),
     ("stability", 7),
+    ("sensitivity", 7),
     ("adaptivity", 7),
     ("analysis", 8),
     ("capi", 9),
@@ -50,6 +51,7 @@ const ONLY: [(&str, &[&str]); 2] = [
         "capi",
         &[
             "analysis",
+            "sensitivity",
             "model",
             "results",
             "contact",

@@ -216,10 +216,13 @@ fn argument(all: &Declarations, f: &Function, a: &Variable, is_callback: bool) -
         (Base::Char, 1) if is_callback => value("type(c_ptr)"),
         (base, 1) if all.is_opaque(base) => value("type(c_ptr)"),
         (base, 2) if all.is_opaque(base) => Ok(("type(c_ptr), intent(inout)".into(), name.clone())),
-        (Base::Named(of), 1) => Ok((
-            format!("type({}), intent({intent}){optional}", type_name(all, of)?),
-            name.clone(),
-        )),
+        (Base::Named(of), 1) => {
+            let shape = if a.doc.contains("array of") { "(*)" } else { "" };
+            Ok((
+                format!("type({}), intent({intent}){optional}", type_name(all, of)?),
+                format!("{name}{shape}"),
+            ))
+        }
         (base, 1) => {
             let is_complex = *base == Base::Double && a.doc.contains("complex");
             let of = if is_complex {

@@ -11,7 +11,7 @@ pub struct Section {
 }
 
 /// The sections in the order of the header.
-pub const SECTIONS: [Section; 12] = [
+pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Version and errors",
         about: "the version in use, status codes, the sentence behind a status",
@@ -90,6 +90,11 @@ pub const SECTIONS: [Section; 12] = [
         title: "Stability",
         about: "Floquet multipliers of points, limit cycles",
         files: &["stability"],
+    },
+    Section {
+        title: "Design studies",
+        about: "parameters of a model, derivatives of results by them",
+        files: &["sensitivities"],
     },
     Section {
         title: "Low level",
