@@ -95,6 +95,18 @@ module hbvib
       HBVIB_MULTIPLIER_NEUTRAL_STUCK = 2, HBVIB_MULTIPLIER_NEUTRAL_RIGID = 3, HBVIB_MULTIPLIER_TRIVIAL = 4
    ! hbvib_grazing
    integer(c_int32_t), parameter, public :: HBVIB_GRAZING_NONE = 0, HBVIB_GRAZING_SLIP_LIMIT = 1, HBVIB_GRAZING_LANDING = 2
+   ! hbvib_parameter_kind
+   integer(c_int32_t), parameter, public :: HBVIB_PARAMETER_FORCE = 0, HBVIB_PARAMETER_PRELOAD = 1, HBVIB_PARAMETER_MU = 2, &
+      HBVIB_PARAMETER_KT = 3, HBVIB_PARAMETER_KN = 4, HBVIB_PARAMETER_GAP = 5, HBVIB_PARAMETER_MASS = 6, &
+      HBVIB_PARAMETER_DAMPING = 7, HBVIB_PARAMETER_STIFFNESS = 8, HBVIB_PARAMETER_SPEED = 9
+   ! hbvib_scaling
+   integer(c_int32_t), parameter, public :: HBVIB_SCALING_ADDITIVE = 0, HBVIB_SCALING_FACTOR = 1
+   ! hbvib_quantity
+   integer(c_int32_t), parameter, public :: HBVIB_OF_AMPLITUDE = 0, HBVIB_OF_PEAK_AMPLITUDE = 1, HBVIB_OF_PEAK_OMEGA = 2, &
+      HBVIB_OF_MODE_OMEGA = 3, HBVIB_OF_MODE_DAMPING = 4
+   ! hbvib_derivative
+   integer(c_int32_t), parameter, public :: HBVIB_DERIVATIVE_EXISTS = 0, HBVIB_DERIVATIVE_ONSET_OF_SLIP = 1, &
+      HBVIB_DERIVATIVE_ONE_SIDED = 2, HBVIB_DERIVATIVE_FOLD = 3
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -315,6 +327,14 @@ module hbvib
       integer(c_int64_t) :: count = 0, unstable = 0, neutral = 0, grazing_contact = -1
       real(c_double) :: orbit_change = 0, residual = 0
    end type hbvib_floquet_info
+
+   !> A parameter of a model.
+   type, bind(c) :: hbvib_parameter
+      integer(c_int32_t) :: struct_size = 32, kind = 0
+      integer(c_int64_t) :: contact = -1
+      type(c_ptr) :: direction = c_null_ptr
+      integer(c_int32_t) :: scaling = 0, reserved = 0
+   end type hbvib_parameter
 
    abstract interface
       !> A force of the caller.
@@ -1276,6 +1296,28 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_branch_limit_cycles
 
+      function hbvib_parameter_init(p, size_of_p) bind(c) result(status)
+         import
+         type(hbvib_parameter), intent(inout) :: p
+         integer(c_size_t), value :: size_of_p
+         integer(c_int32_t) :: status
+      end function hbvib_parameter_init
+
+      function hbvib_sensitivity(model, branch, point, of, parameters, count, derivatives, derivatives_len, reasons, onset, &
+         hooks) bind(c) result(status)
+         import
+         type(c_ptr), value :: model, branch
+         integer(c_int64_t), value :: point
+         integer(c_int32_t), value :: of
+         type(hbvib_parameter), intent(in) :: parameters(*)
+         integer(c_int64_t), value :: count
+         real(c_double), intent(inout) :: derivatives(*)
+         integer(c_int64_t), value :: derivatives_len
+         integer(c_int64_t), intent(inout), optional :: reasons(*), onset
+         type(hbvib_hooks), intent(in), optional :: hooks
+         integer(c_int32_t) :: status
+      end function hbvib_sensitivity
+
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)
          import
@@ -1401,6 +1443,7 @@ module hbvib
       procedure :: time_response => model_time_response
       procedure :: verify => model_verify
       procedure :: floquet => model_floquet
+      procedure :: sensitivity => model_sensitivity
       procedure :: forced_residual => model_forced_residual
    end type hbvib_model
 
@@ -1461,7 +1504,7 @@ module hbvib
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
-   private :: branch_synthesis_peaks, model_verify, model_floquet, branch_limit_cycles
+   private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, branch_limit_cycles
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -2712,6 +2755,44 @@ contains
       if (present(classes)) classes = int(reasons(:found%count))
       if (present(info)) info = found
    end function model_floquet
+
+   !> Exact derivatives of a result at a point of this model by parameters: HBVIB_OF_AMPLITUDE unless `of` is another one.
+   !> Contacts are counted from 1 in parameters%contact, -1 is all. Those that do not exist are NaN, with the reasons
+   !> HBVIB_DERIVATIVE_ONSET_OF_SLIP and so on; onset is the contact at the onset of slip, or 0.
+   function model_sensitivity(self, branch, point, parameters, derivatives, of, reasons, onset, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      class(hbvib_branch), intent(in) :: branch
+      integer, intent(in) :: point
+      type(hbvib_parameter), intent(in) :: parameters(:)
+      real(dp), intent(out) :: derivatives(:)
+      integer(i32), intent(in), optional :: of
+      integer, intent(out), optional :: reasons(:), onset
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status
+      type(hbvib_parameter), allocatable :: given(:)
+      integer(i64), allocatable :: numbers(:)
+      integer(i64) :: p, n, contact
+      integer(i32) :: quantity
+      integer :: j
+      status = HBVIB_OK
+      derivatives = 0
+      n = size(parameters, kind=i64)
+      call point_to_zero(branch, status, point, p)
+      call same_length(status, 'derivatives', size(derivatives, kind=i64), n)
+      if (present(reasons)) call same_length(status, 'reasons', size(reasons, kind=i64), n)
+      given = parameters
+      do j = 1, size(given)
+         call to_zero(status, 'contact', parameters(j)%contact, hbvib_model_contacts(self%handle), given(j)%contact, -1_i32)
+      end do
+      if (status /= HBVIB_OK) return
+      quantity = HBVIB_OF_AMPLITUDE
+      if (present(of)) quantity = of
+      allocate (numbers(n))
+      status = hbvib_sensitivity(self%handle, branch%handle, p, quantity, given, n, derivatives, n, numbers, contact, hooks)
+      if (status < HBVIB_OK) return
+      if (present(reasons)) reasons = int(numbers)
+      if (present(onset)) onset = int(contact) + 1
+   end function model_sensitivity
 
    !> Residual r(ndof, 0:H) of harmonic balance at x(ndof, 0:H), derivatives jac (2 (H + 1) ndof square) and d_omega (as r).
    function model_forced_residual(self, omega, x, r, jac, d_omega, solver, hooks) result(status)

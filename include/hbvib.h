@@ -63,6 +63,7 @@
  *   Modes               linear and nonlinear modes, responses synthesised from them
  *   Time                integration in time, and points of a branch compared with it
  *   Stability           Floquet multipliers of points, limit cycles
+ *   Design studies      parameters of a model, derivatives of results by them
  *   Low level           one contact law, the residual at a given motion, indices from 1
  */
 
@@ -2811,6 +2812,132 @@ hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch,
                                        double *slope,
                                        int64_t *point,
                                        int64_t *count);
+
+/* ==============================================================================================
+ * Design studies: parameters of a model, derivatives of results by them
+ * ============================================================================================== */
+
+/// Kinds of parameters.
+typedef enum {
+  /// A factor on all forces, 1 at present.
+  HBVIB_PARAMETER_FORCE = 0,
+  /// Normal load of a contact at rest.
+  HBVIB_PARAMETER_PRELOAD = 1,
+  /// Friction coefficient of a contact.
+  HBVIB_PARAMETER_MU = 2,
+  /// Stiffness kt of a contact.
+  HBVIB_PARAMETER_KT = 3,
+  /// Normal stiffness of a contact.
+  HBVIB_PARAMETER_KN = 4,
+  /// Gap of a contact.
+  HBVIB_PARAMETER_GAP = 5,
+  /// The mass matrix.
+  HBVIB_PARAMETER_MASS = 6,
+  /// The damping matrix.
+  HBVIB_PARAMETER_DAMPING = 7,
+  /// The stiffness matrix of the structure, without springs and contacts.
+  HBVIB_PARAMETER_STIFFNESS = 8,
+  /// The fixed speed of rotation Omega.
+  HBVIB_PARAMETER_SPEED = 9,
+} hbvib_parameter_kind;
+
+/// How a parameter changes a matrix.
+typedef enum {
+  /// The coefficient, 0 at present, of a direction that is added to the matrix; in a cyclic model
+  /// to the block of the sector itself.
+  HBVIB_SCALING_ADDITIVE = 0,
+  /// A factor, 1 at present, on the whole matrix with its couplings.
+  HBVIB_SCALING_FACTOR = 1,
+} hbvib_scaling;
+
+/// A parameter of a model. Fill it by hbvib_parameter_init. Rayleigh damping and the loss factor
+/// follow the mass and stiffness matrices, as where a matrix is set anew; the factor of the damping
+/// acts on Rayleigh and modal damping as well.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_PARAMETER_FORCE and so on.
+  int32_t kind;
+  /// Constants of contacts: number of the contact, or -1: the constant of all contacts that have
+  /// it, changed together. Other kinds: -1.
+  int64_t contact;
+  /// Matrices, additive: the direction, ndof x ndof. Otherwise NULL.
+  const hbvib_matrix *direction;
+  /// Matrices: HBVIB_SCALING_ADDITIVE or HBVIB_SCALING_FACTOR. Otherwise 0.
+  int32_t scaling;
+  /// Must be 0.
+  int32_t reserved;
+} hbvib_parameter;
+
+/// Fills a parameter: a factor on all forces.
+///
+/// p          the struct; untouched on error.
+/// size_of_p  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);
+
+/// Results that may be differentiated.
+typedef enum {
+  /// Amplitude of a forced response at a fixed frequency.
+  HBVIB_OF_AMPLITUDE = 0,
+  /// Amplitude of a peak, which moves with the parameter.
+  HBVIB_OF_PEAK_AMPLITUDE = 1,
+  /// Angular frequency of a peak.
+  HBVIB_OF_PEAK_OMEGA = 2,
+  /// Angular frequency of a nonlinear mode at a fixed amplitude.
+  HBVIB_OF_MODE_OMEGA = 3,
+  /// Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of
+  /// the largest damping ratio.
+  HBVIB_OF_MODE_DAMPING = 4,
+} hbvib_quantity;
+
+/// Reasons of derivatives.
+typedef enum {
+  /// The derivative exists.
+  HBVIB_DERIVATIVE_EXISTS = 0,
+  /// NaN: a contact is at the onset of slip, where the derivatives on the two sides differ.
+  HBVIB_DERIVATIVE_ONSET_OF_SLIP = 1,
+  /// NaN: the constant is 0 and may not fall, so that a derivative exists on one side only.
+  HBVIB_DERIVATIVE_ONE_SIDED = 2,
+  /// NaN: the point is a fold, where the result changes infinitely fast.
+  HBVIB_DERIVATIVE_FOLD = 3,
+} hbvib_derivative;
+
+/// Derivatives of a result at a stored point by parameters of the model, exact for the harmonics of
+/// the point: dA/dp = A_p - lambda^T R_p with the adjoint lambda of the equations R = 0, which is
+/// solved once for all parameters (for the frequency of a peak five times). The derivatives of
+/// contact forces follow from their exact events. By the preload and mu of a contact that sticks
+/// they are exactly 0.
+///
+/// model           the model of which the branch is a result, unchanged since.
+/// point           number of a point of the curve, or of a peak, fold or requested solution.
+/// of              HBVIB_OF_AMPLITUDE and so on; those of a peak need the number of a peak.
+/// parameters      array of parameters, struct_size of the first apart.
+/// count           how many, >= 1.
+/// derivatives     receives the derivatives, NaN where there is none.
+/// derivatives_len numbers in it: count.
+/// reasons         receives numbers of hbvib_derivative, count of them; or NULL.
+/// onset           receives the contact that is at the onset of slip, or -1; or NULL.
+/// hooks           phase, log and cancellation; progress is not called. NULL: none.
+/// HBVIB_STOPPED_BY_CALLER: the arrays are untouched.
+/// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_UNSUPPORTED (a constant that the law of a
+/// contact does not have, or of a law of the caller; mass and stiffness under modal damping; a
+/// speed that is tied to the frequency), HBVIB_E_ARGUMENT (another model, a result that the point
+/// does not have, fields of a parameter, overlapping arrays), HBVIB_E_DIMENSION (count,
+/// derivatives_len, a direction), HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on
+/// one model and branch.
+hbvib_status hbvib_sensitivity(const hbvib_model *model,
+                               const hbvib_branch *branch,
+                               int64_t point,
+                               int32_t of,
+                               const hbvib_parameter *parameters,
+                               int64_t count,
+                               double *derivatives,
+                               int64_t derivatives_len,
+                               int64_t *reasons,
+                               int64_t *onset,
+                               const hbvib_hooks *hooks);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

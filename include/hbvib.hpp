@@ -514,6 +514,26 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
   std::vector<std::shared_ptr<const std::vector<Index>>> copies_;
 };
 
+/// A parameter of a model, by which results are differentiated.
+struct Parameter : Filled<hbvib_parameter, hbvib_parameter_init> {
+  /// A factor on all forces, a constant of a contact (-1: of all that have it) or the speed of rotation.
+  explicit Parameter(hbvib_parameter_kind which, Index of_contact = -1) { kind = which, contact = of_contact; }
+  /// The coefficient of a direction that is added to the mass, damping or stiffness matrix; in a cyclic model to the
+  /// block of the sector itself. The numbers of the direction are borrowed.
+  Parameter(hbvib_parameter_kind which, const Matrix& added) : Parameter(which) {
+    kept_ = std::make_shared<const Matrix>(added);
+    direction = kept_.get();
+  }
+  /// A factor on the whole mass, damping or stiffness matrix with its couplings.
+  static Parameter factor(hbvib_parameter_kind which) {
+    Parameter p(which);
+    return p.scaling = HBVIB_SCALING_FACTOR, p;
+  }
+
+ private:
+  std::shared_ptr<const Matrix> kept_;
+};
+
 /// A callable that may return nothing where R is required: then it returns R{}.
 template <class R, class Argument>
 class Callback : public std::function<R(Argument)> {
@@ -753,6 +773,13 @@ struct Floquet {
   std::vector<Complex> multipliers;
   std::vector<hbvib_multiplier_class> classes;
   FloquetInfo info;
+};
+/// Derivatives of a result by parameters, in their order. Those that do not exist are NaN, and `reasons` tells why;
+/// onset is the contact at the onset of slip, or -1.
+struct Sensitivities {
+  std::vector<double> derivatives;
+  std::vector<hbvib_derivative> reasons;
+  Index onset;
 };
 /// Residual of n complex rows; jacobian is 2 n x 2 n over the pairs (re, im). Both derivatives are empty
 /// unless requested.
@@ -1121,6 +1148,18 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     out.status = use(hbvib_verify, branch.get(), point, &options, &bound, detail::flat(x.data()), x.length(), out.errors.data(), rows,
                      &out.info);
     out.harmonics = x.view({rows, n});
+    return out;
+  }
+  /// Exact derivatives of a result at a point by parameters, from one adjoint solution. A hook that stops it is an Error.
+  Sensitivities sensitivity(const Branch& branch, Index point, const std::vector<Parameter>& parameters,
+                            hbvib_quantity of = HBVIB_OF_AMPLITUDE, const Hooks& hooks = {}) const {
+    const auto keep = branch.core_;
+    const std::vector<hbvib_parameter> given(parameters.begin(), parameters.end());
+    Sensitivities out{std::vector<double>(given.size()), {}, -1};
+    std::vector<std::int64_t> reasons(given.size());
+    const auto count = static_cast<Index>(given.size());
+    use_whole(hooks, hbvib_sensitivity, branch.get(), point, of, given.data(), count, out.derivatives.data(), count, reasons.data(), &out.onset);
+    for (const auto reason : reasons) out.reasons.push_back(static_cast<hbvib_derivative>(reason));
     return out;
   }
   /// The Floquet multipliers of a point. hooks.partial plays no part.

@@ -194,7 +194,10 @@ fn check_quantity(branch: &Branch, point: usize, of: Quantity) -> Result<()> {
     let is_mode = branch.mode_data().is_some();
     match of {
         Quantity::ModeOmega | Quantity::ModeDamping if !is_mode => {
-            fail!(Argument, "the branch is a forced response, which has no frequency or damping of a mode")
+            fail!(
+                Argument,
+                "the branch is a forced response, which has no frequency or damping of a mode"
+            )
         }
         Quantity::Amplitude | Quantity::PeakAmplitude | Quantity::PeakOmega if is_mode => {
             fail!(

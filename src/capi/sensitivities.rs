@@ -142,18 +142,19 @@ pub enum hbvib_derivative {
 /// of              HBVIB_OF_AMPLITUDE and so on; those of a peak need the number of a peak.
 /// parameters      array of parameters, struct_size of the first apart.
 /// count           how many, >= 1.
-/// hooks           phase, log and cancellation; progress is not called. NULL: none.
 /// derivatives     receives the derivatives, NaN where there is none.
 /// derivatives_len numbers in it: count.
 /// reasons         receives numbers of hbvib_derivative, count of them; or NULL.
 /// onset           receives the contact that is at the onset of slip, or -1; or NULL.
+/// hooks           phase, log and cancellation; progress is not called. NULL: none.
 /// HBVIB_STOPPED_BY_CALLER: the arrays are untouched.
-/// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_UNSUPPORTED (a constant that the law of a contact
-/// does not have, or of a law of the caller; mass and stiffness under modal damping; a speed that is
-/// tied to the frequency), HBVIB_E_ARGUMENT (another model, a result that the point does not have,
-/// fields of a parameter, overlapping arrays), HBVIB_E_DIMENSION (count, derivatives_len, a
-/// direction), HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
-/// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+/// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_UNSUPPORTED (a constant that the law of a
+/// contact does not have, or of a law of the caller; mass and stiffness under modal damping; a
+/// speed that is tied to the frequency), HBVIB_E_ARGUMENT (another model, a result that the point
+/// does not have, fields of a parameter, overlapping arrays), HBVIB_E_DIMENSION (count,
+/// derivatives_len, a direction), HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL,
+/// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on
+/// one model and branch.
 #[unsafe(no_mangle)]
 #[allow(clippy::too_many_arguments)]
 pub unsafe extern "C" fn hbvib_sensitivity(
@@ -163,11 +164,11 @@ pub unsafe extern "C" fn hbvib_sensitivity(
     of: i32,
     parameters: *const hbvib_parameter,
     count: i64,
-    hooks: *const hbvib_hooks,
     derivatives: *mut f64,
     derivatives_len: i64,
     reasons: *mut i64,
     onset: *mut i64,
+    hooks: *const hbvib_hooks,
 ) -> hbvib_status {
     call(|| {
         let model = read::<Model>(model, 1)?;
@@ -181,22 +182,26 @@ pub unsafe extern "C" fn hbvib_sensitivity(
         let given = unsafe { loaded(parameters, count) }?;
         let mut described = Vec::new();
         for one in &given {
-            try_push(&mut described, unsafe { parameter(one, model.ndof()) }?, "the parameters")?;
+            try_push(
+                &mut described,
+                unsafe { parameter(one, model.ndof()) }?,
+                "the parameters",
+            )?;
         }
-        let hooks = unsafe { load_hooks(hooks, 7) }?;
-        let len = exact_len(derivatives_len, count, 9, "count")?;
+        let hooks = unsafe { load_hooks(hooks, 11) }?;
+        let len = exact_len(derivatives_len, count, 8, "count")?;
         let reasons_len = if reasons.is_null() { 0 } else { count };
         disjoint(
             &[],
             &[
-                Range::new(derivatives, len, 8, "derivatives")?,
-                Range::new(reasons, reasons_len, 10, "reasons")?,
+                Range::new(derivatives, len, 7, "derivatives")?,
+                Range::new(reasons, reasons_len, 9, "reasons")?,
             ],
         )?;
         if !onset.is_null() {
-            check_pointer(onset, 11, "onset")?;
+            check_pointer(onset, 10, "onset")?;
         }
-        let values = unsafe { output(derivatives, len, 8, "derivatives") }?;
+        let values = unsafe { output(derivatives, len, 7, "derivatives") }?;
         let found = unsafe {
             with_interrupt(&hooks, |interrupt| {
                 analysis::sensitivity_with(&model, &kept.branch, point, &described, of, interrupt)

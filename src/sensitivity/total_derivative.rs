@@ -67,9 +67,7 @@ impl<'a> TotalDerivative<'a> {
                 }
                 sum
             }
-            Parameter::Direction { which, direction } => {
-                -with_direction(model, condensed, adjoint, *which, direction)?
-            }
+            Parameter::Direction { which, direction } => -with_direction(model, condensed, adjoint, *which, direction)?,
             Parameter::Factor { which } => -with_whole(model, condensed, adjoint, *which)?,
             Parameter::Speed => {
                 let Speed::Fixed(speed) = self.model.speed() else {

@@ -6,7 +6,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 21] = [
+const LAYERS: [(&str, u8); 22] = [
     ("error", 0),
     ("byte_stream", 0),
     ("options", 0),

@@ -148,6 +148,11 @@ fn multipliers_of_points_are_those_of_the_reference() {
 }
 
 #[test]
+fn derivatives_by_parameters_are_computed_and_refused() {
+    silent("sensitivity", |_| vec![]);
+}
+
+#[test]
 fn many_contacts_and_springs_are_added_at_once() {
     silent("tables", |_| vec![]);
 }

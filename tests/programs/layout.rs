@@ -59,6 +59,7 @@ fn in_rust() -> String {
         hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events }
         hbvib_floquet_options { struct_size, waves, refine, reserved, tolerance, max_periods }
         hbvib_floquet_info { struct_size, grazing, omega, radius, count, unstable, neutral, grazing_contact, orbit_change, residual }
+        hbvib_parameter { struct_size, kind, contact, direction, scaling, reserved }
         // END GENERATED
     }
 }

@@ -314,7 +314,10 @@ pub fn check(design: &Design, results: Results, highest: usize, changes: &[Chang
             h /= 8.0;
         }
         worst = worst.max(gap);
-        assert!(gap < tolerance, "{change:?} of {results:?} at H = {highest}: gap {gap:.1e}");
+        assert!(
+            gap < tolerance,
+            "{change:?} of {results:?} at H = {highest}: gap {gap:.1e}"
+        );
     }
     worst
 }

@@ -28,7 +28,11 @@ fn peaks_and_their_derivatives_by_the_normal_load_are_the_references() {
         let model = Design::ring_damper(&BASE, preload).model();
         let (branch, point, values) = Results::Peak(RANGE.0, RANGE.1).solve(&model, &tight(9));
         let (peak, omega) = (values[0].1, values[1].1);
-        assert!((omega / TAU / frequency - 1.0).abs() < 1e-8, "{preload}: {}", omega / TAU);
+        assert!(
+            (omega / TAU / frequency - 1.0).abs() < 1e-8,
+            "{preload}: {}",
+            omega / TAU
+        );
         assert!((peak / amplitude - 1.0).abs() < 1e-8, "{preload}: {peak}");
         for of in [Quantity::Amplitude, Quantity::PeakAmplitude] {
             let found = sensitivity(&model, &branch, point, &[PRELOAD], of).unwrap().values[0];
@@ -53,7 +57,10 @@ fn force_and_normal_load_together_scale_the_motion() {
             let of = Quantity::Amplitude;
             let found = sensitivity(&model, &branch, point, &parameters, of).unwrap().values;
             let sum = found[0] + preload * found[1];
-            assert!((sum / amplitude - 1.0).abs() < 1e-8, "{preload} at H = {highest}: {sum}, {amplitude}");
+            assert!(
+                (sum / amplitude - 1.0).abs() < 1e-8,
+                "{preload} at H = {highest}: {sum}, {amplitude}"
+            );
         }
     }
 }

@@ -76,10 +76,7 @@ pub(super) fn check_normal_stiffness(kn: f64, kt: f64, preload: f64) -> Result<(
 }
 
 /// The derivative of the forces of friction under a load that varies by one of its constants.
-pub(super) fn under_varying_load(
-    constant: Constant,
-    (kt, kn, mu, gap): (f64, f64, f64, f64),
-) -> ForceDerivative {
+pub(super) fn under_varying_load(constant: Constant, (kt, kn, mu, gap): (f64, f64, f64, f64)) -> ForceDerivative {
     match constant {
         Constant::Kt => ForceDerivative::by_factor(kt, Combination::BY_TANGENTIAL),
         Constant::Mu => ForceDerivative::by_factor(mu, Combination::BY_LIMIT),

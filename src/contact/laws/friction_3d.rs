@@ -13,8 +13,8 @@
 //! friction_3d_stuck.rs. The normal force, which has no memory, has exact harmonics.
 
 use crate::contact::constants::{Constants, Role, needs_stiffness};
-use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::coupled_search::CoupledSearch;
+use crate::contact::force_derivative::{Combination, Constant, ForceDerivative};
 use crate::contact::law::{ContactLaw, Form, Law, LawInTime, PlaneFriction, VaryingNormalLoad};
 use crate::contact::laws::friction_2d::{Friction2d, check_normal_stiffness, under_varying_load};
 use crate::contact::laws::friction_3d_period;

@@ -131,6 +131,15 @@ void friction() {
   claim(branch.limit_cycles().empty(), "a forced response has no limit cycles");
   near(stability.info.radius, std::abs(stability.multipliers[0]), 1e-15, "the radius is that of the largest");
 
+  // Derivatives by parameters: force and normal load together scale the motion.
+  const double unit[1][1] = {{1}};
+  const std::vector<hbvib::Parameter> parameters = {hbvib::Parameter(HBVIB_PARAMETER_FORCE), hbvib::Parameter(HBVIB_PARAMETER_PRELOAD, 0),
+      hbvib::Parameter(HBVIB_PARAMETER_STIFFNESS, hbvib::Matrix(unit)), hbvib::Parameter::factor(HBVIB_PARAMETER_STIFFNESS)};
+  const auto found = model.sensitivity(branch, peak.point, parameters, HBVIB_OF_PEAK_AMPLITUDE);
+  near(found.derivatives.at(0) + preload * found.derivatives.at(1), peak.amplitude, 1e-8, "the motion scales");
+  near(found.derivatives.at(2), found.derivatives.at(3), 1e-14, "a stiffness of 1");
+  claim(found.reasons.at(3) == HBVIB_DERIVATIVE_EXISTS && found.onset == -1, "all derivatives exist");
+
   // The law alone, on the motion of the point.
   std::vector<Complex> motion(x.data(), x.data() + x.size());
   const auto force = hbvib::contact_evaluate(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload), 31, 0, peak.omega, motion, true);

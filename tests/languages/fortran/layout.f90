@@ -31,6 +31,7 @@ program layout
    call verification()
    call floquet_options()
    call floquet_info()
+   call parameter()
    ! END GENERATED
 
 contains
@@ -440,6 +441,17 @@ contains
       call field('orbit_change', c_loc(s), c_loc(s%orbit_change), c_sizeof(s%orbit_change))
       call field('residual', c_loc(s), c_loc(s%residual), c_sizeof(s%residual))
    end subroutine floquet_info
+
+   subroutine parameter()
+      type(hbvib_parameter), target :: s
+      call whole('hbvib_parameter', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('kind', c_loc(s), c_loc(s%kind), c_sizeof(s%kind))
+      call field('contact', c_loc(s), c_loc(s%contact), c_sizeof(s%contact))
+      call field('direction', c_loc(s), c_loc(s%direction), c_sizeof(s%direction))
+      call field('scaling', c_loc(s), c_loc(s%scaling), c_sizeof(s%scaling))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+   end subroutine parameter
 
    ! END GENERATED
 

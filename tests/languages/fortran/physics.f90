@@ -289,7 +289,8 @@ contains
       type(hbvib_floquet_info) :: stability
       complex(dp), allocatable :: mu(:)
       integer, allocatable :: classes(:)
-      integer :: j
+      real(dp) :: derivatives(2)
+      integer :: j, reasons(2), onset
       exact = load/cmplx(k - omega**2, c*omega, dp)
       call oscillator(k, c, load)
       call works(model%time_response(omega, x, y, info), 'a linear response in time')
@@ -315,6 +316,12 @@ contains
       call expect('two multipliers and a memory', size(mu) == 3 .and. all(classes == [HBVIB_MULTIPLIER_ORDINARY, &
                   HBVIB_MULTIPLIER_ORDINARY, HBVIB_MULTIPLIER_MEMORY]))
       call expect('the point is stable', close(stability%radius, abs(mu(1)), 1e-14_dp) .and. stability%radius < 1)
+      call works(model%sensitivity(branch, point(1), [hbvib_parameter(kind=HBVIB_PARAMETER_FORCE), &
+                 hbvib_parameter(kind=HBVIB_PARAMETER_PRELOAD, contact=1)], derivatives, reasons=reasons, onset=onset), 'derivatives')
+      call expect('force and normal load scale the motion', close(sum(derivatives), abs(start(1, 1)), 1e-8_dp))
+      call expect('all derivatives exist', all(reasons == HBVIB_DERIVATIVE_EXISTS) .and. onset == 0)
+      call refused(model%sensitivity(branch, point(1), [hbvib_parameter(kind=HBVIB_PARAMETER_MU, contact=0)], derivatives(:1)), &
+                   HBVIB_E_INDEX, 'contact = 0, needs 1', 'a derivative by contact 0')
       call works(branch%limit_cycles(amplitude), 'limit cycles')
       call expect('a forced response has none', size(amplitude) == 0)
       call refused(model%floquet(branch, 0), HBVIB_E_INDEX, 'point = 0, needs 1', 'the stability of point 0')

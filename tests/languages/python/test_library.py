@@ -49,11 +49,16 @@ PREFIXES = dict(
     Block="BLOCK_",
     MultiplierClass="MULTIPLIER_",
     Grazing="GRAZING_",
+    ParameterKind="PARAMETER_",
+    Scaling="SCALING_",
+    Quantity="OF_",
+    Derivative="DERIVATIVE_",
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
-    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Waves MultiplierClass Grazing"
+    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Waves MultiplierClass Grazing "
+    "ParameterKind Scaling Quantity Derivative"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)

@@ -234,6 +234,26 @@ check("one limit cycle", len(cycles.omega) == 1 and cycles.slope[0] > 0)
 cycle = flutter.floquet(backbone, cycles.point[0])
 close("its frequency", cycle.omega, 0.9631643411221, 1e-10)
 check("its first multiplier is trivial", cycle.classes[0] == "trivial" and cycle.unstable == 0)
+parameters = [hbvib.Parameter("preload"), hbvib.Parameter("force"), hbvib.Parameter("stiffness", direction=[[1]])]
+derivative = rubbing.sensitivity(point, 0, parameters)
+check("derivatives are an array with reasons", derivative.shape == (3,) and derivative.reasons == ("", "", ""))
+
+
+def stiffened(step):
+    made = rubbing.clone()
+    made.set_matrix("stiffness", [[1 + step]])
+    return made.forced_response(1.3, harmonics=31, tolerance=0, tol_residual=1e-12).amplitude[0]
+
+
+step = 1e-4
+close("that by the stiffness is a difference", derivative[2], (stiffened(step) - stiffened(-step)) / (2 * step), 1e-5)
+factor = rubbing.sensitivity(point, 0, hbvib.Parameter("mass", scaling="factor"))
+check("one parameter is a list of one", factor.shape == (1,) and factor[0] > 0)
+try:
+    rubbing.sensitivity(point, 0, [hbvib.Parameter("gap", 0)])
+    check("a constant that the law does not have is refused", False)
+except hbvib.UnsupportedError as error:
+    check("a constant that the law does not have is refused", "gap of contact 0" in str(error))
 started = rubbing.time_response(1.3, harmonics=3, start=point.harmonics(0), method="marching")
 close("marching from a point of a branch finds the same", started.harmonics, truth, 1e-6)
 
@@ -293,4 +313,4 @@ close(
     1e-9,
 )
 
-finish(57)
+finish(61)
