@@ -237,7 +237,7 @@ pub(super) unsafe fn loaded(parameters: *const hbvib_parameter, count: usize) ->
     let distance = unsafe { parameters.cast::<u32>().read() } as usize;
     let mut loaded_ones = Vec::new();
     for i in 0..count {
-        let one = unsafe { parameters.cast::<u8>().add(i * distance) }.cast::<hbvib_parameter>();
+        let one = unsafe { parameters.byte_add(i * distance) };
         let read = unsafe { load(one, 5) }.map_err(|e| e.at(format_args!("parameter {i}")).in_argument(5))?;
         if i > 0 && read.struct_size as usize != distance {
             return fail!(

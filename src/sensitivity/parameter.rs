@@ -110,13 +110,12 @@ fn check_contact(model: &Model, constant: Constant, contact: Option<usize>) -> R
 
 fn check_matrix(model: &Model, which: MatrixKind) -> Result<()> {
     match which {
-        MatrixKind::Damping => Ok(()),
         MatrixKind::Mass | MatrixKind::Stiffness if model.structure().has_modal_damping() => fail!(
             Unsupported,
             "{}: the modal damping depends on the modes, which it changes",
             which.name()
         ),
-        MatrixKind::Mass | MatrixKind::Stiffness => Ok(()),
+        MatrixKind::Mass | MatrixKind::Damping | MatrixKind::Stiffness => Ok(()),
         MatrixKind::Structural | MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2 => fail!(
             Unsupported,
             "the {} matrix is no parameter: needs mass, damping or stiffness",

@@ -117,13 +117,12 @@ impl<'a> TotalDerivative<'a> {
         if derivative.is_one_sided {
             return Ok(None);
         }
-        let products = match self.products[number] {
-            Some(products) => products,
-            None => {
-                let motion = ContactMotion::new(self.at_frequency, number, self.condensed, self.adjoint)?;
-                let solution = (self.condensed, self.samples, self.adjoint.omega);
-                *self.products[number].insert(motion.products(contact, solution, self.interrupt)?)
-            }
+        let products = if let Some(products) = self.products[number] {
+            products
+        } else {
+            let motion = ContactMotion::new(self.at_frequency, number, self.condensed, self.adjoint)?;
+            let solution = (self.condensed, self.samples, self.adjoint.omega);
+            *self.products[number].insert(motion.products(contact, solution, self.interrupt)?)
         };
         Ok(Some(-products.with(&derivative)))
     }
