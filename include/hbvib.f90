@@ -2769,7 +2769,7 @@ contains
       integer, intent(out), optional :: reasons(:), onset
       type(hbvib_hooks), intent(in), optional :: hooks
       integer(i32) :: status
-      type(hbvib_parameter), allocatable :: given(:)
+      type(hbvib_parameter) :: given(size(parameters))
       integer(i64), allocatable :: numbers(:)
       integer(i64) :: p, n, contact
       integer(i32) :: quantity

@@ -96,5 +96,5 @@ int main(void)
 
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(model));
-    return verdict(60);
+    return verdict(56);
 }

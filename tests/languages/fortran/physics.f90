@@ -317,7 +317,8 @@ contains
                   HBVIB_MULTIPLIER_ORDINARY, HBVIB_MULTIPLIER_MEMORY]))
       call expect('the point is stable', close(stability%radius, abs(mu(1)), 1e-14_dp) .and. stability%radius < 1)
       call works(model%sensitivity(branch, point(1), [hbvib_parameter(kind=HBVIB_PARAMETER_FORCE), &
-                 hbvib_parameter(kind=HBVIB_PARAMETER_PRELOAD, contact=1)], derivatives, reasons=reasons, onset=onset), 'derivatives')
+                 hbvib_parameter(kind=HBVIB_PARAMETER_PRELOAD, contact=1)], derivatives, reasons=reasons, onset=onset), &
+                 'derivatives')
       call expect('force and normal load scale the motion', close(sum(derivatives), abs(start(1, 1)), 1e-8_dp))
       call expect('all derivatives exist', all(reasons == HBVIB_DERIVATIVE_EXISTS) .and. onset == 0)
       call refused(model%sensitivity(branch, point(1), [hbvib_parameter(kind=HBVIB_PARAMETER_MU, contact=0)], derivatives(:1)), &
