@@ -63,6 +63,8 @@ module hbvib
    ! hbvib_flexibility
    integer(c_int32_t), parameter, public :: HBVIB_FLEXIBILITY_AUTOMATIC = 0, HBVIB_FLEXIBILITY_DIRECT = 1, &
       HBVIB_FLEXIBILITY_KRYLOV = 2
+   ! hbvib_stability
+   integer(c_int32_t), parameter, public :: HBVIB_STABILITY_NONE = 0, HBVIB_STABILITY_WAVE = 1, HBVIB_STABILITY_WHEEL = 2
    ! hbvib_log_level
    integer(c_int32_t), parameter, public :: HBVIB_LOG_NONE = 0, HBVIB_LOG_WARN = 1, HBVIB_LOG_INFO = 2, HBVIB_LOG_DEBUG = 3
    ! hbvib_phase
@@ -73,7 +75,8 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_OMEGA = 0, HBVIB_AMPLITUDE = 1, HBVIB_DAMPING_RATIO = 2, HBVIB_ENERGY = 3, &
       HBVIB_DISSIPATION = 4, HBVIB_RESIDUAL = 5, HBVIB_NEWTON_ITERATIONS = 6, HBVIB_ERROR_ESTIMATE = 7, &
       HBVIB_HARMONICS_USED = 8, HBVIB_SLIP_FRACTION = 9, HBVIB_LOG10_AMPLITUDE = 10, HBVIB_MODAL_AMPLITUDE = 11, &
-      HBVIB_STRUCTURAL_LOSS = 12, HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, HBVIB_DAMPING_ERROR_ESTIMATE = 15
+      HBVIB_STRUCTURAL_LOSS = 12, HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, HBVIB_DAMPING_ERROR_ESTIMATE = 15, &
+      HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17
    ! hbvib_state
    integer(c_int32_t), parameter, public :: HBVIB_STATE_STICK = 0, HBVIB_STATE_SLIP = 1, HBVIB_STATE_OPEN = 2
    ! hbvib_contact_state
@@ -95,6 +98,9 @@ module hbvib
       HBVIB_MULTIPLIER_NEUTRAL_STUCK = 2, HBVIB_MULTIPLIER_NEUTRAL_RIGID = 3, HBVIB_MULTIPLIER_TRIVIAL = 4
    ! hbvib_grazing
    integer(c_int32_t), parameter, public :: HBVIB_GRAZING_NONE = 0, HBVIB_GRAZING_SLIP_LIMIT = 1, HBVIB_GRAZING_LANDING = 2
+   ! hbvib_bifurcation
+   integer(c_int32_t), parameter, public :: HBVIB_BIFURCATION_FOLD = 0, HBVIB_BIFURCATION_PERIOD_DOUBLING = 1, &
+      HBVIB_BIFURCATION_NEIMARK_SACKER = 2, HBVIB_BIFURCATION_BRANCH_POINT = 3
    ! hbvib_parameter_kind
    integer(c_int32_t), parameter, public :: HBVIB_PARAMETER_FORCE = 0, HBVIB_PARAMETER_PRELOAD = 1, HBVIB_PARAMETER_MU = 2, &
       HBVIB_PARAMETER_KT = 3, HBVIB_PARAMETER_KN = 4, HBVIB_PARAMETER_GAP = 5, HBVIB_PARAMETER_MASS = 6, &
@@ -177,7 +183,7 @@ module hbvib
       integer(c_int64_t) :: max_newton = 25, max_points = 20000, response_dof = -1
       integer(c_int32_t) :: keep_even_harmonics = 0, estimate_error = 0
       integer(c_int64_t) :: memory_limit = 0
-      integer(c_int32_t) :: flexibility = 0, reserved = 0
+      integer(c_int32_t) :: flexibility = 0, stability = 0
    end type hbvib_solver_options
 
    !> State of a solve, passed to the progress callback.
@@ -1286,6 +1292,17 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_floquet
 
+      function hbvib_branch_bifurcations(branch, capacity, omega, amplitude, kind, point, unstable_before, unstable_after, &
+         count) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: omega(*), amplitude(*)
+         integer(c_int64_t), intent(inout), optional :: kind(*), point(*), unstable_before(*), unstable_after(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_branch_bifurcations
+
       function hbvib_branch_limit_cycles(branch, capacity, omega, log10_amplitude, slope, point, count) bind(c) result(status)
          import
          type(c_ptr), value :: branch
@@ -1463,6 +1480,7 @@ module hbvib
       procedure :: reduction => branch_reduction
       procedure :: peaks => branch_peaks
       procedure :: folds => branch_folds
+      procedure :: bifurcations => branch_bifurcations
       procedure :: limit_cycles => branch_limit_cycles
       procedure :: at => branch_at
       procedure :: energy => branch_energy
@@ -1505,6 +1523,7 @@ module hbvib
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
    private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, branch_limit_cycles
+   private :: branch_bifurcations
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -2997,6 +3016,30 @@ contains
       integer(i32) :: status
       status = special(self, -2_i64, omega, amplitude, point)
    end function branch_folds
+
+   !> Folds and, with the solver option stability, the other points where a Floquet multiplier passes the unit circle: kinds
+   !> HBVIB_BIFURCATION_FOLD and so on, and the numbers of unstable directions before and after them, -1 where unknown.
+   function branch_bifurcations(self, omega, amplitude, kind, point, unstable_before, unstable_after) result(status)
+      class(hbvib_branch), intent(in) :: self
+      real(dp), allocatable, intent(inout), optional :: omega(:), amplitude(:)
+      integer, allocatable, intent(inout), optional :: kind(:), point(:), unstable_before(:), unstable_after(:)
+      integer(i32) :: status
+      real(dp), allocatable :: w(:), a(:)
+      integer(i64), allocatable :: k(:), p(:), before(:), after(:)
+      integer(i64) :: n
+      n = 0
+      status = hbvib_branch_bifurcations(self%handle, 0_i64, count=n)
+      if (status /= HBVIB_OK) return
+      allocate (w(n), a(n), k(n), p(n), before(n), after(n))
+      status = hbvib_branch_bifurcations(self%handle, n, w, a, k, p, before, after, n)
+      if (status /= HBVIB_OK) return
+      if (present(omega)) omega = w
+      if (present(amplitude)) amplitude = a
+      if (present(kind)) kind = int(k)
+      if (present(point)) point = int(p) + 1
+      if (present(unstable_before)) unstable_before = int(before)
+      if (present(unstable_after)) unstable_after = int(after)
+   end function branch_bifurcations
 
    !> Points of a nonlinear mode where its damping ratio is zero: motions of the model without forces.
    function branch_limit_cycles(self, omega, log10_amplitude, slope, point) result(status)

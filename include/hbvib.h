@@ -62,7 +62,7 @@
  *   Results             curve, fields, harmonics, special points, energies, contacts of a branch
  *   Modes               linear and nonlinear modes, responses synthesised from them
  *   Time                integration in time, and points of a branch compared with it
- *   Stability           Floquet multipliers of points, limit cycles
+ *   Stability           Floquet multipliers of points, bifurcations, limit cycles
  *   Design studies      parameters of a model, derivatives of results by them
  *   Low level           one contact law, the residual at a given motion, indices from 1
  */
@@ -1254,6 +1254,16 @@ typedef enum {
   HBVIB_FLEXIBILITY_KRYLOV = 2,
 } hbvib_flexibility;
 
+/// Stability along the curve of a forced response.
+typedef enum {
+  /// None is computed.
+  HBVIB_STABILITY_NONE = 0,
+  /// Perturbations of the block that contains the wave itself, as HBVIB_WAVES_WAVE.
+  HBVIB_STABILITY_WAVE = 1,
+  /// All perturbations of the wheel, as HBVIB_WAVES_WHEEL.
+  HBVIB_STABILITY_WHEEL = 2,
+} hbvib_stability;
+
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
@@ -1304,8 +1314,11 @@ typedef struct {
   /// Way to the flexibility of the structure at its contacts in a forced response: a value of
   /// enum hbvib_flexibility.
   int32_t flexibility;
-  /// Reserved: must be 0.
-  int32_t reserved;
+  /// Perturbations whose Floquet multipliers are computed at each point of the curve of a forced
+  /// response, a value of enum hbvib_stability: for HBVIB_FLOQUET_RADIUS,
+  /// HBVIB_UNSTABLE_DIRECTIONS and hbvib_branch_bifurcations. A nonlinear mode refuses any but
+  /// HBVIB_STABILITY_NONE, the default.
+  int32_t stability;
 } hbvib_solver_options;
 
 /// Fills solver options with their defaults: tolerance = 1e-3, from which the harmonics follow,
@@ -1504,7 +1517,7 @@ int64_t hbvib_branch_stored(const hbvib_branch *branch);
 hbvib_status hbvib_branch_status(const hbvib_branch *branch);
 
 /// Results that a branch holds for each point of the curve. Energies are of one sector. All are
-/// finite, except for errors that are unknown: those are NaN.
+/// finite, except for errors and stability that are unknown: those are NaN.
 typedef enum {
   /// Angular frequency.
   HBVIB_OMEGA = 0,
@@ -1546,6 +1559,12 @@ typedef enum {
   /// Nonlinear modes only: estimated absolute error of the damping ratio, NaN as
   /// HBVIB_ERROR_ESTIMATE.
   HBVIB_DAMPING_ERROR_ESTIMATE = 15,
+  /// Forced responses with the solver option `stability` only: largest modulus of the ordinary
+  /// Floquet multipliers of the motion. NaN where the motion touches an event, or its perturbations
+  /// could not be followed.
+  HBVIB_FLOQUET_RADIUS = 16,
+  /// The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
+  HBVIB_UNSTABLE_DIRECTIONS = 17,
 } hbvib_field;
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -1577,7 +1596,7 @@ hbvib_status hbvib_view_init(hbvib_view *v, size_t size_of_v);
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
 ///        points x contacts, 0 for a contact that never slips. A forced response does not have the
-///        fields of nonlinear modes.
+///        fields of nonlinear modes, and those of stability with that option only.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -2660,7 +2679,7 @@ hbvib_status hbvib_verify(const hbvib_model *model,
                           hbvib_verification *out);
 
 /* ==============================================================================================
- * Stability: Floquet multipliers of points, limit cycles
+ * Stability: Floquet multipliers of points, bifurcations, limit cycles
  * ============================================================================================== */
 
 /// Perturbations whose multipliers are computed.
@@ -2790,6 +2809,47 @@ hbvib_status hbvib_floquet(const hbvib_model *model,
                            int64_t *classes,
                            int64_t classes_len,
                            hbvib_floquet_info *out);
+
+/// Kinds of bifurcations.
+typedef enum {
+  /// The branch turns in frequency; a multiplier passes 1.
+  HBVIB_BIFURCATION_FOLD = 0,
+  /// A multiplier passes -1: a motion of twice the period branches off.
+  HBVIB_BIFURCATION_PERIOD_DOUBLING = 1,
+  /// A pair of conjugate multipliers passes the unit circle: a motion with a second frequency
+  /// branches off.
+  HBVIB_BIFURCATION_NEIMARK_SACKER = 2,
+  /// A multiplier passes 1 where the branch does not turn: another motion of the same period
+  /// branches off.
+  HBVIB_BIFURCATION_BRANCH_POINT = 3,
+} hbvib_bifurcation;
+
+/// Bifurcations of a forced response in the order of the branch: its folds and, with the solver
+/// option `stability`, the points where a Floquet multiplier passes the unit circle, located on the
+/// branch. A multiplier that jumps over the circle, as where slip sets in, is none of these kinds:
+/// HBVIB_UNSTABLE_DIRECTIONS then changes without a bifurcation. A nonlinear mode has none.
+///
+/// capacity         numbers that fit into each array.
+/// omega            receives their angular frequencies, or NULL.
+/// amplitude        receives their amplitudes, or NULL.
+/// kind             receives their kinds, numbers of hbvib_bifurcation, or NULL.
+/// point            receives their point numbers for hbvib_floquet and others, numbers, or NULL.
+/// unstable_before  receives the numbers of unstable directions before them along the branch, -1
+///                  where unknown, numbers, or NULL.
+/// unstable_after   receives the numbers after them, or NULL.
+/// count            receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch,
+                                       int64_t capacity,
+                                       double *omega,
+                                       double *amplitude,
+                                       int64_t *kind,
+                                       int64_t *point,
+                                       int64_t *unstable_before,
+                                       int64_t *unstable_after,
+                                       int64_t *count);
 
 /// Limit cycles on a nonlinear mode, where its damping ratio is zero: periodic motions of the model
 /// without forces. Refined on the solution, in the order of the branch. hbvib_floquet tells whether

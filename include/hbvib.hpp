@@ -762,6 +762,12 @@ struct Verification {
   /// Fundamental of the response degree of freedom in time.
   Complex response() const { return {info.response[0], info.response[1]}; }
 };
+/// A bifurcation of a forced response, with the numbers of unstable directions before and after it, -1 where unknown.
+struct Bifurcation {
+  double omega, amplitude;
+  hbvib_bifurcation kind;
+  Index point, unstable_before, unstable_after;
+};
 /// A motion without forces: a point of a nonlinear mode where the damping ratio is zero, with its slope by log10_amplitude.
 struct LimitCycle {
   double omega, log10_amplitude, slope;
@@ -849,6 +855,18 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   }
   /// Turning points.
   std::vector<Peak> folds() const { return extremes(hbvib_branch_folds); }
+  /// Folds and, with the solver option stability, the other points where a Floquet multiplier passes the unit circle.
+  std::vector<Bifurcation> bifurcations() const {
+    Index count = 0;
+    use(hbvib_branch_bifurcations, 0, nullptr, nullptr, nullptr, nullptr, nullptr, nullptr, &count);
+    std::vector<double> omega(detail::extent(count)), amplitude(omega.size());
+    std::vector<Index> kind(omega.size()), point(omega.size()), before(omega.size()), after(omega.size());
+    use(hbvib_branch_bifurcations, count, omega.data(), amplitude.data(), kind.data(), point.data(), before.data(), after.data(), &count);
+    std::vector<Bifurcation> out;
+    for (std::size_t i = 0; i < omega.size(); i++)
+      out.push_back({omega[i], amplitude[i], static_cast<hbvib_bifurcation>(kind[i]), point[i], before[i], after[i]});
+    return out;
+  }
   /// Points of a nonlinear mode where its damping ratio is zero.
   std::vector<LimitCycle> limit_cycles() const {
     Index count = 0;

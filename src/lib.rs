@@ -121,7 +121,10 @@ pub use contact::time_piece::Grazing;
 pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeInfo, ModePoint};
-pub use results::{Branch, ContactLoop, ContactSummary, Energy, LimitCycle, Multiplier, MultiplierClass, Special};
+pub use results::{
+    Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, LimitCycle, Multiplier, MultiplierClass,
+    Special, Stretch,
+};
 pub use time_integration::TimeResponse;
 
 #[doc = include_str!("../docs/statuses.md")]

@@ -1746,6 +1746,8 @@ class Model(_Owner):
             solver.setdefault("tolerance", 0.0)  # so many and no other, unless a tolerance is named as well
         if "flexibility" in solver:
             solver = dict(solver, flexibility=_member(Flexibility, solver["flexibility"]))
+        if "stability" in solver:
+            solver = dict(solver, stability=_member(Stability, solver["stability"]))
         settings = _options(name[6:], "hbvib_solver_options", solver)
         handle, kept = ctypes.c_void_p(), self._kept
         with _Guard() as guard:
@@ -2352,6 +2354,10 @@ class Branch(_Owner):
                                      " failed at the other samples.")
     error_estimate = _field_property(Field.ERROR_ESTIMATE, "Relative error of the response (modes: of the frequency) by"
                                      " harmonics left out; NaN where unknown, or with a fixed number unless estimate_error.")
+    floquet_radius = _field_property(Field.FLOQUET_RADIUS, "With `stability`: largest modulus of the ordinary Floquet"
+                                     " multipliers; NaN where unknown.")
+    unstable_directions = _field_property(Field.UNSTABLE_DIRECTIONS, "With `stability`: number of those outside the unit"
+                                          " circle, as float64; 0 for a stable motion.")
     damping_error_estimate = _field_property(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, NaN as error_estimate.")
     damping_ratio = _field_property(Field.DAMPING_RATIO, "Modes: damping ratio D.")
     mode_energy = _field_property(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")
@@ -2544,6 +2550,24 @@ class Branch(_Owner):
         0
         """
         return Points(*self._listed("hbvib_branch_folds", (), [float, float, np.int64]))
+
+    def bifurcations(self) -> Bifurcations:
+        """Folds of a forced response and, with its option `stability`, the other points where a multiplier passes the
+        unit circle: omega, amplitude, kind ("fold", "period_doubling", "neimark_sacker" or "branch_point"), point
+        number, numbers of unstable directions before and after it along the branch, -1 where unknown.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+        >>> contact = model.add_spring_damper(0, spring=[0, 0, 0.1])
+        >>> model.add_force(0, 0.18)
+        >>> branch = model.forced_response((0.9, 1.3), stability="wave")
+        >>> branch.bifurcations().kind.tolist(), branch.bifurcations().unstable_after.tolist()
+        (['fold', 'fold'], [1, 0])
+        """
+        omega, amplitude, kind, *rest = self._listed("hbvib_branch_bifurcations", (),
+                                                     [float, float, np.int64, np.int64, np.int64, np.int64])
+        names = np.array([Bifurcation(k).name.lower() for k in kind], dtype="U15")
+        return Bifurcations(omega, amplitude, names, *rest)
 
     def limit_cycles(self) -> LimitCycles:
         """Points of a nonlinear mode where its damping ratio is zero, motions of the model without forces: omega, log10

@@ -31,11 +31,36 @@ def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
         below.set(xlabel="modal amplitude", ylabel="damping ratio / %")
         return above, below
     ax = axes() if ax is None else ax
-    (drawn,) = ax.plot(branch.omega / unit, branch.amplitude, **line)
+    drawn: Any = None
+    for unstable, omega, amplitude in stretches(branch):
+        if drawn is not None:
+            line = {**line, "color": drawn.get_color(), "label": None}
+        style = {"linestyle": "--"} if unstable else {}
+        (drawn,) = ax.plot(omega / unit, amplitude, **{**line, **style})
     peaks = branch.peaks()
     ax.plot(peaks.omega / unit, peaks.amplitude, "o", color=drawn.get_color(), markersize=4)
     ax.set(xlabel=name, ylabel="peak amplitude of harmonic 1")
     return ax
+
+
+def stretches(branch: Branch) -> list[tuple[bool, Any, Any]]:
+    """The curve in parts, each with True where it is unstable; they meet at the bifurcations."""
+    from . import ArgumentError
+    try:
+        unstable = branch.unstable_directions > 0
+    except ArgumentError:
+        return [(False, branch.omega, branch.amplitude)]
+    found, first = [], 0
+    turns = branch.bifurcations()
+    changes = (turns.unstable_before > 0) != (turns.unstable_after > 0)
+    joints = iter(zip(turns.omega[changes], turns.amplitude[changes]))
+    head: list[tuple[float, float]] = []
+    for end in [*np.flatnonzero(np.diff(unstable)) + 1, len(unstable)]:
+        joint = [next(joints, (branch.omega[end - 1], branch.amplitude[end - 1]))] if end < len(unstable) else []
+        part = [*head, *zip(branch.omega[first:end], branch.amplitude[first:end]), *joint]
+        found.append((bool(unstable[first]), *np.array(part).T))
+        first, head = end, joint
+    return found
 
 
 def loop(branch: Branch, point: int, contact: int, direction: int, n: int, ax: Any, line: dict[str, Any]) -> Any:

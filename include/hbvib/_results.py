@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     StringArray = NDArray[np.str_]
 
 __all__ = [
-    "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "LimitCycles", "Loop", "Modes",
+    "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "LimitCycles", "Loop", "Modes",
     "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Verification", "Wanted",
 ]
 
@@ -110,6 +110,17 @@ class Wanted(NamedTuple):
     """Solutions at one requested frequency (in a mode: amplitude): peak amplitude, number of the point."""
     amplitude: FloatArray
     point: IntArray
+
+
+class Bifurcations(NamedTuple):
+    """Points of a forced response where a multiplier passes the unit circle, with their kinds, and the numbers of unstable
+    directions before and after them along the branch, -1 where unknown."""
+    omega: FloatArray
+    amplitude: FloatArray
+    kind: StringArray
+    point: IntArray
+    unstable_before: IntArray
+    unstable_after: IntArray
 
 
 class LimitCycles(NamedTuple):

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import ArgumentError, Branch, OutOfRangeError, UnsupportedError, __version__
 from ._c import Field, ModeMultiple, Status
-from ._results import LimitCycles, Points, Wanted
+from ._results import Bifurcations, LimitCycles, Points, Wanted
 from ._tables import fields
 from ._types import Energy, ModeInfo, ModePoint, Reduction
 
@@ -27,7 +27,7 @@ def contents(branch: Branch, harmonics: bool = True) -> dict[str, np.ndarray]:
         format=_FORMAT, version=__version__, status=int(branch.status), message=branch.message, points=len(branch),
         stored=stored, is_mode=branch.is_mode, reduction=branch.reduction._asdict(), at=0)
     arrays: dict[str, np.ndarray] = {"field/" + name: values for name, values in fields(branch).items()}
-    lists: dict[str, Any] = dict(peaks=branch.peaks(), folds=branch.folds())
+    lists: dict[str, Any] = dict(peaks=branch.peaks(), folds=branch.folds(), bifurcations=branch.bifurcations())
     if branch.is_mode:
         lists["limit_cycles"] = branch.limit_cycles()
         about["mode_info"] = branch.mode_info._asdict()
@@ -197,6 +197,10 @@ class SavedBranch(Branch):
     def folds(self) -> Points:
         """As Branch.folds."""
         return self._list(Points, "folds")
+
+    def bifurcations(self) -> Bifurcations:
+        """As Branch.bifurcations."""
+        return self._list(Bifurcations, "bifurcations")
 
     def limit_cycles(self) -> LimitCycles:
         """As Branch.limit_cycles."""

@@ -4,7 +4,7 @@ use crate::condense::{Reduction, Resolution};
 use crate::error::{Error, Result, Status, try_copy, try_push};
 use crate::options::MAX_REFINEMENT;
 use crate::results::mode_branch::ModePoint;
-use crate::results::{Branch, Record, SpecialKind};
+use crate::results::{Branch, Record, SpecialKind, Verdict};
 use core::cmp::Ordering;
 use num_complex::Complex64;
 
@@ -44,6 +44,8 @@ impl Ending {
 /// A special point, stored until the curve is complete.
 struct SpecialRecord<'a> {
     kind: SpecialKind,
+    /// Points of the curve before it.
+    after: usize,
     resolution: &'a Resolution,
     omega: f64,
     motion: Vec<f64>,
@@ -137,6 +139,11 @@ impl<'a> BranchRecorder<'a> {
         self.branch.push_curve(record)
     }
 
+    /// Stores the stability of the point of the curve recorded last.
+    pub fn record_verdict(&mut self, verdict: &Verdict) -> Result<()> {
+        self.branch.push_verdict(verdict)
+    }
+
     /// Keeps a special point until [`Self::finish`].
     pub fn record_special(
         &mut self,
@@ -148,6 +155,8 @@ impl<'a> BranchRecorder<'a> {
         self.note_sampling(record.sampling_error);
         let special = SpecialRecord {
             kind,
+            // The neighbour after it has been recorded.
+            after: self.branch.points().saturating_sub(1),
             resolution,
             omega: record.omega,
             motion: try_copy(record.motion, CONTEXT)?,
@@ -178,7 +187,7 @@ impl<'a> BranchRecorder<'a> {
                 sampling_error: special.sampling_error,
                 errors: special.errors,
             };
-            self.branch.push_special(special.kind, &record)?;
+            self.branch.push_special(special.kind, special.after, &record)?;
             if let (Some(mode), Some(data)) = (special.mode, self.branch.mode_data_mut()) {
                 data.push(mode)?;
             }

@@ -300,7 +300,7 @@ impl<'a> BranchTracer<'a> {
     }
 
     /// Records a special point with the harmonics with which it was located, whatever its error.
-    fn record_special_as_it_is(
+    pub(super) fn record_special_as_it_is(
         &mut self,
         analysis: &mut dyn Traceable,
         kind: SpecialKind,
@@ -371,7 +371,7 @@ impl<'a> BranchTracer<'a> {
         Ok(Outside::Gone)
     }
 
-    /// Locates folds, peaks, limit cycles and requested parameter values between two neighbours.
+    /// Locates folds, other bifurcations, peaks, limit cycles and requested parameter values between two neighbours.
     fn locate_special(
         &mut self,
         analysis: &mut dyn Traceable,
@@ -404,6 +404,8 @@ impl<'a> BranchTracer<'a> {
         } else {
             None
         };
+        let turn = fold.as_ref().map(|(fold, resolution)| (fold, *resolution));
+        self.find_bifurcations(analysis, a, b, turn)?;
         if let Some((fold, resolution)) = &fold {
             self.find_requested(analysis, a, (fold, *resolution), false)?;
             self.find_requested(analysis, (fold, *resolution), b, last)

@@ -7,7 +7,7 @@ use crate::error_estimate::Estimate;
 use crate::interrupt::Interrupt;
 use crate::model::resonances::Resonance;
 use crate::problem::Problem;
-use crate::results::{Branch, SpecialKind};
+use crate::results::{Branch, SpecialKind, Verdict};
 
 /// An estimate with the error that the tolerance bounds; NaN if unknown.
 pub(crate) struct Assessment {
@@ -67,6 +67,11 @@ pub(crate) trait Discretised {
         None
     }
 
+    /// Stability of a solved point of the current resolution; `None` unless requested.
+    fn verdict(&mut self, _point: &Point) -> Result<Option<Verdict>> {
+        Ok(None)
+    }
+
     /// Selects the most accurate evaluation for [`Self::linear_at`].
     fn set_accurate(&mut self, _accurate: bool) {}
 
@@ -91,6 +96,12 @@ pub(crate) trait Recorder {
     /// linear response.
     fn is_linear(&self) -> bool {
         false
+    }
+
+    /// Stability of the last two points of the curve, in their order, the first time that it is requested after the
+    /// last one was recorded; `None` where none is computed.
+    fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
+        None
     }
 
     /// Factor by which more samples of the laws without exact events are required to meet the tolerance; 1: none.

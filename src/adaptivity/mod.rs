@@ -9,6 +9,7 @@
 //! equations at the resolutions of a run, [`transfer`] converts points from one resolution to another, and
 //! [`branch_recorder`] stores points.
 
+mod bifurcations;
 pub(crate) mod branch_recorder;
 pub(crate) mod branch_tracer;
 mod cold_start;

@@ -2,12 +2,12 @@
 
 use crate::analysis::verify::check_model;
 use crate::contact::time_piece::Grazing;
-use crate::error::{Result, Status, fail, try_extend, try_vec};
+use crate::error::{Error, Result, Status, fail, try_extend};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::options::{FloquetOptions, TimeOptions};
-use crate::results::{Branch, Multiplier, MultiplierClass};
+use crate::results::{Branch, Multiplier, MultiplierClass, Recovery, UNIT};
 use crate::stability::{Blocks, Closure, Known, closures, multipliers_of};
 use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, Search, State, System, state_of};
 use num_complex::Complex64;
@@ -80,7 +80,17 @@ pub fn floquet(
         );
     }
     let interrupt = hooks.interrupt();
-    match multipliers(model, branch, (point, omega), options, hooks, &interrupt) {
+    let mut found = || -> Result<Floquet> {
+        let harmonics = Recovery::at(branch, point, &interrupt)?.all(branch.harmonics())?;
+        let motion = Motion {
+            omega,
+            harmonics: &harmonics,
+            autonomous: branch.mode().is_some(),
+            compared: true,
+        };
+        Ok(floquet_of(model, &motion, options, hooks, &interrupt)?.stability)
+    };
+    match found() {
         Err(e) if e.status == Status::StoppedByCaller => Ok(Floquet::stopped(omega)),
         outcome => outcome,
     }
@@ -116,7 +126,7 @@ impl Floquet {
         Self {
             status: Status::Ok,
             radius: if grazing.is_some() { f64::NAN } else { radius },
-            unstable: ordinary().filter(|m| m.value.norm() > 1.0).count(),
+            unstable: ordinary().filter(|m| m.value.norm() > UNIT).count(),
             neutral: multipliers.iter().filter(neutral).count(),
             multipliers,
             omega: 0.0,
@@ -127,79 +137,100 @@ impl Floquet {
     }
 }
 
-fn multipliers(
+/// A periodic motion by its harmonics 0 … H in the caller's unit and numbering.
+pub(super) struct Motion<'a> {
+    pub omega: f64,
+    pub harmonics: &'a [Complex64],
+    /// Whether no force drives it.
+    pub autonomous: bool,
+    /// Whether the motion in time is compared with the harmonics.
+    pub compared: bool,
+}
+
+/// Stability of a motion.
+pub(super) struct Found {
+    pub stability: Floquet,
+    /// Distance of the initial state of the motion in time from that of the harmonics, relative to it.
+    pub shift: f64,
+}
+
+/// The multipliers of a motion; `StoppedByCaller` is an error.
+pub(super) fn floquet_of(
     model: &Model,
-    branch: &Branch,
-    (point, omega): (usize, f64),
+    motion: &Motion<'_>,
     options: &FloquetOptions,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
-) -> Result<Floquet> {
-    let autonomous = branch.mode().is_some();
-    let mut system = if autonomous {
-        System::unforced(model, omega, interrupt)?
+) -> Result<Found> {
+    let mut system = if motion.autonomous {
+        System::unforced(model, motion.omega, interrupt)?
     } else {
-        System::new(model, omega, interrupt)?
+        System::new(model, motion.omega, interrupt)?
     };
-    let (highest, given) = (branch.harmonics(), branch.ndof());
-    let mut x = try_vec(
-        (highest + 1).saturating_mul(given),
-        Complex64::ZERO,
-        "the harmonics of the point",
-    )?;
-    branch.harmonics_at_with(point, &mut x, interrupt)?;
     let mut event_loop = EventLoop::new(&system, options.tolerance)?;
-    let mut state = state_of(model, &system, &x)?;
-    let mut residual = f64::NAN;
+    let mut state = state_of(model, &system, motion.harmonics)?;
+    let (mut residual, mut shift) = (f64::NAN, 0.0);
     if options.refine {
         let in_time = TimeOptions {
-            omega,
+            omega: motion.omega,
             tolerance: options.tolerance,
             max_periods: options.max_periods,
             ..TimeOptions::default()
         };
+        let start = state.try_clone()?;
         let mut search = Search::new(&mut system, &mut event_loop, &in_time, hooks, state)?;
-        if autonomous {
+        if motion.autonomous {
             search = search.free_frequency();
         }
         let Some(steady) = search.closest()? else {
             return fail!(
                 NoConvergence,
-                "shooting did not converge from point {point}: it has too few harmonics; solve it with more, or set refine to false"
+                "shooting did not converge from the point: it has too few harmonics; solve it with more, or set refine to false"
             );
         };
         if steady.status == Status::StoppedByCaller {
-            return Ok(Floquet::stopped(omega));
+            return Err(Error::new(
+                steady.status,
+                format_args!("the caller stopped the shooting"),
+            ));
         }
         residual = steady.residual;
         state = steady.state;
+        shift = start.distance(&state, system.omega);
+        hooks.log(LogLevel::Info, "the motion whose perturbations are integrated is found");
     }
-    hooks.log(LogLevel::Info, "the motion whose perturbations are integrated is found");
-    let structure = model.structure();
-    let blocks = closures(structure, options.waves, is_odd(&system, &state))?;
-    let mut found = through_a_lapse(
+    let closures = closures(model.structure(), options.waves, is_odd(&system, &state))?;
+    let mut recorder = if options.refine && motion.compared {
+        let highest = motion.harmonics.len() / model.ndof() - 1;
+        Some(HarmonicAnalysis::new(&system, highest, 0)?)
+    } else {
+        None
+    };
+    let mut stability = through_a_lapse(
         model,
         &mut system,
         &mut event_loop,
         state,
-        (&blocks, autonomous, highest),
+        (&closures, motion.autonomous),
+        recorder.as_mut(),
     )?;
-    found.0.omega = system.omega;
-    found.0.residual = residual;
-    if options.refine {
-        found.0.orbit_change = distance(&x, &found.1);
+    stability.omega = system.omega;
+    stability.residual = residual;
+    if let Some(recorder) = recorder {
+        stability.orbit_change = distance(motion.harmonics, &recorder.of_all_degrees(&system, model)?);
     }
-    Ok(found.0)
+    Ok(Found { stability, shift })
 }
 
-/// Carries all perturbations through a lapse of the motion, and returns the harmonics of the motion as well.
+/// Carries all perturbations through a lapse of the motion.
 fn through_a_lapse(
     model: &Model,
     system: &mut System<'_>,
     event_loop: &mut EventLoop,
     mut state: State,
-    (closures, autonomous, highest): (&[Closure], bool, usize),
-) -> Result<(Floquet, Vec<Complex64>)> {
+    (closures, autonomous): (&[Closure], bool),
+    recorder: Option<&mut HarmonicAnalysis>,
+) -> Result<Floquet> {
     let structure = model.structure();
     let mut velocities = Vec::new();
     try_extend(&mut velocities, &state.v, "the rates of the motion")?;
@@ -209,10 +240,9 @@ fn through_a_lapse(
         None
     };
     let mut blocks = Blocks::new(structure, system, closures)?;
-    let mut recorder = HarmonicAnalysis::new(system, highest, 0)?;
     event_loop.clear_moved();
     let observers = Observers {
-        recorder: Some(&mut recorder),
+        recorder,
         variation: Some(&mut blocks),
         ..Observers::default()
     };
@@ -235,14 +265,7 @@ fn through_a_lapse(
         )?;
     }
     let grazing = blocks.grazing.map(|(i, event)| (system.elements[i].family, event));
-    let (independent, _) = recorder.finish(system)?;
-    let given = model.ndof();
-    let mut harmonics = try_vec((highest + 1).saturating_mul(given), Complex64::ZERO, "the harmonics")?;
-    let rows = harmonics.chunks_exact_mut(given);
-    for (h, (all, x)) in rows.zip(independent.chunks_exact(system.ndof)).enumerate() {
-        system.degrees.expand(structure.phase(h, 1), x, all);
-    }
-    Ok((Floquet::of(all, grazing), harmonics))
+    Ok(Floquet::of(all, grazing))
 }
 
 /// Whether sectors half a wave apart move opposite to each other.

@@ -6,6 +6,7 @@ use crate::adaptivity::estimate_spacing::share_of_highest;
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
+use crate::analysis::branch_stability::BranchStability;
 use crate::analysis::point_error::observed;
 use crate::condense::{ModelCache, Reference, reduced_resonances};
 use crate::continuation::corrector::Corrector;
@@ -22,7 +23,7 @@ use crate::model::spring::along;
 use crate::options::SolverOptions;
 use crate::problem::Problem;
 use crate::problem::harmonic_balance::HarmonicBalance;
-use crate::results::{Branch, Record, Resolution, SpecialKind};
+use crate::results::{Branch, Record, Resolution, SpecialKind, Verdict};
 use num_complex::Complex64;
 
 /// The equations at one resolution.
@@ -152,6 +153,7 @@ pub(super) struct ForcedDiscretised<'a> {
     first_iterations: usize,
     /// Whether every contact was linear at the point of the curve recorded last.
     linear: bool,
+    stability: Option<BranchStability<'a>>,
 }
 
 impl<'a> ForcedDiscretised<'a> {
@@ -168,7 +170,10 @@ impl<'a> ForcedDiscretised<'a> {
         let resolution = levels.at(level)?;
         let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
         let reduction = resolution.condensed.reduction(model, solver, interrupt)?;
-        let branch = Branch::new(resolution, reduction, reported, response)?;
+        let mut branch = Branch::new(resolution, reduction, reported, response)?;
+        if solver.stability.is_some() {
+            branch.tell_stability();
+        }
         let estimates = solver.estimate_error || levels.is_automatic();
         let equations = Equations::new(resolution, &settings, response, guess, interrupt)?;
         Ok(Self {
@@ -185,6 +190,10 @@ impl<'a> ForcedDiscretised<'a> {
             estimates_each: solver.estimate_error,
             first_iterations: 0,
             linear: false,
+            stability: match solver.stability {
+                Some(waves) => Some(BranchStability::new(model, waves, settings.start, interrupt)?),
+                None => None,
+            },
         })
     }
 
@@ -355,6 +364,12 @@ impl Discretised for ForcedDiscretised<'_> {
         self.linear_response.accurate = accurate;
     }
 
+    fn verdict(&mut self, point: &Point) -> Result<Option<Verdict>> {
+        self.stale = true;
+        let resolution = self.resolutions.current.resolution;
+        self.stability.as_ref().map(|s| s.at(resolution, point)).transpose()
+    }
+
     fn linear_share(&mut self, point: &Point) -> Result<f64> {
         let problem = &mut self.resolutions.current.problem;
         problem.linear_share(point.unknowns(), point.parameter())
@@ -369,12 +384,20 @@ impl Recorder for ForcedDiscretised<'_> {
         let record = self.resolutions.current.record(point, error)?;
         self.recorder.record(&record, point.stalled)?;
         self.linear = self.resolutions.current.problem.forces().all_linear();
+        if let Some(stability) = &mut self.stability {
+            let verdict = stability.along(self.resolutions.current.resolution, point, self.linear)?;
+            self.recorder.record_verdict(verdict)?;
+        }
         self.resolutions.note_recorded();
         Ok(())
     }
 
     fn is_linear(&self) -> bool {
         self.linear
+    }
+
+    fn take_verdicts(&mut self) -> Option<(Verdict, Verdict)> {
+        self.stability.as_mut()?.take_last()
     }
 
     /// The point is solved once more at its frequency with the flexibility factorised there: along the sweep it may

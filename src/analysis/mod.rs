@@ -1,5 +1,6 @@
 //! The crate's public face: each analysis puts the layers together.
 
+mod branch_stability;
 pub mod campbell;
 pub mod check_jacobian;
 pub mod damped_modes;

@@ -63,6 +63,12 @@ pub fn nonlinear_mode(
     if solver.harmonics == 0 {
         return fail!(Argument, "harmonics = 0, a nonlinear mode needs at least 1");
     }
+    if solver.stability.is_some() {
+        return fail!(
+            Argument,
+            "stability: only a forced response has it along its curve; a nonlinear mode has Floquet multipliers at its limit cycles"
+        );
+    }
     model.check_response_dof(solver.response_dof)?;
     let other_wave;
     let model = match range.diameter {

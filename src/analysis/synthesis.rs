@@ -155,7 +155,7 @@ pub fn synthesise_with(
     let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
     for point in 0..branch.points() {
         interrupt.part(Phase::Results, point, branch.points())?;
-        recovery.go_to(point)?;
+        recovery.go_to(branch, point)?;
         recovery.coordinates(branch.condensed_at(point).set().fundamental(), &mut x)?;
         let Some(numbers) = data.point(point) else {
             return fail!(Internal, "point {point} of the mode has no numbers");

@@ -132,3 +132,57 @@ pub(super) fn disjoint(inputs: &[Range], outputs: &[Range]) -> Result<()> {
     }
     Ok(())
 }
+
+/// A column of a list: its array, which may be NULL, the number of its argument, and its name.
+pub(super) enum Column {
+    Reals(*mut f64, i32, &'static str),
+    Numbers(*mut i64, i32, &'static str),
+}
+
+/// An entry of a list.
+#[derive(Clone, Copy)]
+pub(super) enum Entry {
+    Real(f64),
+    Number(i64),
+}
+
+/// Writes a list of `rows` rows column by column, and its length to `length` in any case. Without arrays only the length
+/// is written. `capacity` and `length` have the numbers of their arguments.
+///
+/// # Safety
+/// The caller of the C function states that `capacity` values fit into each array.
+pub(super) unsafe fn fill_list<const N: usize>(
+    columns: &[Column; N],
+    rows: impl ExactSizeIterator<Item = [Entry; N]>,
+    capacity: (i64, i32),
+    length: (*mut i64, i32),
+) -> Result<Status> {
+    let room = count(capacity.0, capacity.1, "capacity")?;
+    let mut given = false;
+    for column in columns {
+        given |= match *column {
+            Column::Reals(p, argument, name) => optional((p, argument), name)?.is_some(),
+            Column::Numbers(p, argument, name) => optional((p, argument), name)?.is_some(),
+        };
+    }
+    check_pointer(length.0, length.1, "count")?;
+    unsafe { length.0.write(rows.len() as i64) };
+    if !given {
+        return Ok(Status::Ok);
+    }
+    if room < rows.len() {
+        return fail!(Dimension, "capacity = {room}, needs {}", rows.len()).with_argument(capacity.1);
+    }
+    for (i, row) in rows.enumerate() {
+        for (column, entry) in columns.iter().zip(row) {
+            unsafe {
+                match (column, entry) {
+                    (Column::Reals(p, ..), Entry::Real(value)) if !p.is_null() => p.add(i).write(value),
+                    (Column::Numbers(p, ..), Entry::Number(value)) if !p.is_null() => p.add(i).write(value),
+                    _ => {}
+                }
+            }
+        }
+    }
+    Ok(Status::Ok)
+}

@@ -54,7 +54,7 @@ pub unsafe extern "C" fn hbvib_branch_status(branch: *const hbvib_branch) -> hbv
 }
 
 /// Results that a branch holds for each point of the curve. Energies are of one sector. All are
-/// finite, except for errors that are unknown: those are NaN.
+/// finite, except for errors and stability that are unknown: those are NaN.
 #[repr(C)]
 pub enum hbvib_field {
     /// Angular frequency.
@@ -97,6 +97,12 @@ pub enum hbvib_field {
     /// Nonlinear modes only: estimated absolute error of the damping ratio, NaN as
     /// HBVIB_ERROR_ESTIMATE.
     HBVIB_DAMPING_ERROR_ESTIMATE = 15,
+    /// Forced responses with the solver option `stability` only: largest modulus of the ordinary
+    /// Floquet multipliers of the motion. NaN where the motion touches an event, or its perturbations
+    /// could not be followed.
+    HBVIB_FLOQUET_RADIUS = 16,
+    /// The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
+    HBVIB_UNSTABLE_DIRECTIONS = 17,
 }
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -150,7 +156,7 @@ pub unsafe extern "C" fn hbvib_view_init(v: *mut hbvib_view, size_of_v: usize) -
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
 ///        points x contacts, 0 for a contact that never slips. A forced response does not have the
-///        fields of nonlinear modes.
+///        fields of nonlinear modes, and those of stability with that option only.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -169,6 +175,8 @@ pub unsafe extern "C" fn hbvib_branch_field(
     const SAMPLING_ERROR: i32 = hbvib_field::HBVIB_SAMPLING_ERROR as i32;
     const ERROR_ESTIMATE: i32 = hbvib_field::HBVIB_ERROR_ESTIMATE as i32;
     const DAMPING_ERROR: i32 = hbvib_field::HBVIB_DAMPING_ERROR_ESTIMATE as i32;
+    const RADIUS: i32 = hbvib_field::HBVIB_FLOQUET_RADIUS as i32;
+    const UNSTABLE: i32 = hbvib_field::HBVIB_UNSTABLE_DIRECTIONS as i32;
     const SLIP_FRACTION: i32 = hbvib_field::HBVIB_SLIP_FRACTION as i32;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
@@ -176,6 +184,7 @@ pub unsafe extern "C" fn hbvib_branch_field(
         unsafe { check_out(out, 3) }?;
         let points = branch.points() as i64;
         let contacts = branch.contacts() as i64;
+        let told = branch.tells_stability();
         let data = match field {
             OMEGA => branch.omega(),
             AMPLITUDE => branch.amplitude(),
@@ -187,6 +196,15 @@ pub unsafe extern "C" fn hbvib_branch_field(
             DAMPING_ERROR if branch.mode().is_some() => branch.damping_error_estimate(),
             DAMPING_ERROR => return fail!(Argument, "field = {field}: only a nonlinear mode has it").with_argument(2),
             SLIP_FRACTION => branch.slip_fraction(),
+            RADIUS if told => branch.floquet_radius(),
+            UNSTABLE if told => branch.unstable_directions(),
+            RADIUS | UNSTABLE => {
+                return fail!(
+                    Argument,
+                    "field = {field}: only a forced response with the solver option stability has it"
+                )
+                .with_argument(2);
+            }
             _ => match mode_field(field).map(|f| branch.mode_field(f)) {
                 Some(Some(data)) => data,
                 Some(None) => return fail!(Argument, "field = {field}: only a nonlinear mode has it").with_argument(2),

@@ -1,13 +1,13 @@
 //! Section "Results" of the header: peaks, folds and requested solutions, which a branch stores beside
 //! its curve.
 
-use super::arrays::{check_pointer, count, optional};
-use super::boundary::{WithArgument, call};
+use super::arrays::{Column, Entry, fill_list};
+use super::boundary::call;
 use super::handles::{KeptBranch, read};
 use super::indices::index;
 use super::solve::hbvib_branch;
 use super::version_and_errors::hbvib_status;
-use crate::error::{Result, Status, fail};
+use crate::error::{Result, Status};
 use crate::results::Special;
 use core::ptr;
 
@@ -115,31 +115,18 @@ impl Lists {
     /// # Safety
     /// The caller of the C function states that `capacity` values fit into each array.
     unsafe fn fill(&self, specials: &[Special], capacity: (i64, i32)) -> Result<Status> {
-        let (capacity, argument) = (count(capacity.0, capacity.1, "capacity")?, capacity.1);
-        let omega = optional(self.omega, "omega")?;
-        let amplitude = optional(self.amplitude, "amplitude")?;
-        let point = optional(self.point, "point")?;
-        check_pointer(self.count.0, self.count.1, "count")?;
-        unsafe { self.count.0.write(specials.len() as i64) };
-        if omega.is_none() && amplitude.is_none() && point.is_none() {
-            return Ok(Status::Ok);
-        }
-        if capacity < specials.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", specials.len()).with_argument(argument);
-        }
-        for (i, special) in specials.iter().enumerate() {
-            unsafe {
-                if let Some(p) = omega {
-                    p.add(i).write(special.omega);
-                }
-                if let Some(p) = amplitude {
-                    p.add(i).write(special.amplitude);
-                }
-                if let Some(p) = point {
-                    p.add(i).write(special.point as i64);
-                }
-            }
-        }
-        Ok(Status::Ok)
+        let columns = [
+            Column::Reals(self.omega.0, self.omega.1, "omega"),
+            Column::Reals(self.amplitude.0, self.amplitude.1, "amplitude"),
+            Column::Numbers(self.point.0, self.point.1, "point"),
+        ];
+        let row = |s: &Special| {
+            [
+                Entry::Real(s.omega),
+                Entry::Real(s.amplitude),
+                Entry::Number(s.point as i64),
+            ]
+        };
+        unsafe { fill_list(&columns, specials.iter().map(row), capacity, self.count) }
     }
 }

@@ -7,7 +7,7 @@ use super::indices::number;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::error::{Result, fail};
-use crate::options::{Flexibility, SolverOptions};
+use crate::options::{Flexibility, SolverOptions, Waves};
 
 /// Ways to the flexibility of the structure at its contacts.
 #[repr(C)]
@@ -21,6 +21,18 @@ pub enum hbvib_flexibility {
     /// A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is
     /// kept with the model until its matrices change; hbvib_branch_reduction has its certificate.
     HBVIB_FLEXIBILITY_KRYLOV = 2,
+}
+
+/// Stability along the curve of a forced response.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub enum hbvib_stability {
+    /// None is computed.
+    HBVIB_STABILITY_NONE = 0,
+    /// Perturbations of the block that contains the wave itself, as HBVIB_WAVES_WAVE.
+    HBVIB_STABILITY_WAVE = 1,
+    /// All perturbations of the wheel, as HBVIB_WAVES_WHEEL.
+    HBVIB_STABILITY_WHEEL = 2,
 }
 
 /// Options that every analysis shares. Fill it by hbvib_solver_options_init.
@@ -75,8 +87,11 @@ pub struct hbvib_solver_options {
     /// Way to the flexibility of the structure at its contacts in a forced response: a value of
     /// enum hbvib_flexibility.
     pub flexibility: i32,
-    /// Reserved: must be 0.
-    pub reserved: i32,
+    /// Perturbations whose Floquet multipliers are computed at each point of the curve of a forced
+    /// response, a value of enum hbvib_stability: for HBVIB_FLOQUET_RADIUS,
+    /// HBVIB_UNSTABLE_DIRECTIONS and hbvib_branch_bifurcations. A nonlinear mode refuses any but
+    /// HBVIB_STABILITY_NONE, the default.
+    pub stability: i32,
 }
 
 unsafe impl VersionedStruct for hbvib_solver_options {
@@ -103,7 +118,7 @@ unsafe impl VersionedStruct for hbvib_solver_options {
             estimate_error: i32::from(defaults.estimate_error),
             memory_limit: 0,
             flexibility: hbvib_flexibility::HBVIB_FLEXIBILITY_AUTOMATIC as i32,
-            reserved: 0,
+            stability: hbvib_stability::HBVIB_STABILITY_NONE as i32,
         }
     }
 }
@@ -164,6 +179,20 @@ fn flexibility(value: i32) -> Result<Flexibility> {
     )
 }
 
+fn stability(value: i32) -> Result<Option<Waves>> {
+    use hbvib_stability as kinds;
+    for (kind, found) in [
+        (kinds::HBVIB_STABILITY_NONE, None),
+        (kinds::HBVIB_STABILITY_WAVE, Some(Waves::Wave)),
+        (kinds::HBVIB_STABILITY_WHEEL, Some(Waves::Wheel)),
+    ] {
+        if value == kind as i32 {
+            return Ok(found);
+        }
+    }
+    fail!(Argument, "stability = {value}, needs a value of enum hbvib_stability")
+}
+
 fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
     if !matches!(o.num_threads, 0 | 1) {
         return fail!(Argument, "num_threads = {}, needs 0 or 1 (reserved)", o.num_threads);
@@ -198,10 +227,8 @@ fn convert(o: &hbvib_solver_options, ndof: usize) -> Result<SolverOptions> {
         flexibility: flexibility(o.flexibility)?,
         certificate: SolverOptions::default().certificate,
         memory_limit: number(o.memory_limit, "memory_limit")?,
+        stability: stability(o.stability)?,
     };
-    if o.reserved != 0 {
-        return fail!(Argument, "reserved = {}, needs 0", o.reserved);
-    }
     options.check()?;
     Ok(options)
 }

@@ -1,8 +1,8 @@
-//! Section "Stability" of the header: Floquet multipliers of stored points, and limit cycles.
+//! Section "Stability" of the header: Floquet multipliers of stored points.
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{Range, check_pointer, count, disjoint, optional, output};
+use super::arrays::{Range, count, disjoint, output};
 use super::boundary::{WithArgument, call};
 use super::handles::{KeptBranch, read};
 use super::indices::{index, number};
@@ -262,65 +262,6 @@ pub unsafe extern "C" fn hbvib_floquet(
             unsafe { fill_out(out, value) };
         }
         Ok(found.status)
-    })
-}
-
-/// Limit cycles on a nonlinear mode, where its damping ratio is zero: periodic motions of the model
-/// without forces. Refined on the solution, in the order of the branch. hbvib_floquet tells whether
-/// one is stable; with a negative slope it is not.
-///
-/// capacity         numbers that fit into each array.
-/// omega            receives their angular frequencies, or NULL.
-/// log10_amplitude  receives log10 of their amplitudes, the parameter of the mode, or NULL.
-/// slope            receives the derivatives of the damping ratio by log10 of the amplitude, or
-///                  NULL.
-/// point            receives their point numbers for hbvib_floquet and others, numbers, or NULL.
-/// count            receives how many there are, also when `capacity` is too small.
-/// Without arrays only the count is returned. A forced response has none.
-/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
-/// HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_branch_limit_cycles(
-    branch: *const hbvib_branch,
-    capacity: i64,
-    omega: *mut f64,
-    log10_amplitude: *mut f64,
-    slope: *mut f64,
-    point: *mut i64,
-    count: *mut i64,
-) -> hbvib_status {
-    call(|| {
-        let kept = read::<KeptBranch>(branch, 1)?;
-        let capacity = super::arrays::count(capacity, 2, "capacity")?;
-        let columns = [
-            optional((omega, 3), "omega")?,
-            optional((log10_amplitude, 4), "log10_amplitude")?,
-            optional((slope, 5), "slope")?,
-        ];
-        let point = optional((point, 6), "point")?;
-        check_pointer(count, 7, "count")?;
-        let found = kept.branch.limit_cycles()?;
-        unsafe { count.write(found.len() as i64) };
-        if columns.iter().all(Option::is_none) && point.is_none() {
-            return Ok(Status::Ok);
-        }
-        if capacity < found.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(2);
-        }
-        for (i, cycle) in found.iter().enumerate() {
-            let values = [cycle.omega, cycle.log10_amplitude, cycle.slope];
-            unsafe {
-                for (column, value) in columns.iter().zip(values) {
-                    if let Some(p) = column {
-                        p.add(i).write(value);
-                    }
-                }
-                if let Some(p) = point {
-                    p.add(i).write(cycle.point as i64);
-                }
-            }
-        }
-        Ok(Status::Ok)
     })
 }
 

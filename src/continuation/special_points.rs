@@ -52,6 +52,60 @@ impl SpecialPoint {
     }
 }
 
+/// Bracket of a root on an arc from 0 to 1, narrowed by the Illinois variant of regula falsi.
+pub struct Bracket {
+    low: (f64, f64),
+    high: (f64, f64),
+    side: i32,
+}
+
+impl Bracket {
+    /// The whole arc with the values at its ends, of different signs.
+    #[must_use]
+    pub fn new(low: f64, high: f64) -> Self {
+        Self {
+            low: (0.0, low),
+            high: (1.0, high),
+            side: 0,
+        }
+    }
+
+    /// Its width.
+    #[must_use]
+    pub fn width(&self) -> f64 {
+        self.high.0 - self.low.0
+    }
+
+    /// The place where the root is expected.
+    #[must_use]
+    pub fn guess(&self) -> f64 {
+        let (low, high) = (self.low, self.high);
+        let s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+        if s > low.0 && s < high.0 {
+            s
+        } else {
+            0.5 * (low.0 + high.0)
+        }
+    }
+
+    /// Takes the value at a place within over, and returns the distance to the end that it replaces.
+    pub fn narrow(&mut self, s: f64, f: f64) -> f64 {
+        let below = (f > 0.0) == (self.low.1 > 0.0);
+        let (end, other, side) = if below {
+            (&mut self.low, &mut self.high, -1)
+        } else {
+            (&mut self.high, &mut self.low, 1)
+        };
+        let moved = (s - end.0).abs();
+        *end = (s, f);
+        if self.side == side {
+            other.1 *= 0.5;
+        }
+        self.side = side;
+        moved
+    }
+}
+
 /// Solves for points between accepted ones.
 pub struct Locator {
     corrector: Corrector,
@@ -103,48 +157,38 @@ impl Locator {
     ) -> Result<Option<Point>> {
         let metric = self.metric(a, b);
         let value = |point: &Point| kind.function(point, metric.norm(&point.tangent));
-        let (mut low, mut high) = ((0.0, value(a)), (1.0, value(b)));
+        let mut bracket = Bracket::new(value(a), value(b));
         let mut best: Option<Point> = None;
-        if high.1 == 0.0 {
+        if bracket.high.1 == 0.0 {
             return Ok(Some(b.try_clone()?));
         }
-        let mut side = 0;
         for _ in 0..MAX_EVALUATIONS {
-            let s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-            let s = if s > low.0 && s < high.0 {
-                s
-            } else {
-                0.5 * (low.0 + high.0)
-            };
+            let s = bracket.guess();
             let Some(point) = self.solve_between(problem, metric, (a, b), s, None, interrupt)? else {
                 return Ok(best);
             };
             let f = value(&point);
             best = Some(point);
-            if f == 0.0 || high.0 - low.0 < WIDTH {
+            if f == 0.0 || bracket.width() < WIDTH || bracket.narrow(s, f) < WIDTH {
                 break;
-            }
-            if (f > 0.0) == (low.1 > 0.0) {
-                if (s - low.0).abs() < WIDTH {
-                    break;
-                }
-                low = (s, f);
-                if side == -1 {
-                    high.1 *= 0.5;
-                }
-                side = -1;
-            } else {
-                if (s - high.0).abs() < WIDTH {
-                    break;
-                }
-                high = (s, f);
-                if side == 1 {
-                    low.1 *= 0.5;
-                }
-                side = 1;
             }
         }
         Ok(best)
+    }
+
+    /// The solution at the share `s` of the arc from `a` to `b`; `None` if there is none near the cubic.
+    ///
+    /// # Errors
+    /// Those of the problem; `StoppedByCaller`.
+    pub fn between(
+        &mut self,
+        problem: &mut dyn Problem,
+        (a, b): (&Point, &Point),
+        s: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        let metric = self.metric(a, b);
+        self.solve_between(problem, metric, (a, b), s, None, interrupt)
     }
 
     /// The solution at parameter `p` between `a` and `b`, whose parameters enclose it without a fold in between.

@@ -2,16 +2,7 @@
 
 use crate::error::Result;
 use crate::options::time_options::check_search;
-
-/// Perturbations whose multipliers are computed.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Waves {
-    /// Those of the nodal diameters of the travelling wave itself.
-    #[default]
-    Wave,
-    /// All of the wheel.
-    Wheel,
-}
+use crate::options::waves::Waves;
 
 /// Options of the Floquet multipliers of a point.
 #[derive(Clone, Copy, Debug)]

@@ -6,10 +6,12 @@ mod mode_options;
 mod solver_options;
 mod synthesis_options;
 mod time_options;
+mod waves;
 
-pub use floquet_options::{FloquetOptions, Waves};
+pub use floquet_options::FloquetOptions;
 pub use forced_options::ForcedOptions;
 pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeOptions};
 pub use solver_options::{Flexibility, MAX_HARMONIC, MAX_REFINEMENT, MAX_SAMPLES, SolverOptions};
 pub use synthesis_options::SynthesisOptions;
 pub use time_options::{SteadyMethod, TimeOptions, VerifyOptions};
+pub use waves::Waves;

@@ -1,6 +1,7 @@
 //! Options of the solver, with their defaults and checks.
 
 use crate::error::{Result, fail};
+use crate::options::waves::Waves;
 
 /// The way to the flexibility of the structure at the contacts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -64,6 +65,9 @@ pub struct SolverOptions {
     /// Largest number of bytes for factors and bases of the structure; `0`: no limit. What needs more is refused before
     /// it is allocated.
     pub memory_limit: usize,
+    /// Stability along the curve of a forced response: the perturbations whose Floquet multipliers are computed at each
+    /// point; `None`: none. A nonlinear mode refuses it.
+    pub stability: Option<Waves>,
 }
 
 impl Default for SolverOptions {
@@ -86,6 +90,7 @@ impl Default for SolverOptions {
             flexibility: Flexibility::Automatic,
             certificate: 1e-8,
             memory_limit: 0,
+            stability: None,
         }
     }
 }

@@ -5,6 +5,7 @@ use crate::condense::Resolution;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
 use crate::results::mode_branch::ModeData;
+use crate::results::verdict::Located;
 use num_complex::Complex64;
 
 /// A solution beside the curve: a peak, a fold, or one at a requested parameter value.
@@ -49,6 +50,11 @@ pub struct Branch {
     pub(super) folds: Vec<Special>,
     /// Limit cycles, each with the slope of the damping ratio.
     pub(super) limit_cycles: Vec<(Special, f64)>,
+    /// Folds included.
+    pub(super) bifurcations: Vec<Located>,
+    pub(super) tells_stability: bool,
+    pub(super) floquet_radius: Vec<f64>,
+    pub(super) unstable_directions: Vec<f64>,
     pub(super) at: Vec<Vec<Special>>,
     pub(super) mode: Option<ModeData>,
 }

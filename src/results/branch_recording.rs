@@ -6,6 +6,7 @@ use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::results::branch::{Branch, Place, Special};
 use crate::results::mode_branch::ModeData;
+use crate::results::verdict::{Bifurcation, BifurcationKind, Located};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -41,6 +42,8 @@ pub(crate) enum SpecialKind {
     Peak,
     Fold,
     At(usize),
+    /// Any but a fold, with the numbers of unstable directions before and after it.
+    Bifurcation(BifurcationKind, [Option<usize>; 2]),
     /// With the derivative of the damping ratio by log₁₀ of the amplitude.
     LimitCycle {
         slope: f64,
@@ -86,6 +89,10 @@ impl Branch {
             peaks: Vec::new(),
             folds: Vec::new(),
             limit_cycles: Vec::new(),
+            bifurcations: Vec::new(),
+            tells_stability: false,
+            floquet_radius: Vec::new(),
+            unstable_directions: Vec::new(),
             at: Vec::new(),
             mode: None,
         })
@@ -111,6 +118,7 @@ impl Branch {
         let harmonics = if options.tolerance > 0.0 { 0 } else { options.harmonics };
         let mut branch = Self::new(&resolution, reduction, harmonics, options.response_dof.unwrap_or(0))?;
         branch.status = Status::StoppedByCaller;
+        branch.tells_stability = options.stability.is_some();
         Ok(branch)
     }
 
@@ -180,7 +188,8 @@ impl Branch {
         Ok(())
     }
 
-    pub(crate) fn push_special(&mut self, kind: SpecialKind, record: &Record<'_>) -> Result<()> {
+    /// Stores a point beside the curve, which lies after the first `after` points of the curve.
+    pub(crate) fn push_special(&mut self, kind: SpecialKind, after: usize, record: &Record<'_>) -> Result<()> {
         let point = self.push(record)?;
         let special = Special {
             point,
@@ -189,7 +198,13 @@ impl Branch {
         };
         let list = match kind {
             SpecialKind::Peak => &mut self.peaks,
-            SpecialKind::Fold => &mut self.folds,
+            SpecialKind::Fold => {
+                self.push_bifurcation((BifurcationKind::Fold, [None; 2]), after, special)?;
+                &mut self.folds
+            }
+            SpecialKind::Bifurcation(kind, unstable) => {
+                return self.push_bifurcation((kind, unstable), after, special);
+            }
             SpecialKind::LimitCycle { slope } => {
                 return try_push(&mut self.limit_cycles, (special, slope), "the limit cycles");
             }
@@ -201,6 +216,26 @@ impl Branch {
             }
         };
         try_push(list, special, "the special points")
+    }
+
+    fn push_bifurcation(
+        &mut self,
+        (kind, unstable): (BifurcationKind, [Option<usize>; 2]),
+        after: usize,
+        special: Special,
+    ) -> Result<()> {
+        let bifurcation = Bifurcation {
+            point: special.point,
+            omega: special.omega,
+            amplitude: special.amplitude,
+            kind,
+            unstable,
+        };
+        try_push(
+            &mut self.bifurcations,
+            Located { bifurcation, after },
+            "the bifurcations",
+        )
     }
 
     pub(crate) fn set_reduction(&mut self, reduction: Reduction) {

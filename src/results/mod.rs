@@ -13,6 +13,8 @@ mod point_error_fields;
 mod point_harmonics;
 mod recovery;
 mod time_history;
+mod unstable_directions;
+mod verdict;
 
 pub use crate::condense::Resolution;
 pub use branch::{Branch, Special};
@@ -23,3 +25,5 @@ pub use limit_cycles::LimitCycle;
 pub use point_energy::Energy;
 pub(crate) use recovery::Recovery;
 pub use time_history::{ContactLoop, ContactSummary, MOST_TIMES, SUMMARISED};
+pub(crate) use verdict::Verdict;
+pub use verdict::{Bifurcation, BifurcationKind, Stretch, UNIT};

@@ -1,7 +1,7 @@
 //! Harmonics of all degrees of freedom at a stored point.
 
-use crate::error::{Result, fail, try_vec};
-use crate::interrupt::{Interrupt, Phase};
+use crate::error::{Result, fail};
+use crate::interrupt::Interrupt;
 use crate::results::{Branch, Recovery};
 use num_complex::Complex64;
 
@@ -20,7 +20,7 @@ impl Branch {
     /// # Errors
     /// As [`Self::harmonics_at`]; `StoppedByCaller`.
     pub fn harmonics_at_with(&self, point: usize, x: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
-        let carried = self.carried_of(point)?;
+        self.carried_of(point)?;
         let n = self.ndof();
         let needed = (self.harmonics + 1) * n;
         if x.len() != needed {
@@ -30,12 +30,7 @@ impl Branch {
                 x.len()
             );
         }
-        let mut found = try_vec(needed, Complex64::ZERO, "the harmonics")?;
-        let mut recovery = Recovery::at(self, point, interrupt)?;
-        for (i, &h) in carried.iter().enumerate() {
-            interrupt.part(Phase::Results, i, carried.len())?;
-            recovery.harmonic(i, &mut found[h * n..(h + 1) * n])?;
-        }
+        let found = Recovery::at(self, point, interrupt)?.all(self.harmonics)?;
         x.copy_from_slice(&found);
         Ok(())
     }

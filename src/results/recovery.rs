@@ -1,23 +1,24 @@
-//! The motion of all degrees of freedom at a stored point, from the relative motions of the contacts.
+//! The motion of all degrees of freedom at a point, from the relative motions of the contacts.
 
-use crate::condense::Condensed;
 use crate::condense::Resolution;
 use crate::condense::flexibility::Workspace;
 use crate::condense::near_rigid_motion;
 use crate::error::{Result, try_vec};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Phase};
 use crate::problem::contact_forces::ContactForces;
 use crate::results::branch::Branch;
 use num_complex::Complex64;
 
-/// Recovers the motion of stored points, one at a time.
+/// A solution: packed relative motions in the solver's units, angular frequency, and the ratio of artificial damping.
+type Solution<'a> = (&'a [f64], f64, f64);
+
+/// Recovers the motion of points, one at a time.
 pub(crate) struct Recovery<'a> {
-    branch: &'a Branch,
     interrupt: &'a Interrupt<'a>,
-    resolution: usize,
-    condensed: &'a Condensed,
+    resolution: &'a Resolution,
     workspace: Workspace,
-    point: usize,
+    motion: &'a [f64],
+    omega: f64,
     forces: ContactForces<'a>,
     w: Vec<Complex64>,
     q: Vec<Complex64>,
@@ -33,40 +34,68 @@ impl<'a> Recovery<'a> {
     pub fn at(branch: &'a Branch, point: usize, interrupt: &'a Interrupt<'a>) -> Result<Self> {
         interrupt.check()?;
         branch.carried_of(point)?;
-        let resolution = branch.places[point].resolution;
-        let Resolution { condensed, samples } = &branch.resolutions[resolution];
+        let resolution = &branch.resolutions[branch.places[point].resolution];
+        Self::of(resolution, Self::stored(branch, point), interrupt)
+    }
+
+    /// Memory for the points of one resolution, with a solution selected that need not be stored.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
+    pub fn of(resolution: &'a Resolution, solution: Solution<'a>, interrupt: &'a Interrupt<'a>) -> Result<Self> {
+        let Resolution { condensed, samples } = resolution;
         let mut recovery = Self {
-            branch,
             interrupt,
             resolution,
-            condensed,
             workspace: Workspace::new(condensed, None)?,
-            point,
+            motion: &[],
+            omega: 0.0,
             forces: ContactForces::unchecked(condensed, *samples, interrupt)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             q: Vec::new(),
         };
-        recovery.go_to(point)?;
+        recovery.select(solution)?;
         Ok(recovery)
     }
 
-    fn motion(&self) -> &'a [f64] {
-        self.branch.motion_at(self.point).unwrap_or(&[])
+    fn stored(branch: &'a Branch, point: usize) -> Solution<'a> {
+        let motion = branch.motion_at(point).unwrap_or(&[]);
+        (motion, branch.omega[point], branch.damping_at(point))
     }
 
     /// Selects a stored point and evaluates its contact forces.
     ///
     /// # Errors
     /// `OutOfMemory`; those of callbacks; `StoppedByCaller`.
-    pub fn go_to(&mut self, point: usize) -> Result<()> {
-        if self.branch.places[point].resolution != self.resolution {
-            *self = Self::at(self.branch, point, self.interrupt)?;
+    pub fn go_to(&mut self, branch: &'a Branch, point: usize) -> Result<()> {
+        let resolution = &branch.resolutions[branch.places[point].resolution];
+        if !core::ptr::eq(self.resolution, resolution) {
+            *self = Self::at(branch, point, self.interrupt)?;
             return Ok(());
         }
-        self.point = point;
-        self.workspace.set_damping(self.branch.damping_at(point));
-        let motion = self.motion();
-        self.forces.evaluate(motion, self.branch.omega[point])
+        self.select(Self::stored(branch, point))
+    }
+
+    fn select(&mut self, (motion, omega, damping): Solution<'a>) -> Result<()> {
+        (self.motion, self.omega) = (motion, omega);
+        self.workspace.set_damping(damping);
+        self.forces.evaluate(motion, omega)
+    }
+
+    /// The motion of all degrees of freedom in harmonics 0 ..= `harmonics`, which is at least the highest carried one,
+    /// harmonic by harmonic, in the caller's unit and numbering.
+    ///
+    /// # Errors
+    /// As [`Self::harmonic`].
+    pub fn all(&mut self, harmonics: usize) -> Result<Vec<Complex64>> {
+        let carried = self.resolution.condensed.set().numbers();
+        let n = self.resolution.condensed.degrees().given();
+        let mut found = try_vec((harmonics + 1).saturating_mul(n), Complex64::ZERO, CONTEXT)?;
+        for (i, &h) in carried.iter().enumerate() {
+            self.interrupt.part(Phase::Results, i, carried.len())?;
+            self.harmonic(i, &mut found[h * n..(h + 1) * n])?;
+        }
+        Ok(found)
     }
 
     /// Packed contact forces per coordinate at the point, in the solver's units.
@@ -79,7 +108,7 @@ impl<'a> Recovery<'a> {
     /// # Errors
     /// `Singular` at an undamped resonance that moves no contact; `OutOfMemory`.
     pub fn harmonic(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
-        let condensed = self.condensed;
+        let condensed = &*self.resolution.condensed;
         let degrees = condensed.degrees();
         if degrees.is_identity() && !condensed.is_reduced() {
             return self.coordinates(i, x);
@@ -107,13 +136,13 @@ impl<'a> Recovery<'a> {
     /// # Errors
     /// As [`Self::harmonic`].
     pub fn coordinates(&mut self, i: usize, x: &mut [Complex64]) -> Result<()> {
-        let condensed = self.condensed;
+        let condensed = &*self.resolution.condensed;
         let set = condensed.set();
-        let motion = self.motion();
+        let motion = self.motion;
         for (c, w) in self.w.iter_mut().enumerate() {
             *w = self.forces.minus_reference(motion, c, i);
         }
-        let omega = self.branch.omega[self.point];
+        let omega = self.omega;
         self.workspace
             .recover(condensed, i, omega, &self.w, x, self.interrupt)?;
         let m = set.packed_len();

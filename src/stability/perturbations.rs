@@ -4,7 +4,7 @@
 //! of the sector whose motion it repeats, so that the map of a lapse, applied as often as the wave has lapses in a
 //! period, is the monodromy matrix of the period but for a known factor.
 
-use crate::contact::time_piece::Grazing;
+use crate::contact::time_piece::{Grazing, TimePiece};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::structure::Structure;
@@ -31,6 +31,9 @@ pub(crate) struct Blocks<'s> {
     pub list: Vec<Perturbations>,
     /// The first contact that touches an event: number of the element, and the event.
     pub grazing: Option<(usize, Grazing)>,
+    /// Intervals with the same tangents through which the perturbations are still to be carried, as one of this length.
+    waiting: f64,
+    pieces: Vec<TimePiece>,
 }
 
 impl Perturbations {
@@ -113,22 +116,62 @@ impl<'s> Blocks<'s> {
             interrupt: system.interrupt,
             list,
             grazing: None,
+            waiting: 0.0,
+            pieces: try_vec(system.elements.len(), TimePiece::default(), CONTEXT)?,
         })
+    }
+}
+
+impl Blocks<'_> {
+    /// Carries the perturbations through the intervals that wait.
+    fn catch_up(&mut self) -> Result<()> {
+        let length = core::mem::replace(&mut self.waiting, 0.0);
+        if length == 0.0 {
+            return Ok(());
+        }
+        let interval = Interval {
+            pieces: &self.pieces,
+            length,
+            collocation: None,
+        };
+        for block in &mut self.list {
+            block.advance(&interval, self.interrupt)?;
+        }
+        Ok(())
     }
 }
 
 impl Variation for Blocks<'_> {
     fn advance(&mut self, interval: &Interval<'_>) -> Result<()> {
+        if interval.collocation.is_some() {
+            for block in &mut self.list {
+                block.advance(interval, self.interrupt)?;
+            }
+            return Ok(());
+        }
+        // Without an event the equations of perturbations remain the same: their series may be longer than the steps
+        // of the motion.
+        let same = |(a, b): (&TimePiece, &TimePiece)| a.slope == b.slope && a.memory.to_bits() == b.memory.to_bits();
+        if self.waiting > 0.0 && !self.pieces.iter().zip(interval.pieces).all(same) {
+            self.catch_up()?;
+        }
+        if self.waiting == 0.0 {
+            self.pieces.copy_from_slice(interval.pieces);
+        }
+        self.waiting += interval.length;
+        Ok(())
+    }
+
+    fn couple(&mut self, element: usize, share: f64) -> Result<()> {
+        self.catch_up()?;
         for block in &mut self.list {
-            block.advance(interval, self.interrupt)?;
+            block.couple(element, share);
         }
         Ok(())
     }
 
-    fn couple(&mut self, element: usize, share: f64) {
-        for block in &mut self.list {
-            block.couple(element, share);
-        }
+    fn end(&mut self) -> Result<()> {
+        self.catch_up()
     }
 
     fn graze(&mut self, element: usize, grazing: Grazing) {

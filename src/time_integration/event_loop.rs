@@ -62,6 +62,18 @@ impl State {
         self.e.copy_from_slice(&other.e);
     }
 
+    /// Distance of the motions of two states, relative to this one, velocities in the unit of displacements.
+    pub fn distance(&self, other: &Self, omega: f64) -> f64 {
+        let (mut gap, mut size) = (0.0, 0.0);
+        for (own, others, unit) in [(&self.x, &other.x, 1.0), (&self.v, &other.v, 1.0 / omega)] {
+            for (a, b) in own.iter().zip(others) {
+                gap += ((a - b) * unit).powi(2);
+                size += (a * unit).powi(2);
+            }
+        }
+        if gap == 0.0 { 0.0 } else { (gap / size).sqrt() }
+    }
+
     /// Number of its entries.
     pub fn len(&self) -> usize {
         self.x.len() + self.v.len() + self.e.len()
@@ -184,7 +196,7 @@ impl EventLoop {
         if let Some(variation) = variation.as_deref_mut() {
             for (i, e) in system.elements.iter().enumerate() {
                 if let Some(mode) = self.dependent[i] {
-                    couple_variation(e, i, (mode, mode), state, variation);
+                    couple_variation(e, i, (mode, mode), state, variation)?;
                 }
             }
         }
@@ -241,7 +253,7 @@ impl EventLoop {
                 sensitivity.as_deref_mut(),
                 variation.as_deref_mut(),
                 summary.largest.1,
-            );
+            )?;
             summary.events += happened;
             at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
             if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {
@@ -263,8 +275,9 @@ impl EventLoop {
         }
         if let Some(variation) = variation {
             for (i, e) in system.elements.iter().enumerate() {
-                couple_variation(e, i, (self.modes[i], self.modes[i]), state, variation);
+                couple_variation(e, i, (self.modes[i], self.modes[i]), state, variation)?;
             }
+            variation.end()?;
         }
         Ok(summary)
     }
@@ -319,7 +332,7 @@ impl EventLoop {
         mut sensitivity: Option<&mut Sensitivity>,
         mut variation: Option<&mut (dyn Variation + 'v)>,
         largest_speed: f64,
-    ) -> usize {
+    ) -> Result<usize> {
         let mut happened = 0;
         for (i, e) in system.elements.iter().enumerate() {
             let (Some(law), Some((_, which))) = (e.events(), self.falls[i]) else {
@@ -333,7 +346,7 @@ impl EventLoop {
                 couple_slider(e, i, (before, self.modes[i]), state, s);
             }
             if let Some(variation) = variation.as_deref_mut() {
-                couple_variation(e, i, (before, self.modes[i]), state, variation);
+                couple_variation(e, i, (before, self.modes[i]), state, variation)?;
                 let after = self.modes[i];
                 if let Some(grazing) = touched(e, (before, after), at.rate, largest_speed) {
                     variation.graze(i, grazing);
@@ -341,7 +354,7 @@ impl EventLoop {
             }
             happened += 1;
         }
-        happened
+        Ok(happened)
     }
 
     /// The interval up to θ of the last step.
@@ -446,9 +459,10 @@ fn couple_variation(
     (mode, after): (Mode, Mode),
     state: &State,
     variation: &mut (dyn Variation + '_),
-) {
-    if let Some(slider) = e.slider().filter(|_| mode.moves_slider()) {
-        variation.couple(i, slider.follows(mode, after, e.relative(&state.v)));
+) -> Result<()> {
+    match e.slider().filter(|_| mode.moves_slider()) {
+        Some(slider) => variation.couple(i, slider.follows(mode, after, e.relative(&state.v))),
+        None => Ok(()),
     }
 }
 

@@ -5,6 +5,7 @@
 //! one: x₀(t + kT/n) is the motion at t of the sector k·j before.
 
 use crate::error::{Result, try_push, try_vec};
+use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 use crate::time_integration::gauss::nodes;
 use crate::time_integration::step_polynomial::{DEGREE, StepPolynomial};
@@ -121,8 +122,26 @@ impl HarmonicAnalysis {
         }
     }
 
+    /// The harmonics of all degrees of freedom in the caller's numbering, harmonic by harmonic.
+    pub fn of_all_degrees(self, system: &System<'_>, model: &Model) -> Result<Vec<Complex64>> {
+        self.finish_all(system, model).map(|(harmonics, _)| harmonics)
+    }
+
+    /// The same with the samples, time by time.
+    pub fn finish_all(self, system: &System<'_>, model: &Model) -> Result<(Vec<Complex64>, Vec<f64>)> {
+        let given = model.ndof();
+        let (independent, samples) = self.finish(system)?;
+        let count = independent.len() / system.ndof;
+        let mut harmonics = try_vec(count.saturating_mul(given), Complex64::ZERO, CONTEXT)?;
+        let rows = harmonics.chunks_exact_mut(given);
+        for (h, (all, x)) in rows.zip(independent.chunks_exact(system.ndof)).enumerate() {
+            system.degrees.expand(model.structure().phase(h, 1), x, all);
+        }
+        Ok((harmonics, samples))
+    }
+
     /// The harmonics of sector 0, harmonic by harmonic, and its samples, time by time.
-    pub fn finish(self, system: &System<'_>) -> Result<(Vec<Complex64>, Vec<f64>)> {
+    fn finish(self, system: &System<'_>) -> Result<(Vec<Complex64>, Vec<f64>)> {
         let n = self.ndof * self.sectors;
         let count = self.integrals.len() / n;
         let mut harmonics = try_vec(count * self.ndof, Complex64::ZERO, CONTEXT)?;

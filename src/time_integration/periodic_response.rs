@@ -6,7 +6,7 @@
 //! `linear_step` makes exact steps where all laws are linear between events, `implicit_step` adaptive ones where
 //! a law is smooth; `step_polynomial` locates events within a step; `event_loop` runs from event to event
 //! through a lapse; `shooting` closes the period; `harmonic_analysis` turns the motion into harmonics, free of
-//! the truncation of harmonic balance.
+//! the truncation of harmonic balance; `initial_state` is the state of a motion given by its harmonics.
 
 use crate::error::{Result, Status, try_vec};
 use crate::hooks::{Hooks, LogLevel};
@@ -15,6 +15,7 @@ use crate::model::Model;
 use crate::options::TimeOptions;
 use crate::time_integration::event_loop::{EventLoop, Observers, State};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
+use crate::time_integration::initial_state::state_of;
 use crate::time_integration::shooting::Search;
 use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
@@ -117,20 +118,7 @@ fn integrate(
         }
         Err(e) => return Err(e),
     };
-    let (independent, samples) = recorder.finish(&system)?;
-    let given = model.ndof();
-    let mut harmonics = try_vec(
-        (options.harmonics + 1).saturating_mul(given),
-        Complex64::ZERO,
-        "the harmonics",
-    )?;
-    for (h, (all, x)) in harmonics
-        .chunks_exact_mut(given)
-        .zip(independent.chunks_exact(system.ndof))
-        .enumerate()
-    {
-        system.degrees.expand(model.structure().phase(h, 1), x, all);
-    }
+    let (harmonics, samples) = recorder.finish_all(&system, model)?;
     Ok(TimeResponse {
         status: steady.status,
         period: TAU / options.omega,
@@ -139,55 +127,8 @@ fn integrate(
         marched: steady.marched,
         // In a lapse all sectors together move as one of them does in a period.
         events: summary.events,
-        ndof: given,
+        ndof: model.ndof(),
         harmonics,
         samples,
     })
-}
-
-/// Number of times per period of the highest harmonic at which the sliders of an initial motion are updated.
-pub(super) const POINTS_PER_WAVE: usize = 64;
-
-/// The state at time 0 of a periodic motion; each slider has its place after two periods of the motion from rest.
-pub(crate) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
-    const CONTEXT: &str = "the start of the motion in time";
-    let mut state = State::rest(system)?;
-    let (ndof, n) = (system.ndof, system.order());
-    let given = model.ndof();
-    let count = harmonics.len() / given;
-    let mut all = try_vec(count.saturating_mul(n), Complex64::ZERO, CONTEXT)?;
-    let mut x = try_vec(ndof, Complex64::ZERO, CONTEXT)?;
-    for (h, (all, start)) in all.chunks_exact_mut(n).zip(harmonics.chunks_exact(given)).enumerate() {
-        system.degrees.restrict(start, &mut x);
-        for s in 0..system.sectors {
-            let phase = model.structure().phase(h, s as i64);
-            for (dof, x) in x.iter().enumerate() {
-                let x = if h == 0 { x.re.into() } else { x * phase };
-                all[s * ndof + dof] = x;
-                state.x[s * ndof + dof] += x.re;
-                state.v[s * ndof + dof] -= h as f64 * system.omega * x.im;
-            }
-        }
-    }
-    let times = POINTS_PER_WAVE * (all.len() / n);
-    let mut part = try_vec(n, 0.0, CONTEXT)?;
-    for i in 0..=2 * times {
-        system.interrupt.check()?;
-        part.fill(0.0);
-        for (h, x) in all.chunks_exact(n).enumerate() {
-            let turn = Complex64::cis(TAU * ((h * i) % times) as f64 / times as f64);
-            for (part, x) in part.iter_mut().zip(x) {
-                *part += (x * turn).re;
-            }
-        }
-        for (stretch, e) in state.e.iter_mut().zip(&system.elements) {
-            if let Some(slider) = e.slider() {
-                // The slider's place is kept until the end, where the stretch follows from it and x.
-                let motion = e.relative(&part);
-                let place = slider.drag(motion, *stretch);
-                *stretch = if i < 2 * times { place } else { motion[0] - place };
-            }
-        }
-    }
-    Ok(state)
 }

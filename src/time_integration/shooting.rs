@@ -15,6 +15,9 @@ use crate::time_integration::unrolled_structure::System;
 /// Newton iterations before marching replaces them.
 const MOST_ITERATIONS: usize = 30;
 
+/// Ratio of successive errors below which the monodromy is kept.
+const FAST: f64 = 0.1;
+
 /// Smallest share of a Newton step that is tried.
 const SHORTEST: f64 = 1.0 / 64.0;
 
@@ -220,7 +223,8 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         Ok(Outcome::Failed)
     }
 
-    /// Newton's method with halved steps where a whole one increases the error.
+    /// Newton's method with halved steps where a whole one increases the error. The monodromy is kept as long as steps
+    /// with it reduce the error fast; then each of them costs a lapse of the motion alone.
     fn shoot(&mut self) -> Result<Outcome> {
         let unknowns = self.state.len() + usize::from(self.free);
         let interrupt = self.system.interrupt;
@@ -234,48 +238,66 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             if self.lap(Some(&mut sensitivity))? {
                 return Ok(Outcome::Stopped);
             }
-            let residual = self.residual;
-            let converged = residual <= self.options.tolerance;
-            if !self.correction(&sensitivity, &mut equations, &mut step)? {
-                return Ok(if converged { Outcome::Found } else { Outcome::Failed });
-            }
-            base.set(&self.state);
-            let omega = self.system.omega;
-            let mut share = 1.0;
+            let mut damped = true;
             loop {
-                self.advance(&base, omega, &step, share);
-                match self.lap(None) {
-                    Ok(false) => {}
-                    Ok(true) => return Ok(Outcome::Stopped),
-                    // A step that is far too long may lead to a state that cannot be integrated.
-                    Err(e)
-                        if !(e.recoverable
-                            || matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence)) =>
-                    {
-                        return Err(e);
-                    }
-                    Err(e) if self.laps >= self.most_laps => return Err(e),
-                    Err(_) => self.residual = f64::INFINITY,
+                let residual = self.residual;
+                let converged = residual <= self.options.tolerance;
+                if !self.correction(&sensitivity, &mut equations, &mut step)? {
+                    return Ok(if converged { Outcome::Found } else { Outcome::Failed });
                 }
-                if converged {
-                    // The last correction; round-off may keep it from reducing the residual.
-                    if self.residual > self.options.tolerance {
-                        self.state.set(&base);
-                        self.system.omega = omega;
-                        self.residual = residual;
-                    }
-                    return Ok(Outcome::Found);
+                base.set(&self.state);
+                let omega = self.system.omega;
+                let shortest = if damped && !converged { SHORTEST } else { 1.0 };
+                if self.step_from(&base, omega, &step, (residual, shortest))? {
+                    return Ok(Outcome::Stopped);
                 }
-                if self.residual < residual {
+                let fast = self.residual < FAST * residual;
+                if self.residual >= residual {
+                    // Round-off may keep the last correction from reducing the error.
+                    self.state.set(&base);
+                    self.system.omega = omega;
+                    self.residual = residual;
+                    if converged {
+                        return Ok(Outcome::Found);
+                    }
+                    if damped {
+                        return Ok(Outcome::Failed);
+                    }
                     break;
                 }
-                share *= 0.5;
-                if share < SHORTEST {
-                    return Ok(Outcome::Failed);
+                if !fast {
+                    if self.residual <= self.options.tolerance {
+                        return Ok(Outcome::Found);
+                    }
+                    break;
                 }
+                damped = false;
             }
         }
         Ok(Outcome::Failed)
+    }
+
+    /// Steps from `base` by the longest halved share of the step that reduces the error below `residual`, down to the
+    /// shortest one; `true`: the caller requested a stop.
+    fn step_from(&mut self, base: &State, omega: f64, step: &[f64], (residual, shortest): (f64, f64)) -> Result<bool> {
+        let mut share = 1.0;
+        loop {
+            self.advance(base, omega, step, share);
+            match self.lap(None) {
+                Ok(false) => {}
+                Ok(true) => return Ok(true),
+                // A step that is far too long may lead to a state that cannot be integrated.
+                Err(e) if !(e.recoverable || matches!(e.status, Status::NoBoundedSolution | Status::NoConvergence)) => {
+                    return Err(e);
+                }
+                Err(e) if self.laps >= self.most_laps => return Err(e),
+                Err(_) => self.residual = f64::INFINITY,
+            }
+            share *= 0.5;
+            if self.residual < residual || share < shortest {
+                return Ok(false);
+            }
+        }
     }
 
     /// Solves (I − S ∂G/∂z) step = S G(z) − z, with a free frequency bordered by the rate of the state; `false`: it has

@@ -18,7 +18,16 @@ pub(crate) trait Variation {
     fn advance(&mut self, interval: &Interval<'_>) -> Result<()>;
 
     /// At the end of a motion of the slider of an element, δw = δx + share·δy.
-    fn couple(&mut self, element: usize, share: f64);
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    fn couple(&mut self, element: usize, share: f64) -> Result<()>;
+
+    /// At the end of the lapse.
+    ///
+    /// # Errors
+    /// As [`Self::advance`].
+    fn end(&mut self) -> Result<()>;
 
     /// The motion of an element touches an event without passing it: derivatives differ on both sides.
     fn graze(&mut self, element: usize, grazing: Grazing);

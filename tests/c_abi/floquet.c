@@ -101,6 +101,56 @@ static void limit_cycles(void)
     WORKS("free", hbvib_model_free(model));
 }
 
+/* A Duffing oscillator is unstable between its folds. */
+static void along_a_branch(void)
+{
+    hbvib_solver_options s = solver_options();
+    hbvib_forced_options o;
+    hbvib_view view;
+    hbvib_model *model = NULL;
+    hbvib_branch *branch = NULL;
+    hbvib_contact c;
+    double one = 1, damping = 0.1, omega[2];
+    int64_t kind[2] = {-1, -1}, before[2], after[2], count = -1, k;
+    hbvib_matrix m;
+
+    WORKS("options", hbvib_forced_options_init(&o, sizeof o));
+    WORKS("view", hbvib_view_init(&view, sizeof view));
+    WORKS("model", hbvib_model_new(1, &model));
+    m = matrix(1, &one);
+    WORKS("mass", hbvib_model_set_matrix(model, HBVIB_MASS, &m));
+    WORKS("stiffness", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &m));
+    m = matrix(1, &damping);
+    WORKS("damping", hbvib_model_set_matrix(model, HBVIB_DAMPING, &m));
+    WORKS("contact", hbvib_contact_init(&c, sizeof c));
+    c.kind = HBVIB_CUBIC;
+    c.dof_a[0] = 0;
+    c.cubic = 0.1;
+    WORKS("contact", hbvib_model_add_contact(model, &c, NULL));
+    WORKS("force", hbvib_model_add_force(model, 0, 1, 0.18, 0));
+    o.omega_start = 0.9;
+    o.omega_stop = 1.3;
+    s.tolerance = 0;
+    s.stability = 3;
+    REFUSED("option", hbvib_forced_response(model, &s, &o, NULL, &branch), HBVIB_E_ARGUMENT, 2, "stability = 3");
+    s.stability = HBVIB_STABILITY_WAVE;
+    WORKS("solve", hbvib_forced_response(model, &s, &o, NULL, &branch));
+    WORKS("list", hbvib_branch_bifurcations(branch, 2, omega, NULL, kind, NULL, before, after, &count));
+    EXPECT("list", count == 2 && kind[0] == HBVIB_BIFURCATION_FOLD && kind[1] == HBVIB_BIFURCATION_FOLD);
+    EXPECT("list", before[0] == 0 && after[0] == 1 && before[1] == 1 && after[1] == 0 && omega[0] > omega[1]);
+    EXPECT("room", hbvib_branch_bifurcations(branch, 1, omega, NULL, NULL, NULL, NULL, NULL, &count) == HBVIB_E_DIMENSION);
+    WORKS("field", hbvib_branch_field(branch, HBVIB_UNSTABLE_DIRECTIONS, &view));
+    EXPECT("field", view.shape[0] == hbvib_branch_points(branch) && view.data[0] == 0);
+    for (count = 0, k = 0; k < view.shape[0]; k++) count += view.data[k] == 1;
+    EXPECT("field", count > 0 && count < view.shape[0]);
+    WORKS("free", hbvib_branch_free(branch));
+    s.stability = HBVIB_STABILITY_NONE;
+    WORKS("solve", hbvib_forced_response(model, &s, &o, NULL, &branch));
+    REFUSED("field", hbvib_branch_field(branch, HBVIB_FLOQUET_RADIUS, &view), HBVIB_E_ARGUMENT, 2, "stability");
+    WORKS("free", hbvib_branch_free(branch));
+    WORKS("free", hbvib_model_free(model));
+}
+
 int main(void)
 {
     hbvib_solver_options s = solver_options();
@@ -114,6 +164,7 @@ int main(void)
     are_those_of_the_reference(branch);
     refuse(branch);
     limit_cycles();
+    along_a_branch();
     WORKS("free", hbvib_branch_free(branch));
     WORKS("free", hbvib_model_free(the_model));
     return verdict(20);

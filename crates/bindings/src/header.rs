@@ -88,8 +88,8 @@ pub const SECTIONS: [Section; 13] = [
     },
     Section {
         title: "Stability",
-        about: "Floquet multipliers of points, limit cycles",
-        files: &["stability"],
+        about: "Floquet multipliers of points, bifurcations, limit cycles",
+        files: &["stability", "stability_lists"],
     },
     Section {
         title: "Design studies",

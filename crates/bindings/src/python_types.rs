@@ -31,11 +31,16 @@ const RESULTS: [(&str, &str); 8] = [
 ];
 
 /// Fields that the module gives and takes in another type than C's.
-const TYPES: [(&str, &str, &str); 7] = [
+const TYPES: [(&str, &str, &str); 8] = [
     (
         "hbvib_solver_options",
         "flexibility",
         "Union[Flexibility, Literal[\"automatic\", \"direct\", \"krylov\"], int]",
+    ),
+    (
+        "hbvib_solver_options",
+        "stability",
+        "Union[Stability, Literal[\"none\", \"wave\", \"wheel\"], int]",
     ),
     ("hbvib_mode_info", "multiple", "ModeMultiple"),
     ("hbvib_jacobian_gap", "tangent", "Tangent"),

@@ -217,6 +217,16 @@ pub struct ForcedPart {
     pub response_dof: Option<usize>,
     #[serde(default)]
     pub estimate_error: bool,
+    /// Stability of each point: unstable stretches are dashed in figures.
+    pub stability: Option<WavesName>,
+}
+
+/// Perturbations of which stability is told.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
+#[serde(rename_all = "lowercase")]
+pub enum WavesName {
+    Wave,
+    Wheel,
 }
 
 /// A nonlinear mode.

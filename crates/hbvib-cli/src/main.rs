@@ -25,10 +25,10 @@ mod verification;
 
 use build::Outcome;
 use hbvib::{
-    Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status,
+    Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status, Waves,
     forced_response, nonlinear_mode,
 };
-use job::{ForcedPart, Job, ModePart, VerifyPart};
+use job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use progress::Bar;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -226,7 +226,13 @@ fn forced(part: &ForcedPart, model: &Model, hooks: &mut Hooks<'_>) -> Outcome<Br
         at: &at,
         guess: None,
     };
-    let solver = solver(part.harmonics, part.tolerance, part.response_dof, part.estimate_error);
+    let solver = SolverOptions {
+        stability: part.stability.map(|waves| match waves {
+            WavesName::Wave => Waves::Wave,
+            WavesName::Wheel => Waves::Wheel,
+        }),
+        ..solver(part.harmonics, part.tolerance, part.response_dof, part.estimate_error)
+    };
     forced_response(model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))
 }
 

@@ -4,9 +4,9 @@ use crate::build::Outcome;
 use crate::job::Job;
 use crate::npz::Npz;
 use crate::svg::{bounds, draw};
-use hbvib::{Branch, Special};
+use hbvib::{BifurcationKind, Branch, Special};
 use num_complex::Complex64;
-use plotters::prelude::{ChartBuilder, LineSeries};
+use plotters::prelude::{ChartBuilder, DashedLineSeries, LineSeries};
 use plotters::style::BLUE;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -61,6 +61,9 @@ fn csv(path: &Path, branch: &Branch) -> Outcome<()> {
     if branch.mode().is_some() {
         text += ",log10_amplitude,damping_ratio";
     }
+    if branch.tells_stability() {
+        text += ",floquet_radius,unstable_directions";
+    }
     text += "\n";
     for point in 0..branch.points() {
         let slip = branch.slip_fraction_at(point).unwrap_or(&[]);
@@ -74,6 +77,12 @@ fn csv(path: &Path, branch: &Branch) -> Outcome<()> {
         );
         if let Some(mode) = branch.mode_at(point) {
             let _ = write!(text, ",{:.16e},{:.16e}", mode.log10_amplitude, mode.damping_ratio);
+        }
+        if let (Some(radius), Some(count)) = (
+            branch.floquet_radius().get(point),
+            branch.unstable_directions().get(point),
+        ) {
+            let _ = write!(text, ",{radius:.16e},{count}");
         }
         text += "\n";
     }
@@ -100,6 +109,18 @@ fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
         let pairs: Vec<f64> = special.iter().flat_map(|s| [s.omega, s.amplitude]).collect();
         real(name, &[special.len(), 2], &pairs)?;
     }
+    if branch.tells_stability() {
+        real(
+            "floquet_radius",
+            &[branch.floquet_radius().len()],
+            branch.floquet_radius(),
+        )?;
+        real(
+            "unstable_directions",
+            &[branch.unstable_directions().len()],
+            branch.unstable_directions(),
+        )?;
+    }
     if branch.mode().is_some() {
         let mode: Vec<_> = (0..points).filter_map(|p| branch.mode_at(p)).collect();
         let of = |f: fn(&hbvib::ModePoint) -> f64| mode.iter().map(f).collect::<Vec<f64>>();
@@ -115,13 +136,11 @@ fn npz(path: &Path, branch: &Branch) -> Outcome<()> {
     npz.finish().map_err(said)
 }
 
-/// Amplitude over frequency.
+/// Amplitude over frequency, dashed where it is unstable.
 fn figure(path: &Path, branch: &Branch) -> Outcome<()> {
-    let curve: Vec<(f64, f64)> = (0..branch.points())
-        .map(|p| (branch.omega()[p] / TAU, branch.amplitude()[p]))
-        .collect();
-    let x = bounds(curve.iter().map(|p| p.0));
-    let y = bounds(curve.iter().map(|p| p.1));
+    let x = bounds(branch.omega().iter().map(|omega| omega / TAU));
+    let y = bounds(branch.amplitude().iter().copied());
+    let stretches = branch.stretches().map_err(|e| e.to_string())?;
     draw(path, |area| {
         let mut chart = ChartBuilder::on(area)
             .margin(16)
@@ -131,9 +150,42 @@ fn figure(path: &Path, branch: &Branch) -> Outcome<()> {
         let mesh = &mut chart.configure_mesh();
         mesh.x_desc("frequency, Hz").y_desc("amplitude");
         mesh.y_label_formatter(&|v| format!("{v:.2e}")).draw()?;
-        chart.draw_series(LineSeries::new(curve.iter().copied(), &BLUE))?;
+        for stretch in &stretches {
+            let points = stretch
+                .points
+                .iter()
+                .map(|&(omega, amplitude)| (omega / TAU, amplitude));
+            if stretch.unstable {
+                chart.draw_series(DashedLineSeries::new(points, 6, 4, BLUE.into()))?;
+            } else {
+                chart.draw_series(LineSeries::new(points, &BLUE))?;
+            }
+        }
         Ok(())
     })
+}
+
+/// Bifurcations other than folds, and the number of unstable points.
+fn stability(text: &mut String, branch: &Branch) {
+    if !branch.tells_stability() {
+        return;
+    }
+    for b in branch.bifurcations().unwrap_or_default() {
+        let name = match b.kind {
+            BifurcationKind::Fold => continue,
+            BifurcationKind::PeriodDoubling => "period doubling",
+            BifurcationKind::NeimarkSacker => "Neimark-Sacker",
+            BifurcationKind::BranchPoint => "branch point",
+        };
+        let _ = writeln!(text, "{name} {:.6} Hz {:.6e}", b.omega / TAU, b.amplitude);
+    }
+    let counts = branch.unstable_directions();
+    let _ = writeln!(
+        text,
+        "{} points unstable, stability unknown at {}",
+        counts.iter().filter(|n| **n > 0.0).count(),
+        counts.iter().filter(|n| n.is_nan()).count()
+    );
 }
 
 /// Summary of a branch.
@@ -154,6 +206,7 @@ pub fn summary(branch: &Branch) -> String {
     };
     list(&mut text, "peak", branch.peaks());
     list(&mut text, "fold", branch.folds());
+    stability(&mut text, branch);
     list(
         &mut text,
         "at",

@@ -129,6 +129,7 @@ void friction() {
   claim(stability.status == HBVIB_OK && stability.multipliers.size() == 3 && stability.classes.size() == 3, "the number of multipliers");
   claim(stability.info.radius < 1 && stability.info.unstable == 0 && stability.classes[2] == HBVIB_MULTIPLIER_MEMORY, "the point is stable");
   claim(branch.limit_cycles().empty(), "a forced response has no limit cycles");
+  claim(branch.bifurcations().size() == branch.folds().size(), "without the option stability only folds are known");
   near(stability.info.radius, std::abs(stability.multipliers[0]), 1e-15, "the radius is that of the largest");
 
   // Derivatives by parameters: force and normal load together scale the motion.

@@ -182,7 +182,7 @@ contains
       call field('estimate_error', c_loc(s), c_loc(s%estimate_error), c_sizeof(s%estimate_error))
       call field('memory_limit', c_loc(s), c_loc(s%memory_limit), c_sizeof(s%memory_limit))
       call field('flexibility', c_loc(s), c_loc(s%flexibility), c_sizeof(s%flexibility))
-      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('stability', c_loc(s), c_loc(s%stability), c_sizeof(s%stability))
    end subroutine solver_options
 
    subroutine progress()

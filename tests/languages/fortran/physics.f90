@@ -330,6 +330,10 @@ contains
       call refused(model%verify(branch, point(1), errors=errors(1:)), HBVIB_E_DIMENSION, 'harmonics + 1 = 64', 'too few errors')
       call refused(model%time_response(omega, x, start=reshape(start, [2, 32])), HBVIB_E_DIMENSION, 'start', &
                    'a start of two degrees of freedom')
+      call works(model%forced_response(branch, 1.2_dp, 1.4_dp, hbvib_solver_options(tolerance=0._dp, harmonics=9, &
+                 stability=HBVIB_STABILITY_WAVE)), 'a response with its stability')
+      call works(branch%bifurcations(amplitude, kind=classes), 'bifurcations')
+      call expect('it is stable', size(classes) == 0)
    end subroutine in_time
 
    !> Residual and its derivative of a structure without matrices but for masses: the contacts alone.

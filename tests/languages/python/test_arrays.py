@@ -18,8 +18,8 @@ for field in hbvib.Field:
         array = branch.field(field)
     except hbvib.ArgumentError:
         check(
-            f"{field.name} is missing from a forced response only if it is of modes",
-            field in (2, 3, 4, 10, 11, 12, 13, 15),
+            f"{field.name} is missing from a forced response only if it is of modes or of stability",
+            field in (2, 3, 4, 10, 11, 12, 13, 15, 16, 17),
             field,
         )
         continue

@@ -45,8 +45,10 @@ PREFIXES = dict(
     LogLevel="LOG_",
     Phase="PHASE_",
     Flexibility="FLEXIBILITY_",
+    Stability="STABILITY_",
     Waves="WAVES_",
     Block="BLOCK_",
+    Bifurcation="BIFURCATION_",
     MultiplierClass="MULTIPLIER_",
     Grazing="GRAZING_",
     ParameterKind="PARAMETER_",
@@ -57,7 +59,7 @@ PREFIXES = dict(
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
-    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Waves MultiplierClass Grazing "
+    "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
     "ParameterKind Scaling Quantity Derivative"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():

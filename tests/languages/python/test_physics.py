@@ -226,6 +226,21 @@ close("shooting moves the point by its error", stability.orbit_change, checked.i
 check("nothing is touched", stability.reason == "" and stability.status == hbvib.Status.OK)
 still = linear.floquet(linear.forced_response(1.1, harmonics=1), 0, refine=False)
 close("a linear structure loses what its damping takes", np.prod(still.multipliers).real, np.exp(-0.02 * HZ / 1.1), 1e-9)
+hardening = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+hardening.add_spring_damper(0, spring=[0, 0, 0.1])
+hardening.add_force(0, 0.18)
+folded = hardening.forced_response((0.9, 1.3), harmonics=15, stability="wave")
+turns = folded.bifurcations()
+check("two folds", list(turns.kind) == ["fold", "fold"] and list(turns.point) == list(folded.folds().point))
+check("between them it is unstable", list(turns.unstable_before) == [0, 1] and list(turns.unstable_after) == [1, 0])
+check("as its field says", np.array_equal(folded.floquet_radius > 1, folded.unstable_directions > 0)
+      and folded.unstable_directions.max() == 1)
+try:
+    hardening.forced_response(1.0).floquet_radius
+except hbvib.ArgumentError as e:
+    check("without the option there is no such field", "stability" in str(e))
+else:
+    check("without the option there is no such field", False)
 flutter = hbvib.Model(mass=[[1, 0], [0, 0.5]], stiffness=[[1.1, -0.1], [-0.1, 0.5]], damping=[[-0.02, 0], [0, 0.01]])
 flutter.add_jenkins(0, 1, kt=0.5, mu=0.5, preload=0.2)
 backbone = flutter.nonlinear_mode((-2, 2), harmonics=31)

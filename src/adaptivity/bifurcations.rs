@@ -1,0 +1,163 @@
+//! Bifurcations between two neighbours of the curve: where a Floquet multiplier passes the unit circle.
+//!
+//! The number of multipliers outside the unit circle is compared at both neighbours. If k of them lie outside at one
+//! and m > k at the other, then ln |μ| of those numbered k + 1 … m by falling modulus has a root between them, whatever
+//! multipliers these are. Where the branch turns in between, positive real multipliers are not counted: the one that
+//! passes 1 belongs to the fold.
+
+use crate::adaptivity::branch_tracer::BranchTracer;
+use crate::adaptivity::controller::PointAt;
+use crate::adaptivity::discretised::Traceable;
+use crate::continuation::Point;
+use crate::continuation::special_points::{Bracket, Locator};
+use crate::error::{Result, try_push};
+use crate::results::{BifurcationKind, SpecialKind, Verdict};
+use num_complex::Complex64;
+
+/// Largest number of evaluations of one search, each with the multipliers of a motion.
+const MAX_EVALUATIONS: usize = 40;
+
+/// Width of the bracket, as a share of the step, and distance ln |μ| from the unit circle at which a search ends.
+const WIDTH: f64 = 1e-10;
+const ON_CIRCLE: f64 = 1e-10;
+
+/// Distance ln |μ| from the unit circle above which the multiplier does not pass it, but jumps over it: where slip
+/// sets in, for example.
+const JUMP: f64 = 1e-5;
+
+/// A root between two points.
+struct Passage {
+    /// Share of the arc.
+    at: f64,
+    point: Point,
+    multiplier: Complex64,
+}
+
+/// An arc without a fold inside, with the stability at its ends.
+struct Arc<'p> {
+    ends: (&'p Point, &'p Point),
+    verdicts: (&'p Verdict, &'p Verdict),
+    without_positive: bool,
+}
+
+impl Arc<'_> {
+    /// Numbers of the multipliers outside the unit circle at the ends; `None` where one is not known.
+    fn counts(&self) -> Option<(usize, usize)> {
+        let count = |verdict: &Verdict| {
+            let all = verdict.unstable?;
+            Some(if self.without_positive {
+                verdict.oscillating()
+            } else {
+                all
+            })
+        };
+        Some((count(self.verdicts.0)?, count(self.verdicts.1)?))
+    }
+}
+
+impl BranchTracer<'_> {
+    /// Locates and records the bifurcations between the points of the curve recorded last, but for folds.
+    pub(super) fn find_bifurcations(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        a: PointAt<'_>,
+        b: PointAt<'_>,
+        fold: Option<PointAt<'_>>,
+    ) -> Result<()> {
+        let Some((before, after)) = analysis.take_verdicts() else {
+            return Ok(());
+        };
+        let level = analysis.resolution();
+        let (a, b) = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
+        let whole = Arc {
+            ends: (&a, &b),
+            verdicts: (&before, &after),
+            without_positive: fold.is_some(),
+        };
+        let Some((from, to)) = whole.counts().filter(|(from, to)| from != to) else {
+            return Ok(());
+        };
+        let mut found = Vec::new();
+        if let Some((fold, resolution)) = fold {
+            let fold = analysis.transfer(fold, resolution)?;
+            let Some(between) = analysis.verdict(&fold)? else {
+                return Ok(());
+            };
+            for (ends, verdicts) in [((&a, &fold), (&before, &between)), ((&fold, &b), (&between, &after))] {
+                let arc = Arc {
+                    ends,
+                    verdicts,
+                    without_positive: true,
+                };
+                self.passages(analysis, &arc, &mut found)?;
+            }
+        } else {
+            self.passages(analysis, &whole, &mut found)?;
+        }
+        let mut count = before.unstable.unwrap_or(from);
+        for passage in &found {
+            let step = if passage.multiplier.im == 0.0 { 1 } else { 2 };
+            let next = if to > from {
+                count + step
+            } else {
+                count.saturating_sub(step)
+            };
+            let kind = SpecialKind::Bifurcation(BifurcationKind::of(passage.multiplier), [Some(count), Some(next)]);
+            analysis.select(level)?;
+            self.record_special_as_it_is(analysis, kind, &passage.point)?;
+            count = next;
+        }
+        Ok(())
+    }
+
+    /// Appends the passages through the unit circle on an arc in its order.
+    fn passages(&self, analysis: &mut dyn Traceable, arc: &Arc<'_>, found: &mut Vec<Passage>) -> Result<()> {
+        let Some((from, to)) = arc.counts() else {
+            return Ok(());
+        };
+        let first = found.len();
+        let mut order = from.min(to);
+        while order < from.max(to) {
+            order += 1;
+            let Some(mut passage) = self.passage(analysis, arc, order - 1)? else {
+                continue;
+            };
+            let kind = BifurcationKind::of(passage.multiplier);
+            if kind == BifurcationKind::NeimarkSacker {
+                // Its conjugate passes with it.
+                order += 1;
+            } else {
+                passage.multiplier.im = 0.0;
+            }
+            let place = found[first..].partition_point(|other| other.at < passage.at);
+            try_push(found, passage, "the bifurcations")?;
+            found[first + place..].rotate_right(1);
+        }
+        Ok(())
+    }
+
+    /// The place at which the multiplier numbered `order` by falling modulus passes the unit circle.
+    fn passage(&self, analysis: &mut dyn Traceable, arc: &Arc<'_>, order: usize) -> Result<Option<Passage>> {
+        let value = |verdict: &Verdict| verdict.growth(order, arc.without_positive);
+        let mut bracket = Bracket::new(value(arc.verdicts.0).0, value(arc.verdicts.1).0);
+        let mut locator = Locator::new(arc.ends.0.unknowns().len(), self.course.settings)?;
+        let mut best: Option<(f64, Passage)> = None;
+        for _ in 0..MAX_EVALUATIONS {
+            let at = bracket.guess();
+            let Some(point) = locator.between(analysis.problem(), arc.ends, at, self.interrupt)? else {
+                break;
+            };
+            let Some(verdict) = analysis.verdict(&point)?.filter(|v| v.unstable.is_some()) else {
+                break;
+            };
+            let (growth, multiplier) = value(&verdict);
+            if best.as_ref().is_none_or(|(least, _)| growth.abs() < *least) {
+                best = Some((growth.abs(), Passage { at, point, multiplier }));
+            }
+            if growth.abs() < ON_CIRCLE || bracket.width() < WIDTH || bracket.narrow(at, growth) < WIDTH {
+                break;
+            }
+        }
+        Ok(best.filter(|(least, _)| *least < JUMP).map(|(_, passage)| passage))
+    }
+}

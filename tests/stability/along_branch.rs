@@ -1,0 +1,119 @@
+//! Stability along a forced response, and the bifurcations located on it.
+
+use crate::common::{BASE, harmonics, one_mass, solve_at, sweep};
+use crate::{multipliers, ordinary};
+use hbvib::contact::{Contact, ContactKind};
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::model::Model;
+use hbvib::options::{ModeOptions, SolverOptions, Waves};
+use hbvib::{Bifurcation, BifurcationKind, Polynomial, nonlinear_mode};
+use std::f64::consts::TAU;
+use std::time::Instant;
+
+fn of_wave(highest: usize) -> SolverOptions {
+    SolverOptions {
+        stability: Some(Waves::Wave),
+        ..harmonics(highest)
+    }
+}
+
+/// Bifurcations of a response, whose numbers of unstable directions must follow each other.
+fn bifurcations(model: &Model, solver: &SolverOptions, from: f64, to: f64) -> Vec<Bifurcation> {
+    let begin = Instant::now();
+    let branch = sweep(model, solver, from, to, &[]);
+    println!("{} points, {:?}", branch.points(), begin.elapsed());
+    assert_eq!(branch.unstable_directions().len(), branch.points());
+    assert_eq!(branch.floquet_radius().len(), branch.points());
+    for (radius, count) in branch.floquet_radius().iter().zip(branch.unstable_directions()) {
+        assert_eq!(*radius > 1.0, *count > 0.0, "{radius} {count}");
+    }
+    let found = branch.bifurcations().unwrap();
+    let mut count = Some(branch.unstable_directions()[0] as usize);
+    for b in &found {
+        println!("{b:?}");
+        assert_eq!(b.unstable[0], count);
+        count = b.unstable[1];
+    }
+    assert_eq!(count, branch.unstable_directions().last().map(|n| *n as usize));
+    found
+}
+
+#[test]
+fn a_duffing_oscillator_is_unstable_between_its_folds() {
+    let model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 0.1), 0.18);
+    for (from, to) in [(0.9, 1.3), (1.3, 0.9)] {
+        let found = bifurcations(&model, &of_wave(15), from, to);
+        let kinds: Vec<_> = found.iter().map(|b| (b.kind, b.unstable)).collect();
+        let fold = BifurcationKind::Fold;
+        assert_eq!(kinds, [(fold, [Some(0), Some(1)]), (fold, [Some(1), Some(0)])]);
+    }
+}
+
+#[test]
+fn a_mass_against_a_stop_doubles_its_period_at_a_located_frequency() {
+    let model = one_mass(0.05, &Contact::unilateral(Some(0), None, 10.0, 0.0), 1.0);
+    let found = bifurcations(&model, &of_wave(40), 2.2, 2.7);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].kind, BifurcationKind::PeriodDoubling);
+    let at = solve_at(&model, &harmonics(60), found[0].omega);
+    let mu = ordinary(&multipliers(&model, &at, 0, Waves::Wave))[0];
+    println!("{mu}");
+    assert!((mu + 1.0).norm() < 1e-8, "{mu}");
+}
+
+#[test]
+fn a_forced_self_excited_oscillator_loses_its_frequency_at_a_located_one() {
+    let damper = Polynomial::scalar(&[], &[-0.2, 0.0, 0.2]).unwrap();
+    let model = one_mass(0.0, &Contact::between(0, None, ContactKind::Polynomial(damper)), 0.2);
+    let found = bifurcations(&model, &of_wave(20), 1.1, 1.3);
+    assert_eq!(found.len(), 1);
+    assert_eq!(found[0].kind, BifurcationKind::NeimarkSacker);
+    assert_eq!(found[0].unstable, [Some(0), Some(2)]);
+    let at = solve_at(&model, &harmonics(30), found[0].omega);
+    let mu = ordinary(&multipliers(&model, &at, 0, Waves::Wave))[0];
+    println!("{mu}");
+    assert!((mu.norm() - 1.0).abs() < 1e-8 && mu.im.abs() > 1e-3, "{mu}");
+}
+
+/// A symmetric motion becomes unsymmetric where a multiplier passes 1 away from a fold.
+#[test]
+fn a_symmetric_motion_loses_its_symmetry_at_a_branch_point() {
+    let model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 1.0), 10.0);
+    let found = bifurcations(&model, &of_wave(21), 0.9, 2.0);
+    assert!(found.iter().any(|b| b.kind == BifurcationKind::BranchPoint));
+}
+
+/// Where all contacts stick perturbations decay as those of the linear structure.
+#[test]
+fn stuck_contacts_have_the_radius_of_the_linear_structure() {
+    let model = one_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 100.0), 0.2);
+    let branch = sweep(&model, &of_wave(9), 0.9, 1.9, &[]);
+    for (omega, radius) in branch.omega().iter().zip(branch.floquet_radius()) {
+        assert!((radius - (-0.01 * TAU / omega).exp()).abs() < 1e-11);
+    }
+}
+
+#[test]
+fn the_field_has_the_radius_that_floquet_finds() {
+    let model = BASE.sector();
+    let branch = sweep(&model, &of_wave(9), TAU * 208.7, TAU * 208.9, &[]);
+    assert!(branch.points() > 5);
+    for point in [2, branch.points() / 2] {
+        let found = multipliers(&model, &branch, point, Waves::Wave);
+        println!("{} {}", found.radius, branch.floquet_radius()[point]);
+        assert!((found.radius - branch.floquet_radius()[point]).abs() < 1e-12);
+    }
+}
+
+#[test]
+fn a_nonlinear_mode_refuses_stability_along_its_curve() {
+    let model = one_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), 0.2);
+    let range = ModeOptions {
+        log10_start: -1.0,
+        log10_stop: 0.0,
+        ..ModeOptions::default()
+    };
+    let e = nonlinear_mode(&model, &of_wave(9), &range, &mut Hooks::default()).unwrap_err();
+    assert_eq!(e.status, Status::Argument);
+}
