@@ -33,11 +33,11 @@ module hbvib
    ! hbvib_status_code
    integer(c_int32_t), parameter, public :: HBVIB_OK = 0, HBVIB_STOPPED_BY_CALLER = 1, HBVIB_STOPPED_STEP_TOO_SMALL = 2, &
       HBVIB_STOPPED_MAX_POINTS = 3, HBVIB_STOPPED_MAX_HARMONICS = 4, HBVIB_STOPPED_STALLED = 5, HBVIB_STOPPED_LEFT_RANGE = 6, &
-      HBVIB_STOPPED_CALLBACK = 7, HBVIB_STOPPED_UNBOUNDED = 8, HBVIB_STOPPED_NO_FORCE = 9, HBVIB_E_NULL = -1, &
-      HBVIB_E_ARGUMENT = -2, HBVIB_E_DIMENSION = -3, HBVIB_E_NOT_FINITE = -4, HBVIB_E_NOT_HERMITIAN = -5, HBVIB_E_SINGULAR = -6, &
-      HBVIB_E_NO_CONVERGENCE = -7, HBVIB_E_STRUCT_SIZE = -8, HBVIB_E_CALLBACK = -9, HBVIB_E_UNSUPPORTED = -10, &
-      HBVIB_E_OUT_OF_MEMORY = -11, HBVIB_E_NO_BOUNDED_SOLUTION = -12, HBVIB_E_HANDLE = -13, HBVIB_E_BUSY = -14, &
-      HBVIB_E_INDEX = -15, HBVIB_E_NOT_POSITIVE_DEFINITE = -16, HBVIB_E_INTERNAL = -99
+      HBVIB_STOPPED_CALLBACK = 7, HBVIB_STOPPED_UNBOUNDED = 8, HBVIB_STOPPED_NO_FORCE = 9, HBVIB_STOPPED_NO_PEAK = 10, &
+      HBVIB_E_NULL = -1, HBVIB_E_ARGUMENT = -2, HBVIB_E_DIMENSION = -3, HBVIB_E_NOT_FINITE = -4, HBVIB_E_NOT_HERMITIAN = -5, &
+      HBVIB_E_SINGULAR = -6, HBVIB_E_NO_CONVERGENCE = -7, HBVIB_E_STRUCT_SIZE = -8, HBVIB_E_CALLBACK = -9, &
+      HBVIB_E_UNSUPPORTED = -10, HBVIB_E_OUT_OF_MEMORY = -11, HBVIB_E_NO_BOUNDED_SOLUTION = -12, HBVIB_E_HANDLE = -13, &
+      HBVIB_E_BUSY = -14, HBVIB_E_INDEX = -15, HBVIB_E_NOT_POSITIVE_DEFINITE = -16, HBVIB_E_INTERNAL = -99
    ! hbvib_storage
    integer(c_int32_t), parameter, public :: HBVIB_COL_MAJOR = 0, HBVIB_ROW_MAJOR = 1, HBVIB_CSC = 2
    ! hbvib_scalar
@@ -341,6 +341,13 @@ module hbvib
       type(c_ptr) :: direction = c_null_ptr
       integer(c_int32_t) :: scaling = 0, reserved = 0
    end type hbvib_parameter
+
+   !> Options of hbvib_batch_solve.
+   type, bind(c) :: hbvib_batch_options
+      integer(c_int32_t) :: struct_size = 32, threads = 1
+      real(c_double) :: omega_start = 0, omega_stop = 0
+      integer(c_int32_t) :: keep = 0, reserved = 0
+   end type hbvib_batch_options
 
    abstract interface
       !> A force of the caller.
@@ -1335,6 +1342,62 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_sensitivity
 
+      function hbvib_batch_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_batch_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_batch_options_init
+
+      function hbvib_batch_solve(model, solver, options, hooks, parameters, count, designs, values, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in), optional :: solver
+         type(hbvib_batch_options), intent(in) :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(hbvib_parameter), intent(in) :: parameters(*)
+         integer(c_int64_t), value :: count, designs
+         real(c_double), intent(in) :: values(*)
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_batch_solve
+
+      function hbvib_batch_free(batch) bind(c) result(status)
+         import
+         type(c_ptr), value :: batch
+         integer(c_int32_t) :: status
+      end function hbvib_batch_free
+
+      function hbvib_batch_designs(batch) bind(c) result(answer)
+         import
+         type(c_ptr), value :: batch
+         integer(c_int64_t) :: answer
+      end function hbvib_batch_designs
+
+      function hbvib_batch_peaks(batch, capacity, peak_amplitude, peak_omega, statuses, points) bind(c) result(status)
+         import
+         type(c_ptr), value :: batch
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: peak_amplitude(*), peak_omega(*)
+         integer(c_int64_t), intent(inout), optional :: statuses(*), points(*)
+         integer(c_int32_t) :: status
+      end function hbvib_batch_peaks
+
+      function hbvib_batch_status(batch, design) bind(c) result(status)
+         import
+         type(c_ptr), value :: batch
+         integer(c_int64_t), value :: design
+         integer(c_int32_t) :: status
+      end function hbvib_batch_status
+
+      function hbvib_batch_branch(batch, design, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: batch
+         integer(c_int64_t), value :: design
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_batch_branch
+
       function hbvib_contact_evaluate(c, harmonics, samples, omega, motion, motion_len, force, force_len, jac, &
          jac_len) bind(c) result(status)
          import
@@ -1461,6 +1524,7 @@ module hbvib
       procedure :: verify => model_verify
       procedure :: floquet => model_floquet
       procedure :: sensitivity => model_sensitivity
+      procedure :: batch => model_batch
       procedure :: forced_residual => model_forced_residual
    end type hbvib_model
 
@@ -1522,7 +1586,7 @@ module hbvib
    private :: view_of, branch_harmonics, branch_harmonics_into, point_to_zero, branch_slip_fraction, branch_reduction
    private :: branch_peaks, branch_folds, branch_at, special, branch_energy, branch_time_history, branch_contact_loop
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
-   private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, branch_limit_cycles
+   private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, model_batch, branch_limit_cycles
    private :: branch_bifurcations
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
@@ -2812,6 +2876,60 @@ contains
       if (present(reasons)) reasons = int(numbers)
       if (present(onset)) onset = int(contact) + 1
    end function model_sensitivity
+
+   !> The highest peak of the response of each design between two angular frequencies: values(parameter, design). Contacts are
+   !> counted from 1 in parameters%contact, -1 is all. statuses are HBVIB_OK, HBVIB_STOPPED_NO_PEAK and so on; without a
+   !> maximum the peak is NaN. The number of threads, 1 if absent, changes no bit. A stop by a hook keeps what was solved.
+   function model_batch(self, omega_start, omega_stop, parameters, values, peak_amplitude, peak_omega, statuses, points, &
+      threads, solver, hooks) result(status)
+      class(hbvib_model), intent(in) :: self
+      real(dp), intent(in) :: omega_start, omega_stop
+      type(hbvib_parameter), intent(in) :: parameters(:)
+      real(dp), intent(in), contiguous :: values(:, :)
+      real(dp), intent(out) :: peak_amplitude(:), peak_omega(:)
+      integer(i32), intent(out), optional :: statuses(:)
+      integer, intent(out), optional :: points(:)
+      integer, intent(in), optional :: threads
+      type(hbvib_solver_options), intent(in), optional :: solver
+      type(hbvib_hooks), intent(in), optional :: hooks
+      integer(i32) :: status, freed
+      type(hbvib_batch_options) :: options
+      type(hbvib_solver_options), allocatable :: chosen
+      type(hbvib_parameter), allocatable :: given(:)
+      real(dp), allocatable :: amplitudes(:), omegas(:)
+      integer(i64), allocatable :: numbers(:), counts(:)
+      type(c_ptr) :: batch
+      integer(i64) :: n, ndof, contacts
+      integer :: j
+      status = HBVIB_OK
+      n = size(values, 2, i64)
+      ndof = hbvib_model_dofs(self%handle)
+      contacts = hbvib_model_contacts(self%handle)
+      call same_length(status, 'values(:, 1)', size(values, 1, i64), size(parameters, kind=i64))
+      call same_length(status, 'peak_amplitude', size(peak_amplitude, kind=i64), n)
+      call same_length(status, 'peak_omega', size(peak_omega, kind=i64), n)
+      if (present(statuses)) call same_length(status, 'statuses', size(statuses, kind=i64), n)
+      if (present(points)) call same_length(status, 'points', size(points, kind=i64), n)
+      call solver_from_one(status, solver, ndof, chosen)
+      allocate (given, source=parameters)
+      do j = 1, size(given)
+         call to_zero(status, 'contact', parameters(j)%contact, contacts, given(j)%contact, -1_i32)
+      end do
+      if (status /= HBVIB_OK) return
+      options%omega_start = omega_start
+      options%omega_stop = omega_stop
+      if (present(threads)) options%threads = int(threads, i32)
+      batch = c_null_ptr
+      status = hbvib_batch_solve(self%handle, chosen, options, hooks, given, size(given, kind=i64), n, values, batch)
+      if (status < HBVIB_OK) return
+      allocate (amplitudes(n), omegas(n), numbers(n), counts(n))
+      freed = hbvib_batch_peaks(batch, n, amplitudes, omegas, numbers, counts)
+      freed = hbvib_batch_free(batch)
+      peak_amplitude = amplitudes
+      peak_omega = omegas
+      if (present(statuses)) statuses = int(numbers, i32)
+      if (present(points)) points = int(counts)
+   end function model_batch
 
    !> Residual r(ndof, 0:H) of harmonic balance at x(ndof, 0:H), derivatives jac (2 (H + 1) ndof square) and d_omega (as r).
    function model_forced_residual(self, omega, x, r, jac, d_omega, solver, hooks) result(status)

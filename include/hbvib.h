@@ -139,6 +139,8 @@ typedef enum {
   HBVIB_STOPPED_UNBOUNDED = 8,
   /// No force acts on the model: its response is zero, or the static motion under preloads.
   HBVIB_STOPPED_NO_FORCE = 9,
+  /// Batches only: the amplitude has no maximum within the range.
+  HBVIB_STOPPED_NO_PEAK = 10,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.
@@ -1268,7 +1270,7 @@ typedef enum {
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// Reserved: must be 0 or 1. The library starts no thread.
+  /// Reserved: must be 0 or 1. A solve starts no thread.
   int32_t num_threads;
   /// Bound of the estimated relative error (default 1e-3), from which the harmonics of each point
   /// are chosen: error of the complex fundamental of the response degree of freedom; in a
@@ -2998,6 +3000,110 @@ hbvib_status hbvib_sensitivity(const hbvib_model *model,
                                int64_t *reasons,
                                int64_t *onset,
                                const hbvib_hooks *hooks);
+
+/// The peaks of many designs, created by hbvib_batch_solve.
+typedef struct hbvib_batch hbvib_batch;
+
+/// Options of hbvib_batch_solve. Fill it by hbvib_batch_options_init, then set the range.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// Threads, the calling one included, 1 .. 1024; default 1. Their number changes no bit of a
+  /// result.
+  int32_t threads;
+  /// First angular frequency of each response, > 0, rad per time unit.
+  double omega_start;
+  /// Last angular frequency: below the first for downward sweeps.
+  double omega_stop;
+  /// 1: the branch of each design is kept, for hbvib_batch_branch; 0 (default): it is not.
+  int32_t keep;
+  /// Must be 0.
+  int32_t reserved;
+} hbvib_batch_options;
+
+/// Fills the options of a batch: one thread, no branch kept. The frequencies must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
+
+/// Finds the highest peak of the response of each design within a range of frequency. A design is
+/// the model with values of its parameters: constants of contacts and the speed are set, factors
+/// multiply, and directions are added times the value. Each design is solved by itself, so that its
+/// result depends on no other, on their order or on the number of threads. Designs that change
+/// constants of contacts and forces alone share the structure of the model.
+///
+/// model       stays as it is.
+/// solver      options; NULL: the defaults. A fixed response_dof makes peaks comparable.
+/// options     range of frequency, threads.
+/// hooks       progress, called after each design that the calling thread has solved, with the
+///             number of designs done in `point` and the peak in `parameter` and `amplitude`; phase
+///             and cancellation. All callbacks run on the calling thread. NULL: none.
+/// parameters  array of parameters, struct_size of the first apart.
+/// count       how many, >= 1.
+/// designs     number of designs, >= 0.
+/// values      values of the parameters, designs x count, design after design.
+/// out         receives the batch; untouched on error. Free it by hbvib_batch_free.
+/// A design that fails has a status of its own and NaN for its peak; the others are solved.
+/// HBVIB_STOPPED_BY_CALLER: designs that were not solved have that status.
+/// Errors: HBVIB_E_INDEX, HBVIB_E_UNSUPPORTED (a parameter that the model does not have; several
+/// threads for a model with a force of the caller), HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE (options),
+/// HBVIB_E_DIMENSION, HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+hbvib_status hbvib_batch_solve(const hbvib_model *model,
+                               const hbvib_solver_options *solver,
+                               const hbvib_batch_options *options,
+                               const hbvib_hooks *hooks,
+                               const hbvib_parameter *parameters,
+                               int64_t count,
+                               int64_t designs,
+                               const double *values,
+                               hbvib_batch **out);
+
+/// Frees a batch; branches that were taken from it stay. NULL is accepted and does nothing.
+///
+/// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_BUSY. Threads: any, once.
+hbvib_status hbvib_batch_free(hbvib_batch *batch);
+
+/// Number of designs of a batch; or a negative status.
+///
+/// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY (a branch is being taken). Threads: any number on a batch.
+int64_t hbvib_batch_designs(const hbvib_batch *batch);
+
+/// The highest peak of each design, in the order of their values.
+///
+/// capacity        numbers that fit into each array: at least the number of designs.
+/// peak_amplitude  receives amplitudes, NaN without a maximum; or NULL.
+/// peak_omega      receives angular frequencies, NaN without a maximum; or NULL.
+/// statuses        receives numbers of hbvib_status, as of hbvib_batch_status; or NULL.
+/// points          receives numbers of points of each curve; or NULL.
+/// Errors: HBVIB_E_DIMENSION (capacity: the arrays are untouched), HBVIB_E_ARGUMENT (overlapping
+/// arrays), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any number on one batch.
+hbvib_status hbvib_batch_peaks(const hbvib_batch *batch,
+                               int64_t capacity,
+                               double *peak_amplitude,
+                               double *peak_omega,
+                               int64_t *statuses,
+                               int64_t *points);
+
+/// The status of a design, whose sentence hbvib_last_error then has: HBVIB_OK;
+/// HBVIB_STOPPED_NO_PEAK without a maximum; another positive number where the branch ended early
+/// and may have higher maxima beyond; HBVIB_STOPPED_BY_CALLER where it was not solved; negative
+/// where it failed.
+///
+/// design  number from 0, in the order of the values.
+/// Errors: HBVIB_E_INDEX, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any number on one batch.
+hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
+
+/// Takes the branch of a design out of the batch, which must have been solved with keep = 1.
+///
+/// design  number from 0, in the order of the values.
+/// out     receives the branch; untouched on error. Free it by hbvib_branch_free.
+/// Errors: HBVIB_E_ARGUMENT (branches were not kept, this one was taken before, or the design has
+/// none because it failed), HBVIB_E_INDEX, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
+/// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per batch.
+hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
 
 /* ==============================================================================================
  * Low level: one contact law, the residual at a given motion, indices from 1

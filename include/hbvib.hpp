@@ -368,6 +368,12 @@ struct ForcedOptions : Filled<hbvib_forced_options, hbvib_forced_options_init> {
   ForcedOptions& start_from(Span<const Complex> x) { return guess = detail::flat(x.data()), guess_len = x.length(), *this; }
 };
 
+/// Range of the responses of a batch, rad per time unit, and its threads.
+struct BatchOptions : Filled<hbvib_batch_options, hbvib_batch_options_init> {
+  BatchOptions() = default;
+  BatchOptions(double start, double stop, std::int32_t number_of_threads = 1) { omega_start = start, omega_stop = stop, threads = number_of_threads; }
+};
+
 /// Range of a nonlinear mode, log10 of amplitudes. Arrays handed in are borrowed until it was solved.
 struct ModeOptions : Filled<hbvib_mode_options, hbvib_mode_options_init> {
   ModeOptions() = default;
@@ -924,6 +930,7 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
 
  private:
   friend class Model;
+  friend class Batch;
   using Object::Object;
 
   template <class Struct, class F, class... A>
@@ -943,6 +950,43 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
     for (std::size_t i = 0; i < point.size(); i++) all.push_back({omega[i], amplitude[i], point[i]});
     return all;
   }
+};
+
+/// Highest peak of a design; NaN where the amplitude has no maximum within the range, or the design failed.
+struct DesignPeak {
+  double amplitude, omega;
+  hbvib_status status;
+  Index points;
+};
+
+/// The peaks of many designs, in the order of their values.
+class Batch : public detail::Object<hbvib_batch, hbvib_batch_free> {
+ public:
+  Index designs() const { return use(hbvib_batch_designs); }
+  std::vector<DesignPeak> peaks() const {
+    const Index n = designs();
+    std::vector<double> amplitude(detail::extent(n)), omega(amplitude.size());
+    std::vector<std::int64_t> status(amplitude.size()), points(amplitude.size());
+    use(hbvib_batch_peaks, n, amplitude.data(), omega.data(), status.data(), points.data());
+    std::vector<DesignPeak> all;
+    for (std::size_t i = 0; i < amplitude.size(); i++)
+      all.push_back({amplitude[i], omega[i], static_cast<hbvib_status>(status[i]), points[i]});
+    return all;
+  }
+  /// The sentence of a design whose status is not HBVIB_OK; empty for HBVIB_OK.
+  std::string sentence(Index design) const { return hbvib_batch_status(get(), design), last_error(); }
+  /// The branch of a design, which leaves the batch; options.keep must have been 1.
+  Branch take_branch(Index design) {
+    const auto keep = core_;
+    auto core = std::make_shared<Branch::Core>();
+    core->forces = core_->forces;
+    detail::call(hbvib_batch_branch, get(), design, &core->handle);
+    return Branch(std::move(core));
+  }
+
+ private:
+  friend class Model;
+  using Object::Object;
 };
 
 /// A structure with its contacts and forces. Solving is const: any number of threads may solve one model.
@@ -1179,6 +1223,22 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     use_whole(hooks, hbvib_sensitivity, branch.get(), point, of, given.data(), count, out.derivatives.data(), count, reasons.data(), &out.onset);
     for (const auto reason : reasons) out.reasons.push_back(static_cast<hbvib_derivative>(reason));
     return out;
+  }
+  /// The highest peak of each design: values of the parameters, design after design. A stop by a hook keeps the designs
+  /// that were solved. hooks.partial plays no part.
+  Batch batch(const SolverOptions& solver, const BatchOptions& options, const std::vector<Parameter>& parameters, In<double> values,
+              const Hooks& hooks = {}) const {
+    const auto keep = core_;
+    const std::vector<hbvib_parameter> given(parameters.begin(), parameters.end());
+    const auto count = static_cast<Index>(given.size());
+    if (count == 0 || values.length() % count != 0)
+      throw Error(HBVIB_E_DIMENSION, 8, "the number of values is no multiple of that of the parameters");
+    const detail::BoundHooks bound(hooks);
+    auto core = std::make_shared<Batch::Core>();
+    if (keep) core->forces = keep->forces;
+    detail::Call call;
+    call.done(hbvib_batch_solve(get(), &solver, &options, &bound, given.data(), count, values.length() / count, values.data(), &core->handle));
+    return Batch(std::move(core));
   }
   /// The Floquet multipliers of a point. hooks.partial plays no part.
   Floquet floquet(const Branch& branch, Index point, const FloquetOptions& options = FloquetOptions(), const Hooks& hooks = {}) const {

@@ -32,6 +32,8 @@ pub enum Status {
     StoppedUnbounded = 8,
     /// The whole range was covered, but no force acts on the model, so that it does not vibrate; all points are kept.
     StoppedNoForce = 9,
+    /// The whole range was covered, but the amplitude has no maximum in it; all points are kept.
+    StoppedNoPeak = 10,
     /// A required pointer is NULL.
     Null = -1,
     /// An argument has a value outside its range.
@@ -83,6 +85,7 @@ impl Status {
             Self::StoppedCallback => c"HBVIB_STOPPED_CALLBACK",
             Self::StoppedUnbounded => c"HBVIB_STOPPED_UNBOUNDED",
             Self::StoppedNoForce => c"HBVIB_STOPPED_NO_FORCE",
+            Self::StoppedNoPeak => c"HBVIB_STOPPED_NO_PEAK",
             Self::Null => c"HBVIB_E_NULL",
             Self::Argument => c"HBVIB_E_ARGUMENT",
             Self::Dimension => c"HBVIB_E_DIMENSION",
@@ -131,12 +134,15 @@ impl Status {
             Self::StoppedNoForce => {
                 "no force acts on the model: its response is zero, or the static motion under preloads; all points are kept; add a force"
             }
+            Self::StoppedNoPeak => {
+                "the amplitude has no maximum within the range; all points are kept; widen the range of frequency"
+            }
             _ => "",
         }
     }
 
     /// All values, for tables and for the conversion of an integer into a status.
-    pub const ALL: [Self; 27] = [
+    pub const ALL: [Self; 28] = [
         Self::Ok,
         Self::StoppedByCaller,
         Self::StoppedStepTooSmall,
@@ -147,6 +153,7 @@ impl Status {
         Self::StoppedCallback,
         Self::StoppedUnbounded,
         Self::StoppedNoForce,
+        Self::StoppedNoPeak,
         Self::Null,
         Self::Argument,
         Self::Dimension,

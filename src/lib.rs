@@ -93,9 +93,11 @@ pub use contact::force_derivative::Constant;
 pub use sensitivity::{Parameter, Reason};
 
 // Analyses.
+pub use analysis::batch::{Batch, batch};
 pub use analysis::campbell::{Campbell, Crossing, campbell};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use analysis::damped_modes::{DampedModes, damped_modes};
+pub use analysis::design_peak::DesignPeak;
 pub use analysis::floquet::{Floquet, floquet};
 pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{
@@ -111,8 +113,8 @@ pub use analysis::verify::{Verification, verify};
 pub use hooks::{Hooks, LogLevel, Progress};
 pub use interrupt::{Interrupt, Phase, PhaseReport};
 pub use options::{
-    Amplitude, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SteadyMethod,
-    SynthesisOptions, TimeOptions, VerifyOptions, Waves,
+    Amplitude, BatchOptions, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions,
+    SteadyMethod, SynthesisOptions, TimeOptions, VerifyOptions, Waves,
 };
 
 // Results.

@@ -28,6 +28,7 @@ class Status(enum.IntEnum):
     #: makes of it.
     STOPPED_UNBOUNDED = 8
     STOPPED_NO_FORCE = 9  #: No force acts on the model: its response is zero, or the static motion under preloads.
+    STOPPED_NO_PEAK = 10  #: Batches only: the amplitude has no maximum within the range.
     E_NULL = -1  #: A required pointer is NULL.
     E_ARGUMENT = -2  #: A value lies outside its range.
     E_DIMENSION = -3  #: A count or length does not fit.
@@ -378,6 +379,7 @@ floquet_options: uint32 struct_size; int32 waves refine reserved; double toleran
 floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 count unstable neutral grazing_contact;
     double orbit_change residual
 parameter: uint32 struct_size; int32 kind; int64 contact; pointer direction; int32 scaling reserved
+batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved
 """
 
 # Types of callbacks, in the kinds of functions.
@@ -501,6 +503,13 @@ branch_bifurcations: h l p p p p p p p
 branch_limit_cycles: h l p p p p p
 parameter_init: parameter z
 sensitivity: h h l i parameter l p l p p hooks
+batch_options_init: batch_options z
+batch_solve: h solver_options batch_options hooks parameter l l p p
+batch_free: h
+batch_designs: h -> int64
+batch_peaks: h l p p p p
+batch_status: h l
+batch_branch: h l p
 contact_evaluate: contact l l d p l p l p l
 contact_evaluate_with_hooks: contact l l d p l p l p l hooks
 forced_residual: h solver_options d p l p l p l p l
@@ -662,6 +671,15 @@ if TYPE_CHECKING:
         def hbvib_parameter_init(self, p: Any, size_of_p: int) -> int: ...
         def hbvib_sensitivity(self, model: Any, branch: Any, point: int, of: int, parameters: Any, count: int,
             derivatives: Any, derivatives_len: int, reasons: Any, onset: Any, hooks: Any) -> int: ...
+        def hbvib_batch_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_batch_solve(self, model: Any, solver: Any, options: Any, hooks: Any, parameters: Any, count: int,
+            designs: int, values: Any, out: Any) -> int: ...
+        def hbvib_batch_free(self, batch: Any) -> int: ...
+        def hbvib_batch_designs(self, batch: Any) -> int: ...
+        def hbvib_batch_peaks(self, batch: Any, capacity: int, peak_amplitude: Any, peak_omega: Any, statuses: Any,
+            points: Any) -> int: ...
+        def hbvib_batch_status(self, batch: Any, design: int) -> int: ...
+        def hbvib_batch_branch(self, batch: Any, design: int, out: Any) -> int: ...
         def hbvib_contact_evaluate(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any, motion_len:
             int, force: Any, force_len: int, jac: Any, jac_len: int) -> int: ...
         def hbvib_contact_evaluate_with_hooks(self, c: Any, harmonics: int, samples: int, omega: float, motion: Any,

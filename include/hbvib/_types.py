@@ -13,7 +13,7 @@ __all__ = ["SolverOptions", "TimeOptions", "VerifyOptions", "FloquetOptions", "S
 class SolverOptions(TypedDict, total=False):
     """Options that every analysis shares.
 
-    num_threads   Reserved: must be 0 or 1. The library starts no thread. Default: 0.
+    num_threads   Reserved: must be 0 or 1. A solve starts no thread. Default: 0.
     tolerance   Bound of the estimated relative error (default 1e-3), from which the harmonics of each point are chosen:
         error of the complex fundamental of the response degree of freedom; in a nonlinear mode of the frequency and of
         the damping ratio, the latter relative to the largest one so far. 0: exactly `harmonics`, whatever the error.

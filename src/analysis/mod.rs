@@ -1,9 +1,11 @@
 //! The crate's public face: each analysis puts the layers together.
 
+pub mod batch;
 mod branch_stability;
 pub mod campbell;
 pub mod check_jacobian;
 pub mod damped_modes;
+pub mod design_peak;
 pub mod floquet;
 mod forced_discretised;
 pub mod forced_response;
@@ -23,7 +25,9 @@ pub mod time_response;
 mod unbounded_response;
 pub mod verify;
 
+pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
+pub use crate::analysis::design_peak::DesignPeak;
 pub use crate::analysis::floquet::{Floquet, floquet};
 pub use crate::analysis::forced_response::forced_response;
 pub use crate::analysis::harmonic_residual::{

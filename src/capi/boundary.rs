@@ -62,6 +62,15 @@ pub(super) fn outside<T>(callback: impl FnOnce() -> T) -> T {
     result
 }
 
+/// Runs work of the library on a thread of its own: in the default floating-point environment, and a panic is not
+/// printed.
+pub(super) fn within(work: &mut dyn FnMut()) {
+    INSIDE.set(true);
+    FloatEnvironment::enter();
+    // Work that panics leaves its outcome as it was, which says so.
+    let _ = catch_unwind(AssertUnwindSafe(work));
+}
+
 fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
     quiet_panics();
     let before = INSIDE.replace(true);

@@ -5,6 +5,7 @@
 //! The table is locked for the look-up alone. While a call uses an object, the slot counts its readers or
 //! notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
 
+use crate::analysis::batch::Batch;
 use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
 use crate::results::Branch;
@@ -40,6 +41,7 @@ pub(super) enum Object {
     Free { next: u32 },
     Model(Vec<Model>),
     Branch(Vec<KeptBranch>),
+    Batch(Vec<Batch>),
 }
 
 struct Slot {

@@ -24,6 +24,7 @@ mod last_error;
 mod outcome;
 mod versioned_struct;
 
+mod batch;
 mod caller_laws;
 mod caller_laws_check;
 mod contacts;
@@ -60,6 +61,7 @@ mod time;
 mod time_verify;
 mod version_and_errors;
 
+pub use batch::*;
 pub use caller_laws::*;
 pub use caller_laws_check::*;
 pub use contacts::*;

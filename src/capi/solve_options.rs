@@ -41,7 +41,7 @@ pub enum hbvib_stability {
 pub struct hbvib_solver_options {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// Reserved: must be 0 or 1. The library starts no thread.
+    /// Reserved: must be 0 or 1. A solve starts no thread.
     pub num_threads: i32,
     /// Bound of the estimated relative error (default 1e-3), from which the harmonics of each point
     /// are chosen: error of the complex fundamental of the response degree of freedom; in a

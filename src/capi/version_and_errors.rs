@@ -64,6 +64,8 @@ pub enum hbvib_status_code {
     HBVIB_STOPPED_UNBOUNDED = 8,
     /// No force acts on the model: its response is zero, or the static motion under preloads.
     HBVIB_STOPPED_NO_FORCE = 9,
+    /// Batches only: the amplitude has no maximum within the range.
+    HBVIB_STOPPED_NO_PEAK = 10,
     /// A required pointer is NULL.
     HBVIB_E_NULL = -1,
     /// A value lies outside its range.
@@ -118,6 +120,7 @@ same!(
     HBVIB_STOPPED_CALLBACK = StoppedCallback,
     HBVIB_STOPPED_UNBOUNDED = StoppedUnbounded,
     HBVIB_STOPPED_NO_FORCE = StoppedNoForce,
+    HBVIB_STOPPED_NO_PEAK = StoppedNoPeak,
     HBVIB_E_NULL = Null,
     HBVIB_E_ARGUMENT = Argument,
     HBVIB_E_DIMENSION = Dimension,

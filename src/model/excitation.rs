@@ -79,6 +79,13 @@ impl Excitation {
         try_extend(&mut self.forces, &forces.map(force), "the forces")
     }
 
+    /// Multiplies all forces.
+    pub(super) fn scale(&mut self, factor: f64) {
+        for force in &mut self.forces {
+            force.value *= factor;
+        }
+    }
+
     /// Turns unbalances into the forces of one frequency.
     pub(super) fn fix_unbalance(&mut self, omega: f64) {
         for force in &mut self.forces {

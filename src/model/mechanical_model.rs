@@ -114,7 +114,7 @@ impl Model {
     }
 
     /// The structure for a change of its matrices: nothing that was prepared for them is kept.
-    fn changed_structure(&mut self) -> &mut Structure {
+    pub(super) fn changed_structure(&mut self) -> &mut Structure {
         self.kept = KeptWaves::default();
         &mut self.structure
     }

@@ -13,6 +13,7 @@ mod mechanical_model;
 mod modal_damping;
 pub mod mode_selection;
 mod model_checks;
+mod parameter_changes;
 mod part_of_turn;
 pub mod quadratic_modes;
 pub mod reduced_wave;

@@ -311,6 +311,19 @@ impl KeptWaves {
         Ok(())
     }
 
+    /// The same waves in a list of its own.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn separate(&self) -> Result<Self> {
+        let waves = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut own = Vec::new();
+        for wave in waves.iter() {
+            try_push(&mut own, Arc::clone(wave), CONTEXT)?;
+        }
+        Ok(Self(Arc::new(Mutex::new(own))))
+    }
+
     /// Bytes of all bases.
     #[must_use]
     pub fn bytes(&self) -> usize {

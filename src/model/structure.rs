@@ -181,7 +181,7 @@ impl Structure {
     }
 
     /// The blocks of a matrix for a change, copied where others use them.
-    fn blocks_mut(&mut self, which: MatrixKind) -> Result<&mut Blocks> {
+    pub(super) fn blocks_mut(&mut self, which: MatrixKind) -> Result<&mut Blocks> {
         if Arc::get_mut(&mut self.blocks).is_none() {
             let mut blocks: [Blocks; KINDS] = Default::default();
             for (copy, own) in blocks.iter_mut().zip(self.blocks.iter()) {

@@ -1,5 +1,6 @@
 //! Options of the analyses, each with its defaults and checks.
 
+mod batch_options;
 mod floquet_options;
 mod forced_options;
 mod mode_options;
@@ -8,6 +9,7 @@ mod synthesis_options;
 mod time_options;
 mod waves;
 
+pub use batch_options::{BatchOptions, MOST_THREADS};
 pub use floquet_options::FloquetOptions;
 pub use forced_options::ForcedOptions;
 pub use mode_options::{Amplitude, DampingForm, ModeChoice, ModeOptions};

@@ -9,11 +9,12 @@
 //!
 //! > dA/dp = Re Σ_h Λ_hᴴ (∂F_h/∂p − ∂Z_h/∂p x_h − Wᴴ ∂f_h/∂p).
 //!
-//! `parameter` lists the parameters; `adjoint` has the result of an adjoint solution, `forced_point` and `mode_point` make
+//! `parameter` lists the parameters, and `design` gives them values; `adjoint` has the result of an adjoint solution, `forced_point` and `mode_point` make
 //! it; `contact_products` and `structure_products` are the terms of the sum; `total_derivative` adds them.
 
 mod adjoint;
 mod contact_products;
+mod design;
 mod forced_point;
 mod mode_point;
 mod one_sided;
@@ -23,6 +24,7 @@ mod structure_products;
 mod total_derivative;
 
 pub(crate) use adjoint::Adjoint;
+pub(crate) use design::design;
 pub(crate) use forced_point::ForcedPoint;
 pub(crate) use mode_point::{ModePointAdjoint, ModeQuantity};
 pub(crate) use one_sided::contact_at_onset;

@@ -163,6 +163,11 @@ fn rotation_and_damping_are_those_of_closed_forms() {
 }
 
 #[test]
+fn batches_find_the_peaks_of_designs() {
+    silent("batch", |_| vec![]);
+}
+
+#[test]
 fn models_are_saved_and_loaded() {
     silent("saved", |_| vec![]);
 }

@@ -19,7 +19,7 @@ use std::sync::OnceLock;
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An empty folder.
-fn workshop(name: &str) -> PathBuf {
+pub fn workshop(name: &str) -> PathBuf {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("languages").join(name);
     let _ = fs::remove_dir_all(&folder);
     fs::create_dir_all(&folder).unwrap();
@@ -27,7 +27,7 @@ fn workshop(name: &str) -> PathBuf {
 }
 
 /// A folder with a copy of a folder's files.
-fn copied(from: &str, name: &str) -> PathBuf {
+pub fn copied(from: &str, name: &str) -> PathBuf {
     let folder = workshop(name);
     for path in files(&root().join(from)) {
         fs::copy(&path, folder.join(path.file_name().unwrap())).unwrap();
@@ -108,7 +108,7 @@ fn fortran_module() -> PathBuf {
 }
 
 /// Python with the module of the prefix, which must find the library beside it by itself.
-fn script(path: &Path) -> Command {
+pub fn script(path: &Path) -> Command {
     let mut command = Command::new(python());
     command
         .arg(path)
@@ -119,7 +119,7 @@ fn script(path: &Path) -> Command {
     command
 }
 
-fn make(folder: &Path) {
+pub fn make(folder: &Path) {
     run(Command::new("make")
         .arg(format!("PKG_CONFIG_PATH={}", prefix().join("lib/pkgconfig").display()))
         .current_dir(folder));
@@ -429,7 +429,7 @@ fn fortran_feels_native() {
         &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
     ]
     .concat();
-    for name in ["misuse", "physics", "saved", "threads"] {
+    for name in ["batch", "misuse", "physics", "saved", "threads"] {
         let folder = workshop(&format!("fortran_tests/{name}"));
         let source = root().join(format!("tests/languages/fortran/{name}.f90"));
         let sources = [fortran_module(), common.clone(), source];

@@ -4,6 +4,7 @@
 mod common;
 
 mod absent;
+mod batch;
 mod cost;
 mod design;
 mod differences;

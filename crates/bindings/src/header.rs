@@ -94,7 +94,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Design studies",
         about: "parameters of a model, derivatives of results by them",
-        files: &["sensitivities"],
+        files: &["sensitivities", "batch"],
     },
     Section {
         title: "Low level",

@@ -32,6 +32,7 @@ program layout
    call floquet_options()
    call floquet_info()
    call parameter()
+   call batch_options()
    ! END GENERATED
 
 contains
@@ -452,6 +453,17 @@ contains
       call field('scaling', c_loc(s), c_loc(s%scaling), c_sizeof(s%scaling))
       call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
    end subroutine parameter
+
+   subroutine batch_options()
+      type(hbvib_batch_options), target :: s
+      call whole('hbvib_batch_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('threads', c_loc(s), c_loc(s%threads), c_sizeof(s%threads))
+      call field('omega_start', c_loc(s), c_loc(s%omega_start), c_sizeof(s%omega_start))
+      call field('omega_stop', c_loc(s), c_loc(s%omega_stop), c_sizeof(s%omega_stop))
+      call field('keep', c_loc(s), c_loc(s%keep), c_sizeof(s%keep))
+      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+   end subroutine batch_options
 
    ! END GENERATED
 

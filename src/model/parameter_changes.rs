@@ -1,0 +1,182 @@
+//! Changes of a model by the parameters of a design study: constants of contacts, matrices, forces.
+
+use crate::contact::force_derivative::Constant;
+use crate::error::{Result, fail};
+use crate::linalg::matrix_view::MatrixView;
+use crate::linalg::sparse::{Csc, Form};
+use crate::model::Model;
+use crate::model::blocks::Blocks;
+use crate::model::sector_matrices::{self, of_independent};
+use crate::model::structure::{MatrixKind, Structure};
+use num_complex::Complex64;
+
+impl Model {
+    /// Multiplies all forces, unbalance included.
+    ///
+    /// # Errors
+    /// `NotFinite`.
+    pub(crate) fn scale_forces(&mut self, factor: f64) -> Result<()> {
+        check_finite("force", factor)?;
+        self.excitation.scale(factor);
+        Ok(())
+    }
+
+    /// Changes a constant of a contact; the normal load is that at rest.
+    ///
+    /// # Errors
+    /// `Index` for an unknown contact; `Unsupported` for a constant that the law does not have; those of
+    /// [`crate::contact::Contact::check_constants`].
+    pub(crate) fn set_constant(&mut self, id: usize, constant: Constant, value: f64) -> Result<()> {
+        let Some(contact) = self.contacts().get(id) else {
+            return fail!(Index, "contact id = {id}, but the model has {}", self.contacts().len());
+        };
+        if contact.by_constant(constant).is_none() {
+            return fail!(
+                Unsupported,
+                "{} of contact {id}, but that is a {}, which has none",
+                constant.name(),
+                contact.law_name()
+            );
+        }
+        let load = self.speed_loads().iter().find(|load| load.contact == id).copied();
+        let mut changed = contact.clone();
+        match (constant, &load) {
+            (Constant::Preload, Some(load)) => return self.set_preload_at_speed(id, value, load.per_speed2),
+            (Constant::Preload, None) => changed.preload = value,
+            (Constant::Mu, _) => changed.mu = value,
+            (Constant::Kt, _) => changed.kt = value,
+            (Constant::Kn, _) => changed.kn = value,
+            (Constant::Gap, _) => changed.gap = value,
+        }
+        changed.check_constants()?;
+        changed.check_stiffness()?;
+        if let Some(place) = self.contact_mut(id) {
+            *place = changed;
+        }
+        if load.is_some() {
+            if constant == Constant::Gap {
+                for load in self.speed_loads_mut().iter_mut().filter(|load| load.contact == id) {
+                    load.gap = value;
+                }
+            }
+            self.apply_speed();
+        }
+        Ok(())
+    }
+
+    /// Adds a multiple of a matrix to the mass, damping or stiffness matrix, in a cyclic model to the sector's own
+    /// block, which is a part of the matrices of all nodal diameters.
+    ///
+    /// # Errors
+    /// Those of [`MatrixView::copy_in`]; `NotFinite`; `OutOfMemory`.
+    pub(crate) fn add_direction(&mut self, which: MatrixKind, direction: &MatrixView<'_>, factor: f64) -> Result<()> {
+        check_finite(which.name(), factor)?;
+        if factor == 0.0 {
+            return Ok(());
+        }
+        self.changed_structure().add_direction(which, direction, factor)
+    }
+
+    /// Multiplies the mass, damping or stiffness matrix with its couplings; Rayleigh and modal damping are part of the
+    /// damping.
+    ///
+    /// # Errors
+    /// `NotFinite`; `OutOfMemory`.
+    pub(crate) fn scale_matrix(&mut self, which: MatrixKind, factor: f64) -> Result<()> {
+        check_finite(which.name(), factor)?;
+        if factor.to_bits() == 1.0_f64.to_bits() {
+            return Ok(());
+        }
+        self.changed_structure().scale_matrix(which, factor)
+    }
+
+    /// A copy that keeps bases of its own from now on: what a solve of it prepares, others do not see.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(crate) fn separate_clone(&self) -> Result<Self> {
+        let mut copy = self.try_clone()?;
+        copy.kept = self.kept.separate()?;
+        Ok(copy)
+    }
+}
+
+impl Structure {
+    fn add_direction(&mut self, which: MatrixKind, direction: &MatrixView<'_>, factor: f64) -> Result<()> {
+        let given = direction.copy_in("direction", self.degrees.given())?;
+        let added = if self.degrees.faces().is_some() {
+            sector_matrices::blocks(&self.degrees, &given, direction.part.symmetry())?
+        } else {
+            Blocks {
+                own: Some(of_independent(&self.degrees, given)?),
+                ..Blocks::default()
+            }
+        };
+        let n = self.ndof();
+        let blocks = self.blocks_mut(which)?;
+        if blocks.diameters.is_empty() {
+            // A coupling to the previous sector that follows from that to the next one is added with it.
+            let explicit = blocks.previous.is_some() || added.previous.is_some();
+            if explicit && blocks.previous.is_none() {
+                blocks.previous = transposed(n, blocks.next.as_ref())?;
+            }
+            let previous = match (&added.previous, explicit) {
+                (None, true) => transposed(n, added.next.as_ref())?,
+                (given, _) => given.as_ref().map(Csc::try_clone).transpose()?,
+            };
+            add(n, &mut blocks.own, added.own.as_ref(), factor)?;
+            add(n, &mut blocks.next, added.next.as_ref(), factor)?;
+            add(n, &mut blocks.previous, previous.as_ref(), factor)?;
+        } else {
+            for matrix in blocks.diameters.iter_mut().filter(|matrix| matrix.is_some()) {
+                add(n, matrix, added.own.as_ref(), factor)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn scale_matrix(&mut self, which: MatrixKind, factor: f64) -> Result<()> {
+        let blocks = self.blocks_mut(which)?;
+        let given = [&mut blocks.own, &mut blocks.next, &mut blocks.previous].into_iter();
+        for matrix in given.chain(&mut blocks.diameters).flatten() {
+            scale(matrix, factor);
+        }
+        if which == MatrixKind::Damping {
+            self.rayleigh = (self.rayleigh.0 * factor, self.rayleigh.1 * factor);
+            for matrix in self.modal_damping.iter_mut().flatten() {
+                scale(matrix, factor);
+            }
+        }
+        Ok(())
+    }
+}
+
+fn scale(matrix: &mut Csc, factor: f64) {
+    for v in &mut matrix.values {
+        *v *= factor;
+    }
+}
+
+fn transposed(n: usize, matrix: Option<&Csc>) -> Result<Option<Csc>> {
+    matrix
+        .map(|a| Csc::sum(n, &[(Complex64::ONE, a, Form::Transposed)]))
+        .transpose()
+}
+
+/// to += factor·a
+fn add(n: usize, to: &mut Option<Csc>, a: Option<&Csc>, factor: f64) -> Result<()> {
+    let Some(a) = a else { return Ok(()) };
+    let scaled = (factor.into(), a, Form::Plain);
+    *to = Some(match to {
+        Some(to) => Csc::sum(n, &[(Complex64::ONE, to, Form::Plain), scaled])?,
+        None => Csc::sum(n, &[scaled])?,
+    });
+    Ok(())
+}
+
+fn check_finite(name: &str, value: f64) -> Result<()> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    fail!(NotFinite, "{name} = {value}, needs a finite number")
+}

@@ -1,0 +1,61 @@
+//! Designs: a model with other values of its parameters.
+
+use crate::error::{Result, fail};
+use crate::model::Model;
+use crate::model::speed::Speed;
+use crate::sensitivity::parameter::Parameter;
+
+impl Parameter<'_> {
+    /// Gives the parameter a value: constants of contacts and the speed are set, factors multiply, and directions are
+    /// added times the value.
+    ///
+    /// # Errors
+    /// As [`Self::check`]; `NotFinite` or `Argument` for a value out of its range, naming it; `OutOfMemory`.
+    pub(crate) fn apply(&self, value: f64, model: &mut Model) -> Result<()> {
+        match self {
+            Self::Force => model.scale_forces(value),
+            Self::Contact {
+                constant,
+                contact: Some(id),
+            } => model.set_constant(*id, *constant, value),
+            Self::Contact {
+                constant,
+                contact: None,
+            } => {
+                for id in 0..model.contacts().len() {
+                    if model.contacts()[id].by_constant(*constant).is_some() {
+                        model.set_constant(id, *constant, value)?;
+                    }
+                }
+                Ok(())
+            }
+            Self::Direction { which, direction } => model.add_direction(*which, direction, value),
+            Self::Factor { which } => model.scale_matrix(*which, value),
+            Self::Speed => model.set_speed(Speed::Fixed(value)),
+        }
+    }
+
+    /// Whether a change of the parameter leaves the matrices of the structure as they are.
+    #[must_use]
+    pub(crate) fn keeps_structure(&self) -> bool {
+        matches!(self, Self::Force | Self::Contact { .. })
+    }
+}
+
+/// A copy of a model with values of its parameters, in their order. It has the bases that the model keeps, and adds its
+/// own to a list of its own.
+///
+/// # Errors
+/// `Dimension` for another number of values; those of [`Parameter::apply`], naming the value.
+pub(crate) fn design(model: &Model, parameters: &[Parameter<'_>], values: &[f64]) -> Result<Model> {
+    if values.len() != parameters.len() {
+        return fail!(Dimension, "{} values for {} parameters", values.len(), parameters.len());
+    }
+    let mut copy = model.separate_clone()?;
+    for (i, (parameter, &value)) in parameters.iter().zip(values).enumerate() {
+        parameter
+            .apply(value, &mut copy)
+            .map_err(|e| e.at(format_args!("value {i}")))?;
+    }
+    Ok(copy)
+}

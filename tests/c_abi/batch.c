@@ -1,0 +1,116 @@
+/* Batches of designs: peaks, statuses, branches, threads, progress, and what is refused. */
+#include "common.h"
+
+enum { DESIGNS = 6, PARAMETERS = 2 };
+
+static hbvib_parameter parameter(int32_t kind)
+{
+    hbvib_parameter p;
+    if (hbvib_parameter_init(&p, sizeof p) != HBVIB_OK) abort();
+    p.kind = kind;
+    return p;
+}
+
+static int32_t count(void *user, const hbvib_progress *progress)
+{
+    int *calls = user;
+    ++*calls;
+    return progress->fraction_done > 1 || progress->point > DESIGNS;
+}
+
+static int32_t refuses(void *user, const hbvib_force_call *call)
+{
+    (void)user;
+    (void)call;
+    return -1;
+}
+
+int main(void)
+{
+    const double values[DESIGNS * PARAMETERS] = {1, 300, 1, 100, 2, 600, 1, -5, 0.5, 150, 1, 800};
+    double amplitude[DESIGNS], omega[DESIGNS], again[DESIGNS];
+    int64_t statuses[DESIGNS], points[DESIGNS], dofs[1] = {0};
+    hbvib_model *model = ring_damper();
+    hbvib_batch *batch = NULL, *other = NULL;
+    hbvib_branch *branch = NULL;
+    hbvib_solver_options s = solver_options();
+    hbvib_batch_options o;
+    hbvib_hooks hooks;
+    hbvib_user_force force;
+    hbvib_parameter p[PARAMETERS];
+    int calls = 0, i;
+
+    begin();
+    s.harmonics = 9;
+    p[0] = parameter(HBVIB_PARAMETER_FORCE);
+    p[1] = parameter(HBVIB_PARAMETER_PRELOAD);
+    p[1].contact = 0;
+    WORKS("options", hbvib_batch_options_init(&o, sizeof o));
+    EXPECT("options", o.threads == 1 && o.keep == 0);
+    o.omega_start = 2 * PI * 200;
+    o.omega_stop = 2 * PI * 215;
+    WORKS("hooks", hbvib_hooks_init(&hooks, sizeof hooks));
+    hooks.progress = count;
+    hooks.user = &calls;
+    WORKS("solve", hbvib_batch_solve(model, &s, &o, &hooks, p, PARAMETERS, DESIGNS, values, &batch));
+    EXPECT("progress", calls == DESIGNS);
+    EXPECT("designs", hbvib_batch_designs(batch) == DESIGNS);
+    WORKS("peaks", hbvib_batch_peaks(batch, DESIGNS, amplitude, omega, statuses, points));
+    EXPECT("reference", fabs(amplitude[0] / 1.934880980e-3 - 1) < 1e-7 && fabs(omega[0] / (2 * PI) - 208.0970308) < 1e-6);
+    EXPECT("reference", fabs(amplitude[1] / 4.886556792e-3 - 1) < 1e-7 && fabs(amplitude[5] / 1.706910530e-3 - 1) < 1e-7);
+    /* Force and normal load together scale the motion. */
+    EXPECT("scale", fabs(amplitude[2] / amplitude[0] - 2) < 1e-7 && fabs(amplitude[4] / amplitude[0] - 0.5) < 1e-7);
+    for (i = 0; i < DESIGNS; i++)
+        EXPECT("status", i == 3 ? statuses[i] == HBVIB_E_ARGUMENT && amplitude[i] != amplitude[i] && points[i] == 0
+                                : statuses[i] == HBVIB_OK && points[i] > 5);
+    REFUSED("failed", hbvib_batch_status(batch, 3), HBVIB_E_ARGUMENT, 0, "preload = -5");
+    WORKS("status", hbvib_batch_status(batch, 0));
+    REFUSED("index", hbvib_batch_status(batch, DESIGNS), HBVIB_E_INDEX, 2, "design = 6");
+    REFUSED("branch", hbvib_batch_branch(batch, 0, &branch), HBVIB_E_ARGUMENT, 2, "keep = 1");
+    REFUSED("room", hbvib_batch_peaks(batch, DESIGNS - 1, amplitude, NULL, NULL, NULL), HBVIB_E_DIMENSION, 2, "needs 6");
+    REFUSED("overlap", hbvib_batch_peaks(batch, DESIGNS, amplitude, amplitude, NULL, NULL), HBVIB_E_ARGUMENT, 4, "overlap");
+
+    o.threads = 3;
+    o.keep = 1;
+    WORKS("threads", hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, DESIGNS, values, &other));
+    WORKS("threads", hbvib_batch_peaks(other, DESIGNS, again, NULL, NULL, NULL));
+    EXPECT("threads", memcmp(amplitude, again, sizeof again) == 0);
+    WORKS("branch", hbvib_batch_branch(other, 1, &branch));
+    EXPECT("branch", hbvib_branch_points(branch) == points[1]);
+    REFUSED("twice", hbvib_batch_branch(other, 1, &branch), HBVIB_E_ARGUMENT, 2, "taken before");
+    REFUSED("none", hbvib_batch_branch(other, 3, &branch), HBVIB_E_ARGUMENT, 2, "failed");
+    WORKS("free", hbvib_batch_free(other));
+    EXPECT("stays", hbvib_branch_points(branch) == points[1]);
+    WORKS("free", hbvib_branch_free(branch));
+    REFUSED("freed", hbvib_batch_status(other, 0), HBVIB_E_HANDLE, 1, "freed");
+    REFUSED("type", hbvib_batch_free((hbvib_batch *)model), HBVIB_E_HANDLE, 1, "another type");
+
+    o.omega_stop = 2 * PI * 203;
+    WORKS("none", hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, 1, values, &other));
+    EXPECT("none", hbvib_batch_status(other, 0) == HBVIB_STOPPED_NO_PEAK && strstr(hbvib_last_error(), "no maximum"));
+    WORKS("free", hbvib_batch_free(other));
+
+    other = NULL;
+    REFUSED("threads", (o.threads = 0, hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, 1, values, &other)), HBVIB_E_ARGUMENT, 3,
+            "threads = 0");
+    o.threads = 1;
+    REFUSED("count", hbvib_batch_solve(model, &s, &o, NULL, p, 0, 1, values, &other), HBVIB_E_DIMENSION, 6, "count = 0");
+    REFUSED("designs", hbvib_batch_solve(model, &s, &o, NULL, p, 1, -1, values, &other), HBVIB_E_DIMENSION, 7, "designs = -1");
+    REFUSED("null", hbvib_batch_solve(model, &s, &o, NULL, p, 1, 1, NULL, &other), HBVIB_E_NULL, 8, "values");
+    REFUSED("null", hbvib_batch_solve(model, &s, &o, NULL, NULL, 1, 1, values, &other), HBVIB_E_NULL, 5, "parameters");
+    REFUSED("null", hbvib_batch_solve(model, &s, &o, NULL, p, 1, 1, values, NULL), HBVIB_E_NULL, 9, "out");
+    p[1].kind = HBVIB_PARAMETER_KN;
+    REFUSED("law", hbvib_batch_solve(model, &s, &o, NULL, p, 2, 1, values, &other), HBVIB_E_UNSUPPORTED, 5, "kn of contact 0");
+    WORKS("force", hbvib_user_force_init(&force, sizeof force));
+    force.dofs = dofs;
+    force.n = 1;
+    force.force = refuses;
+    WORKS("force", hbvib_model_add_user_force(model, &force, NULL));
+    o.threads = 2;
+    REFUSED("force", hbvib_batch_solve(model, &s, &o, NULL, p, 1, 1, values, &other), HBVIB_E_UNSUPPORTED, 5, "threads = 2");
+    EXPECT("untouched", other == NULL);
+    WORKS("free", hbvib_batch_free(batch));
+    WORKS("free", hbvib_batch_free(NULL));
+    WORKS("free", hbvib_model_free(model));
+    return verdict(60);
+}
