@@ -5,6 +5,7 @@ mod common;
 
 mod book;
 mod c_abi;
+mod designs;
 mod languages;
 mod layout;
 mod ring_damper_example;
