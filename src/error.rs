@@ -3,7 +3,9 @@
 //! An error carries its sentence in a fixed buffer, so that reporting a failure, exhausted memory included, never
 //! allocates.
 
+use crate::shortage;
 use core::fmt;
+use std::collections::TryReserveError;
 
 /// Outcome of a call. `0` is success; negative values mean that nothing was written, positive values that the work
 /// stopped early and a partial result is available.
@@ -222,6 +224,8 @@ pub struct Error {
     /// The same call may succeed at another motion: a callback reported so, or its numbers were not finite. A
     /// solver then tries a smaller step before it fails.
     pub recoverable: bool,
+    /// Nothing was allocated: the counted size exceeds the limit that the caller has set.
+    pub beyond_limit: bool,
     text: Text,
 }
 
@@ -237,6 +241,7 @@ impl Error {
             argument: 0,
             callback: 0,
             recoverable: false,
+            beyond_limit: false,
             text,
         }
     }
@@ -256,6 +261,13 @@ impl Error {
     #[must_use]
     pub fn recoverable(mut self) -> Self {
         self.recoverable = true;
+        self
+    }
+
+    /// The same error, marked as a refusal before anything was allocated.
+    #[must_use]
+    pub fn beyond_limit(mut self) -> Self {
+        self.beyond_limit = true;
         self
     }
 
@@ -323,9 +335,20 @@ pub(crate) use fail;
 /// [`Status::OutOfMemory`] naming `what`.
 pub fn try_vec<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
     let mut v = Vec::new();
-    v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))?;
+    reserved(&v.try_reserve_exact(len), what)?;
     v.resize(len, value);
     Ok(v)
+}
+
+/// The outcome of a reservation, an error also where the one before it was served from the reserve of the allocator.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn reserved(outcome: &core::result::Result<(), TryReserveError>, what: &str) -> Result<()> {
+    if outcome.is_err() || shortage::is_noted() {
+        return Err(Error::out_of_memory(what));
+    }
+    Ok(())
 }
 
 /// Checks that memory for `len` values is available at this moment, before code that does not allocate fallibly
@@ -335,7 +358,7 @@ pub fn try_vec<T: Clone>(len: usize, value: T, what: &str) -> Result<Vec<T>> {
 /// [`Status::OutOfMemory`] naming `what`.
 pub fn check_memory<T>(len: usize, what: &str) -> Result<()> {
     let mut v = Vec::<T>::new();
-    v.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))
+    reserved(&v.try_reserve_exact(len), what)
 }
 
 /// A copy of `values`, allocated fallibly.
@@ -353,7 +376,7 @@ pub fn try_copy<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.
 pub fn try_push<T>(v: &mut Vec<T>, value: T, what: &str) -> Result<()> {
-    v.try_reserve(1).map_err(|_| Error::out_of_memory(what))?;
+    reserved(&v.try_reserve(1), what)?;
     v.push(value);
     Ok(())
 }
@@ -363,7 +386,7 @@ pub fn try_push<T>(v: &mut Vec<T>, value: T, what: &str) -> Result<()> {
 /// # Errors
 /// [`Status::OutOfMemory`] naming `what`.
 pub fn try_extend<T: Clone>(v: &mut Vec<T>, values: &[T], what: &str) -> Result<()> {
-    v.try_reserve(values.len()).map_err(|_| Error::out_of_memory(what))?;
+    reserved(&v.try_reserve(values.len()), what)?;
     v.extend_from_slice(values);
     Ok(())
 }

@@ -4,7 +4,8 @@
 //! error with [`Status::StoppedByCaller`], which passes through every layer unchanged; the analysis at the top turns
 //! it into the end of its result. Once requested, a stop stays: every later check fails too.
 
-use crate::error::{Error, Result, Status, try_vec};
+use crate::error::{Error, Result, Status, reserved, try_vec};
+use crate::shortage;
 use core::cell::Cell;
 
 /// Phase of a running call.
@@ -104,12 +105,15 @@ impl<'a> Interrupt<'a> {
     /// Checks before about this number of operations, which no check interrupts.
     ///
     /// # Errors
-    /// `StoppedByCaller`.
+    /// `StoppedByCaller`; `OutOfMemory` where a request was served from the reserve of the allocator.
     #[inline]
     pub fn check_before(&self, operations: u64) -> Result<()> {
         self.checks.set(self.checks.get() + 1);
         if self.stopped.get() || self.cancelled.is_some_and(|f| f()) {
             return Err(self.stop());
+        }
+        if shortage::is_noted() {
+            return Err(Error::out_of_memory("the running call"));
         }
         self.largest.set(self.largest.get().max(operations));
         let work = self.work.get().saturating_add(operations);
@@ -181,7 +185,7 @@ impl<'a> Interrupt<'a> {
     /// `OutOfMemory` naming `what`, `StoppedByCaller`.
     pub fn zeros(&self, len: usize, what: &str) -> Result<Vec<f64>> {
         let mut values = try_vec(0, 0.0, what)?;
-        values.try_reserve_exact(len).map_err(|_| Error::out_of_memory(what))?;
+        reserved(&values.try_reserve_exact(len), what)?;
         while values.len() < len {
             let part = (len - values.len()).min(ZEROS_TOGETHER);
             self.check_before(part as u64)?;

@@ -68,6 +68,8 @@ pub mod results;
 #[doc(hidden)]
 pub mod sensitivity;
 #[doc(hidden)]
+pub mod shortage;
+#[doc(hidden)]
 pub mod stability;
 #[doc(hidden)]
 pub mod time_integration;

@@ -3,8 +3,10 @@
 use super::float_environment::FloatEnvironment;
 use super::last_error::LAST;
 use super::outcome::Outcome;
+use super::reserve;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Error, Result, Status, TEXT_CAPACITY, Text};
+use crate::shortage;
 use core::cell::{Cell, RefCell};
 use core::fmt::Write as _;
 use std::panic::{AssertUnwindSafe, PanicHookInfo, catch_unwind};
@@ -22,6 +24,14 @@ thread_local! {
 /// Runs the body of an exported function and turns its outcome into a status. Success empties the
 /// last error; anything else fills it.
 pub(super) fn call<T: Into<Outcome>>(body: impl FnOnce() -> Result<T>) -> hbvib_status {
+    call_to_free(|| {
+        reserve::check()?;
+        body()
+    })
+}
+
+/// The same for functions that free memory, and so succeed where there is none.
+pub(super) fn call_to_free<T: Into<Outcome>>(body: impl FnOnce() -> Result<T>) -> hbvib_status {
     match guarded(body) {
         Ok(outcome) => {
             let Outcome { status, reason } = outcome.into();
@@ -76,7 +86,9 @@ fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {
     let before = INSIDE.replace(true);
     let caller_before = CALLER.replace(FloatEnvironment::of_the_caller());
     FloatEnvironment::enter();
+    let noted_before = shortage::erase();
     let outcome = catch_unwind(AssertUnwindSafe(body));
+    shortage::restore(noted_before);
     CALLER.replace(caller_before).restore();
     INSIDE.set(before);
     outcome.unwrap_or_else(|_| {

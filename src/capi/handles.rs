@@ -6,9 +6,10 @@
 //! notes its one writer; freeing or changing it meanwhile is `HBVIB_E_BUSY`.
 
 use crate::analysis::batch::Batch;
-use crate::error::{Error, Result, Status, try_push};
+use crate::error::{Error, Result, Status, reserved, try_push};
 use crate::model::Model;
 use crate::results::Branch;
+use core::cell::UnsafeCell;
 use core::ops::{Deref, DerefMut};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -70,6 +71,40 @@ fn table() -> MutexGuard<'static, Table> {
     TABLE.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Frees the memory of the table where no handle is alive: the library is being unloaded.
+pub(super) fn release() {
+    if let Ok(mut table) = TABLE.try_lock()
+        && table
+            .slots
+            .iter()
+            .all(|slot| matches!(slot.object, Object::Free { .. }))
+    {
+        table.slots = Vec::new();
+        table.free = NONE;
+    }
+}
+
+/// The lock of the table while the process is copied.
+struct Held(UnsafeCell<Option<MutexGuard<'static, Table>>>);
+
+// Only the thread that holds the lock uses it.
+unsafe impl Sync for Held {}
+
+static HELD: Held = Held(UnsafeCell::new(None));
+
+/// Holds the table, so that no other thread changes it, before the process is copied.
+pub(super) fn hold() {
+    let guard = table();
+    // SAFETY: this thread holds the lock.
+    unsafe { *HELD.0.get() = Some(guard) };
+}
+
+/// Lets go of the table, in both processes.
+pub(super) fn let_go() {
+    // SAFETY: this thread, or the one whose copy it is, holds the lock.
+    drop(unsafe { (*HELD.0.get()).take() });
+}
+
 /// A type of object to which handles refer.
 pub(super) trait Kept: Sized {
     /// The opaque type of the header.
@@ -89,7 +124,7 @@ pub(super) trait Kept: Sized {
 /// Puts an object into the table and returns its handle.
 pub(super) fn insert<T: Kept>(object: T) -> Result<*mut T::Opaque> {
     let mut one = Vec::new();
-    one.try_reserve_exact(1).map_err(|_| Error::out_of_memory(T::NAME))?;
+    reserved(&one.try_reserve_exact(1), T::NAME)?;
     one.push(object);
     let mut table = table();
     if table.free == NONE {

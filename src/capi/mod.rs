@@ -3,7 +3,7 @@
 //!
 //! Infrastructure: `boundary` turns panics and errors into statuses, `handles` turns objects into numbers that cannot
 //! be confused, `versioned_struct` has the rules by which structs cross the boundary, `arrays` and `indices` check
-//! the pointers and numbers of the caller, `float_environment` separates the settings of the floating-point unit. All
+//! the pointers and numbers of the caller, `reserve` is the allocator, `process` is for fork and unloading, `float_environment` separates the settings of the floating-point unit. All
 //! other files are named after the sections of the header (`crates/bindings/src/header.rs` has their order), and a
 //! file lists its items in the order of the header. No file here contains numerics.
 //!
@@ -22,6 +22,8 @@ mod handles;
 mod indices;
 mod last_error;
 mod outcome;
+pub mod process;
+pub mod reserve;
 mod versioned_struct;
 
 mod batch;

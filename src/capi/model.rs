@@ -3,7 +3,7 @@
 #![allow(non_camel_case_types)]
 
 use super::arrays::{check_pointer, count, input};
-use super::boundary::{WithArgument, call, call_count};
+use super::boundary::{WithArgument, call, call_count, call_to_free};
 use super::handles::{Kept, Object, free, insert, read, write};
 use super::indices::{GROUND, Sides, index, indices, with_named_argument};
 use super::matrices::{hbvib_matrix, matrix_kind, with_matrix};
@@ -82,7 +82,7 @@ pub unsafe extern "C" fn hbvib_model_clone(model: *const hbvib_model, out: *mut 
 /// then stays). Threads: any, once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_model_free(model: *mut hbvib_model) -> hbvib_status {
-    call(|| free::<Model>(model, 1).map(|()| Status::Ok))
+    call_to_free(|| free::<Model>(model, 1).map(|()| Status::Ok))
 }
 
 /// Number of degrees of freedom of a model, of one sector if it is cyclic; or a negative status.

@@ -3,7 +3,7 @@
 #![allow(non_camel_case_types)]
 
 use super::arrays::{check_pointer, exact_len};
-use super::boundary::{WithArgument, call, call_count};
+use super::boundary::{WithArgument, call, call_count, call_to_free};
 use super::handles::{KeptBranch, free, read};
 use super::indices::{index, times};
 use super::matrices::hbvib_scalar;
@@ -22,7 +22,7 @@ use num_complex::Complex64;
 /// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_BUSY. Threads: any, once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_branch_free(branch: *mut hbvib_branch) -> hbvib_status {
-    call(|| free::<KeptBranch>(branch, 1).map(|()| Status::Ok))
+    call_to_free(|| free::<KeptBranch>(branch, 1).map(|()| Status::Ok))
 }
 
 /// Number of points on the curve, or a negative status. Peaks, folds and the solutions requested at

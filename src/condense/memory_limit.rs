@@ -21,7 +21,8 @@ pub(super) fn within(limit: usize, need: usize) -> Result<()> {
             "factors and matrices of the structure need about {} MB, more than memory_limit = {limit} bytes; raise it, or reduce the model",
             mega(need)
         ),
-    ))
+    )
+    .beyond_limit())
 }
 
 /// Refuses a model whose matrices and complex LU factors would exceed the limit.

@@ -216,13 +216,14 @@ pub(super) fn extended_options(options: &SolverOptions, highest: usize) -> Solve
     }
 }
 
-/// An estimate that could not be made becomes unknown; the error of a callback that gives up is returned.
+/// An estimate that could not be made becomes unknown, also where its counted size exceeds the limit of the caller. Memory
+/// that is short at the moment must not change results: that is an error, as is that of a callback that gives up.
 pub(super) fn or_unknown(found: Result<Option<Estimate>>, solved: &Solved<'_>, damping: f64) -> Result<Estimate> {
     match found {
         Ok(Some(estimate)) => Ok(estimate),
         Ok(None) => solved.unknown(damping, false),
-        Err(e) if e.recoverable || matches!(e.status, Status::Singular | Status::OutOfMemory) => {
-            solved.unknown(damping, e.status == Status::OutOfMemory)
+        Err(e) if e.recoverable || e.beyond_limit || e.status == Status::Singular => {
+            solved.unknown(damping, e.beyond_limit)
         }
         Err(e) => Err(e),
     }

@@ -1,11 +1,13 @@
 //! The Hermitian eigenproblem K φ = λ M φ with a mass matrix that may be singular.
 
-use crate::error::{Result, Status, fail};
+use crate::error::{Result, Status, fail, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::hermitian;
 use crate::linalg::lu::Lu;
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use num_complex::Complex64;
+
+const CONTEXT: &str = "the eigenvalues of a matrix";
 
 /// Eigenvalues in ascending order and the matching mass-normalised vectors as columns.
 /// Infinite eigenvalues (motion without mass) are left out.
@@ -83,16 +85,16 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
     if heavy == 0 {
         return fail!(NotPositiveDefinite, "mass matrix is zero: there is no vibration mode");
     }
-    let k = product(&u.adjoint(), &product(k, &u, interrupt)?, interrupt)?;
-    let kss = k.view((0, 0), (massless, massless)).into_owned();
-    let ksh = k.view((0, massless), (massless, heavy)).into_owned();
-    let khh = k.view((massless, massless), (heavy, heavy)).into_owned();
+    let k = product(&adjoint(&u)?, &product(k, &u, interrupt)?, interrupt)?;
+    let kss = filled(massless, massless, |i, j| k[(i, j)])?;
+    let ksh = filled(massless, heavy, |i, j| k[(i, massless + j)])?;
+    let khh = filled(heavy, heavy, |i, j| k[(massless + i, massless + j)])?;
     let (condensed, static_part) = if massless == 0 {
-        (khh, DMatrix::zeros(0, heavy))
+        (khh, zeros(0, heavy)?)
     } else {
         let mut lu = Lu::new(massless, heavy)?;
         lu.matrix().copy_from_slice(kss.as_slice());
-        let mut x = ksh.clone();
+        let mut x = copy(&ksh)?;
         match lu.factor(interrupt) {
             Err(e) if e.status == Status::Singular => {
                 return fail!(Singular, "stiffness of the massless degrees of freedom is singular");
@@ -100,14 +102,14 @@ pub fn generalised(k: &DMatrix<Complex64>, m: &DMatrix<Complex64>, interrupt: &I
             factored => factored?,
         }
         lu.solve_columns(x.as_mut_slice(), false, interrupt)?;
-        (khh - product(&ksh.adjoint(), &x, interrupt)?, -x)
+        (khh - product(&adjoint(&ksh)?, &x, interrupt)?, -x)
     };
     let scale: Vec<f64> = mass[massless..].iter().map(|x| 1.0 / x.sqrt()).collect();
-    let a = DMatrix::from_fn(heavy, heavy, |i, j| condensed[(i, j)] * scale[i] * scale[j]);
+    let a = filled(heavy, heavy, |i, j| condensed[(i, j)] * scale[i] * scale[j])?;
     let (values, reduced) = hermitian(&a, interrupt)?;
-    let heavy_part = DMatrix::from_fn(heavy, heavy, |i, j| reduced[(i, j)] * scale[i]);
+    let heavy_part = filled(heavy, heavy, |i, j| reduced[(i, j)] * scale[i])?;
     let light_part = product(&static_part, &heavy_part, interrupt)?;
-    let mut stacked = DMatrix::zeros(n, heavy);
+    let mut stacked = zeros(n, heavy)?;
     stacked.view_mut((0, 0), (massless, heavy)).copy_from(&light_part);
     stacked.view_mut((massless, 0), (heavy, heavy)).copy_from(&heavy_part);
     Ok(Pairs {
@@ -123,7 +125,7 @@ fn with_regular_mass(
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Pairs>> {
     let n = k.nrows();
-    let mut l = m.clone();
+    let mut l = copy(m)?;
     if !hermitian::cholesky(l.as_mut_slice(), n, interrupt)? {
         return Ok(None);
     }
@@ -132,18 +134,49 @@ fn with_regular_mass(
         return Ok(None);
     }
     let l = l.as_slice();
-    let mut left = k.clone();
+    let mut left = copy(k)?;
     hermitian::solve_triangular(l, n, false, left.as_mut_slice(), interrupt)?;
-    let mut a = left.adjoint();
+    let mut a = adjoint(&left)?;
     hermitian::solve_triangular(l, n, false, a.as_mut_slice(), interrupt)?;
     let (values, mut vectors) = hermitian(&a, interrupt)?;
     hermitian::solve_triangular(l, n, true, vectors.as_mut_slice(), interrupt)?;
     Ok(Some(Pairs { values, vectors }))
 }
 
+/// Zeros, allocated fallibly.
+fn zeros(rows: usize, cols: usize) -> Result<DMatrix<Complex64>> {
+    let values = try_vec(rows.saturating_mul(cols), Complex64::ZERO, CONTEXT)?;
+    Ok(DMatrix::from_vec(rows, cols, values))
+}
+
+/// The matrix of some entries, allocated fallibly.
+fn filled(rows: usize, cols: usize, entry: impl Fn(usize, usize) -> Complex64) -> Result<DMatrix<Complex64>> {
+    let mut a = zeros(rows, cols)?;
+    for (j, mut column) in a.column_iter_mut().enumerate() {
+        for (i, value) in column.iter_mut().enumerate() {
+            *value = entry(i, j);
+        }
+    }
+    Ok(a)
+}
+
+/// A copy, allocated fallibly.
+fn copy(a: &DMatrix<Complex64>) -> Result<DMatrix<Complex64>> {
+    Ok(DMatrix::from_vec(
+        a.nrows(),
+        a.ncols(),
+        try_copy(a.as_slice(), CONTEXT)?,
+    ))
+}
+
+/// The conjugate transpose, allocated fallibly.
+fn adjoint(a: &DMatrix<Complex64>) -> Result<DMatrix<Complex64>> {
+    filled(a.ncols(), a.nrows(), |i, j| a[(j, i)].conj())
+}
+
 /// a b, a few columns at a time.
 fn product(a: &DMatrix<Complex64>, b: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<DMatrix<Complex64>> {
-    let mut c = DMatrix::zeros(a.nrows(), b.ncols());
+    let mut c = zeros(a.nrows(), b.ncols())?;
     for first in (0..b.ncols()).step_by(AT_ONCE) {
         let count = AT_ONCE.min(b.ncols() - first);
         interrupt.check_before((8 * a.nrows() * a.ncols() * count) as u64)?;
@@ -157,7 +190,8 @@ fn product(a: &DMatrix<Complex64>, b: &DMatrix<Complex64>, interrupt: &Interrupt
 fn hermitian(a: &DMatrix<Complex64>, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, DMatrix<Complex64>)> {
     interrupt.check()?;
     let n = a.nrows();
-    let mut symmetric = (a + a.adjoint()) * Complex64::new(0.5, 0.0);
+    let half = Complex64::new(0.5, 0.0);
+    let mut symmetric = filled(n, n, |i, j| (a[(i, j)] + a[(j, i)].conj()) * half)?;
     if n > SMALL_UP_TO {
         let (values, vectors) = hermitian::eigen(symmetric.as_mut_slice(), n, interrupt)?;
         return Ok((values, DMatrix::from_vec(n, n, vectors)));

@@ -5,7 +5,7 @@
 //! which is split off by factorisations that reveal the rank, again and again until nothing is left of it. Its
 //! multipliers are exact zeros, which an eigensolver would find as roots of round-off.
 
-use crate::error::{Error, Result, Status, try_push};
+use crate::error::{Error, Result, Status, check_memory, try_push};
 use crate::model::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
@@ -14,6 +14,9 @@ use nalgebra::{ColPivQR, DMatrix, DVector, Schur};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the Floquet multipliers";
+
+/// Square matrices that the eigenvalues of a map need at a time.
+const COPIES: usize = 8;
 
 /// Share of the largest pivot below which a direction of the map is round-off.
 const ROUNDING: f64 = 1e-12;
@@ -48,6 +51,8 @@ pub(crate) fn multipliers_of(
     let kept: Vec<usize> = (0..states)
         .filter(|&i| i < 2 * n || !stuck.contains(&(i - 2 * n)))
         .collect();
+    let square = kept.len().saturating_mul(kept.len());
+    check_memory::<Complex64>(square.saturating_mul(COPIES), CONTEXT)?;
     // Velocities are divided by ω, which gives them the unit of displacements.
     let unit = |i: usize| if (n..2 * n).contains(&i) { system.omega } else { 1.0 };
     let map = DMatrix::from_fn(kept.len(), kept.len(), |i, j| {

@@ -3,21 +3,38 @@
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::OnceLock;
 
 /// The path of the checkout.
 pub fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The shared library that cargo has built for this very test.
+/// The folder of the profile with which cargo has built this test.
+fn built() -> PathBuf {
+    let program = env::current_exe().unwrap();
+    let deps = program.parent().unwrap();
+    deps.parent().unwrap().to_owned()
+}
+
+/// The shared library of the sources that this test was built from. Cargo builds it with the test's own crate, so that
+/// it is linked alone here, or is there already.
 pub fn library() -> PathBuf {
-    let folder = env::current_exe().unwrap();
-    let folder = folder.parent().unwrap();
-    let name = "libhbvib.so";
-    let found = [folder.join(name), folder.parent().unwrap().join(name)]
-        .into_iter()
-        .find(|path| path.is_file());
-    found.unwrap_or_else(|| panic!("{name} is neither in {} nor above it", folder.display()))
+    static LIBRARY: OnceLock<PathBuf> = OnceLock::new();
+    LIBRARY
+        .get_or_init(|| {
+            let folder = built();
+            let mut command = Command::new(env!("CARGO"));
+            command.args(["build", "--quiet", "--lib", "--target-dir"]);
+            command.arg(folder.parent().unwrap()).current_dir(root());
+            if folder.ends_with("release") {
+                command.arg("--release");
+            }
+            // All that a build needs is there since the test itself was built.
+            run(command.env("CARGO_NET_OFFLINE", "true"));
+            folder.join("libhbvib.so")
+        })
+        .clone()
 }
 
 /// The name by which the loader knows the library.

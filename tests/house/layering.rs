@@ -6,7 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Layer of each room of the crate. Within a layer rooms do not know each other unless listed in [`SAME_LAYER`].
-const LAYERS: [(&str, u8); 22] = [
+const LAYERS: [(&str, u8); 23] = [
+    ("shortage", 0),
     ("error", 0),
     ("byte_stream", 0),
     ("options", 0),
@@ -31,9 +32,11 @@ const LAYERS: [(&str, u8); 22] = [
     ("lib", 10),
 ];
 
-/// Imports inside one layer, (from, to): options, interrupts and streams of bytes report errors, hooks hold an interrupt, transforms are
-/// products of vectors, and a model has contacts.
-const SAME_LAYER: [(&str, &str); 7] = [
+/// Imports inside one layer, (from, to): errors and interrupts read the note of a shortage of memory, options, interrupts and streams of
+/// bytes report errors, hooks hold an interrupt, transforms are products of vectors, and a model has contacts.
+const SAME_LAYER: [(&str, &str); 9] = [
+    ("error", "shortage"),
+    ("interrupt", "shortage"),
     ("byte_stream", "error"),
     ("options", "error"),
     ("interrupt", "error"),
@@ -59,6 +62,7 @@ const ONLY: [(&str, &[&str]); 2] = [
             "hooks",
             "interrupt",
             "error",
+            "shortage",
             "linalg",
         ],
     ),

@@ -60,12 +60,7 @@ fn compiled_rust(source: &Path, folder: &Path) -> Command {
     let own = Path::new(env!("CARGO")).with_file_name("rustc");
     let program = source.with_extension("program");
     let rlib = library().with_extension("rlib");
-    let built = rlib.parent().unwrap();
-    let dependencies = if built.ends_with("deps") {
-        built.to_owned()
-    } else {
-        built.join("deps")
-    };
+    let dependencies = rlib.parent().unwrap().join("deps");
     run(Command::new(if own.is_file() { own } else { "rustc".into() })
         .args(["--edition", "2024", "-Dwarnings", "-L"])
         .arg(format!("dependency={}", dependencies.display()))

@@ -41,7 +41,10 @@ fn write() -> Result<()> {
         .ancestors()
         .nth(2)
         .unwrap_or(Path::new(""));
-    cargo(root, &["check", "--release", "--lib", "--features", "bindings"])?;
+    cargo(
+        root,
+        &["check", "--release", "-p", "hbvib", "--lib", "--features", "bindings"],
+    )?;
     cargo(root, &["build", "--release", "--lib"])?;
     let all = Declarations::parse(&read(&root.join("include/hbvib.h"))?)?;
     let defaults = defaults(&all)?;
