@@ -13,6 +13,18 @@ use crate::error::{Result, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
+/// A part in a box. A function of its own, so that parts take their share of a small stack one after the other.
+#[inline(never)]
+fn boxed<T>(make: impl FnOnce() -> Result<T>) -> Result<Box<T>> {
+    Ok(Box::new(make()?))
+}
+
+/// Adds a part, likewise.
+#[inline(never)]
+fn added<T>(parts: &mut Vec<T>, make: impl FnOnce() -> Result<T>) -> Result<()> {
+    try_push(parts, make()?, "the contact laws")
+}
+
 /// Evaluators of laws, with their tables.
 pub struct Evaluator {
     /// Laws on one relative motion.
@@ -121,36 +133,34 @@ impl Evaluator {
             match law.form() {
                 Form::PiecewiseLinear(law) => most_pieces = law.most_pieces(highest).max(most_pieces),
                 Form::VaryingNormalLoad(_) if varying_load.is_none() => {
-                    varying_load = Some(Box::new(VaryingNormalLoadEvaluator::new(set)?));
+                    varying_load = Some(boxed(|| VaryingNormalLoadEvaluator::new(set))?);
                 }
                 Form::VaryingNormalLoad(_) | Form::Spectral(_) => {}
                 Form::PlaneFriction(law) => {
                     if !plane.iter().any(|e: &PlaneFrictionEvaluator| e.suits(law)) {
-                        try_push(&mut plane, PlaneFrictionEvaluator::new(set, law)?, "the contact laws")?;
+                        added(&mut plane, || PlaneFrictionEvaluator::new(set, law))?;
                     }
                 }
                 Form::Hysteretic(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
                     if !hysteretic.iter().any(|e| e.suits(law, requested)) {
-                        let evaluator = HystereticEvaluator::new(set, law, requested)?;
-                        try_push(&mut hysteretic, evaluator, "the contact laws")?;
+                        added(&mut hysteretic, || HystereticEvaluator::new(set, law, requested))?;
                     }
                 }
                 Form::Memoryless(law) => {
                     let requested = sampling.of(law.samples(highest, sampling.requested), highest);
                     if !memoryless.iter().any(|e| e.suits(law, requested)) {
-                        let evaluator = MemorylessEvaluator::new(set, law, requested)?;
-                        try_push(&mut memoryless, evaluator, "the contact laws")?;
+                        added(&mut memoryless, || MemorylessEvaluator::new(set, law, requested))?;
                     }
                 }
             }
         }
         Ok(Self {
             scalar: if sampling.requested == 0 {
-                Scalar::Exact(Box::new(Exact::new(set, most_pieces)?))
+                Scalar::Exact(boxed(|| Exact::new(set, most_pieces))?)
             } else {
                 let samples = sampling.of(sampling.requested, highest);
-                Scalar::Sampled(Box::new(Sampled::new(set, samples)?))
+                Scalar::Sampled(boxed(|| Sampled::new(set, samples))?)
             },
             smooth: Assembly::new(set)?,
             varying_load,

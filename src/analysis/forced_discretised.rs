@@ -30,7 +30,7 @@ use num_complex::Complex64;
 struct Equations<'a> {
     resolution: &'a Resolution,
     problem: HarmonicBalance<'a>,
-    corrector: Corrector,
+    corrector: Box<Corrector>,
     response: Vec<Complex64>,
 }
 
@@ -61,7 +61,11 @@ impl<'a> Equations<'a> {
         let range = (settings.start, settings.end);
         let problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
         Ok(Self {
-            corrector: Corrector::new(problem.unknowns(), settings.tolerance, settings.max_iterations)?,
+            corrector: Box::new(Corrector::new(
+                problem.unknowns(),
+                settings.tolerance,
+                settings.max_iterations,
+            )?),
             response: try_vec(condensed.blocks().len(), Complex64::ZERO, "the response")?,
             problem,
             resolution,

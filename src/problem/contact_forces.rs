@@ -18,9 +18,9 @@ use num_complex::Complex64;
 pub struct ContactForces<'a> {
     condensed: &'a Condensed,
     interrupt: &'a Interrupt<'a>,
-    evaluator: Evaluator,
+    evaluator: Box<Evaluator>,
     /// The same with other samples, if some law is sampled.
-    other: Option<Evaluator>,
+    other: Option<Box<Evaluator>>,
     /// s, where every law is scaled to s·f(y/s).
     factor: f64,
     /// Static motion per coordinate and packed static forces from which motions and forces count; empty: zero.
@@ -67,11 +67,11 @@ impl<'a> ContactForces<'a> {
         let mut forces = Self::unchecked(condensed, samples, interrupt)?;
         let laws = || condensed.laws().iter().map(|assembled| &*assembled.law);
         if laws().any(|law| forces.evaluator.samples(law)) {
-            forces.other = Some(Evaluator::otherwise(
+            forces.other = Some(Box::new(Evaluator::otherwise(
                 condensed.set(),
                 (samples, condensed.refinement()),
                 laws(),
-            )?);
+            )?));
         }
         Ok(forces)
     }
@@ -96,7 +96,7 @@ impl<'a> ContactForces<'a> {
             try_push(&mut found, memory, CONTEXT)?;
         }
         let samples = if linear { 0 } else { samples };
-        let evaluator = Evaluator::refined(set, (samples, condensed.refinement()), laws())?;
+        let evaluator = Box::new(Evaluator::refined(set, (samples, condensed.refinement()), laws())?);
         Ok(Self {
             condensed,
             interrupt,

@@ -79,7 +79,7 @@ pub struct LinearMode {
 /// A nonlinear mode of a condensed model.
 pub struct Epmc<'a> {
     condensed: &'a Condensed,
-    forces: ContactForces<'a>,
+    forces: Box<ContactForces<'a>>,
     modal: Modal,
     gauge: &'a Gauge,
     linear: &'a LinearMode,
@@ -113,7 +113,7 @@ impl<'a> Epmc<'a> {
         const CONTEXT: &str = "the nonlinear mode";
         let n = condensed.ndof();
         let unknowns = condensed.coordinates().saturating_mul(condensed.set().packed_len()) + 2;
-        let mut forces = ContactForces::new(condensed, samples, interrupt)?;
+        let mut forces = Box::new(ContactForces::new(condensed, samples, interrupt)?);
         if linear.rest.is_loaded() {
             let rest = linear.rest.in_units(condensed.length())?;
             forces.set_rest(&rest, linear.omega)?;

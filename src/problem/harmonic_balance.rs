@@ -21,7 +21,8 @@ use num_complex::Complex64;
 /// The forced response of a condensed model.
 pub struct HarmonicBalance<'a> {
     pub(super) condensed: &'a Condensed,
-    pub(super) forces: ContactForces<'a>,
+    /// In a box, as other parts of problems: values that calls pass on take little of a small stack.
+    pub(super) forces: Box<ContactForces<'a>>,
     pub(super) tables: FrequencyCache,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
@@ -70,7 +71,7 @@ impl<'a> HarmonicBalance<'a> {
             condensed.is_preloaded() || static_force(condensed, range.0, samples, interrupt)?.is_some();
         Ok(Self {
             condensed,
-            forces: ContactForces::new(condensed, samples, interrupt)?,
+            forces: Box::new(ContactForces::new(condensed, samples, interrupt)?),
             tables: FrequencyCache::new(condensed, response, range, interrupt)?,
             observed: set.numbers().iter().position(|&h| h > 0).unwrap_or(0),
             given,
