@@ -818,6 +818,13 @@ module hbvib
          integer(c_int32_t) :: status
       end function hbvib_solver_options_init
 
+      function hbvib_cancel(flag, value) bind(c) result(status)
+         import
+         integer(c_int32_t), intent(inout) :: flag(*)
+         integer(c_int32_t), value :: value
+         integer(c_int32_t) :: status
+      end function hbvib_cancel
+
       function hbvib_hooks_init(h, size_of_h) bind(c) result(status)
          import
          type(hbvib_hooks), intent(inout) :: h

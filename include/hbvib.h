@@ -45,6 +45,10 @@
  *             no environment variable, and starts no thread. It runs in the default floating-point
  *             environment (no traps, rounding to nearest, no flush to zero); the environment of the
  *             caller is restored for callbacks and on return.
+ *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY, and 128 KiB of stack suffice
+ *             for every function. After fork both processes may go on; a handle that a call of
+ *             another thread used at that time stays HBVIB_E_BUSY in the child. dlclose frees all
+ *             memory of the library but handles that were not freed.
  *   safety    No panic leaves the library (HBVIB_E_INTERNAL). Callbacks must not throw or longjmp.
  *             NaN in an input, or infinity anywhere but in the preload of a contact, is
  *             HBVIB_E_NOT_FINITE. The library cannot check that arrays are as long as stated and
@@ -1406,8 +1410,18 @@ typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress)
 /// Receives a line of the log, whose text is valid during the call.
 typedef void (*hbvib_log_fn)(void *user, int32_t level, const char *message);
 
-/// A flag that another thread or a signal handler may set while a call runs.
+/// A flag that another thread or a signal handler may set while a call runs, by hbvib_cancel or by
+/// an atomic store of its own: a plain store while another thread reads is a data race in C11 and
+/// C++11.
 typedef volatile int32_t hbvib_cancel_flag;
+
+/// Sets a cancel flag by an atomic store, with which any running call that has it ends soon. A
+/// signal handler may call it. The text of the last error stays as it is.
+///
+/// flag   the flag.
+/// value  1: stop; 0: no longer, for the next call.
+/// Errors: HBVIB_E_NULL, HBVIB_E_ARGUMENT (value, alignment). Threads: any.
+hbvib_status hbvib_cancel(hbvib_cancel_flag *flag, int32_t value);
 
 /// Callbacks and cancel flag of a solve. Fill it by hbvib_hooks_init. Callbacks run on the calling
 /// thread, one at a time; they may call the library, but not change or free a handle in use.
@@ -1423,7 +1437,8 @@ typedef struct {
   /// Called with each line of the log. May be NULL.
   hbvib_log_fn log;
   /// Read often, in every long loop: a number other than 0 stops the call and keeps the points.
-  /// Another thread or a signal handler may set it; the library never writes it. May be NULL.
+  /// Another thread or a signal handler may set it by hbvib_cancel; the call never writes it.
+  /// May be NULL.
   const hbvib_cancel_flag *cancel;
   /// Called with the phase of the call, from the set-up on. May be NULL.
   hbvib_phase_fn phase;

@@ -6,7 +6,7 @@ use super::arrays::check_pointer;
 use super::boundary::{WithArgument, call, outside};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
-use crate::error::{Result, TEXT_CAPACITY, fail};
+use crate::error::{Result, Status, TEXT_CAPACITY, fail};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::interrupt::{Interrupt, PhaseReport, PhaseSink};
 use core::ffi::{c_char, c_void};
@@ -96,8 +96,28 @@ pub type hbvib_progress_fn =
 /// Receives a line of the log, whose text is valid during the call.
 pub type hbvib_log_fn = Option<unsafe extern "C-unwind" fn(user: *mut c_void, level: i32, message: *const c_char)>;
 
-/// A flag that another thread or a signal handler may set while a call runs.
+/// A flag that another thread or a signal handler may set while a call runs, by hbvib_cancel or by
+/// an atomic store of its own: a plain store while another thread reads is a data race in C11 and
+/// C++11.
 pub type hbvib_cancel_flag = i32;
+
+/// Sets a cancel flag by an atomic store, with which any running call that has it ends soon. A
+/// signal handler may call it. The text of the last error stays as it is.
+///
+/// flag   the flag.
+/// value  1: stop; 0: no longer, for the next call.
+/// Errors: HBVIB_E_NULL, HBVIB_E_ARGUMENT (value, alignment). Threads: any.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn hbvib_cancel(flag: *mut hbvib_cancel_flag, value: i32) -> hbvib_status {
+    if flag.is_null() {
+        return Status::Null as hbvib_status;
+    }
+    if !flag.is_aligned() || !(0..=1).contains(&value) {
+        return Status::Argument as hbvib_status;
+    }
+    unsafe { AtomicI32::from_ptr(flag) }.store(value, Ordering::Relaxed);
+    Status::Ok as hbvib_status
+}
 
 /// Callbacks and cancel flag of a solve. Fill it by hbvib_hooks_init. Callbacks run on the calling
 /// thread, one at a time; they may call the library, but not change or free a handle in use.
@@ -115,7 +135,8 @@ pub struct hbvib_hooks {
     /// Called with each line of the log. May be NULL.
     pub log: hbvib_log_fn,
     /// Read often, in every long loop: a number other than 0 stops the call and keeps the points.
-    /// Another thread or a signal handler may set it; the library never writes it. May be NULL.
+    /// Another thread or a signal handler may set it by hbvib_cancel; the call never writes it.
+    /// May be NULL.
     pub cancel: *const hbvib_cancel_flag,
     /// Called with the phase of the call, from the set-up on. May be NULL.
     pub phase: hbvib_phase_fn,

@@ -284,12 +284,41 @@ static void threads(void)
     WORKS("94", hbvib_model_free(model));
 }
 
+/* A flag that another thread sets while a call reads it. */
+static void *sets_the_flag(void *flag)
+{
+    return hbvib_cancel(flag, 1) == HBVIB_OK ? NULL : flag;
+}
+
+static void cancelled_by_a_setter(void)
+{
+    hbvib_cancel_flag flag = 0;
+    hbvib_hooks hooks;
+    hbvib_forced_options o = frequencies(207, 211);
+    hbvib_branch *branch = NULL;
+    pthread_t thread;
+    void *failed = &hooks;
+    EXPECT("104", hbvib_cancel(NULL, 1) == HBVIB_E_NULL && hbvib_cancel(&flag, 2) == HBVIB_E_ARGUMENT && flag == 0);
+    if (pthread_create(&thread, NULL, sets_the_flag, (void *)(uintptr_t)&flag) != 0) abort();
+    pthread_join(thread, &failed);
+    EXPECT("104", failed == NULL && flag == 1);
+    WORKS("104", hbvib_hooks_init(&hooks, sizeof hooks));
+    hooks.cancel = &flag;
+    EXPECT("104", hbvib_forced_response(the_model, NULL, &o, &hooks, &branch) == HBVIB_STOPPED_BY_CALLER);
+    WORKS("104", hbvib_branch_free(branch));
+    branch = NULL;
+    EXPECT("104", hbvib_cancel(&flag, 0) == HBVIB_OK);
+    WORKS("104", hbvib_forced_response(the_model, NULL, &o, &hooks, &branch));
+    WORKS("104", hbvib_branch_free(branch));
+}
+
 int main(void)
 {
     begin();
     hooks();
     signals();
     threads();
+    cancelled_by_a_setter();
     WORKS("89", hbvib_model_free(the_model));
     return verdict(50);
 }
