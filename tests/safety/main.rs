@@ -1,0 +1,11 @@
+//! A process is not hurt by the library in it: failing memory, small stacks, unloading, many cycles.
+
+#![cfg(target_os = "linux")]
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod failing_allocations;
+mod lifetime;
+mod programs;
+mod stacks;
