@@ -14,8 +14,8 @@ from pathlib import Path
 
 from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
-# Packages of the workspace whose shared libraries the wheel has.
-PACKAGES = ("hbvib", "hbvib-io")
+# Shared libraries of the wheel, and the packages of the workspace that build them.
+PACKAGES = {"hbvib": "hbvib-c", "hbvib_io": "hbvib-io"}
 HEADERS = ("hbvib.h", "hbvib.hpp", "hbvib_io.h", "hbvib.f90")
 
 
@@ -52,13 +52,13 @@ def libraries(root):
     """The shared libraries: built before, or now by cargo."""
     built = os.environ.get("HBVIB_WHEEL_LIBRARIES")
     if built:
-        found = [Path(built, f"lib{name.replace('-', '_')}.so") for name in PACKAGES]
+        found = [Path(built, f"lib{name}.so") for name in PACKAGES]
         missing = [str(path) for path in found if not path.is_file()]
         if missing:
             raise RuntimeError(f"HBVIB_WHEEL_LIBRARIES has no {', '.join(missing)}")
         return found
     tell("hbvib: compiling the libraries with Rust; this takes some minutes (pip install -v shows each step)")
-    found = [compiled(root, name) for name in PACKAGES]
+    found = [compiled(root, name, package) for name, package in PACKAGES.items()]
     tell("hbvib: compiled")
     return found
 
@@ -70,7 +70,7 @@ def tell(sentence):
         print("\n" + sentence, file=terminal)
 
 
-def compiled(root, package):
+def compiled(root, name, package):
     """The shared library of a package as cargo has built it."""
     cargo = os.environ.get("CARGO", "cargo")
     command = [cargo, "build", "--release", "--lib", "-p", package, "--message-format=json-render-diagnostics"]
@@ -82,7 +82,7 @@ def compiled(root, package):
     for line in output.splitlines():
         message = json.loads(line)
         if message.get("reason") == "compiler-artifact" and "cdylib" in message["target"]["kind"]:
-            files += [file for file in message["filenames"] if message["target"]["name"] == package.replace("-", "_")]
+            files += [file for file in message["filenames"] if message["target"]["name"] == name]
     shared = [Path(file) for file in files if Path(file).suffix in (".so", ".dylib", ".dll")]
     if len(shared) != 1:
         raise RuntimeError(f"cargo built no single shared library of {package}: {files}")
