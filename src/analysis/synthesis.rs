@@ -214,6 +214,12 @@ fn check_model(branch: &Branch, data: &ModeData, model: &Model) -> Result<()> {
             branch.reduction().sectors
         );
     }
+    if !model.structure().degrees().is_same(branch.condensed_at(0).degrees()) {
+        return fail!(
+            Argument,
+            "other degrees of freedom of the model are fixed than those of the mode, or its faces are others"
+        );
+    }
     let (given, own) = (model.structure().engine_order(), data.info.engine_order);
     if model.structure().fold(given) != model.structure().fold(own) {
         return fail!(

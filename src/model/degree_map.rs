@@ -40,6 +40,17 @@ impl DegreeMap {
         Self { given, images: None }
     }
 
+    /// Whether another map has the same independent degrees of freedom, with the same images.
+    #[must_use]
+    pub fn is_same(&self, other: &Self) -> bool {
+        self.given == other.given
+            && match (&self.images, &other.images) {
+                (None, None) => true,
+                (Some(a), Some(b)) => a.start == b.start && a.terms == b.terms && a.next == b.next,
+                _ => false,
+            }
+    }
+
     /// The map with fixed degrees of freedom and, for a sector, its faces.
     ///
     /// # Errors

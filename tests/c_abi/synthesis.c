@@ -143,6 +143,19 @@ static void bad_input(hbvib_branch *mode)
     WORKS("other model", hbvib_model_free(other));
 }
 
+/* A model in which another degree of freedom is fixed has other unknowns. */
+static void another_is_fixed(hbvib_branch *mode)
+{
+    const int64_t ring[1] = {3};
+    hbvib_model *model = NULL;
+    int64_t count = 0;
+    WORKS("fixed", hbvib_model_clone(the_model, &model));
+    WORKS("fixed", hbvib_model_fix(model, 1, ring));
+    EXPECT("fixed", hbvib_branch_synthesis(mode, model, NULL, 0, NULL, NULL, NULL, &count) == HBVIB_E_ARGUMENT);
+    EXPECT("fixed", strstr(hbvib_last_error(), "are fixed") != NULL);
+    WORKS("fixed", hbvib_model_free(model));
+}
+
 int main(void)
 {
     hbvib_branch *mode;
@@ -150,6 +163,7 @@ int main(void)
     mode = mode_of(the_model);
     near_the_computed_one(mode);
     bad_input(mode);
+    another_is_fixed(mode);
     WORKS("free", hbvib_branch_free(mode));
     WORKS("free", hbvib_model_free(the_model));
     return verdict(60);

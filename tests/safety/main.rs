@@ -8,4 +8,5 @@ mod common;
 mod failing_allocations;
 mod lifetime;
 mod programs;
+mod random_calls;
 mod stacks;

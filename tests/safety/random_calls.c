@@ -1,0 +1,462 @@
+/* Random sequences of calls through the C interface: good and extreme values, live, freed and foreign handles, options of
+ * other sizes, callbacks that fail, call back into the library, or cancel. Run as: random_calls <seed> <seconds> [calls];
+ * the calls depend on the seed, but for those that are stopped for their time. Prints the outcomes of each function and one line of counts; a crash, an internal
+ * error, output of a success that is not finite, a call that runs on for a second after it was stopped, or solves of which
+ * fewer than a third have a result are failures. */
+#include "models.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <time.h>
+
+enum { MOST = 24, N_STATUS = 40, N_FUNCTIONS = 64 };
+
+static uint64_t state;
+
+static uint64_t next(void)
+{
+    uint64_t z = (state += 0x9E3779B97F4A7C15u); /* splitmix64 */
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBu;
+    return z ^ (z >> 31);
+}
+
+static int one_in(int n) { return next() % (uint64_t)n == 0; }
+static double uniform(void) { return (double)(next() >> 11) / 9007199254740992.0; }
+
+static double number(double usual)
+{
+    static const double extreme[] = {0, -1, 1e300, -1e300, 1e-300, 5e-324, 1e-12, 1e12, HUGE_VAL, -HUGE_VAL, NAN, -0.0};
+    return one_in(40) ? extreme[next() % 12] : usual * (0.5 + uniform());
+}
+
+static int64_t count(int64_t usual)
+{
+    static const int64_t extreme[] = {0, -1, 1, INT64_MIN, INT64_MAX, INT64_MAX / 8, 1 << 20, 4294967296, -2};
+    return one_in(40) ? extreme[next() % 9] : usual;
+}
+
+/* Handles: live ones, those that were freed, and others. */
+static hbvib_model *models[MOST];
+static hbvib_branch *branches[MOST];
+static int64_t dofs[MOST];
+static int n_models, n_branches;
+static hbvib_model *freed_model;
+static hbvib_branch *freed_branch;
+
+static hbvib_model *some_model(int *which)
+{
+    *which = n_models > 0 ? (int)(next() % (uint64_t)n_models) : -1;
+    if (one_in(50)) return (hbvib_model *)(uintptr_t)next();
+    if (one_in(50)) return (hbvib_model *)freed_branch;
+    if (one_in(50) || *which < 0) return freed_model;
+    return models[*which];
+}
+
+static hbvib_branch *some_branch(void)
+{
+    if (one_in(50)) return (hbvib_branch *)(uintptr_t)next();
+    if (one_in(50) || n_branches == 0) return freed_branch;
+    return branches[next() % (uint64_t)n_branches];
+}
+
+/* Outcomes of each function: its statuses, from HBVIB_OK on. */
+static struct outcome {
+    const char *name;
+    int64_t calls, succeeded, stopped, refused;
+} outcomes[N_FUNCTIONS];
+static int64_t calls, failures, solves, solved;
+static clock_t longest;
+static const char *slowest = "";
+
+static struct outcome *outcome_of(const char *name)
+{
+    int i = 0;
+    while (i < N_FUNCTIONS && outcomes[i].name != NULL && strcmp(outcomes[i].name, name) != 0) i++;
+    if (i == N_FUNCTIONS) abort();
+    outcomes[i].name = name;
+    return &outcomes[i];
+}
+
+static void judge(const char *name, int64_t status, clock_t begin)
+{
+    struct outcome *o = outcome_of(name);
+    const clock_t spent = clock() - begin;
+    calls++;
+    o->calls++;
+    if (status == 0) o->succeeded++;
+    else if (status > 0) o->stopped++;
+    else o->refused++;
+    if (spent > longest) {
+        longest = spent;
+        slowest = name;
+    }
+    if (status == HBVIB_E_INTERNAL || status < HBVIB_E_INTERNAL || (status < 0 && hbvib_last_error()[0] == '\0')) {
+        failures++;
+        fprintf(stderr, "%s: status %lld, %s\n", name, (long long)status, hbvib_last_error());
+    }
+}
+
+#define CALL(function, ...)                                                                    \
+    do {                                                                                       \
+        const clock_t begin = clock();                                                         \
+        status = function(__VA_ARGS__);                                                        \
+        judge(#function, status, begin);                                                       \
+    } while (0)
+
+/* Callbacks: most go on; some stop, fail, or call the library. Every call is stopped after a number of reports, or a share
+ * of the time that it may take. */
+enum { MOST_REPORTS = 300 };
+static int64_t reports;
+static clock_t started;
+
+static int late(void)
+{
+    return ++reports > MOST_REPORTS || clock() - started > CLOCKS_PER_SEC / 2;
+}
+
+static void intrude(void)
+{
+    int which;
+    hbvib_model *model = some_model(&which);
+    hbvib_model_dofs(model);
+    hbvib_model_add_force(model, 0, 1, 1, 0);
+    if (one_in(8)) hbvib_branch_points(some_branch());
+}
+
+static int32_t on_progress(void *user, const hbvib_progress *p)
+{
+    (void)user;
+    (void)p;
+    if (one_in(100)) intrude();
+    return late() || one_in(400);
+}
+
+static int32_t on_phase(void *user, const hbvib_phase_report *p)
+{
+    (void)user;
+    (void)p;
+    return late();
+}
+
+static int32_t on_force(void *user, const hbvib_force_call *call)
+{
+    int64_t j, i;
+    (void)user;
+    if (one_in(3000)) return (int32_t)(next() % 3) - 1;
+    if (one_in(1000)) intrude();
+    for (j = 0; j < call->samples; j++) {
+        for (i = 0; i < call->n; i++) {
+            const int64_t k = j * call->n + i;
+            call->f[k] = 0.1 * call->u[k] * call->u[k] * call->u[k];
+            call->df_du[(j * call->n + i) * call->n + i] = 0.3 * call->u[k] * call->u[k];
+        }
+    }
+    if (one_in(3000)) call->f[0] = NAN;
+    return 0;
+}
+
+static hbvib_hooks hooks(void)
+{
+    hbvib_hooks h;
+    memset(&h, 0, sizeof h);
+    hbvib_hooks_init(&h, sizeof h);
+    h.progress = on_progress;
+    h.phase = on_phase;
+    reports = 0;
+    started = clock();
+    return h;
+}
+
+static int64_t degree(int which) { return which < 0 ? 0 : count((int64_t)(next() % (uint64_t)dofs[which])); }
+
+static hbvib_solver_options solver(void)
+{
+    hbvib_solver_options s;
+    memset(&s, 0, sizeof s);
+    hbvib_solver_options_init(&s, sizeof s);
+    s.tolerance = one_in(4) ? number(0.05) : 0;
+    s.harmonics = count(1 + (int64_t)(next() % 6));
+    s.max_harmonics = count(30);
+    s.samples = one_in(5) ? count(64) : 0;
+    s.max_points = count(20);
+    s.max_newton = count(20);
+    s.response_dof = one_in(5) ? count(0) : -1;
+    s.estimate_error = one_in(10);
+    s.keep_even_harmonics = one_in(10);
+    s.memory_limit = one_in(10) ? count(1 << 22) : 64 << 20;
+    s.flexibility = one_in(10) ? (int32_t)(next() % 5) - 1 : 0;
+    if (one_in(10)) s.tol_residual = number(1e-9);
+    if (one_in(10)) s.step_max = number(0.1);
+    if (one_in(100)) s.struct_size = (uint32_t)next() % 300;
+    if (one_in(100)) s.reserved = (int32_t)next();
+    return s;
+}
+
+static void add_model(void)
+{
+    static hbvib_status (*const build[])(hbvib_model **) = {ring, three, friction_2d, friction_3d, unilateral, cubic, regularised,
+                                                            iwan, table, polynomials, caller_law, rotor, faces, small_ring, chain};
+    hbvib_model *model = NULL;
+    hbvib_status status;
+    if (n_models == MOST) return;
+    if (one_in(10)) CALL(hbvib_model_new, count(3), &model);
+    else if (one_in(10)) CALL(hbvib_cyclic_new, count(3), count(5), &model);
+    else if (n_models > 0 && one_in(4)) CALL(hbvib_model_clone, models[next() % (uint64_t)n_models], &model);
+    else status = build[next() % (sizeof build / sizeof *build)](&model);
+    if (model == NULL) return;
+    dofs[n_models] = hbvib_model_dofs(model);
+    if (dofs[n_models] > 100) {
+        CALL(hbvib_model_free, model);
+        return;
+    }
+    models[n_models++] = model;
+}
+
+static void change_model(void)
+{
+    int which, i;
+    hbvib_model *model = some_model(&which);
+    hbvib_status status;
+    int64_t a[2], id = 0;
+    double x[16];
+    hbvib_contact c = law((int32_t)(next() % 8), degree(which), HBVIB_GROUND, HBVIB_GROUND);
+    hbvib_user_force force;
+    hbvib_matrix m;
+    for (i = 0; i < 16; i++) x[i] = number(i % 4 == 0 ? 1 : 0.1) * (i % 3 == 0);
+    a[0] = degree(which);
+    a[1] = degree(which);
+    switch (next() % 14) {
+    case 0:
+        c.kt = number(1);
+        c.mu = number(0.4);
+        c.preload = number(0.5);
+        if (one_in(3)) c.dof_b[0] = a[1];
+        if (one_in(20)) c.struct_size = (uint32_t)next() % 400;
+        CALL(hbvib_model_add_contact, model, &c, &id);
+        break;
+    case 1: CALL(hbvib_model_add_force, model, a[0], count(1), number(0.3), one_in(4) ? number(0.1) : 0); break;
+    case 2: CALL(hbvib_model_set_preload, model, count(0), number(0.5)); break;
+    case 3: CALL(hbvib_model_set_rayleigh, model, number(0.02), number(0.01)); break;
+    case 4: CALL(hbvib_model_add_springs, model, one_in(20) ? -1 : 1, &a[0], &a[1], NULL, x); break;
+    case 5: CALL(hbvib_model_set_loss_factor, model, number(0.02)); break;
+    case 6: CALL(hbvib_model_add_table, model, a[0], HBVIB_GROUND, 0, 4, x, x + 4, &id); break;
+    case 7: CALL(hbvib_model_add_spring_damper, model, a[0], HBVIB_GROUND, 0, 3, x, 2, x + 3, &id); break;
+    case 8: CALL(hbvib_model_set_speed, model, one_in(2) ? 0 : number(0.4)); break;
+    case 9:
+        if (one_in(4)) CALL(hbvib_model_fix, model, 1, a);
+        else CALL(hbvib_cyclic_set_wave, model, count((int64_t)(next() % 7) - 3));
+        break;
+    case 10:
+        m = dense(which < 0 ? 3 : dofs[which], x);
+        if (dofs[which < 0 ? 0 : which] > 4) break;
+        m.part = (int32_t)(next() % 8);
+        CALL(hbvib_model_set_matrix, model, one_in(3) ? (int32_t)(next() % 7) : HBVIB_DAMPING, &m);
+        break;
+    case 11:
+        memset(&force, 0, sizeof force);
+        hbvib_user_force_init(&force, sizeof force);
+        force.dofs = a;
+        force.n = 1;
+        force.force = on_force;
+        CALL(hbvib_model_add_user_force, model, &force, &id);
+        break;
+    case 12: CALL(hbvib_model_set_preload_at_speed, model, count(0), number(0.3), number(0.01)); break;
+    default: CALL(hbvib_model_add_iwan, model, a[0], HBVIB_GROUND, 0, number(0.2), number(1), number(-0.3), number(0.1), count(5), &id);
+    }
+}
+
+static void keep(hbvib_branch *branch)
+{
+    hbvib_status status;
+    if (branch == NULL) return;
+    if (n_branches == MOST) {
+        freed_branch = branches[--n_branches];
+        CALL(hbvib_branch_free, freed_branch);
+    }
+    branches[n_branches++] = branch;
+}
+
+static double somewhere(int which)
+{
+    return number(which >= 0 && dofs[which] == 4 ? 1300 : 1.2);
+}
+
+static void solve(void)
+{
+    int which;
+    hbvib_model *model = some_model(&which);
+    hbvib_solver_options s = solver();
+    hbvib_hooks h = hooks();
+    hbvib_branch *branch = NULL;
+    hbvib_status status;
+    if (one_in(2)) {
+        hbvib_forced_options o;
+        memset(&o, 0, sizeof o);
+        hbvib_forced_options_init(&o, sizeof o);
+        o.omega_start = somewhere(which);
+        o.omega_stop = one_in(3) ? o.omega_start : o.omega_start * number(1.02);
+        CALL(hbvib_forced_response, model, one_in(20) ? NULL : &s, &o, &h, &branch);
+    } else if (one_in(2)) {
+        hbvib_mode_options o;
+        memset(&o, 0, sizeof o);
+        hbvib_mode_options_init(&o, sizeof o);
+        o.log10_start = which >= 0 && dofs[which] == 4 ? -5.6 : number(-1);
+        o.log10_stop = o.log10_start + fabs(number(0.5));
+        o.mode_index = count(0);
+        CALL(hbvib_nonlinear_mode, model, &s, &o, &h, &branch);
+    } else {
+        static double x[4096];
+        hbvib_time_options o;
+        hbvib_time_info info;
+        memset(&o, 0, sizeof o);
+        memset(&info, 0, sizeof info);
+        hbvib_time_options_init(&o, sizeof o);
+        hbvib_time_info_init(&info, sizeof info);
+        o.omega = somewhere(which);
+        o.max_periods = count(40);
+        o.harmonics = 5;
+        CALL(hbvib_time_response, model, &o, &h, which < 0 ? NULL : x, which < 0 ? 0 : 6 * dofs[which], NULL, 0, &info);
+    }
+    solves++;
+    if (status >= 0) solved++;
+    keep(branch);
+}
+
+static void ask(void)
+{
+    static double x[2 * 64 * 128], y[256], f[256];
+    static int32_t states[256];
+    static int64_t point[64];
+    hbvib_branch *branch = some_branch();
+    hbvib_hooks h = hooks();
+    hbvib_status status;
+    const int64_t stored = hbvib_branch_stored(branch), at = stored > 0 ? count((int64_t)(next() % (uint64_t)stored)) : count(0);
+    int64_t n = 0;
+    int which, i;
+    hbvib_model *model = some_model(&which);
+    hbvib_view view;
+    hbvib_energy energy;
+    hbvib_contact_summary summary;
+    hbvib_verification v;
+    hbvib_floquet_info info;
+    hbvib_reduction r;
+    memset(&r, 0, sizeof r);
+    hbvib_reduction_init(&r, sizeof r);
+    switch (next() % 12) {
+    case 0:
+        memset(&view, 0, sizeof view);
+        hbvib_view_init(&view, sizeof view);
+        CALL(hbvib_branch_field, branch, (int32_t)(next() % 18) - 1, &view);
+        break;
+    case 1:
+        CALL(hbvib_branch_reduction, branch, &r);
+        if (status != HBVIB_OK || r.harmonics_asked > 60) break;
+        CALL(hbvib_branch_harmonics, branch, at, 0, 1, x, one_in(20) ? count(7) : r.harmonics_asked + 1);
+        for (i = 0; status == HBVIB_OK && i < 2 * (r.harmonics_asked + 1); i++) failures += !isfinite(x[i]);
+        break;
+    case 2:
+        memset(&energy, 0, sizeof energy);
+        hbvib_energy_init(&energy, sizeof energy);
+        CALL(hbvib_branch_energy_with_hooks, branch, at, &energy, &h);
+        break;
+    case 3: CALL(hbvib_branch_contact_loop, branch, at, count(0), count(0), 256, y, f, states); break;
+    case 4:
+        memset(&summary, 0, sizeof summary);
+        hbvib_contact_summary_init(&summary, sizeof summary);
+        CALL(hbvib_branch_contact_summary, branch, at, count(0), &summary);
+        break;
+    case 5: CALL(hbvib_branch_peaks, branch, 64, y, f, point, &n); break;
+    case 6: CALL(hbvib_branch_folds, branch, 64, y, f, point, &n); break;
+    case 7: CALL(hbvib_branch_time_history_with_hooks, branch, at, 0, 256, y, &h); break;
+    case 8:
+        memset(&v, 0, sizeof v);
+        hbvib_verification_init(&v, sizeof v);
+        CALL(hbvib_verify, model, branch, at, NULL, &h, NULL, 0, NULL, 0, &v);
+        break;
+    case 9:
+        memset(&info, 0, sizeof info);
+        hbvib_floquet_info_init(&info, sizeof info);
+        CALL(hbvib_floquet, model, branch, at, NULL, &h, x, 64, NULL, 0, &info);
+        break;
+    case 10: CALL(hbvib_branch_synthesis_with_hooks, branch, model, NULL, 64, y, x, f, &n, &h); break;
+    default: CALL(hbvib_linear_modes_with_hooks, model, count(0), (int32_t)(next() % 4), count(1), y, NULL, &h);
+    }
+}
+
+static void low(void)
+{
+    static double x[64], y[64], jac[1 << 12];
+    static unsigned char bytes[1 << 14];
+    hbvib_contact c = law((int32_t)(next() % 8), 0, HBVIB_GROUND, HBVIB_GROUND);
+    hbvib_model *model = NULL;
+    int which, i;
+    int64_t size = 0;
+    hbvib_status status;
+    for (i = 0; i < 64; i++) x[i] = number(1);
+    c.kt = number(1);
+    c.mu = number(0.3);
+    c.preload = number(1);
+    c.velocity = c.kind == HBVIB_REGULARISED ? number(0.1) : 0;
+    if (one_in(2)) {
+        CALL(hbvib_contact_evaluate, &c, 5, one_in(3) ? count(32) : 0, number(1), x, 6, y, 6, jac, 144);
+        return;
+    }
+    CALL(hbvib_model_save, some_model(&which), sizeof bytes, bytes, &size);
+    if (status != HBVIB_OK) return;
+    if (one_in(2)) bytes[next() % (uint64_t)size] ^= (unsigned char)(1 << next() % 8);
+    CALL(hbvib_model_load, one_in(4) ? (int64_t)(next() % (uint64_t)size) : size, bytes, &model);
+    if (model != NULL) CALL(hbvib_model_free, model);
+}
+
+static void end_one(void)
+{
+    hbvib_status status;
+    if (one_in(20)) CALL(hbvib_model_free, freed_model);
+    if (one_in(20)) CALL(hbvib_branch_free, freed_branch);
+    if (n_models > 0 && one_in(2)) {
+        const int i = (int)(next() % (uint64_t)n_models);
+        freed_model = models[i];
+        CALL(hbvib_model_free, freed_model);
+        models[i] = models[--n_models];
+        dofs[i] = dofs[n_models];
+    } else if (n_branches > 0) {
+        const int i = (int)(next() % (uint64_t)n_branches);
+        freed_branch = branches[i];
+        CALL(hbvib_branch_free, freed_branch);
+        branches[i] = branches[--n_branches];
+    }
+}
+
+int main(int argc, char **argv)
+{
+    const clock_t begin = clock();
+    double seconds;
+    int64_t most;
+    hbvib_status status;
+    int i;
+    if (argc < 3) return 2;
+    state = strtoull(argv[1], NULL, 10);
+    seconds = atof(argv[2]);
+    most = argc > 3 ? atoll(argv[3]) : INT64_MAX;
+    while (calls < most && (double)(clock() - begin) / CLOCKS_PER_SEC < seconds) {
+        switch (next() % 12) {
+        case 0: add_model(); break;
+        case 1:
+        case 2: change_model(); break;
+        case 3:
+        case 4: solve(); break;
+        case 5: end_one(); break;
+        case 6: low(); break;
+        default: ask();
+        }
+    }
+    while (n_models > 0) CALL(hbvib_model_free, models[--n_models]);
+    while (n_branches > 0) CALL(hbvib_branch_free, branches[--n_branches]);
+    for (i = 0; i < N_FUNCTIONS && outcomes[i].name != NULL; i++)
+        printf("%-40s %lld calls: %lld done, %lld stopped early, %lld refused\n", outcomes[i].name, (long long)outcomes[i].calls,
+               (long long)outcomes[i].succeeded, (long long)outcomes[i].stopped, (long long)outcomes[i].refused);
+    printf("%lld calls, %lld of %lld solves with a result, %.2f s the longest (%s), %lld failures\n", (long long)calls,
+           (long long)solved, (long long)solves, (double)longest / CLOCKS_PER_SEC, slowest, (long long)failures);
+    return failures == 0 && 3 * solved >= solves && longest < 2 * CLOCKS_PER_SEC ? 0 : 1;
+}
