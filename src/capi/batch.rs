@@ -3,7 +3,7 @@
 #![allow(non_camel_case_types)]
 
 use super::arrays::{Range, check_pointer, count, disjoint, input, output};
-use super::boundary::{WithArgument, call, call_count, within};
+use super::boundary::{WithArgument, call, call_count, call_to_free, within};
 use super::handles::{Kept, KeptBranch, Object, free, insert, read, write};
 use super::indices::index;
 use super::model::hbvib_model;
@@ -185,7 +185,7 @@ fn batch_options(o: &hbvib_batch_options) -> Result<BatchOptions> {
 /// Errors: HBVIB_E_HANDLE (freed before, for example), HBVIB_E_BUSY. Threads: any, once.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_batch_free(batch: *mut hbvib_batch) -> hbvib_status {
-    call(|| free::<Batch>(batch, 1).map(|()| Status::Ok))
+    call_to_free(|| free::<Batch>(batch, 1).map(|()| Status::Ok))
 }
 
 /// Number of designs of a batch; or a negative status.
