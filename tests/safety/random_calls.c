@@ -189,7 +189,7 @@ static hbvib_solver_options solver(void)
     if (one_in(10)) s.tol_residual = number(1e-9);
     if (one_in(10)) s.step_max = number(0.1);
     if (one_in(100)) s.struct_size = (uint32_t)next() % 300;
-    if (one_in(100)) s.reserved = (int32_t)next();
+    if (one_in(100)) s.num_threads = (int32_t)next();
     return s;
 }
 
