@@ -63,7 +63,7 @@ def figures(model: hbvib.Model, branches: List[Tuple[float, hbvib.Branch]], fold
     matplotlib.use("Agg")
     from matplotlib import pyplot
 
-    mode = model.nonlinear_mode((-6, -2), harmonics=9, response_dof=B2)
+    mode = model.nonlinear_mode((-6, -2), harmonics=9, response_dof=B2, step_max=0.005)  # small steps draw a smooth curve
     figure, axes = pyplot.subplots()
     for force, branch in branches:
         axes.semilogy(branch.omega / HZ, branch.amplitude, label=f"{force} N")

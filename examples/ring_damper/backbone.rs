@@ -84,6 +84,8 @@ pub struct Point {
     pub damping_ratio: f64,
     /// T = Σ ½(pω)² X_pᴴ M X_p, twice the mean kinetic energy, J.
     pub energy: f64,
+    /// Kinetic energy of a sector, largest over the period, J; T for masses in phase without higher harmonics.
+    pub kinetic_peak: f64,
     /// Work of friction per cycle, J.
     pub dissipation: f64,
     /// Motion of all degrees of freedom.
@@ -101,6 +103,7 @@ impl Point {
             frequency: omega / TAU,
             damping_ratio: mode.damping_ratio,
             energy: mode.energy,
+            kinetic_peak: branch.energy_at(number)?.kinetic_peak,
             dissipation: mode.friction_loss,
             harmonics: harmonics(branch, number, &REPORTED_DOFS)?,
             errors: branch

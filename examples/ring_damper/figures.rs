@@ -192,8 +192,9 @@ impl Study {
             mode.write(folder)?;
             overlay = Some(mode);
             // Divided by the force, all curves of the stuck ring coincide, and so do those of the sliding ring.
-            self.plot(&cases, |force| force, "Amplitude of b2 / force [m/N]")
-                .save(&folder.join("figure5_receptance"))?;
+            let mut receptance = self.plot(&cases, |force| force, "Amplitude of b2 / force [m/N]");
+            receptance.title = "Amplitude per force under different forces (30 g, 3000 rpm)".into();
+            receptance.save(&folder.join("figure5_receptance"))?;
         }
         figure.save(&stem)?;
 

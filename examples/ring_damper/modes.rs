@@ -71,12 +71,12 @@ pub fn against_energy(folder: &Path) -> Result<(), Box<dyn Error>> {
         |number: u32, what: &str, column: &str, y_label: &str, curve: Vec<(f64, f64)>, mark: Option<(f64, f64)>| {
             let stem = folder.join(format!("figure{number}"));
             let rows: Vec<Vec<f64>> = curve.iter().map(|p| vec![p.0, p.1]).collect();
-            write_csv(stem.with_extension("csv"), &["energy_J", column], &rows)?;
+            write_csv(stem.with_extension("csv"), &["kinetic_energy_peak_J", column], &rows)?;
             let mut series = vec![Series::new("", Style::Line, curve)];
             series.extend(mark.map(|p| Series::new("", Style::Markers, vec![p])));
             let figure = Figure {
                 title: format!("{what}: {case}"),
-                x_label: "Energy per sector, twice the mean kinetic [J]".into(),
+                x_label: "Kinetic energy per sector, peak [J]".into(),
                 y_label: y_label.into(),
                 log_x: true,
                 series,
@@ -84,7 +84,7 @@ pub fn against_energy(folder: &Path) -> Result<(), Box<dyn Error>> {
             };
             figure.save(&stem)
         };
-    let curve = |y: fn(&Point) -> f64| mode.points.iter().map(|p| (p.energy, y(p))).collect();
+    let curve = |y: fn(&Point) -> f64| mode.points.iter().map(|p| (p.kinetic_peak, y(p))).collect();
     one(
         8,
         "Frequency",
@@ -93,13 +93,13 @@ pub fn against_energy(folder: &Path) -> Result<(), Box<dyn Error>> {
         curve(|p| p.frequency),
         None,
     )?;
-    let mark = Some((peak.energy, peak.damping_ratio));
+    let mark = Some((peak.kinetic_peak, 100.0 * peak.damping_ratio));
     one(
         9,
         "Damping",
-        "damping_ratio",
-        "Damping ratio",
-        curve(|p| p.damping_ratio),
+        "damping_ratio_percent",
+        "Damping ratio [%]",
+        curve(|p| 100.0 * p.damping_ratio),
         mark,
     )?;
 
@@ -116,7 +116,7 @@ pub fn against_energy(folder: &Path) -> Result<(), Box<dyn Error>> {
         stuck.frequency,
         sliding.frequency,
         peak.damping_ratio,
-        peak.energy,
+        peak.kinetic_peak,
         mode.points.len()
     )?;
     Ok(())

@@ -20,24 +20,39 @@ def axes(count: int = 1) -> Any:
     return pyplot.subplots(count, sharex=True, layout="constrained")[1]
 
 
+def through(x: Any, y: Any, peak_x: Any, peak_y: Any) -> tuple[Any, Any]:
+    """A curve through its peaks, which lie between its points: each is put into the segment that it lengthens least."""
+    for px, py in zip(peak_x, peak_y) if len(x) > 1 else ():
+        wide, high = max(np.ptp(x), 1e-300), max(np.ptp(y), 1e-300)
+        distance = np.hypot((x - px) / wide, (y - py) / high)
+        longer = distance[:-1] + distance[1:] - np.hypot(np.diff(x) / wide, np.diff(y) / high)
+        place = int(np.argmin(longer)) + 1
+        x, y = np.insert(x, place, px), np.insert(y, place, py)
+    return x, y
+
+
 def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
     """See Branch.plot."""
     unit, name = (2 * np.pi, "frequency / Hz") if hertz else (1.0, "angular frequency omega")
     if branch.is_mode:
         above, below = axes(2) if ax is None else ax
+        largest = [branch.mode_point(int(point)) for point in branch.peaks().point]
+        place, ratio = np.log10([p.modal_amplitude for p in largest]), [p.damping_ratio for p in largest]
+        x, y = through(np.log10(branch.modal_amplitude), branch.damping_ratio, place, ratio)
         above.semilogx(branch.modal_amplitude, branch.omega / unit, **line)
         above.set(ylabel=name)
-        below.semilogx(branch.modal_amplitude, 100 * branch.damping_ratio, **line)
+        below.semilogx(10**x, 100 * y, **line)
         below.set(xlabel="modal amplitude", ylabel="damping ratio / %")
         return above, below
     ax = axes() if ax is None else ax
+    peaks = branch.peaks()
     drawn: Any = None
     for unstable, omega, amplitude in stretches(branch):
         if drawn is not None:
             line = {**line, "color": drawn.get_color(), "label": None}
         style = {"linestyle": "--"} if unstable else {}
-        (drawn,) = ax.plot(omega / unit, amplitude, **{**line, **style})
-    peaks = branch.peaks()
+        x, y = through(omega, amplitude, peaks.omega, peaks.amplitude) if len(omega) == len(branch) else (omega, amplitude)
+        (drawn,) = ax.plot(x / unit, y, **{**line, **style})
     ax.plot(peaks.omega / unit, peaks.amplitude, "o", color=drawn.get_color(), markersize=4)
     ax.set(xlabel=name, ylabel="peak amplitude of harmonic 1")
     return ax

@@ -85,7 +85,6 @@ fn pkg_config(arguments: &[&str]) -> Vec<String> {
 /// What a program needs besides its own sources to be linked with the shared library.
 fn linked() -> Vec<String> {
     let mut flags = pkg_config(&["--cflags", "--libs"]);
-    flags.push(format!("-Wl,-rpath,{}", pkg_config(&["--variable=libdir"])[0]));
     flags.push("-lm".to_owned());
     flags
 }

@@ -98,11 +98,16 @@ check("a stop is told", "STOPPED_MAX_POINTS: " in repr(stopped) and "max_points"
 
 # Figures.
 axes = branch.plot(hertz=True, label="5 N")
-close("a figure has the curve", axes.lines[0].get_xydata()[:, 0], branch.omega / (2 * np.pi), 0)
+x, y = axes.lines[0].get_xydata().T
+check("a figure has every point of the curve", set(branch.omega / (2 * np.pi)) <= set(x))
+check("and goes through the peak", y.max() == branch.peaks().amplitude.max() > branch.amplitude.max())
+apart = np.abs(x - branch.peaks().omega[0] / (2 * np.pi))
+check("which is put between its neighbours", (np.diff(x) > 0).all() and apart.argmin() == y.argmax())
 close("peaks are marked", axes.lines[1].get_xydata()[:, 1], branch.peaks().amplitude, 0)
 check("axes of a call are used", branch.plot(axes) is axes and len(axes.lines) == 4)
 above, below = mode.plot()
-close("damping is in per cent", below.lines[0].get_xydata()[:, 1], 100 * mode.damping_ratio, 0)
+drawn = below.lines[0].get_xydata()[:, 1]
+close("damping is in per cent, with its maximum", drawn.max(), 100 * mode.mode_point(mode.peaks().point[0]).damping_ratio, 0)
 loop = branch.plot_loop(peak, 0).lines[0].get_xydata()
 close("a loop is closed and has the force of the contact", loop[:-1, 1], branch.loop(peak, 0).force, 0)
 check("its end is its beginning", (loop[0] == loop[-1]).all())
