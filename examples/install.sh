@@ -58,7 +58,7 @@ ln -sf "libhbvib.so.$abi" "$prefix/lib/libhbvib.so"
 stripped libhbvib.a --strip-debug
 put 644 "$scratch/libhbvib.a" lib/libhbvib.a
 
-for file in hbvib.h hbvib.hpp hbvib.f90; do put 644 "include/$file" "include/$file"; done
+for file in hbvib.h hbvib_plain.h hbvib.hpp hbvib.f90; do put 644 "include/$file" "include/$file"; done
 for file in include/hbvib/*.py include/hbvib/py.typed; do put 644 "$file" "share/hbvib/hbvib/${file##*/}"; done
 for file in LICENSE-MIT LICENSE-APACHE; do put 644 "$file" "share/doc/hbvib/$file"; done
 fill hbvib.pc lib/pkgconfig/hbvib.pc

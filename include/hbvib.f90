@@ -1620,6 +1620,20 @@ contains
       end do
    end function hbvib_text
 
+   !> For every function that returns a status: call hbvib_check(model%new(4)) ends the program with the sentence of the library
+   !> where the status is an error. With stat, that receives the status and the program goes on.
+   subroutine hbvib_check(status, stat)
+      use, intrinsic :: iso_fortran_env, only: error_unit
+      integer(i32), intent(in) :: status
+      integer(i32), intent(out), optional :: stat
+      if (present(stat)) then
+         stat = status
+      else if (status < HBVIB_OK) then
+         write (error_unit, '(a)') hbvib_text(hbvib_status_name(status))//': '//hbvib_error_text()
+         stop 1, quiet=.true.
+      end if
+   end subroutine hbvib_check
+
    function hooks_of(progress, log, log_level, user, cancel, phase) result(hooks)
       procedure(hbvib_progress_fn), optional :: progress
       procedure(hbvib_log_fn), optional :: log
@@ -1761,14 +1775,23 @@ contains
    end subroutine struct_dofs
 
    !> Options with indices from 0; unallocated, and so absent to C, where none were given.
-   subroutine solver_from_one(status, solver, ndof, chosen)
+   subroutine solver_from_one(status, solver, ndof, chosen, tolerance, harmonics, response_dof)
       integer(i32), intent(inout) :: status
       type(hbvib_solver_options), intent(in), optional :: solver
       integer(i64), intent(in) :: ndof
       type(hbvib_solver_options), allocatable, intent(out) :: chosen
-      if (.not. present(solver)) return
-      allocate (chosen, source=solver)
-      call to_zero(status, 'response_dof', solver%response_dof, ndof, chosen%response_dof, -1_i32)
+      real(dp), intent(in), optional :: tolerance
+      integer, intent(in), optional :: harmonics, response_dof
+      if (.not. (present(solver) .or. present(tolerance) .or. present(harmonics) .or. present(response_dof))) return
+      allocate (chosen)
+      if (present(solver)) chosen = solver
+      if (present(harmonics)) then
+         chosen%harmonics = harmonics
+         chosen%tolerance = 0
+      end if
+      if (present(tolerance)) chosen%tolerance = tolerance
+      if (present(response_dof)) chosen%response_dof = response_dof
+      call to_zero(status, 'response_dof', chosen%response_dof, ndof, chosen%response_dof, -1_i32)
    end subroutine solver_from_one
 
    !> Status of an allocation.
@@ -2684,7 +2707,9 @@ contains
    end function model_check_jacobian
 
    !> Periodic response over omega_start .. omega_stop. at: requested exact frequencies. guess(ndof, 0:H): start values.
-   function model_forced_response(self, branch, omega_start, omega_stop, solver, hooks, at, guess) result(status)
+   !> tolerance, harmonics (alone: exactly so many), response_dof: instead of those of solver.
+   function model_forced_response(self, branch, omega_start, omega_stop, solver, hooks, at, guess, tolerance, harmonics, &
+      response_dof) result(status)
       class(hbvib_model), intent(in) :: self
       type(hbvib_branch), intent(inout) :: branch
       real(dp), intent(in) :: omega_start, omega_stop
@@ -2692,6 +2717,8 @@ contains
       type(hbvib_hooks), intent(in), optional :: hooks
       real(dp), intent(in), contiguous, target, optional :: at(:)
       complex(dp), intent(in), contiguous, target, optional :: guess(:, :)
+      real(dp), intent(in), optional :: tolerance
+      integer, intent(in), optional :: harmonics, response_dof
       integer(i32) :: status
       type(hbvib_forced_options) :: forced
       type(hbvib_solver_options), allocatable :: chosen
@@ -2700,7 +2727,7 @@ contains
       if (status == HBVIB_E_BUSY) return
       status = HBVIB_OK
       ndof = hbvib_model_dofs(self%handle)
-      call solver_from_one(status, solver, ndof, chosen)
+      call solver_from_one(status, solver, ndof, chosen, tolerance, harmonics, response_dof)
       forced%omega_start = omega_start
       forced%omega_stop = omega_stop
       if (present(at)) then
@@ -2716,8 +2743,10 @@ contains
    end function model_forced_response
 
    !> Nonlinear mode over log10 amplitudes log10_start .. log10_stop. mode: the other options, whose range is not looked at.
-   !> at: log10 of requested exact amplitudes. shape(ndof): the linear mode most similar to it.
-   function model_nonlinear_mode(self, branch, log10_start, log10_stop, mode, solver, hooks, at, shape) result(status)
+   !> at: log10 of requested exact amplitudes. shape(ndof): the linear mode most similar to it. tolerance, harmonics,
+   !> response_dof: as in forced_response.
+   function model_nonlinear_mode(self, branch, log10_start, log10_stop, mode, solver, hooks, at, shape, tolerance, harmonics, &
+      response_dof) result(status)
       class(hbvib_model), intent(in) :: self
       type(hbvib_branch), intent(inout) :: branch
       real(dp), intent(in) :: log10_start, log10_stop
@@ -2726,6 +2755,8 @@ contains
       type(hbvib_hooks), intent(in), optional :: hooks
       real(dp), intent(in), contiguous, target, optional :: at(:)
       complex(dp), intent(in), contiguous, target, optional :: shape(:)
+      real(dp), intent(in), optional :: tolerance
+      integer, intent(in), optional :: harmonics, response_dof
       integer(i32) :: status
       type(hbvib_mode_options) :: m
       type(hbvib_solver_options), allocatable :: chosen
@@ -2739,7 +2770,7 @@ contains
       call to_zero(status, 'mode_index', m%mode_index, ndof, m%mode_index)
       call to_zero(status, 'amplitude_contact', m%amplitude_contact, contacts, m%amplitude_contact, -1_i32)
       call to_zero(status, 'reference_dof', m%reference_dof, ndof, m%reference_dof, -1_i32)
-      call solver_from_one(status, solver, ndof, chosen)
+      call solver_from_one(status, solver, ndof, chosen, tolerance, harmonics, response_dof)
       m%log10_start = log10_start
       m%log10_stop = log10_stop
       if (present(at)) then

@@ -96,6 +96,18 @@
 #endif
 #endif
 
+/* Statuses that a caller ignores are warned of in C++17 and C23. Define it empty to silence the
+ * warnings, or cast to void. */
+#ifndef HBVIB_NODISCARD
+#if defined(__cplusplus) && __cplusplus >= 201703L
+#define HBVIB_NODISCARD [[nodiscard]]
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 202311L
+#define HBVIB_NODISCARD [[nodiscard]]
+#else
+#define HBVIB_NODISCARD
+#endif
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -284,6 +296,7 @@ typedef struct {
 /// a          the struct; untouched on error.
 /// size_of_a  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_matrix_init(hbvib_matrix *a, size_t size_of_a);
 
 /// The matrices of a structure.
@@ -320,6 +333,7 @@ typedef enum {
 /// ndof  degrees of freedom, 1 .. 2^31.
 /// out   receives the model; untouched on error. Free it by hbvib_model_free.
 /// Errors: HBVIB_E_DIMENSION, HBVIB_E_NULL, HBVIB_E_OUT_OF_MEMORY. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_new(int64_t ndof, hbvib_model **out);
 
 /// Copies a model.
@@ -327,6 +341,7 @@ hbvib_status hbvib_model_new(int64_t ndof, hbvib_model **out);
 /// out  receives the copy; untouched on error. Free it by hbvib_model_free.
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed), HBVIB_E_NULL, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may copy and solve one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_clone(const hbvib_model *model, hbvib_model **out);
 
 /// Frees a model. Branches solved from it stay. NULL is accepted and does nothing.
@@ -362,6 +377,7 @@ int64_t hbvib_model_contacts(const hbvib_model *model);
 /// HBVIB_E_DIMENSION, HBVIB_E_ARGUMENT, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_NOT_POSITIVE_DEFINITE (negative diagonal mass), HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_matrix(hbvib_model *model, int32_t which, const hbvib_matrix *a);
 
 /// Fixes degrees of freedom: they do not move, whatever matrices, contacts and forces say, now or
@@ -374,6 +390,7 @@ hbvib_status hbvib_model_set_matrix(hbvib_model *model, int32_t which, const hbv
 /// freedom left, a contact or spring both sides of which would be fixed), HBVIB_E_DIMENSION (n),
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY; the model is then unchanged.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_fix(hbvib_model *model, int64_t n, const int64_t *dofs);
 
 /// Adds alpha_mass * M + beta_stiffness * K to the damping; a later call replaces an earlier one. K
@@ -381,6 +398,7 @@ hbvib_status hbvib_model_fix(hbvib_model *model, int64_t n, const int64_t *dofs)
 ///
 /// alpha_mass, beta_stiffness  finite, 1 / time and time.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_rayleigh(hbvib_model *model, double alpha_mass, double beta_stiffness);
 
 /// Adds many linear springs from arrays; they take no part in Rayleigh damping. All springs are
@@ -394,6 +412,7 @@ hbvib_status hbvib_model_set_rayleigh(hbvib_model *model, double alpha_mass, dou
 /// plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_DIMENSION (n), HBVIB_E_NULL, HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY, naming the entry.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_springs(hbvib_model *model,
                                      int64_t n,
                                      const int64_t *dof_a,
@@ -409,6 +428,7 @@ hbvib_status hbvib_model_add_springs(hbvib_model *model,
 /// re, im    finite, force, peak; im must be 0 for a constant force.
 /// Errors: HBVIB_E_INDEX (dof), HBVIB_E_ARGUMENT (harmonic, im), HBVIB_E_NOT_FINITE,
 /// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_force(hbvib_model *model,
                                    int64_t dof,
                                    int64_t harmonic,
@@ -418,6 +438,7 @@ hbvib_status hbvib_model_add_force(hbvib_model *model,
 /// Removes all forces.
 ///
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_clear_forces(hbvib_model *model);
 
 /// Sets the loss factor eta of structural damping i eta K in harmonics above 0; a later call
@@ -429,6 +450,7 @@ hbvib_status hbvib_model_clear_forces(hbvib_model *model);
 /// loss_factor  at least 0.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_ARGUMENT, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_loss_factor(hbvib_model *model, double loss_factor);
 
 /// Damps the lowest natural modes of each nodal diameter by given ratios, as the viscous matrix sum
@@ -442,6 +464,7 @@ hbvib_status hbvib_model_set_loss_factor(hbvib_model *model, double loss_factor)
 /// HBVIB_E_UNSUPPORTED (more than 2000 degrees of freedom), those of hbvib_linear_modes, after all
 /// of which the model is unchanged; HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_modal_damping(hbvib_model *model, int64_t n, const double *ratios);
 
 /// Sets a fixed speed of rotation Omega: M x'' + (C + Omega G) x' + (K + Omega^2 K1) x + f = f_ex
@@ -450,6 +473,7 @@ hbvib_status hbvib_model_set_modal_damping(hbvib_model *model, int64_t n, const 
 ///
 /// speed  rad per time unit, finite, of any sign.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_speed(hbvib_model *model, double speed);
 
 /// Ties the speed of rotation to the angular frequency omega of the response: Omega = per_omega *
@@ -458,6 +482,7 @@ hbvib_status hbvib_model_set_speed(hbvib_model *model, double speed);
 /// per_omega  finite, of any sign.
 /// Errors: HBVIB_E_NOT_FINITE, HBVIB_E_ARGUMENT (a load that decreases with the speed),
 /// HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_speed_per_omega(hbvib_model *model, double per_omega);
 
 /// Sets the normal load of a contact to preload + per_speed2 * Omega^2; a later call, or one of
@@ -469,6 +494,7 @@ hbvib_status hbvib_model_set_speed_per_omega(hbvib_model *model, double per_omeg
 /// per_speed2  force times time^2, finite; at least 0 where the speed is tied to the frequency.
 /// Errors: HBVIB_E_INDEX (id), HBVIB_E_ARGUMENT (no normal load, a negative number),
 /// HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_preload_at_speed(hbvib_model *model,
                                               int64_t id,
                                               double preload,
@@ -484,6 +510,7 @@ hbvib_status hbvib_model_set_preload_at_speed(hbvib_model *model,
 /// Errors: HBVIB_E_INDEX (dof_x, dof_y), HBVIB_E_ARGUMENT (the same degree of freedom twice),
 /// HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_unbalance(hbvib_model *model,
                                        int64_t dof_x,
                                        int64_t dof_y,
@@ -504,6 +531,7 @@ typedef enum {
 ///
 /// engine_order  receives the number; untouched on error.
 /// Errors: HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_wave(const hbvib_model *model, int64_t *engine_order);
 
 /// The entries of a matrix of a model, or of a block of it, each once, column after column, without
@@ -521,6 +549,7 @@ hbvib_status hbvib_model_wave(const hbvib_model *model, int64_t *engine_order);
 /// Errors: HBVIB_E_ARGUMENT (which, block), HBVIB_E_UNSUPPORTED (given per nodal diameter),
 /// HBVIB_E_DIMENSION (capacity), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY (being changed).
 /// Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_matrix(const hbvib_model *model,
                                 int32_t which,
                                 int32_t block,
@@ -540,6 +569,7 @@ hbvib_status hbvib_model_matrix(const hbvib_model *model,
 /// Without arrays only the count is returned.
 /// Errors: HBVIB_E_DIMENSION (capacity), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_springs(const hbvib_model *model,
                                  int64_t capacity,
                                  int64_t *dof_a,
@@ -561,6 +591,7 @@ hbvib_status hbvib_model_springs(const hbvib_model *model,
 /// Without arrays only the count is returned.
 /// Errors: HBVIB_E_DIMENSION (capacity), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_forces(const hbvib_model *model,
                                 int64_t capacity,
                                 int64_t *dof,
@@ -580,6 +611,7 @@ hbvib_status hbvib_model_forces(const hbvib_model *model,
 /// Errors: HBVIB_E_UNSUPPORTED (a force of the caller, naming its contact), HBVIB_E_DIMENSION
 /// (capacity too small: bytes has no model), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY (being
 /// changed). Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_save(const hbvib_model *model,
                               int64_t capacity,
                               void *bytes,
@@ -594,6 +626,7 @@ hbvib_status hbvib_model_save(const hbvib_model *model,
 /// HBVIB_E_UNSUPPORTED (saved by a newer library), HBVIB_E_DIMENSION (length), HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY; others where bytes that were not saved by the library describe no model.
 /// Memory is taken in proportion to length at most. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_load(int64_t length, const void *bytes, hbvib_model **out);
 
 /* ==============================================================================================
@@ -608,6 +641,7 @@ hbvib_status hbvib_model_load(int64_t length, const void *bytes, hbvib_model **o
 /// out          receives the model; untouched on error. Free it by hbvib_model_free.
 /// Errors: HBVIB_E_DIMENSION (ndof_sector), HBVIB_E_ARGUMENT (sectors), HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_new(int64_t ndof_sector, int64_t sectors, hbvib_model **out);
 
 /// Sets the coupling of a sector to the next one: rows of sector s, columns of s + 1. The coupling
@@ -621,6 +655,7 @@ hbvib_status hbvib_cyclic_new(int64_t ndof_sector, int64_t sectors, hbvib_model 
 /// phi).
 /// Errors: as hbvib_model_set_matrix; HBVIB_E_UNSUPPORTED for a plain structure.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_set_coupling(hbvib_model *model,
                                        int32_t which,
                                        const hbvib_matrix *to_next);
@@ -632,6 +667,7 @@ hbvib_status hbvib_cyclic_set_coupling(hbvib_model *model,
 /// to_previous  ndof x ndof, any matrix.
 /// Errors: as hbvib_cyclic_set_coupling; HBVIB_E_UNSUPPORTED for the mass.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_set_coupling_previous(hbvib_model *model,
                                                 int32_t which,
                                                 const hbvib_matrix *to_previous);
@@ -645,6 +681,7 @@ hbvib_status hbvib_cyclic_set_coupling_previous(hbvib_model *model,
 /// a         ndof x ndof, Hermitian; all but M may be HBVIB_GENERAL or HBVIB_SYMMETRIC.
 /// Errors: as hbvib_model_set_matrix; HBVIB_E_ARGUMENT for a diameter out of range and for
 /// matrices that were given by sector blocks. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model,
                                        int32_t which,
                                        int64_t diameter,
@@ -655,6 +692,7 @@ hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model,
 /// effect on a plain structure.
 ///
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_set_wave(hbvib_model *model, int64_t engine_order);
 
 /// Frame of the degrees of freedom of a sector with faces.
@@ -715,6 +753,7 @@ typedef struct {
 /// s          the struct; untouched on error.
 /// size_of_s  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_sector_init(hbvib_sector *s, size_t size_of_s);
 
 /// Creates a cyclic structure from a sector with faces: all matrices zero, no contact, no force.
@@ -737,6 +776,7 @@ hbvib_status hbvib_sector_init(hbvib_sector *s, size_t size_of_s);
 /// faces or twice in one, a pair fixed on one side only, a node on the axis, coordinates that
 /// contradict direction or sectors), HBVIB_E_NOT_FINITE, naming pair and degree of freedom;
 /// HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_OUT_OF_MEMORY. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_from_sector(const hbvib_sector *sector, hbvib_model **out);
 
 /* ==============================================================================================
@@ -833,6 +873,7 @@ typedef struct {
 /// c          the struct; untouched on error.
 /// size_of_c  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
 
 /// Adds a contact. Equal contacts add up.
@@ -844,6 +885,7 @@ hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);
 /// sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c, int64_t *id);
 
 /// Changes the normal load of a contact. HBVIB_CUBIC, tables, polynomials and forces of the caller
@@ -853,6 +895,7 @@ hbvib_status hbvib_model_add_contact(hbvib_model *model, const hbvib_contact *c,
 /// preload  force, >= 0; infinite for HBVIB_JENKINS alone, which then never slips.
 /// Errors: HBVIB_E_INDEX (id), HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double preload);
 
 /// Adds many Jenkins contacts from arrays; entry i of each array describes contact i. All contacts
@@ -865,6 +908,7 @@ hbvib_status hbvib_model_set_preload(hbvib_model *model, int64_t id, double prel
 /// first_id       receives the number of the first contact, the others follow; may be NULL.
 /// Errors: as hbvib_model_add_contact, naming the entry; HBVIB_E_DIMENSION (n).
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_jenkins(hbvib_model *model,
                                      int64_t n,
                                      const int64_t *dof_a,
@@ -890,6 +934,7 @@ hbvib_status hbvib_model_add_jenkins(hbvib_model *model,
 /// sides, sector_offset in a plain structure), HBVIB_E_DIMENSION (elements < 0),
 /// HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_iwan(hbvib_model *model,
                                   int64_t dof_a,
                                   int64_t dof_b,
@@ -915,6 +960,7 @@ hbvib_status hbvib_model_add_iwan(hbvib_model *model,
 /// not sorted, equal sides, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_NULL,
 /// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_table(hbvib_model *model,
                                    int64_t dof_a,
                                    int64_t dof_b,
@@ -938,6 +984,7 @@ hbvib_status hbvib_model_add_table(hbvib_model *model,
 /// Errors: HBVIB_E_INDEX (dof_a, dof_b), HBVIB_E_DIMENSION (n_spring, n_damper), HBVIB_E_ARGUMENT
 /// (equal sides, sector_offset in a plain structure), HBVIB_E_NOT_FINITE, HBVIB_E_NULL,
 /// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_spring_damper(hbvib_model *model,
                                            int64_t dof_a,
                                            int64_t dof_b,
@@ -965,6 +1012,7 @@ hbvib_status hbvib_model_add_spring_damper(hbvib_model *model,
 /// Errors: HBVIB_E_INDEX (dofs, direction), HBVIB_E_DIMENSION (n_dofs, n_terms), HBVIB_E_ARGUMENT
 /// (exponents, a degree of freedom twice), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_polynomial(hbvib_model *model,
                                         const int64_t *dofs,
                                         int64_t n_dofs,
@@ -988,6 +1036,7 @@ hbvib_status hbvib_model_add_polynomial(hbvib_model *model,
 /// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n), HBVIB_E_ARGUMENT (a degree of freedom
 /// twice), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_stiffness_tensors(hbvib_model *model,
                                                const int64_t *dofs,
                                                int64_t n,
@@ -1019,6 +1068,7 @@ hbvib_status hbvib_model_add_stiffness_tensors(hbvib_model *model,
 /// area, pressure, equal sides, a degree of freedom twice on one side), HBVIB_E_NOT_FINITE,
 /// naming the entry; HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_patch(hbvib_model *model,
                                    const hbvib_contact *law,
                                    int64_t n,
@@ -1041,6 +1091,7 @@ hbvib_status hbvib_model_add_patch(hbvib_model *model,
 /// per_speed2  receives the load per speed squared of hbvib_model_set_preload_at_speed, or NULL.
 /// Errors: HBVIB_E_INDEX (id), HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY.
 /// Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_contact(const hbvib_model *model,
                                  int64_t id,
                                  hbvib_contact *out,
@@ -1152,6 +1203,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_user_force_init(hbvib_user_force *o, size_t size_of_o);
 
 /// Adds a force of the caller, which counts as a contact. The callback is not called here, but by
@@ -1169,6 +1221,7 @@ hbvib_status hbvib_user_force_init(hbvib_user_force *o, size_t size_of_o);
 /// Errors: HBVIB_E_INDEX (dofs), HBVIB_E_DIMENSION (n, states, samples), HBVIB_E_ARGUMENT (flags, a
 /// degree of freedom twice), HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL (force, dofs), HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+HBVIB_NODISCARD
 hbvib_status hbvib_model_add_user_force(hbvib_model *model, const hbvib_user_force *o, int64_t *id);
 
 /// Derivatives that a force callback writes.
@@ -1221,6 +1274,7 @@ typedef struct {
 /// gap          the struct; untouched on error.
 /// size_of_gap  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_jacobian_gap_init(hbvib_jacobian_gap *gap, size_t size_of_gap);
 
 /// Compares every derivative that a force of the caller writes with central differences of its own
@@ -1237,6 +1291,7 @@ hbvib_status hbvib_jacobian_gap_init(hbvib_jacobian_gap *gap, size_t size_of_gap
 /// Errors: HBVIB_E_INDEX (contact), HBVIB_E_ARGUMENT (not a force of the caller, omega, amplitude),
 /// HBVIB_E_DIMENSION (amplitude_len), HBVIB_E_CALLBACK, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_check_jacobian(const hbvib_model *model,
                                   int64_t contact,
                                   double omega,
@@ -1333,6 +1388,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_solver_options_init(hbvib_solver_options *o, size_t size_of_o);
 
 /// State of a solve, passed to the progress callback.
@@ -1449,6 +1505,7 @@ typedef struct {
 /// h          the struct; untouched on error.
 /// size_of_h  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_hooks_init(hbvib_hooks *h, size_t size_of_h);
 
 /// A branch of solutions, created by hbvib_forced_response or hbvib_nonlinear_mode.
@@ -1479,6 +1536,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_forced_options_init(hbvib_forced_options *o, size_t size_of_o);
 
 /// Follows the periodic response of a model to its forces over a range of frequency, by harmonic
@@ -1499,6 +1557,7 @@ hbvib_status hbvib_forced_options_init(hbvib_forced_options *o, size_t size_of_o
 /// HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.
+HBVIB_NODISCARD
 hbvib_status hbvib_forced_response(const hbvib_model *model,
                                    const hbvib_solver_options *solver,
                                    const hbvib_forced_options *forced,
@@ -1531,6 +1590,7 @@ int64_t hbvib_branch_stored(const hbvib_branch *branch);
 /// covered, positive if it stopped early.
 ///
 /// Errors: HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_status(const hbvib_branch *branch);
 
 /// Results that a branch holds for each point of the curve. Energies are of one sector. All are
@@ -1607,6 +1667,7 @@ typedef struct {
 /// v          the struct; untouched on error.
 /// size_of_v  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_view_init(hbvib_view *v, size_t size_of_v);
 
 /// Borrows the values of a field at the points of the curve, in the order in which it was followed.
@@ -1618,6 +1679,7 @@ hbvib_status hbvib_view_init(hbvib_view *v, size_t size_of_v);
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
 /// Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_field(const hbvib_branch *branch, int32_t field, hbvib_view *out);
 
 /// Recovers harmonics 0 .. H of a range of degrees of freedom at a stored point, in the caller's
@@ -1632,6 +1694,7 @@ hbvib_status hbvib_branch_field(const hbvib_branch *branch, int32_t field, hbvib
 /// x_len      complex numbers in it.
 /// Errors: HBVIB_E_INDEX (point, first_dof), HBVIB_E_DIMENSION (n_dof, x_len, with the value
 /// needed), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_harmonics(const hbvib_branch *branch,
                                     int64_t point,
                                     int64_t first_dof,
@@ -1650,6 +1713,7 @@ hbvib_status hbvib_branch_harmonics(const hbvib_branch *branch,
 /// x_len      complex numbers in it.
 /// hooks      phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_branch_harmonics.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_harmonics_with_hooks(const hbvib_branch *branch,
                                                int64_t point,
                                                int64_t first_dof,
@@ -1667,6 +1731,7 @@ hbvib_status hbvib_branch_harmonics_with_hooks(const hbvib_branch *branch,
 /// x      receives n doubles; untouched on error.
 /// Errors: HBVIB_E_INDEX (point, dof), HBVIB_E_DIMENSION (n), HBVIB_E_NULL, HBVIB_E_HANDLE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_time_history(const hbvib_branch *branch,
                                        int64_t point,
                                        int64_t dof,
@@ -1682,6 +1747,7 @@ hbvib_status hbvib_branch_time_history(const hbvib_branch *branch,
 /// x      receives n doubles; untouched on error.
 /// hooks  phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_branch_time_history.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_time_history_with_hooks(const hbvib_branch *branch,
                                                   int64_t point,
                                                   int64_t dof,
@@ -1697,6 +1763,7 @@ hbvib_status hbvib_branch_time_history_with_hooks(const hbvib_branch *branch,
 /// shares_len  doubles in it.
 /// Errors: HBVIB_E_INDEX (point), HBVIB_E_DIMENSION (shares_len), HBVIB_E_NULL, HBVIB_E_HANDLE.
 /// Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_slip_fraction(const hbvib_branch *branch,
                                         int64_t point,
                                         double *shares,
@@ -1713,6 +1780,7 @@ hbvib_status hbvib_branch_slip_fraction(const hbvib_branch *branch,
 /// Without arrays only the count is returned.
 /// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
 /// HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_peaks(const hbvib_branch *branch,
                                 int64_t capacity,
                                 double *omega,
@@ -1724,6 +1792,7 @@ hbvib_status hbvib_branch_peaks(const hbvib_branch *branch,
 /// order of the branch.
 ///
 /// Arguments, errors and threads as for hbvib_branch_peaks.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_folds(const hbvib_branch *branch,
                                 int64_t capacity,
                                 double *omega,
@@ -1742,6 +1811,7 @@ hbvib_status hbvib_branch_folds(const hbvib_branch *branch,
 ///            folded, none where it ended before.
 /// Errors: HBVIB_E_INDEX (wanted), else as for hbvib_branch_peaks. Threads: any number on one
 /// branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_at(const hbvib_branch *branch,
                              int64_t wanted,
                              int64_t capacity,
@@ -1798,6 +1868,7 @@ typedef struct {
 /// r          the struct; untouched on error.
 /// size_of_r  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_reduction_init(hbvib_reduction *r, size_t size_of_r);
 
 /// Size of the problem that was solved, the parts that were removed from it, and the degree of
@@ -1805,6 +1876,7 @@ hbvib_status hbvib_reduction_init(hbvib_reduction *r, size_t size_of_r);
 ///
 /// out  receives the numbers; fill it by hbvib_reduction_init before; untouched on error.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_reduction(const hbvib_branch *branch, hbvib_reduction *out);
 
 /// Energies and losses of one point, in the units of the caller. Fill it by hbvib_energy_init. In a
@@ -1848,6 +1920,7 @@ typedef struct {
 /// e          the struct; untouched on error.
 /// size_of_e  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);
 
 /// Energies and losses of a stored point.
@@ -1856,6 +1929,7 @@ hbvib_status hbvib_energy_init(hbvib_energy *e, size_t size_of_e);
 /// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
 /// Errors: HBVIB_E_INDEX (point), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_energy(const hbvib_branch *branch, int64_t point, hbvib_energy *out);
 
 /// The same as hbvib_branch_energy; a hook or the cancel flag may stop it. The status
@@ -1865,6 +1939,7 @@ hbvib_status hbvib_branch_energy(const hbvib_branch *branch, int64_t point, hbvi
 /// out    receives the numbers; fill it by hbvib_energy_init before; untouched on error.
 /// hooks  phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_branch_energy.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_energy_with_hooks(const hbvib_branch *branch,
                                             int64_t point,
                                             hbvib_energy *out,
@@ -1903,6 +1978,7 @@ typedef enum {
 /// (n), HBVIB_E_NULL, HBVIB_E_ARGUMENT (overlapping arrays), HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY,
 /// HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE.
 /// Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
                                        int64_t point,
                                        int64_t contact,
@@ -1927,6 +2003,7 @@ hbvib_status hbvib_branch_contact_loop(const hbvib_branch *branch,
 ///            directions, or NULL. Not all three may be NULL.
 /// hooks      phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_branch_contact_loop.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_contact_loop_with_hooks(const hbvib_branch *branch,
                                                   int64_t point,
                                                   int64_t contact,
@@ -1979,6 +2056,7 @@ typedef struct {
 /// s          the struct; untouched on error.
 /// size_of_s  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_contact_summary_init(hbvib_contact_summary *s, size_t size_of_s);
 
 /// Work, shares of the period and ranges of a contact at a stored point.
@@ -1989,6 +2067,7 @@ hbvib_status hbvib_contact_summary_init(hbvib_contact_summary *s, size_t size_of
 /// Errors: HBVIB_E_INDEX (point, contact), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
 /// HBVIB_E_OUT_OF_MEMORY, HBVIB_E_CALLBACK, HBVIB_E_NO_CONVERGENCE. Threads: any number on one
 /// branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_contact_summary(const hbvib_branch *branch,
                                           int64_t point,
                                           int64_t contact,
@@ -2002,6 +2081,7 @@ hbvib_status hbvib_branch_contact_summary(const hbvib_branch *branch,
 /// out      receives the numbers; fill it by hbvib_contact_summary_init before; untouched on error.
 /// hooks    phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_branch_contact_summary.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_contact_summary_with_hooks(const hbvib_branch *branch,
                                                      int64_t point,
                                                      int64_t contact,
@@ -2037,6 +2117,7 @@ typedef enum {
 /// exist), HBVIB_E_NOT_HERMITIAN, HBVIB_E_NOT_POSITIVE_DEFINITE, HBVIB_E_SINGULAR,
 /// HBVIB_E_NO_CONVERGENCE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_linear_modes(const hbvib_model *model,
                                 int64_t diameter,
                                 int32_t contacts,
@@ -2055,6 +2136,7 @@ hbvib_status hbvib_linear_modes(const hbvib_model *model,
 ///           phi^H M phi = 1 over one sector; or NULL.
 /// hooks     phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_linear_modes.
+HBVIB_NODISCARD
 hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model,
                                            int64_t diameter,
                                            int32_t contacts,
@@ -2081,6 +2163,7 @@ hbvib_status hbvib_linear_modes_with_hooks(const hbvib_model *model,
 /// (more modes than oscillate), HBVIB_E_NOT_POSITIVE_DEFINITE, HBVIB_E_SINGULAR,
 /// HBVIB_E_NO_CONVERGENCE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_damped_modes(const hbvib_model *model,
                                 int64_t diameter,
                                 int32_t contacts,
@@ -2105,6 +2188,7 @@ hbvib_status hbvib_damped_modes(const hbvib_model *model,
 /// hooks          phase and cancellation; progress is not called. NULL: none.
 /// Errors: HBVIB_E_DIMENSION (n, count), HBVIB_E_NOT_FINITE or HBVIB_E_ARGUMENT (speeds), and those
 /// of hbvib_damped_modes. Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_campbell(const hbvib_model *model,
                             int64_t n,
                             const double *speeds,
@@ -2133,6 +2217,7 @@ hbvib_status hbvib_campbell(const hbvib_model *model,
 /// hooks         phase and cancellation; progress is not called. NULL: none.
 /// Errors: HBVIB_E_DIMENSION (n, count, capacity), HBVIB_E_NOT_FINITE (speeds), HBVIB_E_ARGUMENT
 /// (speeds, engine_order), and those of hbvib_damped_modes. Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_campbell_crossings(const hbvib_model *model,
                                       int64_t n,
                                       const double *speeds,
@@ -2197,6 +2282,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_mode_options_init(hbvib_mode_options *o, size_t size_of_o);
 
 /// Follows a nonlinear mode over a range of amplitude, from contacts that stick to contacts that
@@ -2220,6 +2306,7 @@ hbvib_status hbvib_mode_options_init(hbvib_mode_options *o, size_t size_of_o);
 /// HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number may solve one model at a time, with the same results as one alone; changing
 /// or freeing it meanwhile is HBVIB_E_BUSY.
+HBVIB_NODISCARD
 hbvib_status hbvib_nonlinear_mode(const hbvib_model *model,
                                   const hbvib_solver_options *solver,
                                   const hbvib_mode_options *mode,
@@ -2262,6 +2349,7 @@ typedef struct {
 /// p          the struct; untouched on error.
 /// size_of_p  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_mode_point_init(hbvib_mode_point *p, size_t size_of_p);
 
 /// Numbers of a stored point of a nonlinear mode.
@@ -2270,6 +2358,7 @@ hbvib_status hbvib_mode_point_init(hbvib_mode_point *p, size_t size_of_p);
 /// out    receives the numbers; fill it by hbvib_mode_point_init before; untouched on error.
 /// Errors: HBVIB_E_UNSUPPORTED (the branch of a forced response), HBVIB_E_INDEX (point),
 /// HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_mode_point(const hbvib_branch *branch,
                                      int64_t point,
                                      hbvib_mode_point *out);
@@ -2322,6 +2411,7 @@ typedef struct {
 /// i          the struct; untouched on error.
 /// size_of_i  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_mode_info_init(hbvib_mode_info *i, size_t size_of_i);
 
 /// Start of a nonlinear mode, and how the linear mode was chosen.
@@ -2329,6 +2419,7 @@ hbvib_status hbvib_mode_info_init(hbvib_mode_info *i, size_t size_of_i);
 /// out  receives the description; fill it by hbvib_mode_info_init before; untouched on error.
 /// Errors: HBVIB_E_UNSUPPORTED (the branch of a forced response), HBVIB_E_NULL,
 /// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_mode_info(const hbvib_branch *branch, hbvib_mode_info *out);
 
 /// Options of a synthesised response. Fill it by hbvib_synthesis_options_init.
@@ -2348,6 +2439,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_synthesis_options_init(hbvib_synthesis_options *o, size_t size_of_o);
 
 /// Response to the forces of a model in the fundamental, synthesised from a nonlinear mode: near
@@ -2369,6 +2461,7 @@ hbvib_status hbvib_synthesis_options_init(hbvib_synthesis_options *o, size_t siz
 /// of another size), HBVIB_E_ARGUMENT (options, a model whose forces excite another wave or none,
 /// overlapping arrays), HBVIB_E_NOT_FINITE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_synthesis(const hbvib_branch *branch,
                                     const hbvib_model *model,
                                     const hbvib_synthesis_options *options,
@@ -2393,6 +2486,7 @@ hbvib_status hbvib_branch_synthesis(const hbvib_branch *branch,
 /// count            receives how many points there are, also when `capacity` is too small.
 /// hooks            phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_branch_synthesis.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_synthesis_with_hooks(const hbvib_branch *branch,
                                                const hbvib_model *model,
                                                const hbvib_synthesis_options *options,
@@ -2438,6 +2532,7 @@ typedef enum {
 /// flags                   receives reasons for doubt, sums of hbvib_synthesis_flag; or NULL.
 /// count                   receives how many there are, also when `capacity` is too small.
 /// Errors and threads: as for hbvib_branch_synthesis.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
                                           const hbvib_model *model,
                                           const hbvib_synthesis_options *options,
@@ -2470,6 +2565,7 @@ hbvib_status hbvib_branch_synthesis_peaks(const hbvib_branch *branch,
 /// count                   receives how many there are, also when `capacity` is too small.
 /// hooks                   phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_branch_synthesis_peaks.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_synthesis_peaks_with_hooks(const hbvib_branch *branch,
                                                      const hbvib_model *model,
                                                      const hbvib_synthesis_options *options,
@@ -2527,6 +2623,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_time_options_init(hbvib_time_options *o, size_t size_of_o);
 
 /// Numbers of a periodic response in time. Fill it by hbvib_time_info_init.
@@ -2552,6 +2649,7 @@ typedef struct {
 /// i          the struct; untouched on error.
 /// size_of_i  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_time_info_init(hbvib_time_info *i, size_t size_of_i);
 
 /// Finds the periodic response of a model to its forces at one angular frequency by integration in
@@ -2578,6 +2676,7 @@ hbvib_status hbvib_time_info_init(hbvib_time_info *i, size_t size_of_i);
 /// steady state found), HBVIB_E_NO_BOUNDED_SOLUTION (the motion grows without bound),
 /// HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE,
 /// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_time_response(const hbvib_model *model,
                                  const hbvib_time_options *options,
                                  const hbvib_hooks *hooks,
@@ -2609,6 +2708,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_verify_options_init(hbvib_verify_options *o, size_t size_of_o);
 
 /// Distance of a point from the periodic motion that integration in time finds from it. Norms are
@@ -2658,6 +2758,7 @@ typedef struct {
 /// v          the struct; untouched on error.
 /// size_of_v  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_verification_init(hbvib_verification *v, size_t size_of_v);
 
 /// Checks a stored point of a forced response against integration in time, which starts from the
@@ -2684,6 +2785,7 @@ hbvib_status hbvib_verification_init(hbvib_verification *v, size_t size_of_v);
 /// without bound), HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE,
 /// HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and
 /// branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_verify(const hbvib_model *model,
                           const hbvib_branch *branch,
                           int64_t point,
@@ -2753,6 +2855,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_floquet_options_init(hbvib_floquet_options *o, size_t size_of_o);
 
 /// Numbers of the stability of a point. Fill it by hbvib_floquet_info_init.
@@ -2786,6 +2889,7 @@ typedef struct {
 /// i          the struct; untouched on error.
 /// size_of_i  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_floquet_info_init(hbvib_floquet_info *i, size_t size_of_i);
 
 /// Computes the Floquet multipliers of a stored point: the factors by which small perturbations of
@@ -2816,6 +2920,7 @@ hbvib_status hbvib_floquet_info_init(hbvib_floquet_info *i, size_t size_of_i);
 /// converge from the point), HBVIB_E_NO_BOUNDED_SOLUTION, HBVIB_E_CALLBACK (a force callback
 /// failed), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model and branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_floquet(const hbvib_model *model,
                            const hbvib_branch *branch,
                            int64_t point,
@@ -2882,6 +2987,7 @@ hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch,
 /// Without arrays only the count is returned. A forced response has none.
 /// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
 /// HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch,
                                        int64_t capacity,
                                        double *omega,
@@ -3148,6 +3254,7 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c,
                                     int64_t harmonics,
                                     int64_t samples,
@@ -3179,6 +3286,7 @@ hbvib_status hbvib_contact_evaluate(const hbvib_contact *c,
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
 /// hooks       phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_contact_evaluate.
+HBVIB_NODISCARD
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c,
                                                int64_t harmonics,
                                                int64_t samples,
@@ -3211,6 +3319,7 @@ hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c,
 /// HBVIB_E_ARGUMENT (options, omega, overlapping arrays, a force beyond the harmonics),
 /// HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
 /// Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_forced_residual(const hbvib_model *model,
                                    const hbvib_solver_options *solver,
                                    double omega,
@@ -3240,6 +3349,7 @@ hbvib_status hbvib_forced_residual(const hbvib_model *model,
 /// d_omega_len  complex numbers in it; 0 with NULL.
 /// hooks        phase, log and cancellation; progress is not called. NULL: none.
 /// Errors and threads: as for hbvib_forced_residual.
+HBVIB_NODISCARD
 hbvib_status hbvib_forced_residual_with_hooks(const hbvib_model *model,
                                               const hbvib_solver_options *solver,
                                               double omega,
@@ -3262,6 +3372,7 @@ hbvib_status hbvib_forced_residual_with_hooks(const hbvib_model *model,
 /// count      number of valid indices, >= 0.
 /// from_zero  receives index - 1; untouched on error.
 /// Errors: HBVIB_E_INDEX, HBVIB_E_DIMENSION (count), HBVIB_E_NULL. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_index_from_one(const char *name,
                                   int64_t index,
                                   int64_t count,

@@ -483,10 +483,37 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
     a.row_idx = a.as_index(row_idx, col_ptr ? detail::extent(static_cast<Index>(col_ptr[ends - 1]) - base) : 0);
     return a;
   }
-  /// Any compressed, column-major sparse class with valuePtr(), outerIndexPtr(), innerIndexPtr(): Eigen's.
-  template <class S, class = decltype(std::declval<const S&>().outerIndexPtr()), class = void,
-            class = std::enable_if_t<!S::IsRowMajor>>
-  Matrix(const S& s) : Matrix(csc(s.rows(), s.cols(), s.valuePtr(), compressed(s).outerIndexPtr(), s.innerIndexPtr())) {}
+  /// Compressed sparse rows, indices counted from `base`: copied to columns. Error (HBVIB_E_INDEX) for a column out of range.
+  template <class Number, class I, class = detail::number<Number>>
+  static Matrix csr(Index n_rows, Index n_cols, const Number* numbers, const I* row_ptr, const I* col_idx, int base = 0) {
+    const std::size_t rows = detail::extent(n_rows), cols = detail::extent(n_cols);
+    const auto entries = static_cast<std::size_t>(row_ptr[rows] - base);
+    auto starts = std::make_shared<std::vector<Index>>(cols + 1, 0);
+    auto row_of = std::make_shared<std::vector<Index>>(entries);
+    auto sorted = std::make_shared<std::vector<Number>>(entries);
+    for (std::size_t k = 0; k < entries; k++) {
+      const Index column = static_cast<Index>(col_idx[k]) - base;
+      if (column < 0 || column >= n_cols)
+        throw Error(HBVIB_E_INDEX, 0, "col_idx[" + std::to_string(k) + "] = " + std::to_string(column + base) + ", needs " +
+                                          std::to_string(base) + " .. " + std::to_string(n_cols - 1 + base));
+      ++(*starts)[static_cast<std::size_t>(column) + 1];
+    }
+    for (std::size_t j = 0; j < cols; j++) (*starts)[j + 1] += (*starts)[j];
+    std::vector<Index> next(starts->begin(), starts->end());
+    for (std::size_t i = 0; i < rows; i++) {
+      for (auto k = static_cast<std::size_t>(row_ptr[i] - base); k < static_cast<std::size_t>(row_ptr[i + 1] - base); k++) {
+        const auto place = static_cast<std::size_t>(next[static_cast<std::size_t>(col_idx[k] - base)]++);
+        (*row_of)[place] = static_cast<Index>(i), (*sorted)[place] = numbers[k];
+      }
+    }
+    Matrix a(sorted->data(), n_rows, n_cols, HBVIB_CSC);
+    a.col_ptr = starts->data(), a.row_idx = row_of->data();
+    a.copies_ = {starts, row_of, sorted};
+    return a;
+  }
+  /// Any compressed sparse class with valuePtr(), outerIndexPtr(), innerIndexPtr(): Eigen's, by columns as it is, by rows copied.
+  template <class S, class = decltype(std::declval<const S&>().outerIndexPtr()), class = void, class = void>
+  Matrix(const S& s) : Matrix(of_sparse(compressed(s))) {}
   /// The same matrix with another promise: HBVIB_GENERAL, HBVIB_SYMMETRIC_LOWER, ...
   Matrix as(hbvib_part given) const {
     Matrix a = *this;
@@ -500,8 +527,16 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
   template <class I>
   const Index* as_index(const I* indices, std::size_t n) {
     if (!indices) return nullptr;
-    copies_.push_back(std::make_shared<const std::vector<Index>>(indices, indices + n));
-    return copies_.back()->data();
+    auto copy = std::make_shared<const std::vector<Index>>(indices, indices + n);
+    copies_.push_back(copy);
+    return copy->data();
+  }
+  template <class S>
+  static Matrix of_sparse(const S& s) {
+    if constexpr (S::IsRowMajor)
+      return csr(s.rows(), s.cols(), s.valuePtr(), s.outerIndexPtr(), s.innerIndexPtr());
+    else
+      return csc(s.rows(), s.cols(), s.valuePtr(), s.outerIndexPtr(), s.innerIndexPtr());
   }
   template <class S>
   static const S& compressed(const S& s) {
@@ -517,7 +552,7 @@ struct Matrix : Filled<hbvib_matrix, hbvib_matrix_init> {
     return true;
   }
 
-  std::vector<std::shared_ptr<const std::vector<Index>>> copies_;
+  std::vector<std::shared_ptr<const void>> copies_;
 };
 
 /// A parameter of a model, by which results are differentiated.
@@ -816,11 +851,11 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
   Branch() noexcept = default;
 
   /// HBVIB_OK, or why the solve stopped early.
-  hbvib_status status() const { return use(hbvib_branch_status); }
+  [[nodiscard]] hbvib_status status() const { return use(hbvib_branch_status); }
   /// Whether the whole range was covered.
-  bool complete() const { return status() == HBVIB_OK; }
+  [[nodiscard]] bool complete() const { return status() == HBVIB_OK; }
   /// The sentence that belongs to the status; empty where it is complete.
-  std::string sentence() const { return status(), last_error(); }
+  std::string sentence() const { return static_cast<void>(status()), last_error(); }
   /// Points on the curve.
   Index points() const { return use(hbvib_branch_points); }
   /// All stored points: the curve, then peaks, folds and requested solutions.
@@ -1165,12 +1200,48 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
     }
     return c;
   }
+  /// A contact, read back. Its kind may be HBVIB_TABLE, HBVIB_POLYNOMIAL or HBVIB_CALLER_LAW, which have no constants.
+  Contact contact(Index id) const {
+    Contact c;
+    return use(hbvib_model_contact, id, &c, nullptr), c;
+  }
+  /// A force, read back; over the square of the angular frequency if it is that of an unbalance.
+  struct Force {
+    Index dof, harmonic;
+    Complex value;
+    bool unbalance;
+  };
+  /// The forces in the order in which they were added.
+  std::vector<Force> forces() const {
+    Index count = 0;
+    use(hbvib_model_forces, Index(0), nullptr, nullptr, nullptr, nullptr, &count);
+    const std::size_t n = detail::extent(count);
+    std::vector<Index> dof(n), harmonic(n), unbalance(n);
+    std::vector<Complex> value(n);
+    use(hbvib_model_forces, count, dof.data(), harmonic.data(), detail::flat(value.data()), unbalance.data(), &count);
+    std::vector<Force> all;
+    for (std::size_t i = 0; i < n; i++) all.push_back({dof[i], harmonic[i], value[i], unbalance[i] != 0});
+    return all;
+  }
+  /// A matrix or a block of it, read back: ndof x ndof, without Rayleigh damping, springs and contacts.
+  View<const Complex> matrix(hbvib_matrix_kind which, hbvib_block block = HBVIB_BLOCK_OWN) const {
+    Index count = 0;
+    use(hbvib_model_matrix, which, block, Index(0), nullptr, nullptr, nullptr, &count);
+    const std::size_t n = detail::extent(count);
+    std::vector<Index> row(n), column(n);
+    std::vector<Complex> value(n);
+    use(hbvib_model_matrix, which, block, count, row.data(), column.data(), detail::flat(value.data()), &count);
+    const Index order = dofs();
+    const detail::Array<Complex> a(detail::extent(order, order));
+    for (std::size_t k = 0; k < n; k++) a.data()[row[k] * order + column[k]] = value[k];
+    return a.view({order, order});
+  }
   /// The response to the forces over a range of frequency.
-  Branch forced_response(const SolverOptions& solver, const ForcedOptions& range, const Hooks& hooks = {}) const {
+  [[nodiscard]] Branch forced_response(const SolverOptions& solver, const ForcedOptions& range, const Hooks& hooks = {}) const {
     return solve(hbvib_forced_response, solver, range, hooks);
   }
   /// A nonlinear mode over a range of amplitude.
-  Branch nonlinear_mode(const SolverOptions& solver, const ModeOptions& range, const Hooks& hooks = {}) const {
+  [[nodiscard]] Branch nonlinear_mode(const SolverOptions& solver, const ModeOptions& range, const Hooks& hooks = {}) const {
     return solve(hbvib_nonlinear_mode, solver, range, hooks);
   }
   /// Residual of harmonic balance at x, (H + 1) x ndof, with its derivatives if requested.

@@ -15,7 +15,7 @@ platform=manylinux_2_28_x86_64
 # The programs of these packages lie beside that of Python.
 PATH=$(dirname "$(command -v "$python")"):$PATH
 export PATH
-cargo zigbuild --release --lib -p hbvib -p hbvib-io --target x86_64-unknown-linux-gnu.2.28
+cargo zigbuild --release --lib -p hbvib-c -p hbvib-io --target x86_64-unknown-linux-gnu.2.28
 target=$(cargo metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
 export HBVIB_WHEEL_LIBRARIES="$target/x86_64-unknown-linux-gnu/release" HBVIB_WHEEL_PLATFORM=$platform
 "$python" -m build --no-isolation --outdir "$folder" .

@@ -16,7 +16,7 @@ from hatchling.builders.hooks.plugin.interface import BuildHookInterface
 
 # Shared libraries of the wheel, and the packages of the workspace that build them.
 PACKAGES = {"hbvib": "hbvib-c", "hbvib_io": "hbvib-io"}
-HEADERS = ("hbvib.h", "hbvib.hpp", "hbvib_io.h", "hbvib.f90")
+HEADERS = ("hbvib.h", "hbvib.hpp", "hbvib_plain.h", "hbvib_io.h", "hbvib.f90")
 
 
 class Library(BuildHookInterface):

@@ -428,12 +428,23 @@ fn fortran_feels_native() {
         &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
     ]
     .concat();
-    for name in ["batch", "misuse", "physics", "saved", "threads"] {
+    for name in ["batch", "misuse", "physics", "saved", "statuses", "threads"] {
         let folder = workshop(&format!("fortran_tests/{name}"));
         let source = root().join(format!("tests/languages/fortran/{name}.f90"));
         let sources = [fortran_module(), common.clone(), source];
         run(&mut compiled("gfortran", &options, &sources, &folder, name));
     }
+    // A status that nobody receives ends the program.
+    let folder = workshop("fortran_tests/stops");
+    let source = root().join("tests/languages/fortran/stops.f90");
+    let output = compiled("gfortran", &STRICT, &[fortran_module(), source], &folder, "stops")
+        .output()
+        .unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(
+        output.status.code() == Some(1) && output.stdout.is_empty() && text.contains("HBVIB_E_INDEX: dof = 3"),
+        "{text}"
+    );
     // Numbers in single precision are an error of the compiler's, each of them.
     let folder = workshop("fortran_tests/wrong_kind");
     let output = Command::new("gfortran")
@@ -474,11 +485,14 @@ fn the_wheel_brings_its_library() {
         "io.py",
         "py.typed",
         "include/hbvib.h",
+        "include/hbvib_plain.h",
         "include/hbvib_io.h",
     ] {
         assert!(installed.join(file).is_file(), "the wheel has no {file}");
     }
     assert!(folder.join(format!("site/hbvib-{VERSION}.dist-info")).is_dir());
+    let places = fs::read_dir(folder.join("site")).unwrap().count();
+    assert_eq!(places, 2, "the wheel has more than the package");
     let text = printed(
         script(&root().join("examples/python/ring_damper.py"))
             .env("PYTHONPATH", folder.join("site"))

@@ -100,7 +100,7 @@ impl Declarations {
                 if line.ends_with('\\') {
                     lines.next();
                 }
-            } else if matches!(line, "" | "extern \"C\" {" | "} /* extern \"C\" */") {
+            } else if matches!(line, "HBVIB_NODISCARD" | "" | "extern \"C\" {" | "} /* extern \"C\" */") {
                 if line.is_empty() && !doc.is_empty() {
                     return Err(format!("a comment belongs to no item: {}", doc.join(" ")));
                 }

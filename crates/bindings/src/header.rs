@@ -124,7 +124,7 @@ pub fn assemble(items: &str, sources: &[String], version: &[String; 3]) -> Resul
             for name in declared(source) {
                 let place = blocks.iter().position(|(known, _)| known == name);
                 let place = place.ok_or_else(|| format!("{file}.rs: cbindgen wrote no {name}"))?;
-                text += &blocks.remove(place).1;
+                text += &marked(&blocks.remove(place).1);
                 text.push('\n');
             }
         }
@@ -137,6 +137,16 @@ pub fn assemble(items: &str, sources: &[String], version: &[String; 3]) -> Resul
     long.map_or(Ok(text.clone()), |line| {
         Err(format!("longer than {COLUMNS} columns: {line}"))
     })
+}
+
+/// The item with the mark of a status that must not be ignored, if it is a function that returns one. Nothing can be done
+/// about a failure of the functions that free.
+fn marked(block: &str) -> String {
+    let lines = block.lines().map(|line| {
+        let is_status = line.starts_with("hbvib_status ") && line.contains('(') && !line.contains("_free(");
+        format!("{}{line}\n", if is_status { "HBVIB_NODISCARD\n" } else { "" })
+    });
+    lines.collect()
 }
 
 fn prologue(version: &[String; 3]) -> String {

@@ -84,6 +84,18 @@
 #endif
 #endif
 
+/* Statuses that a caller ignores are warned of in C++17 and C23. Define it empty to silence the
+ * warnings, or cast to void. */
+#ifndef HBVIB_NODISCARD
+#if defined(__cplusplus) && __cplusplus >= 201703L
+#define HBVIB_NODISCARD [[nodiscard]]
+#elif defined(__STDC_VERSION__) && __STDC_VERSION__ >= 202311L
+#define HBVIB_NODISCARD [[nodiscard]]
+#else
+#define HBVIB_NODISCARD
+#endif
+#endif
+
 #ifdef __cplusplus
 extern "C" {
 #endif

@@ -97,7 +97,7 @@ void views() {
   auto model = ring_damper();
   auto branch = model.forced_response(options(), range());
   hbvib_view c;
-  hbvib_view_init(&c, sizeof c);
+  (void)hbvib_view_init(&c, sizeof c);
   claim(hbvib_branch_field(branch.get(), HBVIB_AMPLITUDE, &c) == HBVIB_OK, "the C interface has the field");
   const auto a = branch.field(HBVIB_AMPLITUDE), b = branch.field(HBVIB_AMPLITUDE);
   claim(a.data() == c.data && b.data() == c.data, "views are where hbvib_branch_field says, without copies");

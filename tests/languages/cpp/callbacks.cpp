@@ -52,7 +52,7 @@ void progress() {
   hbvib::Hooks hooks;
   hooks.log = [&](hbvib_log_level level, const char* text) { lines += level >= HBVIB_LOG_WARN && level <= HBVIB_LOG_DEBUG && *text; };
   hooks.log_level = HBVIB_LOG_DEBUG;
-  model.forced_response(options(), range(), hooks);
+  (void)model.forced_response(options(), range(), hooks);
   claim(lines > 0, "log lines arrive");
 
   std::atomic<std::int32_t> cancel{1};
@@ -74,7 +74,7 @@ void thrown_by_hooks() {
   hooks.progress = [&](const hbvib_progress& p) {
     if (p.point == 7) throw Own(7, place);
   };
-  throws_own(7, place, "an exception of the progress hook", [&] { model.forced_response(options(), range(), hooks); });
+  throws_own(7, place, "an exception of the progress hook", [&] { (void)model.forced_response(options(), range(), hooks); });
   claim(partial && partial.points() == 7 && partial.status() == HBVIB_STOPPED_BY_CALLER, "its points are kept");
   claim(place.use_count() == 1 && bits(model) == before, "nothing holds the exception any more, and the model is as before");
 }
@@ -87,7 +87,7 @@ void thrown_by_log() {
   hooks.log_level = HBVIB_LOG_DEBUG;
   hooks.log = [&](hbvib_log_level, const char*) { throw Own(3, place); };
   hooks.progress = [&](const hbvib_progress&) { points++; };
-  throws_own(3, place, "an exception of the log", [&] { model.forced_response(options(), range(), hooks); });
+  throws_own(3, place, "an exception of the log", [&] { (void)model.forced_response(options(), range(), hooks); });
   claim(points <= 1, "it ends the solve at the next point");
   claim(place.use_count() == 1, "nothing holds it any more");
 
@@ -96,9 +96,9 @@ void thrown_by_log() {
   hooks.log = [&](hbvib_log_level, const char*) {
     if (lines++ == last) throw Own(4, place);
   };
-  model.forced_response(options(), range(), hooks);
+  (void)model.forced_response(options(), range(), hooks);
   last = std::exchange(lines, 0) - 1;
-  throws_own(4, place, "an exception at the last line of the log", [&] { model.forced_response(options(), range(), hooks); });
+  throws_own(4, place, "an exception at the last line of the log", [&] { (void)model.forced_response(options(), range(), hooks); });
 }
 
 // What a callback catches is its own; what it lets go ends the calls that led there, one by one.
@@ -114,7 +114,7 @@ void nested() {
   outer.progress = [&](const hbvib_progress& p) {
     if (p.point == 2) {
       try {
-        model.forced_response(options(), range(), throwing);
+        (void)model.forced_response(options(), range(), throwing);
       } catch (const Own& e) {
         caught = e.kept == place;
       }
@@ -131,22 +131,22 @@ void nested() {
   claim(branch.complete() && bits(branch) == before && !partial, "the outer solve does not notice");
 
   outer.progress = [&](const hbvib_progress& p) {
-    if (p.point == 4) model.forced_response(options(), range(), throwing);
+    if (p.point == 4) (void)model.forced_response(options(), range(), throwing);
   };
-  throws_own(1, place, "an exception through two solves", [&] { model.forced_response(options(), range(), outer); });
+  throws_own(1, place, "an exception through two solves", [&] { (void)model.forced_response(options(), range(), outer); });
   claim(partial && partial.points() == 4, "the outer points are kept");
   outer.progress = [&](const hbvib_progress&) { model.linear_modes(-1, HBVIB_CONTACTS_STUCK, 1); };
-  refused("an Error that a callback lets go", HBVIB_E_ARGUMENT, 2, "diameter", [&] { model.forced_response(options(), range(), outer); });
+  refused("an Error that a callback lets go", HBVIB_E_ARGUMENT, 2, "diameter", [&] { (void)model.forced_response(options(), range(), outer); });
 
   const auto solved = model.forced_response(options(), range());
   throws_own(1, place, "an exception out of a check in time", [&] { model.verify(solved, 0, hbvib::VerifyOptions(), throwing); });
   throws_own(1, place, "an exception out of the integration in time", [&] { model.time_response(hbvib::TimeOptions(2 * PI * 208), throwing); });
   throwing.partial = &partial;
-  throws_own(1, place, "an exception out of a nonlinear mode", [&] { model.nonlinear_mode(options(), {-5, -3}, throwing); });
+  throws_own(1, place, "an exception out of a nonlinear mode", [&] { (void)model.nonlinear_mode(options(), {-5, -3}, throwing); });
   claim(partial.points() == 1, "the point of the mode is kept");
   hbvib::SolverOptions bad = options();
   bad.harmonics = -1;
-  refused("an Error of the solve itself", HBVIB_E_ARGUMENT, 2, "harmonics", [&] { model.forced_response(bad, range(), throwing); });
+  refused("an Error of the solve itself", HBVIB_E_ARGUMENT, 2, "harmonics", [&] { (void)model.forced_response(bad, range(), throwing); });
   claim(partial.points() == 1 && bits(model) == before, "it touches neither branch nor model");
 }
 

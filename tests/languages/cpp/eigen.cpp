@@ -34,6 +34,13 @@ void matrices() {
   same(Eigen::Map<const Eigen::MatrixXd>(&STIFFNESS[0][0], NDOF, NDOF), "a map");
   same(sparse, "sparse");
   same(wide, "sparse with wide indices");
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> rows = k.sparseView();
+  const Eigen::SparseMatrix<Complex, Eigen::RowMajor, std::int64_t> wide_rows = complex.sparseView();
+  same(rows, "sparse and row-major");
+  same(wide_rows, "complex, sparse and row-major with wide indices");
+  const int starts[] = {1, 2, 3}, columns[] = {1, 3};
+  const double ones[] = {1, 1};
+  refused("a column out of range", HBVIB_E_INDEX, 0, "col_idx[1] = 3, needs 1 .. 2", [&] { hbvib::Matrix::csr(2, 2, ones, starts, columns, 1); });
 
   Eigen::MatrixXd general = k;
   general(0, 3) = 7;
@@ -67,8 +74,8 @@ void vectors() {
 
   const auto field = branch.field(HBVIB_AMPLITUDE);
   hbvib_view c;
-  hbvib_view_init(&c, sizeof c);
-  hbvib_branch_field(branch.get(), HBVIB_AMPLITUDE, &c);
+  (void)hbvib_view_init(&c, sizeof c);
+  (void)hbvib_branch_field(branch.get(), HBVIB_AMPLITUDE, &c);
   const Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>> map(field.data(), field.shape(0), Eigen::InnerStride<>(field.stride(0)));
   Eigen::Index highest;
   const double largest = map.maxCoeff(&highest);
@@ -92,7 +99,7 @@ void vectors() {
 }  // namespace
 
 int main() {
-  return verdict(22, [] {
+  return verdict(25, [] {
     matrices();
     vectors();
   });

@@ -119,10 +119,10 @@ void failures_of_it() {
   hooks.partial = &partial;
 
   *told = {0, 0};
-  broke("an exception at the first call", [&] { model.forced_response(seven(), RANGE, hooks); });
+  broke("an exception at the first call", [&] { (void)model.forced_response(seven(), RANGE, hooks); });
   claim(!partial && told->calls == 1, "leaves no branch, and ends the solve at once");
   *told = {0, all / 2};
-  broke("an exception half the way", [&] { model.forced_response(seven(), RANGE, hooks); });
+  broke("an exception half the way", [&] { (void)model.forced_response(seven(), RANGE, hooks); });
   claim(told->calls == all / 2 + 1, "ends the solve at once");
   if (claim(static_cast<bool>(partial), "leaves the points found"))
     claim(partial.status() == HBVIB_STOPPED_CALLBACK && partial.points() > 0 && partial.points() < whole.points(), "fewer than all of them");
@@ -133,7 +133,7 @@ void failures_of_it() {
     *told = {0, at};
     tries++;
     try {
-      model.forced_response(seven(), RANGE);
+      (void)model.forced_response(seven(), RANGE);
     } catch (const std::out_of_range&) {
       out++;
     }
@@ -144,7 +144,7 @@ void failures_of_it() {
   const auto stopped = model.forced_response(seven(), RANGE);
   claim(stopped.status() == HBVIB_STOPPED_CALLBACK && stopped.sentence().find("-42") != std::string::npos, "a code stops the solve, and is told");
   *told = {0, -1, 0};
-  refused("a code at the first call", HBVIB_E_CALLBACK, 0, "-42", [&] { model.forced_response(seven(), RANGE); });
+  refused("a code at the first call", HBVIB_E_CALLBACK, 0, "-42", [&] { (void)model.forced_response(seven(), RANGE); });
 
   auto fails_next = [&](const char* what, auto&& call) {
     *told = {0, 0};
@@ -162,9 +162,9 @@ void failures_of_it() {
 
   // A force may call the library, and what that throws goes through both.
   auto busy = oscillator(1, 0.05, 1, 0.2);
-  busy.add_user_force({{0}, [&](const hbvib::ForceCall&) { model.forced_response(seven(), RANGE); }});
+  busy.add_user_force({{0}, [&](const hbvib::ForceCall&) { (void)model.forced_response(seven(), RANGE); }});
   *told = {0, 10};
-  broke("an exception of a force within a force", [&] { busy.forced_response(seven(), RANGE); });
+  broke("an exception of a force within a force", [&] { (void)busy.forced_response(seven(), RANGE); });
 
   // Through the C interface an exception goes nowhere, but the force has failed.
   *told = {0, 0};
