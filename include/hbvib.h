@@ -3057,6 +3057,7 @@ typedef struct {
 /// p          the struct; untouched on error.
 /// size_of_p  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);
 
 /// Results that may be differentiated.
@@ -3110,6 +3111,7 @@ typedef enum {
 /// derivatives_len, a direction), HBVIB_E_CALLBACK (a force callback failed), HBVIB_E_NULL,
 /// HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: any number on
 /// one model and branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_sensitivity(const hbvib_model *model,
                                const hbvib_branch *branch,
                                int64_t point,

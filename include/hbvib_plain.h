@@ -184,6 +184,35 @@ typedef enum {
   HBVIB_GRAZING_SLIP_LIMIT = 1,
   HBVIB_GRAZING_LANDING = 2
 } hbvib_grazing;
+typedef enum {
+  HBVIB_PARAMETER_FORCE = 0,
+  HBVIB_PARAMETER_PRELOAD = 1,
+  HBVIB_PARAMETER_MU = 2,
+  HBVIB_PARAMETER_KT = 3,
+  HBVIB_PARAMETER_KN = 4,
+  HBVIB_PARAMETER_GAP = 5,
+  HBVIB_PARAMETER_MASS = 6,
+  HBVIB_PARAMETER_DAMPING = 7,
+  HBVIB_PARAMETER_STIFFNESS = 8,
+  HBVIB_PARAMETER_SPEED = 9
+} hbvib_parameter_kind;
+typedef enum {
+  HBVIB_SCALING_ADDITIVE = 0,
+  HBVIB_SCALING_FACTOR = 1
+} hbvib_scaling;
+typedef enum {
+  HBVIB_OF_AMPLITUDE = 0,
+  HBVIB_OF_PEAK_AMPLITUDE = 1,
+  HBVIB_OF_PEAK_OMEGA = 2,
+  HBVIB_OF_MODE_OMEGA = 3,
+  HBVIB_OF_MODE_DAMPING = 4
+} hbvib_quantity;
+typedef enum {
+  HBVIB_DERIVATIVE_EXISTS = 0,
+  HBVIB_DERIVATIVE_ONSET_OF_SLIP = 1,
+  HBVIB_DERIVATIVE_ONE_SIDED = 2,
+  HBVIB_DERIVATIVE_FOLD = 3
+} hbvib_derivative;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
 typedef struct hbvib_contact hbvib_contact;
@@ -209,6 +238,7 @@ typedef struct hbvib_verify_options hbvib_verify_options;
 typedef struct hbvib_verification hbvib_verification;
 typedef struct hbvib_floquet_options hbvib_floquet_options;
 typedef struct hbvib_floquet_info hbvib_floquet_info;
+typedef struct hbvib_parameter hbvib_parameter;
 typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
 typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
 typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress);
@@ -529,6 +559,14 @@ struct hbvib_floquet_info {
   double orbit_change;
   double residual;
 };
+struct hbvib_parameter {
+  uint32_t struct_size;
+  int32_t kind;
+  int64_t contact;
+  const hbvib_matrix *direction;
+  int32_t scaling;
+  int32_t reserved;
+};
 uint32_t hbvib_version(void);
 const char *hbvib_version_string(void);
 const char *hbvib_status_name(hbvib_status status);
@@ -636,6 +674,8 @@ hbvib_status hbvib_floquet_options_init(hbvib_floquet_options *o, size_t size_of
 hbvib_status hbvib_floquet_info_init(hbvib_floquet_info *i, size_t size_of_i);
 hbvib_status hbvib_floquet(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_floquet_options *options, const hbvib_hooks *hooks, double *multipliers, int64_t multipliers_len, int64_t *classes, int64_t classes_len, hbvib_floquet_info *out);
 hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch, int64_t capacity, double *omega, double *log10_amplitude, double *slope, int64_t *point, int64_t *count);
+hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);
+hbvib_status hbvib_sensitivity(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int32_t of, const hbvib_parameter *parameters, int64_t count, double *derivatives, int64_t derivatives_len, int64_t *reasons, int64_t *onset, const hbvib_hooks *hooks);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_forced_residual(const hbvib_model *model, const hbvib_solver_options *solver, double omega, const double *x, int64_t x_len, double *r, int64_t r_len, double *jac, int64_t jac_len, double *d_omega, int64_t d_omega_len);

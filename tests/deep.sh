@@ -3,3 +3,11 @@
 set -eu
 cd "$(dirname "$0")/.."
 cargo test --release --tests -- --ignored --test-threads=1
+
+# The oscillators of docs/coming-from.md in pyHarm, which brings many packages: in a virtual environment of its own.
+if ! .venv-pyharm/bin/python -c 'import pyHarm' >/dev/null 2>&1; then
+    python3 -m venv .venv-pyharm
+    .venv-pyharm/bin/python -m pip install --quiet --disable-pip-version-check pyharm-os psutil
+fi
+target=$(cargo metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
+HBVIB_LIBRARY=$target/release/libhbvib.so PYTHONPATH=$PWD/include .venv-pyharm/bin/python tests/peers/pyharm.py

@@ -1,0 +1,130 @@
+"""The figures of the gallery in the book: loops of contact laws, responses, a nonlinear mode, a Campbell diagram.
+
+    cargo build --release
+    PYTHONPATH=include python examples/python/gallery.py FOLDER [NAME ...]
+
+Needs matplotlib. Each function draws one figure and is a program of its own."""
+import os
+import sys
+from typing import Any, Callable, Dict, List
+
+import matplotlib
+
+matplotlib.use("Agg")
+import numpy as np
+from matplotlib import pyplot
+
+import hbvib
+
+
+def contact_laws() -> Any:
+    """Force over motion of six laws under 0.5 cos(t), friction_2d while its normal load changes."""
+    figure, places = pyplot.subplots(2, 3, figsize=(9, 5.4), layout="constrained")
+    turn = 2 * np.pi * np.arange(401) / 400
+
+    def draw(ax: Any, title: str, force: Any, harmonics: Any) -> None:
+        waves = np.exp(1j * np.outer(turn, np.arange(len(force))))
+        ax.plot((waves @ np.asarray(harmonics)).real, (waves @ force).real)
+        ax.set(title=title, xlabel="motion", ylabel="force")
+
+    y = np.zeros(64, complex)
+    y[1] = 0.5
+    draw(places[0, 0], "jenkins", hbvib.evaluate_contact("jenkins", y, kt=1, mu=0.3, preload=1).force, y)
+    normal = np.zeros(64, complex)
+    normal[0], normal[1] = -0.5, 0.4j  # pressed by 0.5 at rest, more and less in quadrature
+    both = hbvib.evaluate_contact("friction_2d", np.array([y, normal]), kt=1, kn=2, mu=0.4).force
+    draw(places[0, 1], "friction_2d", both[0], y)
+    draw(places[0, 2], "unilateral", hbvib.evaluate_contact("unilateral", y, kn=1, gap=0.1).force, y)
+    draw(places[1, 0], "cubic", hbvib.evaluate_contact("cubic", y, kt=0.5, cubic=3).force, y)
+    smooth = hbvib.evaluate_contact("regularised", y, mu=0.3, preload=1, velocity=0.05).force
+    draw(places[1, 1], "regularised", smooth, y)
+    model = hbvib.Model(mass=1, stiffness=1)
+    joint = model.add_iwan(0, slip_force=0.3, stiffness=1, chi=-0.5, beta=1, elements=100)
+    total = np.zeros(64, complex)
+    for number in joint:
+        given = model.contact(number).constants
+        total += hbvib.evaluate_contact("jenkins", y, kt=given["kt"], mu=given["mu"], preload=given["preload"]).force
+    draw(places[1, 2], "Iwan joint, 100 elements", total, y)
+    return figure
+
+
+def oscillator(force: float) -> hbvib.Model:
+    """A mass on a spring that rubs on the ground."""
+    model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+    model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    model.add_force(0, force)
+    return model
+
+
+def friction_damper() -> Any:
+    """Amplitude per force: stuck under small forces, damped most in between, free under large ones."""
+    figure, ax = pyplot.subplots(layout="constrained")
+    for force in (0.01, 0.05, 0.1, 0.2, 0.35, 0.6, 2.0):
+        branch = oscillator(force).forced_response((0.7, 1.7), step_max=0.02)
+        ax.semilogy(branch.omega, branch.amplitude / force, label=f"{force:g}")
+    ax.set(xlabel="angular frequency omega", ylabel="peak amplitude of harmonic 1 / force")
+    ax.legend(title="force")
+    return figure
+
+
+def hysteresis() -> Any:
+    """The loop of the contact at the resonance under three forces: the area is the work per cycle."""
+    figure, ax = pyplot.subplots(layout="constrained")
+    for force in (0.1, 0.2, 0.4):
+        branch = oscillator(force).forced_response((0.7, 1.7))
+        point = int(branch.peaks().point[0])
+        branch.plot_loop(point, 0, ax=ax, label=f"{force:g}, work {branch.summary(point, 0).work:.3f}")
+    ax.legend(title="force")
+    return figure
+
+
+def duffing() -> Any:
+    """A hardening spring: the branch turns back at its folds; dots: the same amplitudes by marching in time."""
+    model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+    model.add_contact("cubic", 0, cubic=1)
+    model.add_force(0, 0.3)
+    branch = model.forced_response((0.3, 2.2), step_max=0.02)
+    ax = branch.plot(label="harmonic balance")
+    folds = branch.folds()
+    ax.plot(folds.omega, folds.amplitude, "s", color="0.4", label="folds")
+    for omega in (0.5, 0.8, 1.1, 1.4):
+        found = model.time_response(omega, method="marching")
+        ax.plot(omega, abs(found.harmonics[1, 0]), ".", color="black")
+    ax.legend()
+    return ax.figure
+
+
+def nonlinear_mode() -> Any:
+    """Frequency and damping of the friction damper over the amplitude, without any force."""
+    above, _ = oscillator(0).nonlinear_mode((-1.5, 1), step_max=0.05).plot()
+    return above.figure
+
+
+def rotor() -> Any:
+    """A disk on a flexible shaft: forward and backward whirl part with the speed; dots are critical speeds."""
+    model = hbvib.Model(mass=np.diag([1.0, 1.0, 0.3, 0.3]), stiffness=np.array(
+        [[2.0, 0, 0, 0.5], [0, 2.0, -0.5, 0], [0, -0.5, 1.0, 0], [0.5, 0, 0, 1.0]]))
+    gyroscopic = np.zeros((4, 4))
+    gyroscopic[2, 3], gyroscopic[3, 2] = 0.4, -0.4
+    model.set_matrix("gyroscopic", gyroscopic)
+    ax = model.plot_campbell(np.linspace(0, 2.5, 26), 4, engine_orders=(1, 2))
+    return ax.figure
+
+
+FIGURES: Dict[str, Callable[[], Any]] = dict(
+    contact_laws=contact_laws, friction_damper=friction_damper, hysteresis=hysteresis, duffing=duffing,
+    nonlinear_mode=nonlinear_mode, rotor=rotor)
+
+
+def main(arguments: List[str]) -> None:
+    if not arguments:
+        sys.exit(f"usage: gallery.py FOLDER [{' | '.join(FIGURES)}] ...")
+    os.makedirs(arguments[0], exist_ok=True)
+    for name in arguments[1:] or FIGURES:
+        figure = FIGURES[name]()
+        figure.savefig(os.path.join(arguments[0], name + ".png"), dpi=80)
+        pyplot.close(figure)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])
