@@ -2963,6 +2963,7 @@ typedef enum {
 /// Without arrays only the count is returned.
 /// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
 /// HBVIB_E_HANDLE, HBVIB_E_OUT_OF_MEMORY. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch,
                                        int64_t capacity,
                                        double *omega,

@@ -103,6 +103,11 @@ typedef enum {
   HBVIB_FLEXIBILITY_KRYLOV = 2
 } hbvib_flexibility;
 typedef enum {
+  HBVIB_STABILITY_NONE = 0,
+  HBVIB_STABILITY_WAVE = 1,
+  HBVIB_STABILITY_WHEEL = 2
+} hbvib_stability;
+typedef enum {
   HBVIB_LOG_NONE = 0,
   HBVIB_LOG_WARN = 1,
   HBVIB_LOG_INFO = 2,
@@ -135,7 +140,9 @@ typedef enum {
   HBVIB_STRUCTURAL_LOSS = 12,
   HBVIB_MODAL_ASSURANCE = 13,
   HBVIB_SAMPLING_ERROR = 14,
-  HBVIB_DAMPING_ERROR_ESTIMATE = 15
+  HBVIB_DAMPING_ERROR_ESTIMATE = 15,
+  HBVIB_FLOQUET_RADIUS = 16,
+  HBVIB_UNSTABLE_DIRECTIONS = 17
 } hbvib_field;
 typedef enum {
   HBVIB_STATE_STICK = 0,
@@ -184,6 +191,12 @@ typedef enum {
   HBVIB_GRAZING_SLIP_LIMIT = 1,
   HBVIB_GRAZING_LANDING = 2
 } hbvib_grazing;
+typedef enum {
+  HBVIB_BIFURCATION_FOLD = 0,
+  HBVIB_BIFURCATION_PERIOD_DOUBLING = 1,
+  HBVIB_BIFURCATION_NEIMARK_SACKER = 2,
+  HBVIB_BIFURCATION_BRANCH_POINT = 3
+} hbvib_bifurcation;
 typedef enum {
   HBVIB_PARAMETER_FORCE = 0,
   HBVIB_PARAMETER_PRELOAD = 1,
@@ -354,7 +367,7 @@ struct hbvib_solver_options {
   int32_t estimate_error;
   int64_t memory_limit;
   int32_t flexibility;
-  int32_t reserved;
+  int32_t stability;
 };
 struct hbvib_progress {
   uint32_t struct_size;
@@ -673,6 +686,7 @@ hbvib_status hbvib_verify(const hbvib_model *model, const hbvib_branch *branch, 
 hbvib_status hbvib_floquet_options_init(hbvib_floquet_options *o, size_t size_of_o);
 hbvib_status hbvib_floquet_info_init(hbvib_floquet_info *i, size_t size_of_i);
 hbvib_status hbvib_floquet(const hbvib_model *model, const hbvib_branch *branch, int64_t point, const hbvib_floquet_options *options, const hbvib_hooks *hooks, double *multipliers, int64_t multipliers_len, int64_t *classes, int64_t classes_len, hbvib_floquet_info *out);
+hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch, int64_t capacity, double *omega, double *amplitude, int64_t *kind, int64_t *point, int64_t *unstable_before, int64_t *unstable_after, int64_t *count);
 hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch, int64_t capacity, double *omega, double *log10_amplitude, double *slope, int64_t *point, int64_t *count);
 hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);
 hbvib_status hbvib_sensitivity(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int32_t of, const hbvib_parameter *parameters, int64_t count, double *derivatives, int64_t derivatives_len, int64_t *reasons, int64_t *onset, const hbvib_hooks *hooks);
