@@ -23,7 +23,7 @@ def contact_laws() -> Any:
     turn = 2 * np.pi * np.arange(401) / 400
 
     def draw(ax: Any, title: str, force: Any, harmonics: Any) -> None:
-        waves = np.exp(1j * np.outer(turn, np.arange(len(force))))
+        waves: Any = np.exp(1j * np.outer(turn, np.arange(len(force))))
         ax.plot((waves @ np.asarray(harmonics)).real, (waves @ force).real)
         ax.set(title=title, xlabel="motion", ylabel="force")
 

@@ -1138,7 +1138,7 @@ class Model(_Owner):
         given = {name: tuple(value) if isinstance(value, ctypes.Array) else value for name, value in values.items()}
         kind = ContactKind(law.kind)
         needed = _REQUIRED.get(kind, ())
-        constants: Any = {name: value for name, value in given.items()
+        constants = {name: value for name, value in given.items()
                           if name in needed or (any(value) if isinstance(value, tuple) else value)}
         return Contact(kind, tuple(law.dof_a), tuple(law.dof_b), law.sector_offset, constants, per_speed2.value)
 

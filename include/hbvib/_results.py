@@ -4,9 +4,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple, Optional
 
 from ._c import ContactKind, Status
-from ._types import ContactConstants, TimeInfo, VerificationInfo
+from ._types import TimeInfo, VerificationInfo
 
 if TYPE_CHECKING:
+    from typing import Any
 
     import numpy as np
     from numpy.typing import NDArray
@@ -46,7 +47,7 @@ class Contact(NamedTuple):
     a: tuple[int, int, int]
     b: tuple[int, int, int]
     sector_offset: int
-    constants: ContactConstants
+    constants: dict[str, Any]
     per_speed2: float
 
 
