@@ -3150,6 +3150,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
 
 /// Finds the highest peak of the response of each design within a range of frequency. A design is
@@ -3175,6 +3176,7 @@ hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
 /// threads for a model with a force of the caller), HBVIB_E_ARGUMENT, HBVIB_E_NOT_FINITE (options),
 /// HBVIB_E_DIMENSION, HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any number on one model.
+HBVIB_NODISCARD
 hbvib_status hbvib_batch_solve(const hbvib_model *model,
                                const hbvib_solver_options *solver,
                                const hbvib_batch_options *options,
@@ -3204,6 +3206,7 @@ int64_t hbvib_batch_designs(const hbvib_batch *batch);
 /// points          receives numbers of points of each curve; or NULL.
 /// Errors: HBVIB_E_DIMENSION (capacity: the arrays are untouched), HBVIB_E_ARGUMENT (overlapping
 /// arrays), HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any number on one batch.
+HBVIB_NODISCARD
 hbvib_status hbvib_batch_peaks(const hbvib_batch *batch,
                                int64_t capacity,
                                double *peak_amplitude,
@@ -3218,6 +3221,7 @@ hbvib_status hbvib_batch_peaks(const hbvib_batch *batch,
 ///
 /// design  number from 0, in the order of the values.
 /// Errors: HBVIB_E_INDEX, HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: any number on one batch.
+HBVIB_NODISCARD
 hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 
 /// Takes the branch of a design out of the batch, which must have been solved with keep = 1.
@@ -3227,6 +3231,7 @@ hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
 /// Errors: HBVIB_E_ARGUMENT (branches were not kept, this one was taken before, or the design has
 /// none because it failed), HBVIB_E_INDEX, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per batch.
+HBVIB_NODISCARD
 hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
 
 /* ==============================================================================================

@@ -8,6 +8,7 @@ typedef int32_t hbvib_status;
 typedef int32_t hbvib_cancel_flag;
 typedef struct hbvib_model hbvib_model;
 typedef struct hbvib_branch hbvib_branch;
+typedef struct hbvib_batch hbvib_batch;
 typedef enum {
   HBVIB_OK = 0,
   HBVIB_STOPPED_BY_CALLER = 1,
@@ -19,6 +20,7 @@ typedef enum {
   HBVIB_STOPPED_CALLBACK = 7,
   HBVIB_STOPPED_UNBOUNDED = 8,
   HBVIB_STOPPED_NO_FORCE = 9,
+  HBVIB_STOPPED_NO_PEAK = 10,
   HBVIB_E_NULL = -1,
   HBVIB_E_ARGUMENT = -2,
   HBVIB_E_DIMENSION = -3,
@@ -252,6 +254,7 @@ typedef struct hbvib_verification hbvib_verification;
 typedef struct hbvib_floquet_options hbvib_floquet_options;
 typedef struct hbvib_floquet_info hbvib_floquet_info;
 typedef struct hbvib_parameter hbvib_parameter;
+typedef struct hbvib_batch_options hbvib_batch_options;
 typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
 typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
 typedef int32_t (*hbvib_progress_fn)(void *user, const hbvib_progress *progress);
@@ -580,6 +583,14 @@ struct hbvib_parameter {
   int32_t scaling;
   int32_t reserved;
 };
+struct hbvib_batch_options {
+  uint32_t struct_size;
+  int32_t threads;
+  double omega_start;
+  double omega_stop;
+  int32_t keep;
+  int32_t reserved;
+};
 uint32_t hbvib_version(void);
 const char *hbvib_version_string(void);
 const char *hbvib_status_name(hbvib_status status);
@@ -690,6 +701,13 @@ hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch, int64_t capac
 hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch, int64_t capacity, double *omega, double *log10_amplitude, double *slope, int64_t *point, int64_t *count);
 hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);
 hbvib_status hbvib_sensitivity(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int32_t of, const hbvib_parameter *parameters, int64_t count, double *derivatives, int64_t derivatives_len, int64_t *reasons, int64_t *onset, const hbvib_hooks *hooks);
+hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
+hbvib_status hbvib_batch_solve(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_batch_options *options, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, int64_t designs, const double *values, hbvib_batch **out);
+hbvib_status hbvib_batch_free(hbvib_batch *batch);
+int64_t hbvib_batch_designs(const hbvib_batch *batch);
+hbvib_status hbvib_batch_peaks(const hbvib_batch *batch, int64_t capacity, double *peak_amplitude, double *peak_omega, int64_t *statuses, int64_t *points);
+hbvib_status hbvib_batch_status(const hbvib_batch *batch, int64_t design);
+hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch **out);
 hbvib_status hbvib_contact_evaluate(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len);
 hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c, int64_t harmonics, int64_t samples, double omega, const double *motion, int64_t motion_len, double *force, int64_t force_len, double *jac, int64_t jac_len, const hbvib_hooks *hooks);
 hbvib_status hbvib_forced_residual(const hbvib_model *model, const hbvib_solver_options *solver, double omega, const double *x, int64_t x_len, double *r, int64_t r_len, double *jac, int64_t jac_len, double *d_omega, int64_t d_omega_len);
