@@ -26,7 +26,7 @@ for name, text in declared:
         struct = kind.replace("hbvib_", "")
         if not pointer:
             wanted.append(kinds[kind])
-        elif kind in ("hbvib_model", "hbvib_branch") and pointer == "*":
+        elif kind in ("hbvib_model", "hbvib_branch", "hbvib_batch") and pointer == "*":
             wanted.append("h")
         else:
             wanted.append(struct if kind in hbvib.structs else "p")
