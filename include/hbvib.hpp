@@ -1009,7 +1009,7 @@ class Batch : public detail::Object<hbvib_batch, hbvib_batch_free> {
     return all;
   }
   /// The sentence of a design whose status is not HBVIB_OK; empty for HBVIB_OK.
-  std::string sentence(Index design) const { return hbvib_batch_status(get(), design), last_error(); }
+  std::string sentence(Index design) const { return static_cast<void>(hbvib_batch_status(get(), design)), last_error(); }
   /// The branch of a design, which leaves the batch; options.keep must have been 1.
   Branch take_branch(Index design) {
     const auto keep = core_;
