@@ -1477,6 +1477,7 @@ typedef volatile int32_t hbvib_cancel_flag;
 /// flag   the flag.
 /// value  1: stop; 0: no longer, for the next call.
 /// Errors: HBVIB_E_NULL, HBVIB_E_ARGUMENT (value, alignment). Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_cancel(hbvib_cancel_flag *flag, int32_t value);
 
 /// Callbacks and cancel flag of a solve. Fill it by hbvib_hooks_init. Callbacks run on the calling

@@ -645,6 +645,7 @@ hbvib_status hbvib_model_add_user_force(hbvib_model *model, const hbvib_user_for
 hbvib_status hbvib_jacobian_gap_init(hbvib_jacobian_gap *gap, size_t size_of_gap);
 hbvib_status hbvib_check_jacobian(const hbvib_model *model, int64_t contact, double omega, const double *amplitude, int64_t amplitude_len, hbvib_jacobian_gap *out);
 hbvib_status hbvib_solver_options_init(hbvib_solver_options *o, size_t size_of_o);
+hbvib_status hbvib_cancel(hbvib_cancel_flag *flag, int32_t value);
 hbvib_status hbvib_hooks_init(hbvib_hooks *h, size_t size_of_h);
 hbvib_status hbvib_forced_options_init(hbvib_forced_options *o, size_t size_of_o);
 hbvib_status hbvib_forced_response(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_forced_options *forced, const hbvib_hooks *hooks, hbvib_branch **out);
