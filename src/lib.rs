@@ -107,6 +107,7 @@ pub use analysis::harmonic_residual::{
 };
 pub use analysis::linear_contacts::LinearContacts;
 pub use analysis::nonlinear_mode::nonlinear_mode;
+pub use analysis::parameter_response::{Follow, ParameterPoint, ParameterResponse, parameter_response};
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};

@@ -15,6 +15,7 @@ mod mode_discretised;
 mod mode_equations;
 mod mode_onset;
 pub mod nonlinear_mode;
+pub mod parameter_response;
 pub mod point_error;
 mod residual_numbering;
 mod sampling;

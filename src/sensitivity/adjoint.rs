@@ -25,6 +25,10 @@ pub(crate) struct Adjoint {
     pub is_forced: bool,
     /// Total derivative of the result by ω, in a forced response.
     pub by_omega: f64,
+    /// The amplitude of a forced response.
+    pub amplitude: f64,
+    /// λ of a forced response.
+    pub lambda: Vec<f64>,
 }
 
 impl Adjoint {
@@ -46,6 +50,8 @@ impl Adjoint {
             normalisation: 0.0,
             is_forced: damping == 0.0,
             by_omega: 0.0,
+            amplitude: 0.0,
+            lambda: Vec::new(),
         })
     }
 

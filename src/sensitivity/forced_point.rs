@@ -8,6 +8,7 @@ use crate::condense::near_rigid_motion;
 use crate::error::{Result, Status, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
+use crate::linalg::dot;
 use crate::linalg::lu::Lu;
 use crate::model::reduced_wave::MotionRow;
 use crate::problem::harmonic_balance::HarmonicBalance;
@@ -23,6 +24,8 @@ pub(crate) struct ForcedPoint<'a> {
     workspace: Workspace,
     /// Newton's matrix at the point linearised last.
     system: Lu<f64>,
+    /// The same before its factorisation.
+    matrix: Vec<f64>,
     active: Vec<bool>,
     at: Residual,
     response: MotionRow,
@@ -52,6 +55,7 @@ impl<'a> ForcedPoint<'a> {
             interrupt,
             workspace: Workspace::new(condensed, None)?,
             system: Lu::new(n, 1)?,
+            matrix: try_vec(n.saturating_mul(n), 0.0, CONTEXT)?,
             active: try_vec(n, true, CONTEXT)?,
             at: Residual::new(n)?,
             response: condensed.motion_row(problem.observed(), response)?,
@@ -61,22 +65,50 @@ impl<'a> ForcedPoint<'a> {
         })
     }
 
+    /// Evaluates the equations and Newton's matrix at `u`, and writes the derivative of the amplitude by the motions.
+    fn linearise(&mut self, u: &[f64], omega: f64, gradient: &mut [f64]) -> Result<Complex64> {
+        self.problem.evaluate(u, omega, &mut self.at)?;
+        self.active.fill(true);
+        self.problem.fill(self.system.matrix(), &mut self.active)?;
+        self.matrix.copy_from_slice(self.system.matrix());
+        Ok(self.problem.amplitude_gradient(u, gradient))
+    }
+
     /// The adjoint of the amplitude at the solution `u`; `None` where Newton's matrix is singular, as in a fold.
     ///
     /// # Errors
     /// Those of the model and of callbacks; `OutOfMemory`; `StoppedByCaller`.
     pub fn adjoint(&mut self, u: &[f64], omega: f64) -> Result<Option<Adjoint>> {
-        let condensed = self.condensed;
-        self.problem.evaluate(u, omega, &mut self.at)?;
-        self.active.fill(true);
-        self.problem.fill(self.system.matrix(), &mut self.active)?;
+        let mut lambda = try_vec(u.len(), 0.0, CONTEXT)?;
+        let amplitude = self.linearise(u, omega, &mut lambda)?;
         match self.system.factor(self.interrupt) {
             Err(e) if e.status == Status::Singular => return Ok(None),
             factored => factored?,
         }
-        let mut lambda = try_vec(u.len(), 0.0, CONTEXT)?;
-        let amplitude = self.problem.amplitude_gradient(u, &mut lambda);
         self.system.solve_transposed(&mut lambda);
+        let mut adjoint = self.of_lambda((u, omega), amplitude, &lambda)?;
+        adjoint.lambda = lambda;
+        Ok(Some(adjoint))
+    }
+
+    /// The derivatives of A − λᵀR by the motions and by ω, at a fixed λ.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn gradient(&mut self, u: &[f64], omega: f64, lambda: &[f64]) -> Result<Vec<f64>> {
+        let n = u.len();
+        let mut gradient = try_vec(n + 1, 0.0, CONTEXT)?;
+        let amplitude = self.linearise(u, omega, &mut gradient[..n])?;
+        for (g, column) in gradient.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
+            *g = self.condensed.length() * (*g - dot(column, lambda));
+        }
+        gradient[n] = self.of_lambda((u, omega), amplitude, lambda)?.by_omega;
+        Ok(gradient)
+    }
+
+    /// The adjoint motion of λ at the point linearised last, and what belongs to it.
+    fn of_lambda(&mut self, (u, omega): (&[f64], f64), amplitude: Complex64, lambda: &[f64]) -> Result<Adjoint> {
+        let condensed = self.condensed;
         let mut adjoint = Adjoint::new(condensed, (omega, 0.0), try_copy(u, CONTEXT)?)?;
         let set = condensed.set();
         let (m, n) = (set.packed_len(), condensed.ndof());
@@ -140,7 +172,44 @@ impl<'a> ForcedPoint<'a> {
             condensed.expand(i, &x, &mut adjoint.motion[range.clone()])?;
             condensed.expand(i, &field, &mut adjoint.field[range])?;
         }
-        Ok(Some(adjoint))
+        adjoint.amplitude = condensed.length() * amplitude.norm();
+        Ok(adjoint)
+    }
+
+    /// Residual at the point of which the adjoint was made last.
+    pub fn residual(&self) -> &[f64] {
+        &self.at.values
+    }
+
+    /// Size to which it is relative.
+    pub fn scale(&self) -> f64 {
+        self.at.scale
+    }
+
+    /// Newton's matrix there.
+    pub fn jacobian(&self) -> &[f64] {
+        &self.matrix
+    }
+
+    /// ∂R/∂ω at the point of which the adjoint was made last.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn residual_by_omega(&mut self, omega: f64) -> Result<Vec<f64>> {
+        let condensed = self.condensed;
+        let set = condensed.set();
+        let (m, n) = (set.packed_len(), condensed.ndof());
+        let mut slope = try_vec(condensed.unknowns(), 0.0, CONTEXT)?;
+        let mut moved = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        for (i, block) in condensed.blocks().iter().enumerate() {
+            moved.copy_from_slice(&self.by_omega[i * n..(i + 1) * n]);
+            self.workspace
+                .motion_under(condensed, i, omega, &mut moved, self.interrupt)?;
+            for (c, row) in block.rows.iter().enumerate() {
+                set.set(&mut slope[c * m..(c + 1) * m], i, -row.along(&moved));
+            }
+        }
+        Ok(slope)
     }
 
     /// du/dω along the branch at the solution of which the adjoint was made last.
@@ -148,17 +217,9 @@ impl<'a> ForcedPoint<'a> {
     /// # Errors
     /// As [`Self::adjoint`].
     pub fn tangent(&mut self, omega: f64) -> Result<Vec<f64>> {
-        let condensed = self.condensed;
-        let set = condensed.set();
-        let (m, n) = (set.packed_len(), condensed.ndof());
-        let mut tangent = try_vec(condensed.unknowns(), 0.0, CONTEXT)?;
-        for (i, block) in condensed.blocks().iter().enumerate() {
-            let moved = &mut self.by_omega[i * n..(i + 1) * n];
-            self.workspace
-                .motion_under(condensed, i, omega, moved, self.interrupt)?;
-            for (c, row) in block.rows.iter().enumerate() {
-                set.set(&mut tangent[c * m..(c + 1) * m], i, row.along(moved));
-            }
+        let mut tangent = self.residual_by_omega(omega)?;
+        for t in &mut tangent {
+            *t = -*t;
         }
         self.system.solve(&mut tangent);
         Ok(tangent)

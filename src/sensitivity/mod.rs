@@ -22,6 +22,7 @@ mod parameter;
 mod peak_shift;
 mod structure_products;
 mod total_derivative;
+mod tracked_response;
 
 pub(crate) use adjoint::Adjoint;
 pub(crate) use design::design;
@@ -31,3 +32,4 @@ pub(crate) use one_sided::contact_at_onset;
 pub use parameter::{Parameter, Reason};
 pub(crate) use peak_shift::peak_shift;
 pub(crate) use total_derivative::TotalDerivative;
+pub(crate) use tracked_response::{TrackedPoint, TrackedResponse};

@@ -9,7 +9,7 @@ use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::forced_point::ForcedPoint;
 
 /// Distance of the differences over the width of the peak.
-const STEP: f64 = 3e-3;
+const STEP: f64 = 5e-4;
 
 /// Change of the frequency relative to itself that tells the width of the peak where no contact moves.
 const PROBE: f64 = 1e-7;

@@ -9,3 +9,4 @@ mod cost;
 mod design;
 mod differences;
 mod ring_damper_preload;
+mod tracked_peak;
