@@ -107,7 +107,7 @@ pub use analysis::harmonic_residual::{
 };
 pub use analysis::linear_contacts::LinearContacts;
 pub use analysis::nonlinear_mode::nonlinear_mode;
-pub use analysis::parameter_response::{Follow, ParameterPoint, ParameterResponse, parameter_response};
+pub use analysis::parameter_response::{Follow, ParameterRange, parameter_response};
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
@@ -128,7 +128,7 @@ pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, LimitCycle, Multiplier, MultiplierClass,
-    Special, Stretch,
+    Optimum, Special, Stretch,
 };
 pub use time_integration::TimeResponse;
 

@@ -6,14 +6,14 @@ use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
 use crate::error::{Result, Status, fail, try_push};
-use crate::hooks::Hooks;
-use crate::interrupt::{Interrupt, Phase};
+use crate::hooks::{Hooks, Progress};
+use crate::interrupt::Phase;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
-use crate::problem::Problem;
-use crate::problem::Residual;
-use crate::sensitivity::{Parameter, TrackedPoint, TrackedResponse};
+use crate::results::{Branch, Optimum, ParameterData, Resolution, SpecialKind};
+use crate::sensitivity::{Parameter, TrackedResponse};
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// What a parameter response follows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,51 +24,49 @@ pub enum Follow {
     Peak(f64),
 }
 
-/// A point of a parameter response.
+/// Range of a parameter response.
 #[derive(Clone, Copy, Debug)]
-pub struct ParameterPoint {
-    /// Value of the parameter.
-    pub parameter: f64,
-    /// Angular frequency.
-    pub omega: f64,
-    /// Amplitude of the response degree of freedom.
-    pub amplitude: f64,
-    /// Total derivative of the amplitude by the parameter; NaN where there is none.
-    pub d_amplitude: f64,
-}
-
-/// A forced response over a parameter.
-#[derive(Clone, Debug)]
-pub struct ParameterResponse {
-    /// The points in the order in which they were found.
-    pub points: Vec<ParameterPoint>,
-    /// The solutions at each requested value.
-    pub at: Vec<Vec<ParameterPoint>>,
-    /// Minima and maxima of the amplitude over the parameter, `true` for a maximum.
-    pub optima: Vec<(ParameterPoint, bool)>,
-    /// [`Status::Ok`] when the whole range was covered.
-    pub status: Status,
+pub struct ParameterRange<'a> {
+    /// First value of the parameter.
+    pub start: f64,
+    /// Last value; below the first for a downward response.
+    pub stop: f64,
+    /// Values within the range at which every solution is stored.
+    pub at: &'a [f64],
+    /// What is followed.
+    pub follow: Follow,
 }
 
 /// Share of a frequency within which its peak is sought.
 const NEAR: f64 = 0.1;
 
-/// Follows the amplitude of a forced response over a parameter from `start` to `stop`, at fixed harmonics.
+/// Follows the amplitude of a forced response over a parameter, with [`SolverOptions::harmonics`] at all points. Steps are
+/// controlled by the angle of the curve, so that folds are passed.
+///
+/// A branch that ends early is returned with a positive [`Branch::status`] and every point found. Where a peak vanishes
+/// in a fold, that is `StoppedStepTooSmall`.
 ///
 /// # Errors
-/// Those of [`forced_response`] and of [`Parameter::check`]; `NoConvergence` if there is no peak near the frequency.
+/// Those of [`forced_response`] and of [`Parameter::check`]; `Unsupported` with a tolerance that chooses the harmonics;
+/// `NoConvergence` if there is no peak near the frequency.
 pub fn parameter_response(
     model: &Model,
     solver: &SolverOptions,
     parameter: Parameter<'_>,
-    (start, stop): (f64, f64),
-    at: &[f64],
-    follow: Follow,
+    range: &ParameterRange<'_>,
     hooks: &mut Hooks<'_>,
-) -> Result<ParameterResponse> {
-    let solver = &solver.fixed();
+) -> Result<Branch> {
+    solver.check()?;
+    if solver.tolerance > 0.0 {
+        return fail!(
+            Unsupported,
+            "tolerance = {}, needs 0: a parameter response has the same harmonics at all points",
+            solver.tolerance
+        );
+    }
     parameter.check(model)?;
-    check(start, stop, at)?;
+    range.check()?;
+    let ParameterRange { start, stop, at, follow } = *range;
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::FirstPoint, 0.0)?;
     let first = parameter.applied(model, start)?;
@@ -88,8 +86,8 @@ pub fn parameter_response(
     let point = match follow {
         Follow::Omega(_) => 0,
         Follow::Peak(omega) => {
-            let distance = |p: &crate::results::Special| (p.omega - omega).abs();
-            let nearest = branch.peaks().iter().min_by(|a, b| distance(a).total_cmp(&distance(b)));
+            let distance = |p: f64| (p - omega).abs();
+            let nearest = branch.peaks().iter().min_by(|a, b| distance(a.omega).total_cmp(&distance(b.omega)));
             match nearest {
                 Some(peak) => peak.point,
                 None => {
@@ -104,7 +102,7 @@ pub fn parameter_response(
     let (Some(omega), Some(motion)) = (branch.omega_at(point), branch.motion_at(point)) else {
         return fail!(Internal, "a stored point has no motion");
     };
-    let problem = TrackedResponse::new(
+    let mut problem = TrackedResponse::new(
         (model, parameter),
         (solver, branch.response_dof()),
         (start, stop),
@@ -119,7 +117,54 @@ pub fn parameter_response(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    trace(problem, settings, (at, solver.max_points), &interrupt)
+    let condensed = branch.condensed_at(point);
+    let resolution = Resolution {
+        condensed: Arc::new(condensed.clone()),
+        samples: solver.samples,
+    };
+    let reduction = condensed.reduction_with(model, solver, 0);
+    let mut found = Branch::new(&resolution, reduction, solver.harmonics, branch.response_dof())?;
+    let mut data = ParameterData::default();
+    let mut beside = Vec::new();
+    let status = trace(&mut problem, settings, (at, solver.max_points), (&mut found, &mut data), &mut beside, hooks);
+    let status = match status {
+        Err(e) if e.status == Status::StoppedByCaller => e.status,
+        status => status?,
+    };
+    for (kind, point) in &beside {
+        let stored = match kind {
+            Beside::At(i) => problem.store(point, &mut found, &mut data, Some(SpecialKind::At(*i))),
+            Beside::Optimum { .. } => problem.store(point, &mut found, &mut data, Some(SpecialKind::Peak)),
+        };
+        let special = match stored {
+            Err(e) if e.status == Status::StoppedByCaller => break,
+            stored => stored?,
+        };
+        if let Beside::Optimum { is_maximum } = *kind {
+            data.push_optimum(Optimum {
+                special,
+                parameter: point.parameter(),
+                is_maximum,
+            })?;
+        }
+    }
+    found.set_parameter_data(data);
+    found.set_ending(status, None, (false, false));
+    Ok(found)
+}
+
+impl ParameterRange<'_> {
+    /// Checks the range, the requested values and the frequency.
+    ///
+    /// # Errors
+    /// `NotFinite` or `Argument`, naming the field, its value and its range.
+    pub fn check(&self) -> Result<()> {
+        let (Follow::Omega(omega) | Follow::Peak(omega)) = self.follow;
+        if !(omega > 0.0 && omega.is_finite()) {
+            return fail!(Argument, "omega = {omega}, needs an angular frequency > 0");
+        }
+        check(self.start, self.stop, self.at)
+    }
 }
 
 fn check(start: f64, stop: f64, at: &[f64]) -> Result<()> {
@@ -139,49 +184,54 @@ fn check(start: f64, stop: f64, at: &[f64]) -> Result<()> {
     Ok(())
 }
 
-/// Records the points from the first one on.
+/// A point beside the curve.
+enum Beside {
+    /// At a requested value.
+    At(usize),
+    /// Of the smallest or largest amplitude.
+    Optimum { is_maximum: bool },
+}
+
+const CONTEXT: &str = "the parameter response";
+
+/// Records the points of the curve from the first one on, and collects those beside it.
 fn trace(
-    mut problem: TrackedResponse<'_>,
+    problem: &mut TrackedResponse<'_>,
     settings: Settings,
     (at, most): (&[f64], usize),
-    interrupt: &Interrupt<'_>,
-) -> Result<ParameterResponse> {
-    const CONTEXT: &str = "the parameter response";
-    let first = initial_point::solve(&mut problem, &settings, interrupt)?.point;
-    let mut locator = Locator::new(first.unknowns().len(), settings)?;
-    let mut found = ParameterResponse {
-        points: Vec::new(),
-        at: Vec::new(),
-        optima: Vec::new(),
-        status: Status::Ok,
-    };
-    for _ in at {
-        try_push(&mut found.at, Vec::new(), CONTEXT)?;
+    (branch, data): (&mut Branch, &mut ParameterData),
+    beside: &mut Vec<(Beside, Point)>,
+    hooks: &mut Hooks<'_>,
+) -> Result<Status> {
+    let interrupt = &hooks.interrupt();
+    let mut before = initial_point::solve(problem, &settings, interrupt)?.point;
+    let mut locator = Locator::new(before.unknowns().len(), settings)?;
+    let mut continuation = Continuation::new(settings, before.try_clone()?)?;
+    problem.store(&before, branch, data, None)?;
+    if report(hooks, &before, &settings, branch) {
+        return Ok(Status::StoppedByCaller);
     }
-    try_push(&mut found.points, record(&mut problem, &first)?, CONTEXT)?;
-    let mut before = first.try_clone()?;
-    let mut continuation = Continuation::new(settings, first)?;
     loop {
         let share = (before.parameter() - settings.start) / (settings.end - settings.start);
         interrupt.phase(Phase::Continuation, share.clamp(0.0, 1.0))?;
-        let (point, last) = match continuation.advance(&mut problem, interrupt)? {
+        let (point, last) = match continuation.advance(problem, interrupt)? {
             Advance::Accepted { point, last } => (point, last),
-            Advance::LeftAtStart { .. } => {
-                found.status = Status::StoppedLeftRange;
-                return Ok(found);
-            }
-            Advance::Stopped(status) => {
-                found.status = status;
-                return Ok(found);
-            }
+            Advance::LeftAtStart { .. } => return Ok(Status::StoppedLeftRange),
+            Advance::Stopped(status) => return Ok(status),
         };
-        before = continuation.previous().map_or(Ok(before), Point::try_clone)?;
-        for (values, &p) in found.at.iter_mut().zip(at) {
-            if (before.parameter() - p) * (point.parameter() - p) > 0.0 {
+        if let Some(previous) = continuation.previous() {
+            // In the sense of the branch.
+            before = previous.try_clone()?;
+        }
+        for (i, &p) in at.iter().enumerate() {
+            let (a, b) = (before.parameter() - p, point.parameter() - p);
+            // A value at a point of the curve is found once, at the end of a step.
+            let begins = a == 0.0 && branch.points() > 1;
+            if a * b > 0.0 || begins {
                 continue;
             }
-            if let Some(special) = locator.at_parameter(&mut problem, &before, &point, p, interrupt)? {
-                try_push(values, record(&mut problem, &special)?, CONTEXT)?;
+            if let Some(special) = locator.at_parameter(problem, &before, &point, p, interrupt)? {
+                try_push(beside, (Beside::At(i), special), CONTEXT)?;
             }
         }
         for is_maximum in [true, false] {
@@ -190,22 +240,38 @@ fn trace(
                 continue;
             }
             problem.set_reciprocal(!is_maximum);
-            let special = locator.locate(&mut problem, SpecialPoint::Peak, &a, &b, interrupt);
+            let special = locator.locate(problem, SpecialPoint::Peak, &a, &b, interrupt);
             problem.set_reciprocal(false);
             if let Some(special) = special? {
-                try_push(&mut found.optima, (record(&mut problem, &special)?, is_maximum), CONTEXT)?;
+                try_push(beside, (Beside::Optimum { is_maximum }, special), CONTEXT)?;
             }
         }
-        try_push(&mut found.points, record(&mut problem, &point)?, CONTEXT)?;
-        if last {
-            return Ok(found);
+        problem.store(&point, branch, data, None)?;
+        if report(hooks, &point, &settings, branch) {
+            return Ok(Status::StoppedByCaller);
         }
-        if found.points.len() >= most {
-            found.status = Status::StoppedMaxPoints;
-            return Ok(found);
+        if last {
+            return Ok(Status::Ok);
+        }
+        if branch.points() >= most {
+            return Ok(Status::StoppedMaxPoints);
         }
         before = point;
     }
+}
+
+/// Reports a point of the curve; `true` when the caller requests a stop.
+fn report(hooks: &mut Hooks<'_>, point: &Point, settings: &Settings, branch: &Branch) -> bool {
+    let share = (point.parameter() - settings.start) / (settings.end - settings.start);
+    hooks.report(&Progress {
+        point: branch.points(),
+        parameter: point.parameter(),
+        amplitude: branch.amplitude().last().copied().unwrap_or(0.0),
+        residual: point.residual,
+        step: point.step,
+        fraction_done: share.clamp(0.0, 1.0),
+        newton_iterations: point.iterations,
+    })
 }
 
 /// A point with its amplitude, or for a minimum with the reciprocal of it.
@@ -217,21 +283,4 @@ fn sensed(point: &Point, is_maximum: bool) -> Result<Point> {
         copy.slope = Complex64::from(-point.slope.re / (amplitude * amplitude));
     }
     Ok(copy)
-}
-
-/// The results of a point in the caller's units.
-fn record(problem: &mut TrackedResponse<'_>, point: &Point) -> Result<ParameterPoint> {
-    let mut at = Residual::new(point.unknowns().len())?;
-    problem.evaluate(point.unknowns(), point.parameter(), &mut at)?;
-    let TrackedPoint {
-        omega,
-        amplitude,
-        d_amplitude,
-    } = problem.point(point.unknowns());
-    Ok(ParameterPoint {
-        parameter: point.parameter(),
-        omega,
-        amplitude,
-        d_amplitude,
-    })
 }

@@ -40,6 +40,7 @@ pub fn estimate_at_with(
     interrupt: &Interrupt<'_>,
 ) -> Result<Estimate> {
     solver.check()?;
+    branch.check_one_model()?;
     let Some((omega, motion)) = branch.omega_at(point).zip(branch.motion_at(point)) else {
         return fail!(
             Index,

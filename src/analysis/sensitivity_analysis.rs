@@ -73,6 +73,7 @@ pub fn sensitivity_with(
             branch.stored()
         );
     };
+    branch.check_one_model()?;
     check_model(model, branch)?;
     check_quantity(branch, point, of)?;
     for (i, parameter) in parameters.iter().enumerate() {

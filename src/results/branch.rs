@@ -6,6 +6,7 @@ use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
 use crate::results::mode_branch::ModeData;
 use crate::results::verdict::Located;
+use crate::results::parameter_branch::ParameterData;
 use num_complex::Complex64;
 
 /// A solution beside the curve: a peak, a fold, or one at a requested parameter value.
@@ -57,6 +58,7 @@ pub struct Branch {
     pub(super) unstable_directions: Vec<f64>,
     pub(super) at: Vec<Vec<Special>>,
     pub(super) mode: Option<ModeData>,
+    pub(super) parameter: Option<ParameterData>,
 }
 
 /// Place of a stored point: the number of its resolution, and the offsets of its motion and of its response.

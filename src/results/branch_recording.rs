@@ -95,6 +95,7 @@ impl Branch {
             unstable_directions: Vec::new(),
             at: Vec::new(),
             mode: None,
+            parameter: None,
         })
     }
 

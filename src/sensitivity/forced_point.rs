@@ -176,6 +176,17 @@ impl<'a> ForcedPoint<'a> {
         Ok(adjoint)
     }
 
+    /// Writes the carried harmonics of the response degree of freedom at `u`; returns the share of the period that each
+    /// law slips.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn response(&mut self, u: &[f64], omega: f64, x: &mut [Complex64]) -> Result<Vec<f64>> {
+        self.problem.evaluate(u, omega, &mut self.at)?;
+        self.problem.response(u, x);
+        try_copy(self.problem.slip_fractions(), CONTEXT)
+    }
+
     /// Residual at the point of which the adjoint was made last.
     pub fn residual(&self) -> &[f64] {
         &self.at.values

@@ -32,4 +32,4 @@ pub(crate) use one_sided::contact_at_onset;
 pub use parameter::{Parameter, Reason};
 pub(crate) use peak_shift::peak_shift;
 pub(crate) use total_derivative::TotalDerivative;
-pub(crate) use tracked_response::{TrackedPoint, TrackedResponse};
+pub(crate) use tracked_response::TrackedResponse;

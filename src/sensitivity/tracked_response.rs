@@ -5,7 +5,8 @@
 //! the direction t = (du/dω, 1) of the branch over ω, the derivatives of g by u and ω are those of ∂A − (∂R)ᵀ λ along t at
 //! a fixed λ: by one difference of exact Jacobians.
 
-use crate::condense::{Condensed, Reference};
+use crate::condense::{Condensed, Reference, Resolution};
+use crate::continuation::Point;
 use crate::error::{Result, fail, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
@@ -13,11 +14,13 @@ use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
+use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::forced_point::ForcedPoint;
 use crate::sensitivity::parameter::Parameter;
 use crate::sensitivity::total_derivative::TotalDerivative;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Change of ln ω that has the same weight as a change of the motions by their size.
 const OMEGA_UNIT: f64 = 0.05;
@@ -48,14 +51,6 @@ pub(crate) struct TrackedResponse<'a> {
     slopes: [f64; 2],
     /// Whether the reciprocal of the amplitude is observed.
     is_reciprocal: bool,
-}
-
-/// A point of a tracked response in the caller's units.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct TrackedPoint {
-    pub omega: f64,
-    pub amplitude: f64,
-    pub d_amplitude: f64,
 }
 
 /// A model at a value of the parameter, condensed.
@@ -102,13 +97,59 @@ impl<'a> TrackedResponse<'a> {
         })
     }
 
-    /// Results of the point evaluated last, with unknowns `u`.
-    pub fn point(&self, u: &[f64]) -> TrackedPoint {
-        TrackedPoint {
-            omega: self.frequency(u),
-            amplitude: self.amplitude,
-            d_amplitude: self.slopes[1],
+    /// Stores a point in a branch: on its curve, or where `kind` is given beside it. Returns its number.
+    ///
+    /// # Errors
+    /// Those of the model at the point; `OutOfMemory`.
+    pub fn store(
+        &mut self,
+        point: &Point,
+        branch: &mut Branch,
+        data: &mut ParameterData,
+        kind: Option<SpecialKind>,
+    ) -> Result<Special> {
+        let (u, p) = (point.unknowns(), point.parameter());
+        let mut values = try_vec(u.len(), 0.0, CONTEXT)?;
+        self.equations(u, p, true, &mut values)?;
+        let omega = self.frequency(u);
+        let At { condensed, .. } = self.at(p, omega)?;
+        let mut motion = try_copy(&u[..self.motions()], CONTEXT)?;
+        for y in &mut motion {
+            *y *= self.length / condensed.length();
         }
+        let resolution = Resolution {
+            condensed: Arc::new(condensed),
+            samples: self.solver.samples,
+        };
+        let condensed = &*resolution.condensed;
+        let mut at = ForcedPoint::new(condensed, (self.response_dof, self.solver.samples), omega, self.interrupt)?;
+        let mut response = try_vec(condensed.blocks().len(), Complex64::ZERO, CONTEXT)?;
+        let slip_fractions = at.response(&motion, omega, &mut response)?;
+        let record = Record {
+            resolution: &resolution,
+            omega,
+            motion: &motion,
+            amplitude: Complex64::from(self.amplitude / condensed.length()),
+            response: &response,
+            residual: point.residual,
+            iterations: point.iterations,
+            slip_fractions: &slip_fractions,
+            sampling_error: f64::NAN,
+            errors: (f64::NAN, f64::NAN),
+        };
+        match kind {
+            None => branch.push_curve(&record)?,
+            Some(SpecialKind::Peak) => {
+                branch.push(&record)?;
+            }
+            Some(kind) => branch.push_special(kind, &record)?,
+        }
+        data.push(p, self.slopes[1])?;
+        Ok(Special {
+            point: branch.stored() - 1,
+            omega,
+            amplitude: self.amplitude,
+        })
     }
 
     /// Observes the reciprocal of the amplitude, whose maxima are the minima of the amplitude.
