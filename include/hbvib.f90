@@ -113,6 +113,8 @@ module hbvib
    ! hbvib_derivative
    integer(c_int32_t), parameter, public :: HBVIB_DERIVATIVE_EXISTS = 0, HBVIB_DERIVATIVE_ONSET_OF_SLIP = 1, &
       HBVIB_DERIVATIVE_ONE_SIDED = 2, HBVIB_DERIVATIVE_FOLD = 3
+   ! hbvib_follow
+   integer(c_int32_t), parameter, public :: HBVIB_FOLLOW_OMEGA = 0, HBVIB_FOLLOW_PEAK = 1
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -1532,6 +1534,7 @@ module hbvib
       procedure :: floquet => model_floquet
       procedure :: sensitivity => model_sensitivity
       procedure :: batch => model_batch
+      procedure :: parameter_response => model_parameter_response
       procedure :: forced_residual => model_forced_residual
    end type hbvib_model
 
@@ -1553,6 +1556,7 @@ module hbvib
       procedure :: folds => branch_folds
       procedure :: bifurcations => branch_bifurcations
       procedure :: limit_cycles => branch_limit_cycles
+      procedure :: optima => branch_optima
       procedure :: at => branch_at
       procedure :: energy => branch_energy
       procedure :: time_history => branch_time_history
@@ -1595,6 +1599,7 @@ module hbvib
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
    private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, model_batch, branch_limit_cycles
    private :: branch_bifurcations
+   private :: model_parameter_response, branch_optima
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -2742,6 +2747,39 @@ contains
       if (status == HBVIB_OK) status = hbvib_forced_response(self%handle, chosen, forced, hooks, branch%handle)
    end function model_forced_response
 
+   !> Forced response over a parameter from start to stop: at the frequency omega, or of the peak near it with
+   !> follow = HBVIB_FOLLOW_PEAK. The solver must have tolerance = 0; contacts are counted from 1 in parameter%contact.
+   function model_parameter_response(self, branch, parameter, start, stop, omega, solver, follow, hooks, at) result(status)
+      class(hbvib_model), intent(in) :: self
+      type(hbvib_branch), intent(inout) :: branch
+      type(hbvib_parameter), intent(in) :: parameter
+      real(dp), intent(in) :: start, stop, omega
+      type(hbvib_solver_options), intent(in), optional :: solver
+      integer(i32), intent(in), optional :: follow
+      type(hbvib_hooks), intent(in), optional :: hooks
+      real(dp), intent(in), contiguous, target, optional :: at(:)
+      integer(i32) :: status
+      type(hbvib_parameter_options) :: range
+      type(hbvib_parameter), target :: given
+      type(hbvib_solver_options), allocatable :: chosen
+      status = branch%free()
+      if (status == HBVIB_E_BUSY) return
+      status = HBVIB_OK
+      call solver_from_one(status, solver, hbvib_model_dofs(self%handle), chosen)
+      given = parameter
+      call to_zero(status, 'contact', parameter%contact, hbvib_model_contacts(self%handle), given%contact, -1_i32)
+      range%parameter = c_loc(given)
+      range%start = start
+      range%stop = stop
+      range%omega = omega
+      if (present(follow)) range%follow = follow
+      if (present(at)) then
+         range%at_len = size(at)
+         if (size(at) > 0) range%at = c_loc(at)
+      end if
+      if (status == HBVIB_OK) status = hbvib_parameter_response(self%handle, chosen, range, hooks, branch%handle)
+   end function model_parameter_response
+
    !> Nonlinear mode over log10 amplitudes log10_start .. log10_stop. mode: the other options, whose range is not looked at.
    !> at: log10 of requested exact amplitudes. shape(ndof): the linear mode most similar to it. tolerance, harmonics,
    !> response_dof: as in forced_response.
@@ -3217,6 +3255,28 @@ contains
       if (present(slope)) slope = s
       if (present(point)) point = int(p) + 1
    end function branch_limit_cycles
+
+   !> Minima and maxima of the amplitude over the parameter of a parameter response.
+   function branch_optima(self, parameter, amplitude, maximum, point) result(status)
+      class(hbvib_branch), intent(in) :: self
+      real(dp), allocatable, intent(inout), optional :: parameter(:), amplitude(:)
+      logical, allocatable, intent(inout), optional :: maximum(:)
+      integer, allocatable, intent(inout), optional :: point(:)
+      integer(i32) :: status
+      real(dp), allocatable :: v(:), a(:)
+      integer(i64), allocatable :: m(:), p(:)
+      integer(i64) :: n
+      n = 0
+      status = hbvib_branch_optima(self%handle, 0_i64, count=n)
+      if (status /= HBVIB_OK) return
+      allocate (v(n), a(n), m(n), p(n))
+      status = hbvib_branch_optima(self%handle, n, v, a, m, p, n)
+      if (status /= HBVIB_OK) return
+      if (present(parameter)) parameter = v
+      if (present(amplitude)) amplitude = a
+      if (present(maximum)) maximum = m == 1
+      if (present(point)) point = int(p) + 1
+   end function branch_optima
 
    !> Solutions found at entry `wanted` of the array `at`.
    function branch_at(self, wanted, amplitude, point) result(status)

@@ -575,6 +575,19 @@ struct Parameter : Filled<hbvib_parameter, hbvib_parameter_init> {
   std::shared_ptr<const Matrix> kept_;
 };
 
+/// Range of a parameter response. Arrays handed in are borrowed until it was solved.
+struct ParameterOptions : Filled<hbvib_parameter_options, hbvib_parameter_options_init> {
+  ParameterOptions(const Parameter& changed, double from, double to, double frequency, hbvib_follow what = HBVIB_FOLLOW_OMEGA)
+      : kept_(std::make_shared<const Parameter>(changed)) {
+    parameter = kept_.get(), start = from, stop = to, omega = frequency, follow = what;
+  }
+  /// Values of the parameter at which every solution is computed exactly.
+  ParameterOptions& wanted(Span<const double> values) { return at = values.data(), at_len = values.length(), *this; }
+
+ private:
+  std::shared_ptr<const Parameter> kept_;
+};
+
 /// A callable that may return nothing where R is required: then it returns R{}.
 template <class R, class Argument>
 class Callback : public std::function<R(Argument)> {
@@ -814,6 +827,12 @@ struct LimitCycle {
   double omega, log10_amplitude, slope;
   Index point;
 };
+/// An optimum of the amplitude over a parameter.
+struct Optimum {
+  double parameter, amplitude;
+  bool is_maximum;
+  Index point;
+};
 /// Multipliers of one period of a motion by falling modulus, and the reason of each.
 struct Floquet {
   hbvib_status status;
@@ -906,6 +925,18 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
     std::vector<Bifurcation> out;
     for (std::size_t i = 0; i < omega.size(); i++)
       out.push_back({omega[i], amplitude[i], static_cast<hbvib_bifurcation>(kind[i]), point[i], before[i], after[i]});
+    return out;
+  }
+  /// Minima and maxima of the amplitude over the parameter of a parameter response.
+  std::vector<Optimum> optima() const {
+    Index count = 0;
+    use(hbvib_branch_optima, 0, nullptr, nullptr, nullptr, nullptr, &count);
+    const std::size_t n = detail::extent(count);
+    std::vector<double> parameter(n), amplitude(n);
+    std::vector<std::int64_t> maximum(n), point(n);
+    use(hbvib_branch_optima, count, parameter.data(), amplitude.data(), maximum.data(), point.data(), &count);
+    std::vector<Optimum> out;
+    for (std::size_t i = 0; i < n; i++) out.push_back({parameter[i], amplitude[i], maximum[i] == 1, point[i]});
     return out;
   }
   /// Points of a nonlinear mode where its damping ratio is zero.
@@ -1239,6 +1270,10 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   /// The response to the forces over a range of frequency.
   [[nodiscard]] Branch forced_response(const SolverOptions& solver, const ForcedOptions& range, const Hooks& hooks = {}) const {
     return solve(hbvib_forced_response, solver, range, hooks);
+  }
+  /// The forced response over a parameter, at a fixed frequency or in a peak; solver.tolerance must be 0.
+  Branch parameter_response(const SolverOptions& solver, const ParameterOptions& range, const Hooks& hooks = {}) const {
+    return solve(hbvib_parameter_response, solver, range, hooks);
   }
   /// A nonlinear mode over a range of amplitude.
   [[nodiscard]] Branch nonlinear_mode(const SolverOptions& solver, const ModeOptions& range, const Hooks& hooks = {}) const {

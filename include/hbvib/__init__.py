@@ -1803,6 +1803,43 @@ class Model(_Owner):
         return self._solve("hbvib_forced_response", solver, options, (progress, log, log_level, cancel, phase))
 
     @_with_options("hbvib_solver_options", SolverOptions)
+    def parameter_response(self, parameter: Parameter, values: Sequence[float], *, omega: float,
+                           follow: Any = Follow.OMEGA, at: Optional[ArrayLike] = None,
+                           progress: Union[bool, Callable[[Progress], Any], None] = None,
+                           log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
+                           cancel: Optional[CancelFlag] = None,
+                           phase: Hook = None, **solver: Unpack[SolverOptions]) -> Branch:
+        """Follows the amplitude of the forced response over a parameter: Branch.parameter_values, .amplitude,
+        .d_amplitude, .optima.
+
+        values    (start, stop), downward where stop is the lower: of a constant or of the speed the value itself, of a
+                  factor 1 as at present, of a direction its coefficient.
+        omega     the frequency held, or one within a tenth of which the peak next to it is sought at the start.
+        follow    "omega": the response at this frequency; "peak": the peak.
+        at        values within the range at which every solution is computed exactly: Branch.at.
+        The rest as in forced_response. All points have the same `harmonics`, which must be given: without a
+        tolerance. Options of the solver:
+
+        {options}
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> found = model.parameter_response(hbvib.Parameter("preload"), (0.3, 2), omega=1.2, follow="peak", harmonics=9)
+        >>> optima = found.optima()
+        >>> len(optima.parameter), optima.kind[0]
+        (1, 'minimum')
+        """
+        start, stop = _range("values", values, "parameter_response(parameter, (1, 2), at=values)")
+        described = parameter._description()
+        options = _new("hbvib_parameter_options", start=start, stop=stop, omega=omega, follow=_member(Follow, follow),
+                       **_counted_array("at", at))
+        options.described = described  # kept as long as the struct
+        options.parameter = ctypes.addressof(described)
+        return self._solve("hbvib_parameter_response", solver, options, (progress, log, log_level, cancel, phase))
+
+    @_with_options("hbvib_solver_options", SolverOptions)
     def nonlinear_mode(self, log10_amplitude: Sequence[float], *, at: Optional[ArrayLike] = None,
                        shape: Optional[ArrayLike] = None, damping_form: Any = DampingForm.MASS, diameter: int = -1,
                        mode_index: int = 0, near_omega: float = 0, amplitude_contact: int = -1, reference_dof: int = -1,
@@ -2511,6 +2548,9 @@ class Branch(_Owner):
     structural_loss = _field_property(Field.STRUCTURAL_LOSS, "Modes: work of the structure's damping per cycle.")
     log10_amplitude = _field_property(Field.LOG10_AMPLITUDE, "Modes: log10 of the amplitude, the parameter.")
     modal_amplitude = _field_property(Field.MODAL_AMPLITUDE, "Modes: sqrt(X_1^H M X_1).")
+    parameter_values = _field_property(Field.PARAMETER_VALUE, "Parameter responses: value of the parameter.")
+    d_amplitude = _field_property(Field.D_AMPLITUDE, "Parameter responses: total derivative of the amplitude by the"
+                                  " parameter; NaN where there is none.")
     modal_assurance = _field_property(Field.MODAL_ASSURANCE, "Modes: likeness to the point before, 0 to 1.")
 
     def _filled(self, record: type[_Record], *arguments: Any, name: str) -> _Record:
@@ -2714,6 +2754,12 @@ class Branch(_Owner):
                                                      [float, float, np.int64, np.int64, np.int64, np.int64])
         names = np.array([Bifurcation(k).name.lower() for k in kind], dtype="U15")
         return Bifurcations(omega, amplitude, names, *rest)
+
+    def optima(self) -> Optima:
+        """Minima and maxima of the amplitude over the parameter of a parameter response: value of the parameter,
+        amplitude, kind ("minimum" or "maximum"), point number."""
+        found = self._listed("hbvib_branch_optima", (), [float, float, np.int64, np.int64])
+        return Optima(found[0], found[1], np.where(found[2] == 1, "maximum", "minimum"), found[3])
 
     def limit_cycles(self) -> LimitCycles:
         """Points of a nonlinear mode where its damping ratio is zero, motions of the model without forces: omega, log10

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "LimitCycles", "Loop", "Modes",
-    "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Verification", "Wanted",
+    "Optima", "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Verification", "Wanted",
 ]
 
 
@@ -184,6 +184,14 @@ class Verification(NamedTuple):
     errors: FloatArray
     info: VerificationInfo
     status: Status
+
+
+class Optima(NamedTuple):
+    """Optima of a parameter response: value of the parameter, amplitude, "minimum" or "maximum", point number."""
+    parameter: FloatArray
+    value: FloatArray
+    kind: StringArray
+    point: IntArray
 
 
 class Floquet(NamedTuple):

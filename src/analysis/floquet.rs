@@ -61,6 +61,7 @@ pub fn floquet(
     hooks: &mut Hooks<'_>,
 ) -> Result<Floquet> {
     options.check()?;
+    branch.check_one_model()?;
     check_model(model, branch)?;
     model.check_matrices(false)?;
     let Some(omega) = branch.omega_at(point) else {

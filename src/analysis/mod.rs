@@ -35,6 +35,7 @@ pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
 pub use crate::analysis::nonlinear_mode::nonlinear_mode;
+pub use crate::analysis::parameter_response::{Follow, ParameterRange, parameter_response};
 pub use crate::analysis::point_error::estimate_at;
 pub use crate::analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use crate::analysis::synthesis::{synthesise, synthesise_with};

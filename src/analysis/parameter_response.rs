@@ -66,7 +66,12 @@ pub fn parameter_response(
     }
     parameter.check(model)?;
     range.check()?;
-    let ParameterRange { start, stop, at, follow } = *range;
+    let ParameterRange {
+        start,
+        stop,
+        at,
+        follow,
+    } = *range;
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::FirstPoint, 0.0)?;
     let first = parameter.applied(model, start)?;
@@ -87,7 +92,10 @@ pub fn parameter_response(
         Follow::Omega(_) => 0,
         Follow::Peak(omega) => {
             let distance = |p: f64| (p - omega).abs();
-            let nearest = branch.peaks().iter().min_by(|a, b| distance(a.omega).total_cmp(&distance(b.omega)));
+            let nearest = branch
+                .peaks()
+                .iter()
+                .min_by(|a, b| distance(a.omega).total_cmp(&distance(b.omega)));
             match nearest {
                 Some(peak) => peak.point,
                 None => {
@@ -126,7 +134,14 @@ pub fn parameter_response(
     let mut found = Branch::new(&resolution, reduction, solver.harmonics, branch.response_dof())?;
     let mut data = ParameterData::default();
     let mut beside = Vec::new();
-    let status = trace(&mut problem, settings, (at, solver.max_points), (&mut found, &mut data), &mut beside, hooks);
+    let status = trace(
+        &mut problem,
+        settings,
+        (at, solver.max_points),
+        (&mut found, &mut data),
+        &mut beside,
+        hooks,
+    );
     let status = match status {
         Err(e) if e.status == Status::StoppedByCaller => e.status,
         status => status?,

@@ -86,6 +86,7 @@ pub fn verify(
             "the branch is a nonlinear mode: no force drives it, so that there is no forced motion in time to compare with; take a point of a forced response"
         );
     }
+    branch.check_one_model()?;
     check_model(model, branch)?;
     let Some(omega) = branch.omega_at(point) else {
         return fail!(

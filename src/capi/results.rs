@@ -103,6 +103,11 @@ pub enum hbvib_field {
     HBVIB_FLOQUET_RADIUS = 16,
     /// The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
     HBVIB_UNSTABLE_DIRECTIONS = 17,
+    /// Parameter responses only: value of the parameter.
+    HBVIB_PARAMETER_VALUE = 18,
+    /// Parameter responses only: total derivative of the amplitude by the parameter, NaN where there
+    /// is none.
+    HBVIB_D_AMPLITUDE = 19,
 }
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -156,7 +161,8 @@ pub unsafe extern "C" fn hbvib_view_init(v: *mut hbvib_view, size_of_v: usize) -
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
 ///        points x contacts, 0 for a contact that never slips. A forced response does not have the
-///        fields of nonlinear modes, and those of stability with that option only.
+///        fields of nonlinear modes, and those of stability with that option only; parameter
+///        responses alone have those of a parameter.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -177,6 +183,8 @@ pub unsafe extern "C" fn hbvib_branch_field(
     const DAMPING_ERROR: i32 = hbvib_field::HBVIB_DAMPING_ERROR_ESTIMATE as i32;
     const RADIUS: i32 = hbvib_field::HBVIB_FLOQUET_RADIUS as i32;
     const UNSTABLE: i32 = hbvib_field::HBVIB_UNSTABLE_DIRECTIONS as i32;
+    const PARAMETER: i32 = hbvib_field::HBVIB_PARAMETER_VALUE as i32;
+    const D_AMPLITUDE: i32 = hbvib_field::HBVIB_D_AMPLITUDE as i32;
     const SLIP_FRACTION: i32 = hbvib_field::HBVIB_SLIP_FRACTION as i32;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
@@ -204,6 +212,19 @@ pub unsafe extern "C" fn hbvib_branch_field(
                     "field = {field}: only a forced response with the solver option stability has it"
                 )
                 .with_argument(2);
+            }
+            PARAMETER | D_AMPLITUDE => {
+                let data = if field == PARAMETER {
+                    branch.parameter()
+                } else {
+                    branch.d_amplitude()
+                };
+                match data {
+                    Some(data) => data,
+                    None => {
+                        return fail!(Argument, "field = {field}: only a parameter response has it").with_argument(2);
+                    }
+                }
             }
             _ => match mode_field(field).map(|f| branch.mode_field(f)) {
                 Some(Some(data)) => data,

@@ -23,7 +23,10 @@ impl Model {
     pub(crate) fn set_constant(&mut self, id: usize, constant: Constant, value: f64) -> Result<()> {
         if constant == Constant::Preload {
             let loads = self.speed_loads().iter();
-            let per_speed2 = loads.filter(|load| load.contact == id).map(|load| load.per_speed2).sum();
+            let per_speed2 = loads
+                .filter(|load| load.contact == id)
+                .map(|load| load.per_speed2)
+                .sum();
             return self.set_preload_at_speed(id, value, per_speed2);
         }
         let count = self.contacts().len();
@@ -96,18 +99,22 @@ impl Structure {
         let blocks = self.blocks_mut(which)?;
         let transposed = match (&blocks.next, &blocks.previous) {
             // The coupling to the previous sector no longer follows from the next one.
-            (Some(next), None) if added[2].is_some() => {
-                Some(Csc::sum(n, &[(Complex64::ONE, next, Form::Transposed)])?)
-            }
+            (Some(next), None) if added[2].is_some() => Some(Csc::sum(n, &[(Complex64::ONE, next, Form::Transposed)])?),
             _ => None,
         };
         if transposed.is_some() {
             blocks.previous = transposed;
         }
-        for (to, added) in [&mut blocks.own, &mut blocks.next, &mut blocks.previous].into_iter().zip(&added) {
+        for (to, added) in [&mut blocks.own, &mut blocks.next, &mut blocks.previous]
+            .into_iter()
+            .zip(&added)
+        {
             let Some(added) = added else { continue };
             let sum = match &*to {
-                Some(old) => Csc::sum(n, &[(Complex64::ONE, old, Form::Plain), (factor.into(), added, Form::Plain)])?,
+                Some(old) => Csc::sum(
+                    n,
+                    &[(Complex64::ONE, old, Form::Plain), (factor.into(), added, Form::Plain)],
+                )?,
                 None => Csc::sum(n, &[(factor.into(), added, Form::Plain)])?,
             };
             *to = Some(sum);

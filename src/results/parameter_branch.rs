@@ -63,7 +63,10 @@ impl Branch {
     #[must_use]
     pub fn parameter_at(&self, point: usize) -> Option<(f64, f64)> {
         let data = self.parameter.as_ref()?;
-        data.parameter.get(point).copied().zip(data.d_amplitude.get(point).copied())
+        data.parameter
+            .get(point)
+            .copied()
+            .zip(data.d_amplitude.get(point).copied())
     }
 
     /// Minima and maxima of the amplitude over the parameter; none for other branches.

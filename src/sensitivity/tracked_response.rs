@@ -122,7 +122,12 @@ impl<'a> TrackedResponse<'a> {
             samples: self.solver.samples,
         };
         let condensed = &*resolution.condensed;
-        let mut at = ForcedPoint::new(condensed, (self.response_dof, self.solver.samples), omega, self.interrupt)?;
+        let mut at = ForcedPoint::new(
+            condensed,
+            (self.response_dof, self.solver.samples),
+            omega,
+            self.interrupt,
+        )?;
         let mut response = try_vec(condensed.blocks().len(), Complex64::ZERO, CONTEXT)?;
         let slip_fractions = at.response(&motion, omega, &mut response)?;
         let record = Record {
@@ -193,7 +198,12 @@ impl<'a> TrackedResponse<'a> {
         for y in &mut own {
             *y *= unit;
         }
-        let mut point = ForcedPoint::new(&condensed, (self.response_dof, self.solver.samples), omega, self.interrupt)?;
+        let mut point = ForcedPoint::new(
+            &condensed,
+            (self.response_dof, self.solver.samples),
+            omega,
+            self.interrupt,
+        )?;
         let Some(adjoint) = point.adjoint(&own, omega)? else {
             return fail!(Singular, "the response is in a fold over the frequency");
         };
@@ -210,7 +220,11 @@ impl<'a> TrackedResponse<'a> {
             return Ok(scale);
         }
         self.matrix.fill(0.0);
-        for (column, from) in self.matrix.chunks_exact_mut(n).zip(point.jacobian().chunks_exact(m.max(1))) {
+        for (column, from) in self
+            .matrix
+            .chunks_exact_mut(n)
+            .zip(point.jacobian().chunks_exact(m.max(1)))
+        {
             column[..m].copy_from_slice(from);
         }
         if self.is_peak {

@@ -70,6 +70,33 @@ int main(void)
     WORKS("frequency", hbvib_sensitivity(model, branch, point, HBVIB_OF_PEAK_OMEGA, p, 4, values, 4, NULL, NULL, NULL));
     EXPECT("frequency", values[2] > 0 && fabs(values[0] + values[1]) < 1e-6);
 
+    {
+        hbvib_parameter_options o;
+        hbvib_branch *study = NULL;
+        double value[8], size[8];
+        int64_t maximum[8], where[8], n;
+        hbvib_view view;
+        if (hbvib_parameter_options_init(&o, sizeof o) != HBVIB_OK || hbvib_view_init(&view, sizeof view) != HBVIB_OK) abort();
+        REFUSED("no parameter", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_NULL, 3, "parameter");
+        o.parameter = &p[1];
+        o.start = 1;
+        o.stop = 3;
+        o.omega = omega;
+        o.follow = HBVIB_FOLLOW_PEAK;
+        WORKS("study", hbvib_parameter_response(model, &solver, &o, NULL, &study));
+        WORKS("field", hbvib_branch_field(study, HBVIB_PARAMETER_VALUE, &view));
+        EXPECT("field", view.data[0] == 1 && view.data[view.shape[0] - 1] == 3);
+        WORKS("optima", hbvib_branch_optima(study, 8, value, size, maximum, where, &n));
+        EXPECT("optima", n <= 8);
+        REFUSED("no parameter", hbvib_branch_field(branch, HBVIB_D_AMPLITUDE, &view), HBVIB_E_ARGUMENT, 2, "parameter response");
+        REFUSED("models", hbvib_sensitivity(model, study, 0, 0, p, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 0, "model of its own");
+        WORKS("free", hbvib_branch_free(study));
+        o.follow = 2;
+        REFUSED("follow", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_ARGUMENT, 3, "follow = 2");
+        o.follow = HBVIB_FOLLOW_OMEGA;
+        solver.tolerance = 1e-3;
+        REFUSED("tolerance", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_UNSUPPORTED, 0, "needs 0");
+    }
     REFUSED("no peak", hbvib_sensitivity(model, branch, 0, HBVIB_OF_PEAK_OMEGA, p, 4, values, 4, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 0, "no peak");
     REFUSED("of", hbvib_sensitivity(model, branch, 0, 5, p, 4, values, 4, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 4, "of = 5");
     REFUSED("point", hbvib_sensitivity(model, branch, 9999, 0, p, 4, values, 4, NULL, NULL, NULL), HBVIB_E_INDEX, 3, "point");

@@ -3,7 +3,9 @@
 
 use crate::common::{BASE, all_harmonics, relative_gap};
 use crate::design::{Design, Results, tight};
-use hbvib::{Branch, Constant, Follow, Hooks, Parameter, ParameterRange, Quantity, Status, parameter_response, sensitivity};
+use hbvib::{
+    Branch, Constant, Follow, Hooks, Parameter, ParameterRange, Quantity, Status, parameter_response, sensitivity,
+};
 use std::f64::consts::TAU;
 
 const PRELOAD: Parameter<'static> = Parameter::Contact {
@@ -13,9 +15,19 @@ const PRELOAD: Parameter<'static> = Parameter::Contact {
 
 fn tracked((start, stop): (f64, f64), at: &[f64], follow: Follow) -> Branch {
     let model = Design::ring_damper(&BASE, 300.0).model();
-    let range = ParameterRange { start, stop, at, follow };
+    let range = ParameterRange {
+        start,
+        stop,
+        at,
+        follow,
+    };
     let found = parameter_response(&model, &tight(9), PRELOAD, &range, &mut Hooks::default()).unwrap();
-    assert_eq!(found.status(), Status::Ok, "after {:?}", found.parameter().unwrap().last());
+    assert_eq!(
+        found.status(),
+        Status::Ok,
+        "after {:?}",
+        found.parameter().unwrap().last()
+    );
     assert_eq!(found.parameter().unwrap()[0].to_bits(), start.to_bits());
     assert_eq!(found.parameter().unwrap().last().unwrap().to_bits(), stop.to_bits());
     found
@@ -26,11 +38,19 @@ fn peak_over_the_normal_load_has_the_optimum_of_the_reference() {
     let at = [300.0, 800.0];
     let up = tracked((100.0, 1200.0), &at, Follow::Peak(208.0 * TAU));
     println!("{} points, optima {:?}", up.points(), up.optima());
-    let [optimum] = up.optima()[..] else { panic!("{:?}", up.optima()) };
+    let [optimum] = up.optima()[..] else {
+        panic!("{:?}", up.optima())
+    };
     assert!(!optimum.is_maximum);
     assert!((optimum.parameter / 482.852_251 - 1.0).abs() < 1e-5, "{optimum:?}");
-    assert!((optimum.special.omega / TAU / 208.796_528 - 1.0).abs() < 1e-8, "{optimum:?}");
-    assert!((optimum.special.amplitude / 1.415_704_171_8e-3 - 1.0).abs() < 1e-8, "{optimum:?}");
+    assert!(
+        (optimum.special.omega / TAU / 208.796_528 - 1.0).abs() < 1e-8,
+        "{optimum:?}"
+    );
+    assert!(
+        (optimum.special.amplitude / 1.415_704_171_8e-3 - 1.0).abs() < 1e-8,
+        "{optimum:?}"
+    );
     let down = tracked((1200.0, 100.0), &at, Follow::Peak(209.5 * TAU));
     assert!((down.optima()[0].parameter / optimum.parameter - 1.0).abs() < 1e-5);
     for (i, (frequency, amplitude, slope)) in [
@@ -41,7 +61,9 @@ fn peak_over_the_normal_load_has_the_optimum_of_the_reference() {
     .enumerate()
     {
         for curve in [&up, &down] {
-            let [point] = curve.at(i)[..] else { panic!("{:?}", curve.at(i)) };
+            let [point] = curve.at(i)[..] else {
+                panic!("{:?}", curve.at(i))
+            };
             assert!((point.omega / TAU / frequency - 1.0).abs() < 1e-8, "{point:?}");
             assert!((point.amplitude / amplitude - 1.0).abs() < 1e-8, "{point:?}");
             let (parameter, derivative) = curve.parameter_at(point.point).unwrap();

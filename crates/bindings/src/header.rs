@@ -93,8 +93,8 @@ pub const SECTIONS: [Section; 13] = [
     },
     Section {
         title: "Design studies",
-        about: "parameters of a model, derivatives of results by them",
-        files: &["sensitivities", "batch"],
+        about: "parameters of a model, derivatives of results by them, responses over them",
+        files: &["sensitivities", "parameter_responses", "batch"],
     },
     Section {
         title: "Low level",

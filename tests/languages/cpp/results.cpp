@@ -141,6 +141,14 @@ void friction() {
   near(found.derivatives.at(2), found.derivatives.at(3), 1e-14, "a stiffness of 1");
   claim(found.reasons.at(3) == HBVIB_DERIVATIVE_EXISTS && found.onset == -1, "all derivatives exist");
 
+  // The peak over the normal load.
+  const auto study = model.parameter_response(
+      solver, hbvib::ParameterOptions(hbvib::Parameter(HBVIB_PARAMETER_PRELOAD, 0), 1, 2, peak.omega, HBVIB_FOLLOW_PEAK));
+  near(study.field(HBVIB_AMPLITUDE)(0), peak.amplitude, 1e-8, "a study begins at the peak");
+  near(study.field(HBVIB_PARAMETER_VALUE)(study.points() - 1), 2, 1e-15, "and ends with its range");
+  near(study.field(HBVIB_D_AMPLITUDE)(0), found.derivatives.at(1), 1e-6, "its slope is the derivative");
+  claim(branch.optima().empty(), "a forced response has no optima");
+
   // The law alone, on the motion of the point.
   std::vector<Complex> motion(x.data(), x.data() + x.size());
   const auto force = hbvib::contact_evaluate(Contact::jenkins(0, HBVIB_GROUND, kt, mu, preload), 31, 0, peak.omega, motion, true);

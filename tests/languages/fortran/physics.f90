@@ -290,6 +290,7 @@ contains
       complex(dp), allocatable :: mu(:)
       integer, allocatable :: classes(:)
       real(dp) :: derivatives(2)
+      type(hbvib_branch) :: study
       integer :: j, reasons(2), onset
       exact = load/cmplx(k - omega**2, c*omega, dp)
       call oscillator(k, c, load)
@@ -323,6 +324,12 @@ contains
       call expect('all derivatives exist', all(reasons == HBVIB_DERIVATIVE_EXISTS) .and. onset == 0)
       call refused(model%sensitivity(branch, point(1), [hbvib_parameter(kind=HBVIB_PARAMETER_MU, contact=0)], derivatives(:1)), &
                    HBVIB_E_INDEX, 'contact = 0, needs 1', 'a derivative by contact 0')
+      call works(model%parameter_response(study, hbvib_parameter(kind=HBVIB_PARAMETER_PRELOAD, contact=1), 1._dp, 1.5_dp, &
+                 omega, hbvib_solver_options(tolerance=0._dp, harmonics=63), at=[1.2_dp]), 'a study')
+      call works(study%at(1, amplitude), 'at')
+      call expect('it has the requested value', size(amplitude) == 1)
+      call works(study%optima(amplitude), 'optima')
+      call works(study%free(), 'free')
       call works(branch%limit_cycles(amplitude), 'limit cycles')
       call expect('a forced response has none', size(amplitude) == 0)
       call refused(model%floquet(branch, 0), HBVIB_E_INDEX, 'point = 0, needs 1', 'the stability of point 0')

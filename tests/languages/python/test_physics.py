@@ -269,6 +269,12 @@ try:
     check("a constant that the law does not have is refused", False)
 except hbvib.UnsupportedError as error:
     check("a constant that the law does not have is refused", "gap of contact 0" in str(error))
+study = rubbing.parameter_response(hbvib.Parameter("preload"), (0.3, 2), omega=1.2, follow="peak", at=[1], harmonics=9)
+optima = study.optima()
+check("a study has its range", study.parameter_values[0] == 0.3 and study.parameter_values[-1] == 2)
+check("and an optimum", list(optima.kind) == ["minimum"] and optima.value[0] <= study.amplitude.min())
+sweep = rubbing.forced_response((1, 1.5), harmonics=9)
+close("a point of it is the peak of the model", study.at(0).amplitude, sweep.peaks().amplitude, 1e-8)
 started = rubbing.time_response(1.3, harmonics=3, start=point.harmonics(0), method="marching")
 close("marching from a point of a branch finds the same", started.harmonics, truth, 1e-6)
 
@@ -328,4 +334,4 @@ close(
     1e-9,
 )
 
-finish(61)
+finish(64)
