@@ -1826,7 +1826,7 @@ class Model(_Owner):
         >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
         >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
         >>> model.add_force(0, 0.2)
-        >>> found = model.parameter_response(hbvib.Parameter("preload"), (0.3, 2), omega=1.2, follow="peak", harmonics=9)
+        >>> found = model.parameter_response(hbvib.Parameter("preload"), (0.3, 2), omega=1.0, follow="peak", harmonics=9)
         >>> optima = found.optima()
         >>> len(optima.parameter), optima.kind[0]
         (1, 'minimum')

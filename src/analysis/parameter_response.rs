@@ -146,23 +146,7 @@ pub fn parameter_response(
         Err(e) if e.status == Status::StoppedByCaller => e.status,
         status => status?,
     };
-    for (kind, point) in &beside {
-        let stored = match kind {
-            Beside::At(i) => problem.store(point, &mut found, &mut data, Some(SpecialKind::At(*i))),
-            Beside::Optimum { .. } => problem.store(point, &mut found, &mut data, Some(SpecialKind::Peak)),
-        };
-        let special = match stored {
-            Err(e) if e.status == Status::StoppedByCaller => break,
-            stored => stored?,
-        };
-        if let Beside::Optimum { is_maximum } = *kind {
-            data.push_optimum(Optimum {
-                special,
-                parameter: point.parameter(),
-                is_maximum,
-            })?;
-        }
-    }
+    store_beside(&mut problem, &beside, (&mut found, &mut data))?;
     found.set_parameter_data(data);
     found.set_ending(status, None, (false, false));
     Ok(found)
@@ -194,6 +178,32 @@ fn check(start: f64, stop: f64, at: &[f64]) -> Result<()> {
     for (i, &p) in at.iter().enumerate() {
         if !(p >= start.min(stop) && p <= start.max(stop)) {
             return fail!(Argument, "at[{i}] = {p}, needs a value within {start} .. {stop}");
+        }
+    }
+    Ok(())
+}
+
+/// Stores the points beside the curve; those that a stop of the caller prevents are left out.
+fn store_beside(
+    problem: &mut TrackedResponse<'_>,
+    beside: &[(Beside, Point)],
+    (found, data): (&mut Branch, &mut ParameterData),
+) -> Result<()> {
+    for (kind, point) in beside {
+        let stored = match kind {
+            Beside::At(i) => problem.store(point, found, data, Some(SpecialKind::At(*i))),
+            Beside::Optimum { .. } => problem.store(point, found, data, Some(SpecialKind::Peak)),
+        };
+        let special = match stored {
+            Err(e) if e.status == Status::StoppedByCaller => break,
+            stored => stored?,
+        };
+        if let Beside::Optimum { is_maximum } = *kind {
+            data.push_optimum(Optimum {
+                special,
+                parameter: point.parameter(),
+                is_maximum,
+            })?;
         }
     }
     Ok(())
