@@ -11,7 +11,7 @@ use crate::interrupt::Phase;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
 use crate::results::{Branch, Optimum, ParameterData, Resolution, SpecialKind};
-use crate::sensitivity::{Parameter, TrackedResponse};
+use crate::sensitivity::{Parameter, TrackedResponse, design};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -74,7 +74,7 @@ pub fn parameter_response(
     } = *range;
     let interrupt = hooks.interrupt();
     interrupt.phase(Phase::FirstPoint, 0.0)?;
-    let first = parameter.applied(model, start)?;
+    let first = design(model, core::slice::from_ref(&parameter), &[start])?;
     let (omega_start, omega_stop, is_peak) = match follow {
         Follow::Omega(omega) => (omega, omega, false),
         Follow::Peak(omega) => ((1.0 - NEAR) * omega, (1.0 + NEAR) * omega, true),

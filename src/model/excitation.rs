@@ -94,13 +94,6 @@ impl Excitation {
         }
     }
 
-    /// Multiplies all forces.
-    pub(super) fn scale(&mut self, factor: f64) {
-        for force in &mut self.forces {
-            force.value *= factor;
-        }
-    }
-
     /// Whether a force grows with ω².
     #[must_use]
     pub fn has_unbalance(&self) -> bool {

@@ -343,10 +343,6 @@ impl Model {
         self.contacts.get_mut(id)
     }
 
-    pub(super) fn excitation_mut(&mut self) -> &mut Excitation {
-        &mut self.excitation
-    }
-
     pub(super) fn add_unbalance_forces(&mut self, forces: [(usize, Complex64); 2]) -> Result<()> {
         self.excitation.add_unbalance(forces)
     }

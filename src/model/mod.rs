@@ -1,7 +1,6 @@
 //! The model: structure, contacts, excitation. The analyses take their matrices and contact data from here.
 
 mod blocks;
-mod changes;
 pub mod contents;
 pub mod cyclic;
 pub mod damped_mode;

@@ -5,8 +5,8 @@ use crate::condense::Resolution;
 use crate::condense::{Condensed, Reduction};
 use crate::error::{Error, Result, Status, fail};
 use crate::results::mode_branch::ModeData;
-use crate::results::verdict::Located;
 use crate::results::parameter_branch::ParameterData;
+use crate::results::verdict::Located;
 use num_complex::Complex64;
 
 /// A solution beside the curve: a peak, a fold, or one at a requested parameter value.

@@ -76,33 +76,6 @@ impl Parameter<'_> {
     }
 }
 
-impl Parameter<'_> {
-    /// The model with a value of the parameter: of a constant or of the speed the value itself, of a factor 1 as at
-    /// present, of a direction its coefficient.
-    ///
-    /// # Errors
-    /// Those of the value; `OutOfMemory`.
-    pub(crate) fn applied(&self, model: &Model, value: f64) -> Result<Model> {
-        let mut changed = model.try_clone()?;
-        match self {
-            Self::Force => changed.scale_forces(value),
-            Self::Contact { constant, contact } => {
-                let all = 0..model.contacts().len();
-                let numbers = contact.map_or(all, |number| number..number + 1);
-                for number in numbers {
-                    if contact.is_some() || model.contacts()[number].by_constant(*constant).is_some() {
-                        changed.set_constant(number, *constant, value)?;
-                    }
-                }
-            }
-            Self::Direction { which, direction } => changed.add_direction(*which, direction, value)?,
-            Self::Factor { which } => changed.scale_matrix(*which, value)?,
-            Self::Speed => changed.set_speed(Speed::Fixed(value))?,
-        }
-        Ok(changed)
-    }
-}
-
 fn check_contact(model: &Model, constant: Constant, contact: Option<usize>) -> Result<()> {
     let contacts = model.contacts();
     let name = constant.name();

@@ -16,6 +16,7 @@ use crate::options::SolverOptions;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
+use crate::sensitivity::design::design;
 use crate::sensitivity::forced_point::ForcedPoint;
 use crate::sensitivity::parameter::Parameter;
 use crate::sensitivity::total_derivative::TotalDerivative;
@@ -147,7 +148,7 @@ impl<'a> TrackedResponse<'a> {
             Some(SpecialKind::Peak) => {
                 branch.push(&record)?;
             }
-            Some(kind) => branch.push_special(kind, &record)?,
+            Some(kind) => branch.push_special(kind, branch.points().saturating_sub(1), &record)?,
         }
         data.push(p, self.slopes[1])?;
         Ok(Special {
@@ -175,7 +176,7 @@ impl<'a> TrackedResponse<'a> {
     }
 
     fn at(&self, p: f64, omega: f64) -> Result<At> {
-        let model = self.parameter.applied(self.model, p)?;
+        let model = design(self.model, core::slice::from_ref(&self.parameter), &[p])?;
         let reference = Some(Reference::Complex);
         let condensed = Condensed::with_reference(&model, &self.solver, (omega, omega), reference, self.interrupt)?;
         if condensed.unknowns() != self.motions() {
