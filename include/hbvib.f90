@@ -76,7 +76,7 @@ module hbvib
       HBVIB_DISSIPATION = 4, HBVIB_RESIDUAL = 5, HBVIB_NEWTON_ITERATIONS = 6, HBVIB_ERROR_ESTIMATE = 7, &
       HBVIB_HARMONICS_USED = 8, HBVIB_SLIP_FRACTION = 9, HBVIB_LOG10_AMPLITUDE = 10, HBVIB_MODAL_AMPLITUDE = 11, &
       HBVIB_STRUCTURAL_LOSS = 12, HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, HBVIB_DAMPING_ERROR_ESTIMATE = 15, &
-      HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17
+      HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17, HBVIB_PARAMETER_VALUE = 18, HBVIB_D_AMPLITUDE = 19
    ! hbvib_state
    integer(c_int32_t), parameter, public :: HBVIB_STATE_STICK = 0, HBVIB_STATE_SLIP = 1, HBVIB_STATE_OPEN = 2
    ! hbvib_contact_state
@@ -343,6 +343,15 @@ module hbvib
       type(c_ptr) :: direction = c_null_ptr
       integer(c_int32_t) :: scaling = 0, reserved = 0
    end type hbvib_parameter
+
+   !> Range of a parameter response.
+   type, bind(c) :: hbvib_parameter_options
+      integer(c_int32_t) :: struct_size = 56, follow = 0
+      type(c_ptr) :: parameter = c_null_ptr
+      real(c_double) :: start = 0, stop = 0, omega = 0
+      type(c_ptr) :: at = c_null_ptr
+      integer(c_int64_t) :: at_len = 0
+   end type hbvib_parameter_options
 
    !> Options of hbvib_batch_solve.
    type, bind(c) :: hbvib_batch_options
@@ -1350,6 +1359,33 @@ module hbvib
          type(hbvib_hooks), intent(in), optional :: hooks
          integer(c_int32_t) :: status
       end function hbvib_sensitivity
+
+      function hbvib_parameter_options_init(o, size_of_o) bind(c) result(status)
+         import
+         type(hbvib_parameter_options), intent(inout) :: o
+         integer(c_size_t), value :: size_of_o
+         integer(c_int32_t) :: status
+      end function hbvib_parameter_options_init
+
+      function hbvib_parameter_response(model, solver, options, hooks, out) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         type(hbvib_solver_options), intent(in) :: solver
+         type(hbvib_parameter_options), intent(in) :: options
+         type(hbvib_hooks), intent(in), optional :: hooks
+         type(c_ptr), intent(inout) :: out
+         integer(c_int32_t) :: status
+      end function hbvib_parameter_response
+
+      function hbvib_branch_optima(branch, capacity, parameter, amplitude, maximum, point, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: parameter(*), amplitude(*)
+         integer(c_int64_t), intent(inout), optional :: maximum(*), point(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_branch_optima
 
       function hbvib_batch_options_init(o, size_of_o) bind(c) result(status)
          import

@@ -67,7 +67,7 @@
  *   Modes               linear and nonlinear modes, responses synthesised from them
  *   Time                integration in time, and points of a branch compared with it
  *   Stability           Floquet multipliers of points, bifurcations, limit cycles
- *   Design studies      parameters of a model, derivatives of results by them
+ *   Design studies      parameters of a model, derivatives of results by them, responses over them
  *   Low level           one contact law, the residual at a given motion, indices from 1
  */
 
@@ -1643,6 +1643,11 @@ typedef enum {
   HBVIB_FLOQUET_RADIUS = 16,
   /// The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
   HBVIB_UNSTABLE_DIRECTIONS = 17,
+  /// Parameter responses only: value of the parameter.
+  HBVIB_PARAMETER_VALUE = 18,
+  /// Parameter responses only: total derivative of the amplitude by the parameter, NaN where there
+  /// is none.
+  HBVIB_D_AMPLITUDE = 19,
 } hbvib_field;
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -1675,7 +1680,8 @@ hbvib_status hbvib_view_init(hbvib_view *v, size_t size_of_v);
 ///
 /// field  HBVIB_OMEGA and so on (enum hbvib_field): one double per point, but HBVIB_SLIP_FRACTION
 ///        points x contacts, 0 for a contact that never slips. A forced response does not have the
-///        fields of nonlinear modes, and those of stability with that option only.
+///        fields of nonlinear modes, and those of stability with that option only; parameter
+///        responses alone have those of a parameter.
 /// out    receives the view, whose memory stays valid until hbvib_branch_free; fill it by
 ///        hbvib_view_init before; untouched on error.
 /// Errors: HBVIB_E_ARGUMENT (field), HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE, HBVIB_E_HANDLE.
@@ -2999,7 +3005,7 @@ hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch,
                                        int64_t *count);
 
 /* ==============================================================================================
- * Design studies: parameters of a model, derivatives of results by them
+ * Design studies: parameters of a model, derivatives of results by them, responses over them
  * ============================================================================================== */
 
 /// Kinds of parameters.
@@ -3125,6 +3131,84 @@ hbvib_status hbvib_sensitivity(const hbvib_model *model,
                                int64_t *reasons,
                                int64_t *onset,
                                const hbvib_hooks *hooks);
+
+/// What a parameter response follows.
+typedef enum {
+  /// The response at a fixed frequency.
+  HBVIB_FOLLOW_OMEGA = 0,
+  /// A peak of the response.
+  HBVIB_FOLLOW_PEAK = 1,
+} hbvib_follow;
+
+/// Range of a parameter response. Fill it by hbvib_parameter_options_init.
+typedef struct {
+  /// Bytes of this struct as the caller knows it.
+  uint32_t struct_size;
+  /// HBVIB_FOLLOW_OMEGA or HBVIB_FOLLOW_PEAK.
+  int32_t follow;
+  /// The parameter: must be set.
+  const hbvib_parameter *parameter;
+  /// First value: of a constant or the speed the value itself, of a factor 1 as at present, of a
+  /// direction its coefficient.
+  double start;
+  /// Last value; below the first for a downward response.
+  double stop;
+  /// Angular frequency: the fixed one, or one within a tenth of which the peak next to it is
+  /// sought at the first value.
+  double omega;
+  /// Values at which every solution is computed exactly, or NULL.
+  const double *at;
+  /// Number of these values.
+  int64_t at_len;
+} hbvib_parameter_options;
+
+/// Fills the options of a parameter response with zeros: parameter, range and omega must be set.
+///
+/// o          the struct; untouched on error.
+/// size_of_o  sizeof of it.
+/// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
+
+/// Follows the amplitude of a forced response over a parameter, at a fixed frequency or in a peak,
+/// by arc-length continuation: folds are passed, minima and maxima refined. All points have the
+/// same harmonics, so that the tolerance of the solver must be 0. The branch has the fields
+/// HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, and hbvib_branch_optima; its points belong to
+/// different models, so that functions of a model and a branch refuse it.
+///
+/// solver   options, with tolerance = 0.
+/// options  parameter, range, and what is followed.
+/// hooks    progress, log and cancellation; NULL: none.
+/// out      receives the branch; untouched on error. Free it by hbvib_branch_free.
+/// A positive status says why the branch ends early; a peak that vanishes in a fold ends with
+/// HBVIB_STOPPED_STEP_TOO_SMALL.
+/// Errors: those of hbvib_forced_response and of the parameters of hbvib_sensitivity;
+/// HBVIB_E_UNSUPPORTED also for a tolerance above 0; HBVIB_E_NO_CONVERGENCE also where there is no
+/// peak near the frequency. Threads: as for hbvib_forced_response.
+hbvib_status hbvib_parameter_response(const hbvib_model *model,
+                                      const hbvib_solver_options *solver,
+                                      const hbvib_parameter_options *options,
+                                      const hbvib_hooks *hooks,
+                                      hbvib_branch **out);
+
+/// Minima and maxima of the amplitude over the parameter, refined on the solution, in the order of
+/// the branch. Other branches have none.
+///
+/// capacity   numbers that fit into each array.
+/// parameter  receives the values of the parameter, or NULL.
+/// amplitude  receives the amplitudes, or NULL.
+/// maximum    receives numbers: 1 for a maximum, 0 for a minimum; or NULL.
+/// point      receives their point numbers for hbvib_branch_harmonics, numbers, or NULL.
+/// count      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE. Threads: any number on one branch.
+hbvib_status hbvib_branch_optima(const hbvib_branch *branch,
+                                 int64_t capacity,
+                                 double *parameter,
+                                 double *amplitude,
+                                 int64_t *maximum,
+                                 int64_t *point,
+                                 int64_t *count);
 
 /// The peaks of many designs, created by hbvib_batch_solve.
 typedef struct hbvib_batch hbvib_batch;

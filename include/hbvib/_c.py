@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 __all__ = ["Status", "Storage", "Scalar", "Part", "MatrixKind", "GROUND", "Block", "SectorFrame", "ContactKind",
     "Tangent", "Flexibility", "Stability", "LogLevel", "Phase", "Field", "State", "ContactState", "DampingForm",
     "ModeMultiple", "SynthesisFlag", "SteadyMethod", "Waves", "MultiplierClass", "Grazing", "Bifurcation",
-    "ParameterKind", "Scaling", "Quantity", "Derivative"]
+    "ParameterKind", "Scaling", "Quantity", "Derivative", "Follow"]
 
 
 class Status(enum.IntEnum):
@@ -200,6 +200,9 @@ class Field(enum.IntEnum):
     FLOQUET_RADIUS = 16
     #: The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
     UNSTABLE_DIRECTIONS = 17
+    PARAMETER_VALUE = 18  #: Parameter responses only: value of the parameter.
+    #: Parameter responses only: total derivative of the amplitude by the parameter, NaN where there is none.
+    D_AMPLITUDE = 19
 
 
 class State(enum.IntEnum):
@@ -327,6 +330,12 @@ class Derivative(enum.IntEnum):
     ONE_SIDED = 2  #: NaN: the constant is 0 and may not fall, so that a derivative exists on one side only.
     FOLD = 3  #: NaN: the point is a fold, where the result changes infinitely fast.
 
+
+class Follow(enum.IntEnum):
+    """What a parameter response follows."""
+    OMEGA = 0  #: The response at a fixed frequency.
+    PEAK = 1  #: A peak of the response.
+
 _VERSION = (0, 1)  # of the library that this module was written for
 
 # Structs in the order of the header: "type names, array[length] ...; ..." for each.
@@ -379,6 +388,8 @@ floquet_options: uint32 struct_size; int32 waves refine reserved; double toleran
 floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 count unstable neutral grazing_contact;
     double orbit_change residual
 parameter: uint32 struct_size; int32 kind; int64 contact; pointer direction; int32 scaling reserved
+parameter_options: uint32 struct_size; int32 follow; pointer parameter; double start stop omega; pointer at; int64
+    at_len
 batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved
 """
 
@@ -504,6 +515,9 @@ branch_bifurcations: h l p p p p p p p
 branch_limit_cycles: h l p p p p p
 parameter_init: parameter z
 sensitivity: h h l i parameter l p l p p hooks
+parameter_options_init: parameter_options z
+parameter_response: h solver_options parameter_options hooks p
+branch_optima: h l p p p p p
 batch_options_init: batch_options z
 batch_solve: h solver_options batch_options hooks parameter l l p p
 batch_free: h
@@ -673,6 +687,10 @@ if TYPE_CHECKING:
         def hbvib_parameter_init(self, p: Any, size_of_p: int) -> int: ...
         def hbvib_sensitivity(self, model: Any, branch: Any, point: int, of: int, parameters: Any, count: int,
             derivatives: Any, derivatives_len: int, reasons: Any, onset: Any, hooks: Any) -> int: ...
+        def hbvib_parameter_options_init(self, o: Any, size_of_o: int) -> int: ...
+        def hbvib_parameter_response(self, model: Any, solver: Any, options: Any, hooks: Any, out: Any) -> int: ...
+        def hbvib_branch_optima(self, branch: Any, capacity: int, parameter: Any, amplitude: Any, maximum: Any, point:
+            Any, count: Any) -> int: ...
         def hbvib_batch_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_batch_solve(self, model: Any, solver: Any, options: Any, hooks: Any, parameters: Any, count: int,
             designs: int, values: Any, out: Any) -> int: ...

@@ -32,6 +32,7 @@ program layout
    call floquet_options()
    call floquet_info()
    call parameter()
+   call parameter_options()
    call batch_options()
    ! END GENERATED
 
@@ -453,6 +454,19 @@ contains
       call field('scaling', c_loc(s), c_loc(s%scaling), c_sizeof(s%scaling))
       call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
    end subroutine parameter
+
+   subroutine parameter_options()
+      type(hbvib_parameter_options), target :: s
+      call whole('hbvib_parameter_options', c_sizeof(s))
+      call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
+      call field('follow', c_loc(s), c_loc(s%follow), c_sizeof(s%follow))
+      call field('parameter', c_loc(s), c_loc(s%parameter), c_sizeof(s%parameter))
+      call field('start', c_loc(s), c_loc(s%start), c_sizeof(s%start))
+      call field('stop', c_loc(s), c_loc(s%stop), c_sizeof(s%stop))
+      call field('omega', c_loc(s), c_loc(s%omega), c_sizeof(s%omega))
+      call field('at', c_loc(s), c_loc(s%at), c_sizeof(s%at))
+      call field('at_len', c_loc(s), c_loc(s%at_len), c_sizeof(s%at_len))
+   end subroutine parameter_options
 
    subroutine batch_options()
       type(hbvib_batch_options), target :: s
