@@ -200,7 +200,9 @@ fn store_beside(
         };
         if let Beside::Optimum { is_maximum } = *kind {
             data.push_optimum(Optimum {
-                special,
+                point: special.point,
+                omega: special.omega,
+                amplitude: special.amplitude,
                 parameter: point.parameter(),
                 is_maximum,
             })?;

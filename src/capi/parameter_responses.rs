@@ -181,12 +181,12 @@ pub unsafe extern "C" fn hbvib_branch_optima(
             return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(2);
         }
         for (i, optimum) in found.iter().enumerate() {
-            for (column, value) in reals.iter().zip([optimum.parameter, optimum.special.amplitude]) {
+            for (column, value) in reals.iter().zip([optimum.parameter, optimum.amplitude]) {
                 if let Some(p) = column {
                     unsafe { p.add(i).write(value) };
                 }
             }
-            let numbers = [i64::from(optimum.is_maximum), optimum.special.point as i64];
+            let numbers = [i64::from(optimum.is_maximum), optimum.point as i64];
             for (column, value) in whole.iter().zip(numbers) {
                 if let Some(p) = column {
                     unsafe { p.add(i).write(value) };

@@ -9,6 +9,7 @@ mod limit_cycles;
 pub mod mode_branch;
 mod mode_fields;
 mod parameter_branch;
+mod parameter_fields;
 mod point_energy;
 mod point_error_fields;
 mod point_harmonics;

@@ -1,13 +1,16 @@
 //! Data of a branch over a parameter of the model, beside those that every branch has.
 
-use crate::error::{Error, Result, fail};
-use crate::results::branch::{Branch, Special};
+use crate::error::{Error, Result, try_push};
 
 /// An optimum of the amplitude over a parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Optimum {
-    /// The stored point.
-    pub special: Special,
+    /// Number of the stored point.
+    pub point: usize,
+    /// Angular frequency.
+    pub omega: f64,
+    /// Amplitude of the response degree of freedom.
+    pub amplitude: f64,
     /// Value of the parameter.
     pub parameter: f64,
     /// Whether the amplitude is largest there, else smallest.
@@ -18,10 +21,10 @@ pub struct Optimum {
 #[derive(Debug, Default)]
 pub(crate) struct ParameterData {
     /// Value of the parameter at each stored point.
-    parameter: Vec<f64>,
+    pub(super) parameter: Vec<f64>,
     /// Total derivative of the amplitude by it; NaN where there is none.
-    d_amplitude: Vec<f64>,
-    optima: Vec<Optimum>,
+    pub(super) d_amplitude: Vec<f64>,
+    pub(super) optima: Vec<Optimum>,
 }
 
 impl ParameterData {
@@ -38,51 +41,6 @@ impl ParameterData {
 
     /// Stores an optimum.
     pub fn push_optimum(&mut self, optimum: Optimum) -> Result<()> {
-        crate::error::try_push(&mut self.optima, optimum, "the optima")
-    }
-}
-
-impl Branch {
-    pub(crate) fn set_parameter_data(&mut self, data: ParameterData) {
-        self.parameter = Some(data);
-    }
-
-    /// Value of the parameter at each point of the curve; `None` for a branch over frequency or amplitude.
-    #[must_use]
-    pub fn parameter(&self) -> Option<&[f64]> {
-        self.parameter.as_ref().map(|data| &data.parameter[..self.points()])
-    }
-
-    /// Total derivative of the amplitude by the parameter at each point of the curve; NaN where there is none.
-    #[must_use]
-    pub fn d_amplitude(&self) -> Option<&[f64]> {
-        self.parameter.as_ref().map(|data| &data.d_amplitude[..self.points()])
-    }
-
-    /// Parameter, and the total derivative of the amplitude by it, at a stored point, the special ones included.
-    #[must_use]
-    pub fn parameter_at(&self, point: usize) -> Option<(f64, f64)> {
-        let data = self.parameter.as_ref()?;
-        data.parameter
-            .get(point)
-            .copied()
-            .zip(data.d_amplitude.get(point).copied())
-    }
-
-    /// Minima and maxima of the amplitude over the parameter; none for other branches.
-    #[must_use]
-    pub fn optima(&self) -> &[Optimum] {
-        self.parameter.as_ref().map_or(&[], |data| &data.optima)
-    }
-
-    /// Refuses a branch whose points belong to several models.
-    pub(crate) fn check_one_model(&self) -> Result<()> {
-        if self.parameter.is_none() {
-            return Ok(());
-        }
-        fail!(
-            Argument,
-            "each point of a branch over a parameter has a model of its own: solve at the value of the parameter"
-        )
+        try_push(&mut self.optima, optimum, "the optima")
     }
 }

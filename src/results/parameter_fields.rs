@@ -1,0 +1,50 @@
+//! The numbers of a parameter response that a branch holds.
+
+use crate::error::{Result, fail};
+use crate::results::Branch;
+use crate::results::parameter_branch::{Optimum, ParameterData};
+
+impl Branch {
+    pub(crate) fn set_parameter_data(&mut self, data: ParameterData) {
+        self.parameter = Some(data);
+    }
+
+    /// Value of the parameter at each point of the curve; `None` for a branch over frequency or amplitude.
+    #[must_use]
+    pub fn parameter(&self) -> Option<&[f64]> {
+        self.parameter.as_ref().map(|data| &data.parameter[..self.points()])
+    }
+
+    /// Total derivative of the amplitude by the parameter at each point of the curve; NaN where there is none.
+    #[must_use]
+    pub fn d_amplitude(&self) -> Option<&[f64]> {
+        self.parameter.as_ref().map(|data| &data.d_amplitude[..self.points()])
+    }
+
+    /// Parameter, and the total derivative of the amplitude by it, at a stored point, the special ones included.
+    #[must_use]
+    pub fn parameter_at(&self, point: usize) -> Option<(f64, f64)> {
+        let data = self.parameter.as_ref()?;
+        data.parameter
+            .get(point)
+            .copied()
+            .zip(data.d_amplitude.get(point).copied())
+    }
+
+    /// Minima and maxima of the amplitude over the parameter; none for other branches.
+    #[must_use]
+    pub fn optima(&self) -> &[Optimum] {
+        self.parameter.as_ref().map_or(&[], |data| &data.optima)
+    }
+
+    /// Refuses a branch whose points belong to several models.
+    pub(crate) fn check_one_model(&self) -> Result<()> {
+        if self.parameter.is_none() {
+            return Ok(());
+        }
+        fail!(
+            Argument,
+            "each point of a branch over a parameter has a model of its own: solve at the value of the parameter"
+        )
+    }
+}
