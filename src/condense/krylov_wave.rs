@@ -203,7 +203,7 @@ fn build<T: Entry>(
     }
 }
 
-/// What a basis keeps of its matrices.
+/// The data that a basis keeps of its matrices.
 struct Prepared {
     shift: f64,
     damping: Option<(f64, f64)>,

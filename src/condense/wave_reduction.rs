@@ -35,7 +35,7 @@ const DIRECT_UP_TO: usize = 20_000;
 /// Forces on more degrees of freedom than this in one harmonic count as one vector.
 const SEPARATE_FORCES: usize = 8;
 
-/// What a reduction is made for.
+/// The model and the motions that a reduction must represent.
 pub(super) struct Request<'a> {
     pub model: &'a Model,
     pub options: &'a SolverOptions,

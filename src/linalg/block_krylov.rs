@@ -178,7 +178,7 @@ impl<T: Entry> BlockKrylov<T> {
             Ok(())
         };
         orthonormal(&mut block, &mut weighted, true)?;
-        // What is left of a small part has lost the digits by which it was small.
+        // The rest of a small part has lost the digits by which it was small.
         self.a.multiply(&block, &mut weighted, interrupt)?;
         self.project(&mut block, &weighted, interrupt)?;
         self.a.multiply(&block, &mut weighted, interrupt)?;

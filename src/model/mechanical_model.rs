@@ -36,7 +36,7 @@ pub(crate) fn copy(contact: &Contact) -> Result<Contact> {
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(super) structure: Structure,
-    /// What was prepared for these matrices.
+    /// Data prepared for these matrices.
     pub(super) kept: KeptWaves,
     pub(super) contacts: Vec<Contact>,
     pub(super) springs: Vec<Spring>,
@@ -119,7 +119,7 @@ impl Model {
         &mut self.structure
     }
 
-    /// What was prepared for the matrices of the model.
+    /// Data prepared for the matrices of the model.
     pub(crate) fn kept(&self) -> &KeptWaves {
         &self.kept
     }

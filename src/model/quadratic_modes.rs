@@ -2,7 +2,7 @@
 //! damping in K.
 //!
 //! The problem is projected on the modes of M and the Hermitian part of K, all of them for a small structure, and solved
-//! as λ (x, λx) = (λx, −Kx − λCx) by Schur's form (Tisseur & Meerbergen 2001, doi:10.1137/S0036144500381988). Of a large
+//! as λ (x, λx) = (λx, −Kx − λCx) by Schur's form (Tisseur & Meerbergen 2001, doi:10.1137/S0036144500381988). In a large
 //! structure each eigenvalue is then corrected by inverse iteration with the whole matrices (Neumaier 1985,
 //! doi:10.1137/0722055).
 

@@ -44,9 +44,9 @@ impl MotionRow {
 /// The basis, column after column, before its rotation.
 #[derive(Debug)]
 pub enum Basis {
-    /// Of a real structure.
+    /// For a real structure.
     Real(Vec<f64>),
-    /// Of a complex Hermitian one.
+    /// For a complex Hermitian one.
     Complex(Vec<Complex64>),
 }
 
@@ -115,7 +115,7 @@ pub struct ReducedPencil {
     pub rotation: Vec<Complex64>,
     /// Damping.
     pub damping: WaveDamping,
-    /// What the basis leaves out.
+    /// The part that the basis leaves out.
     pub remainder: Remainder,
 }
 

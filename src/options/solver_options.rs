@@ -62,8 +62,8 @@ pub struct SolverOptions {
     pub flexibility: Flexibility,
     /// Largest estimated relative error of the motion of the structure on a basis, up to which the basis grows.
     pub certificate: f64,
-    /// Largest number of bytes for factors and bases of the structure; `0`: no limit. What needs more is refused before
-    /// it is allocated.
+    /// Largest number of bytes for factors and bases of the structure; `0`: no limit. A call that needs more is refused
+    /// before it asks for them.
     pub memory_limit: usize,
     /// Stability along the curve of a forced response: the perturbations whose Floquet multipliers are computed at each
     /// point; `None`: none. A nonlinear mode refuses it.

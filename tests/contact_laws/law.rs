@@ -143,7 +143,7 @@ fn reversals_about_to_be_born_are_not_missed() {
 
 #[test]
 fn a_motion_near_the_end_of_the_number_range_ends_too() {
-    // What is answered does not matter, that the search for turning points ends does.
+    // The search for turning points must end, with any answer.
     for size in [1e290, 1e305, 1e308] {
         let mut motion = vec![Complex64::new(size, -size); 10];
         motion[0] = 0.0.into();

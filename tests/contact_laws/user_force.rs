@@ -141,7 +141,7 @@ fn failures_of_a_callback_keep_its_code_and_name_the_place() {
         e.status == Status::Callback && e.callback == -3 && !e.recoverable,
         "{e}"
     );
-    // What stands before the sentence leaves the code alone.
+    // Text before the sentence leaves the code alone.
     let e = e.at(format_args!("contact 2"));
     assert!(e.callback == -3 && e.message().contains("contact 2: the force callback returned -3"));
     for (failing, place) in [

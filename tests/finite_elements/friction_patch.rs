@@ -224,7 +224,7 @@ fn closed_contacts_that_stick_drop_out_and_the_jacobian_is_that_of_differences()
     }
 }
 
-/// What rests on the lining at rest: approach of the ground and constant load, against the stiffness of
+/// State of the lining at rest: approach of the ground and constant load, against the stiffness of
 /// the beam on its normal springs alone.
 #[test]
 fn without_vibration_the_lining_carries_what_statics_says() {

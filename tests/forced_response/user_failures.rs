@@ -15,7 +15,7 @@ use num_complex::Complex64;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// What happens at the k-th call.
+/// Event at the k-th call.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Failure {
     Code(i32),

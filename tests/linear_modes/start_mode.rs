@@ -138,7 +138,7 @@ fn a_given_standing_shape_of_a_double_mode_is_kept() {
     let mode = full_wheel.select_mode(ModeChoice::Shape(&standing)).unwrap();
     assert_eq!((mode.multiplicity, mode.multiple), (2, Multiple::Projected));
     assert!(gap(&mode.shape, &standing) < 1e-9);
-    // What does not belong to the modes of this frequency is taken away.
+    // Parts that do not belong to the modes of this frequency are taken away.
     let mut disturbed = standing.clone();
     disturbed[17] += 0.1 * largest(&standing);
     let mode = full_wheel.select_mode(ModeChoice::Shape(&disturbed)).unwrap();

@@ -56,7 +56,7 @@ fn check_problem(problem: &mut dyn Problem, u: &[f64], p: f64, direction: &[f64]
     stencil.check("observed amplitude", &[dz.re, dz.im], size(direction))
 }
 
-/// What varies from case to case.
+/// The data that vary from case to case.
 #[derive(Debug)]
 struct Case {
     numbers: Vec<f64>,

@@ -27,7 +27,7 @@ fn the_describing_function_of_this_file_is_that_of_the_reference() {
     }
 }
 
-/// What the closed form says at slip amplitude a.
+/// The closed form at slip amplitude a.
 struct Expected {
     a: f64,
     omega: f64,

@@ -16,7 +16,7 @@ fn log10(branch: &Branch) -> &[f64] {
     branch.mode_field(ModeField::Log10Amplitude).unwrap()
 }
 
-/// What every run over the whole range must show.
+/// Checks of every run over the whole range.
 fn check(branch: &Branch, from: f64, to: f64) {
     let p = log10(branch);
     assert!((p[0] - from).abs() < 1e-13 && (p[p.len() - 1] - to).abs() < 1e-13);

@@ -1,4 +1,4 @@
-//! What users of C, C++, Fortran and Python do: install, move the prefix, build against it, load it. All
+//! The steps of users of C, C++, Fortran and Python: install, move the prefix, build against it, load it. All
 //! programs are built in folders of their own against a prefix that was moved after its installation,
 //! never against the checkout.
 
@@ -82,7 +82,7 @@ fn pkg_config(arguments: &[&str]) -> Vec<String> {
     text.split_whitespace().map(str::to_owned).collect()
 }
 
-/// What a program needs besides its own sources to be linked with the shared library.
+/// Files that a program needs besides its own sources to be linked with the shared library.
 fn linked() -> Vec<String> {
     let mut flags = pkg_config(&["--cflags", "--libs"]);
     flags.push("-lm".to_owned());

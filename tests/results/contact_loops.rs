@@ -89,7 +89,7 @@ fn check_friction(branch: &Branch, point: usize, id: usize, contact: &Contact) -
     assert!((area(&found) - s.work).abs() < 2e-6 * scale);
     assert!((share(&found, State::Slip) - s.slip_share).abs() < 20.0 / n as f64);
     for (f, g) in found.force.iter().zip(marched(&found.motion, k, limit)) {
-        // What the samples miss of a turning point.
+        // The part of a turning point that samples miss.
         assert!((f - g).abs() < 1e-5 * limit, "{f} {g}");
     }
     assert!((s.half_range[0] - 0.5 * (s.motion_max[0] - s.motion_min[0])).abs() <= 1e-15 * s.half_range[0]);

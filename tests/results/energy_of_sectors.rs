@@ -112,7 +112,7 @@ fn quadratic(own: &[f64], next: &[f64], s: &[Vec<f64>; 3]) -> f64 {
     sum
 }
 
-/// What the energies must be: of the time signals of one sector and its neighbours.
+/// The energies as they must be: of the time signals of one sector and its neighbours.
 struct Signals<'a> {
     branch: &'a Branch,
     x: Vec<Complex64>,

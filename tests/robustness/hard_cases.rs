@@ -30,7 +30,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 /// this H, because its light ring resonates at higher harmonics, and no fixed H knows of that; ten is a bound of sanity.
 const TRUNCATION: f64 = 0.1;
 
-/// What is asked of a case.
+/// The question of a case.
 type Check = fn(&Case);
 
 /// The check of each case.

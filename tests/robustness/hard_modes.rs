@@ -35,7 +35,7 @@ fn the_mode_of_blade_and_ring_is_followed_whole_at_every_harmonic() {
         let of = |i: usize| branch.mode_at(branch.at(i)[0].point).unwrap().damping_ratio;
         (0..wanted.len()).map(of).collect()
     };
-    // What few harmonics leave out is told, not asserted: the onset of slip is steep.
+    // The error of few harmonics is told, not asserted: the onset of slip is steep.
     let truth = mode(127, AMPLITUDES, &wanted);
     let truth = damping(&truth);
     let largest = truth.iter().fold(0.0_f64, |m, d| m.max(*d));

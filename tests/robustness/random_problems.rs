@@ -150,7 +150,7 @@ fn cold_starts_converge_to_solutions() {
                     worst = (r.size, number);
                 }
                 let strict = r.size <= BOUND || r.size <= 2.0 * r.change;
-                // What the samples of a law leave must be told by the branch, and go with more of them.
+                // The error that samples of a law leave must be told by the branch, and go with more of them.
                 let of_samples = !strict && r.size <= 2.0 * reported && holds_with_more_samples(&case, &x);
                 sampled += usize::from(of_samples);
                 if !is_bounded || !(strict || of_samples) {
@@ -192,7 +192,7 @@ fn cold_starts_converge_to_solutions() {
     assert!(good as f64 >= PLANE_SHARE * all as f64);
 }
 
-/// What a cold start came to, comparable bit for bit.
+/// Outcome of a cold start, comparable bit for bit.
 fn fingerprint(case: &Case, solver: &SolverOptions) -> Vec<u64> {
     match cold_start(case, solver).0 {
         Err(e) => vec![e.status as i32 as u64],

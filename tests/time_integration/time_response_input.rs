@@ -1,4 +1,4 @@
-//! What a response in time refuses, and how a caller stops it.
+//! Inputs that a response in time refuses, and how a caller stops it.
 
 use crate::common::BASE;
 use crate::common::refusal::{OMEGA, refused};

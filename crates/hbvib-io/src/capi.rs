@@ -10,7 +10,7 @@ thread_local! {
     static LAST_ERROR: RefCell<CString> = RefCell::new(CString::default());
 }
 
-/// What a file holds.
+/// The matrices of a file.
 pub struct HbvibIoFile(Matrices);
 
 /// A matrix as the caller sees it; the arrays belong to the file.

@@ -128,8 +128,8 @@ pub(super) fn stuck_slider(count: usize, disc: impl Fn(usize) -> Disc) -> Option
     None
 }
 
-/// Two discs whose shadows along some direction are apart, by more than rounding: slip needs no search. Of a few
-/// directions, that of the largest gap.
+/// Two discs whose shadows along some direction are apart, by more than rounding: slip needs no search. The direction of the
+/// largest gap among a few.
 fn clearly_apart(count: usize, disc: &impl Fn(usize) -> Disc) -> Option<(usize, usize)> {
     // The largest lower end and the smallest upper end of the shadows, along each direction.
     let mut ends = [((f64::NEG_INFINITY, 0), (f64::INFINITY, 0)); DIRECTIONS.len()];

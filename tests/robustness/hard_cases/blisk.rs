@@ -10,7 +10,7 @@ use hbvib::model::structure::MatrixKind;
 use hbvib::options::SolverOptions;
 use std::f64::consts::TAU;
 
-/// What a case changes: ring mass, engine order, units of mass and length in SI units.
+/// Changes of a case: ring mass, engine order, units of mass and length in SI units.
 #[derive(Clone, Copy)]
 pub struct Change {
     ring_mass: f64,

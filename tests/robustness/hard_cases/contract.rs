@@ -24,7 +24,7 @@ fn text(p: *const c_char) -> String {
     unsafe { CStr::from_ptr(p) }.to_str().unwrap().to_owned()
 }
 
-/// What the status of the call just made is called, and its sentence.
+/// Name and sentence of the status of the last call.
 type Told = (String, String);
 
 fn reported(status: i32) -> Told {
@@ -133,7 +133,7 @@ fn evaluate(law: &hbvib_contact, harmonics: i64, samples: i64, motion: f64) -> i
     status
 }
 
-/// What the calls say that an input of the case's list can be handed to.
+/// Sentences of the calls that an input of the case's list can be handed to.
 fn calls(input: &str) -> Vec<Told> {
     let caller = Host::new();
     let good = jenkins(1.0, 0.3);

@@ -192,7 +192,7 @@ pub fn sticking_at_closing(case: &Case) {
     let gap = against_differences(&law, h, &motion, &jacobian);
     case.within("exact Jacobian against differences", Some(h), gap, 0.0, case.rel_tol);
     exact_whatever_the_samples(case, &law, h, &motion);
-    // What the case warns of: the tangents of samples do not see the closing move, however many they are.
+    // The case warns: the tangents of samples do not see the closing move, however many they are.
     for n in [1 << 10, 1 << 14, 1 << 18] {
         let (df, dj) = march(case, n);
         case.holds(&format!("{n} samples: force {df:.1e}, Jacobian {dj:.1e} off"), dj > 0.1);

@@ -131,7 +131,7 @@ pub fn close_frequencies(case: &Case) {
 }
 
 /// Two structures whose contact does not move: tied to the ground by a spring of 1e30, or between masses that move
-/// alike. What is wanted is the linear response, without force in the contact.
+/// alike. The linear response is wanted, without force in the contact.
 pub fn no_relative_motion(case: &Case) {
     let tie = case.number("tie");
     let w = 1.1;

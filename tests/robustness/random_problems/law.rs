@@ -65,7 +65,7 @@ pub const LAWS: [&str; 9] = [
     "polynomial",
 ];
 
-/// What gives laws their sizes: a stiffness, a force and a frequency of the structure.
+/// Sizes from which those of laws follow: a stiffness, a force and a frequency of the structure.
 #[derive(Clone, Copy, Debug)]
 pub struct Sizes {
     pub stiffness: f64,

@@ -15,7 +15,7 @@ pub struct AssembledLaw {
     pub sides: Vec<[Option<usize>; 2]>,
 }
 
-/// What is known of a problem beforehand.
+/// Properties of a problem that are known beforehand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Known {
     /// Every mode is damped.
