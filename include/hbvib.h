@@ -3167,6 +3167,7 @@ typedef struct {
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
 /// Errors: HBVIB_E_NULL, HBVIB_E_STRUCT_SIZE. Threads: any.
+HBVIB_NODISCARD
 hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
 
 /// Follows the amplitude of a forced response over a parameter, at a fixed frequency or in a peak,
@@ -3184,6 +3185,7 @@ hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t siz
 /// Errors: those of hbvib_forced_response and of the parameters of hbvib_sensitivity;
 /// HBVIB_E_UNSUPPORTED also for a tolerance above 0; HBVIB_E_NO_CONVERGENCE also where there is no
 /// peak near the frequency. Threads: as for hbvib_forced_response.
+HBVIB_NODISCARD
 hbvib_status hbvib_parameter_response(const hbvib_model *model,
                                       const hbvib_solver_options *solver,
                                       const hbvib_parameter_options *options,
@@ -3202,6 +3204,7 @@ hbvib_status hbvib_parameter_response(const hbvib_model *model,
 /// Without arrays only the count is returned.
 /// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
 /// HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
 hbvib_status hbvib_branch_optima(const hbvib_branch *branch,
                                  int64_t capacity,
                                  double *parameter,

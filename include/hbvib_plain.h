@@ -144,7 +144,9 @@ typedef enum {
   HBVIB_SAMPLING_ERROR = 14,
   HBVIB_DAMPING_ERROR_ESTIMATE = 15,
   HBVIB_FLOQUET_RADIUS = 16,
-  HBVIB_UNSTABLE_DIRECTIONS = 17
+  HBVIB_UNSTABLE_DIRECTIONS = 17,
+  HBVIB_PARAMETER_VALUE = 18,
+  HBVIB_D_AMPLITUDE = 19
 } hbvib_field;
 typedef enum {
   HBVIB_STATE_STICK = 0,
@@ -228,6 +230,10 @@ typedef enum {
   HBVIB_DERIVATIVE_ONE_SIDED = 2,
   HBVIB_DERIVATIVE_FOLD = 3
 } hbvib_derivative;
+typedef enum {
+  HBVIB_FOLLOW_OMEGA = 0,
+  HBVIB_FOLLOW_PEAK = 1
+} hbvib_follow;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
 typedef struct hbvib_contact hbvib_contact;
@@ -254,6 +260,7 @@ typedef struct hbvib_verification hbvib_verification;
 typedef struct hbvib_floquet_options hbvib_floquet_options;
 typedef struct hbvib_floquet_info hbvib_floquet_info;
 typedef struct hbvib_parameter hbvib_parameter;
+typedef struct hbvib_parameter_options hbvib_parameter_options;
 typedef struct hbvib_batch_options hbvib_batch_options;
 typedef int32_t (*hbvib_force_fn)(void *user, const hbvib_force_call *call);
 typedef int32_t (*hbvib_phase_fn)(void *user, const hbvib_phase_report *report);
@@ -583,6 +590,16 @@ struct hbvib_parameter {
   int32_t scaling;
   int32_t reserved;
 };
+struct hbvib_parameter_options {
+  uint32_t struct_size;
+  int32_t follow;
+  const hbvib_parameter *parameter;
+  double start;
+  double stop;
+  double omega;
+  const double *at;
+  int64_t at_len;
+};
 struct hbvib_batch_options {
   uint32_t struct_size;
   int32_t threads;
@@ -702,6 +719,9 @@ hbvib_status hbvib_branch_bifurcations(const hbvib_branch *branch, int64_t capac
 hbvib_status hbvib_branch_limit_cycles(const hbvib_branch *branch, int64_t capacity, double *omega, double *log10_amplitude, double *slope, int64_t *point, int64_t *count);
 hbvib_status hbvib_parameter_init(hbvib_parameter *p, size_t size_of_p);
 hbvib_status hbvib_sensitivity(const hbvib_model *model, const hbvib_branch *branch, int64_t point, int32_t of, const hbvib_parameter *parameters, int64_t count, double *derivatives, int64_t derivatives_len, int64_t *reasons, int64_t *onset, const hbvib_hooks *hooks);
+hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
+hbvib_status hbvib_parameter_response(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_parameter_options *options, const hbvib_hooks *hooks, hbvib_branch **out);
+hbvib_status hbvib_branch_optima(const hbvib_branch *branch, int64_t capacity, double *parameter, double *amplitude, int64_t *maximum, int64_t *point, int64_t *count);
 hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
 hbvib_status hbvib_batch_solve(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_batch_options *options, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, int64_t designs, const double *values, hbvib_batch **out);
 hbvib_status hbvib_batch_free(hbvib_batch *batch);
