@@ -3,13 +3,15 @@
 //! Prints for each way: points, Newton iterations, time of the sweep as a ratio to the default (H = 9, exact
 //! events), and the error of the peak amplitude against H = 255. Times are minima over repeated sweeps, measured
 //! alternately in one run: read them as ratios. With the argument `iteration` it prints the times of the parts of a
-//! Newton iteration instead.
+//! Newton iteration instead, with `designs` the cost of a design in a batch.
 
 use hbvib::{Branch, ForcedOptions, Hooks, SolverOptions, forced_response};
 use std::error::Error;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
+#[path = "speed/designs.rs"]
+mod designs;
 #[path = "speed/iteration.rs"]
 mod iteration;
 #[path = "ring_damper/model.rs"]
@@ -64,8 +66,10 @@ fn peak(branch: &Branch) -> f64 {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    if std::env::args().nth(1).is_some_and(|a| a == "iteration") {
-        return iteration::run();
+    match std::env::args().nth(1).as_deref() {
+        Some("iteration") => return iteration::run(),
+        Some("designs") => return designs::run(),
+        _ => {}
     }
     for force in [1.0, 5.0, 20.0] {
         let truth = peak(&sweep(force, 255, 0)?.0);
