@@ -32,6 +32,7 @@ need pkg-config pkg-config --version
 need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
 need bsdutils script --version
+need calculix-ccx sh -c 'command -v ccx'
 
 # Python with numpy, what builds the wheel, what tables and figures need, and type checkers: the system's, or one of our own.
 # All that comes from the network comes here; the tests work without it.

@@ -1,9 +1,11 @@
 //! The model of a job.
 
 use crate::contacts::contacts;
-use crate::job::{Amplitude, FacesPart, FrameName, Job};
-use crate::node_table::node_dofs;
-use hbvib::{MatrixKind, MatrixView, Model, Part, SectorDescription, SectorFrame, Speed, Storage, Values};
+use crate::faces;
+use crate::job::{Amplitude, Job};
+use crate::mesh::Mesh;
+use crate::node_table::Nodes;
+use hbvib::{MatrixKind, MatrixView, Model, Part, Speed, Storage, Values};
 use hbvib_io::{Dof, Matrix, Symmetry};
 use num_complex::Complex64;
 use std::fmt::Display;
@@ -24,24 +26,29 @@ struct Given {
 /// Numbers of the model's contacts for each entry of the job: its name, and a range.
 pub type Names = Vec<(String, Range<usize>)>;
 
-/// The model with its contacts and forces.
-///
-/// # Errors
-/// As [`named_model`].
-pub fn model(job: &Job) -> Outcome<Model> {
-    named_model(job).map(|(model, _)| model)
+/// The model of a job.
+pub struct Built {
+    pub model: Model,
+    /// Names of its contacts.
+    pub names: Names,
+    pub nodes: Nodes,
 }
 
-/// The model and its contacts' names. An entry without a name has its number, from 1.
+/// The model with its contacts and forces. A contact without a name has its number, from 1.
 ///
 /// # Errors
 /// A sentence that names the file, contact or force.
-pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
+pub fn built(job: &Job) -> Outcome<Built> {
     let given = matrices(job)?;
     let ndof = given.own.first().map_or(0, |(_, a)| a.rows);
     let part = &job.model;
+    let mesh = match &part.mesh {
+        Some(path) => Some(Mesh::read(&job.path(path))?),
+        None => None,
+    };
+    let nodes = Nodes::new(&given.dofs, mesh);
     let mut model = match &part.faces {
-        Some(faces) => from_faces(job, faces, ndof)?,
+        Some(faces) => faces::sector(job, faces, ndof, &nodes)?,
         None => Model::cyclic(ndof, part.sectors).map_err(|e| format!("[model]: {e}"))?,
     };
     model.set_wave(part.engine_order);
@@ -65,12 +72,11 @@ pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
     model
         .set_modal_damping(&part.modal_damping)
         .map_err(|e| format!("[model], modal_damping: {e}"))?;
-    let table = node_dofs(&given.dofs);
     let mut names = Names::new();
     for (i, part) in job.contact.iter().enumerate() {
         let said = |e: &dyn Display| format!("[[contact]] {}: {e}", i + 1);
         let first = model.contacts().len();
-        for contact in contacts(job, part, &table).map_err(|e| said(&e))? {
+        for contact in contacts(job, part, &nodes).map_err(|e| said(&e))? {
             let id = model.add_contact(&contact).map_err(|e| said(&e))?;
             if part.per_speed2 != 0.0 {
                 // An area multiplies all of them alike.
@@ -100,9 +106,9 @@ pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
             Amplitude::Real(re) => re.into(),
             Amplitude::Complex([re, im]) => Complex64::new(re, im),
         };
-        model
-            .add_force(force.dof, force.harmonic, value)
-            .map_err(|e| format!("[[force]] {}: {e}", i + 1))?;
+        let said = |e: &dyn Display| format!("[[force]] {}: {e}", i + 1);
+        let dof = nodes.dof(&force.dof).map_err(|e| said(&e))?;
+        model.add_force(dof, force.harmonic, value).map_err(|e| said(&e))?;
     }
     for (i, one) in job.unbalance.iter().enumerate() {
         model
@@ -110,13 +116,15 @@ pub fn named_model(job: &Job) -> Outcome<(Model, Names)> {
             .map_err(|e| format!("[[unbalance]] {}: {e}", i + 1))?;
     }
     let speed = match (part.speed, part.speed_per_omega) {
-        (None, None) => return Ok((model, names)),
-        (Some(speed), None) => Speed::Fixed(speed),
-        (None, Some(per_omega)) => Speed::PerOmega(per_omega),
+        (None, None) => None,
+        (Some(speed), None) => Some(Speed::Fixed(speed)),
+        (None, Some(per_omega)) => Some(Speed::PerOmega(per_omega)),
         (Some(_), Some(_)) => return Err("[model]: names speed and speed_per_omega; needs one of them".into()),
     };
-    model.set_speed(speed).map_err(|e| format!("[model]: {e}"))?;
-    Ok((model, names))
+    if let Some(speed) = speed {
+        model.set_speed(speed).map_err(|e| format!("[model]: {e}"))?;
+    }
+    Ok(Built { model, names, nodes })
 }
 
 fn matrices(job: &Job) -> Outcome<Given> {
@@ -231,54 +239,4 @@ fn with_view<R>(a: &Matrix, take: impl FnOnce(&MatrixView<'_>) -> R) -> R {
         },
         index_base: 0,
     })
-}
-
-fn from_faces(job: &Job, faces: &FacesPart, ndof: usize) -> Outcome<Model> {
-    let components = faces.left.first().map_or(1, Vec::len);
-    let flat = |name: &str, face: &[Vec<i64>]| -> Outcome<Vec<Option<usize>>> {
-        let mut all = Vec::new();
-        for (pair, node) in face.iter().enumerate() {
-            if node.len() != components {
-                return Err(format!(
-                    "[model.faces]: {name}[{pair}] has {} components, needs {components}",
-                    node.len()
-                ));
-            }
-            for &dof in node {
-                all.push(match dof {
-                    -1 => None,
-                    dof => {
-                        Some(usize::try_from(dof).map_err(|_| format!("[model.faces]: {name}[{pair}] names {dof}"))?)
-                    }
-                });
-            }
-        }
-        Ok(all)
-    };
-    let (left, right) = (flat("left", &faces.left)?, flat("right", &faces.right)?);
-    let coordinates = match (&faces.left_coordinates, &faces.right_coordinates) {
-        (Some(left), Some(right)) => Some((&left[..], &right[..])),
-        (None, None) => None,
-        _ => return Err("[model.faces]: needs both left_coordinates and right_coordinates, or none".into()),
-    };
-    if faces.direction.abs() != 1 {
-        return Err(format!("[model.faces]: direction = {}, needs 1 or -1", faces.direction));
-    }
-    Model::sector(&SectorDescription {
-        ndof,
-        sectors: job.model.sectors,
-        engine_order: job.model.engine_order,
-        components,
-        left: &left,
-        right: &right,
-        fixed: &job.model.fixed,
-        frame: match faces.frame {
-            FrameName::Cartesian => SectorFrame::Cartesian,
-            FrameName::Cylindrical => SectorFrame::Cylindrical,
-        },
-        axis: faces.axis,
-        forward: faces.direction == 1,
-        coordinates,
-    })
-    .map_err(|e| format!("[model.faces]: {e}"))
 }

@@ -1,8 +1,8 @@
 //! Campbell and interference (SAFE) diagrams of a job: natural frequencies over speed, and over nodal diameter.
 
 use crate::build::Outcome;
+use crate::figure::{bounds, draw};
 use crate::job::{CampbellPart, Job, StateName};
-use crate::svg::{bounds, draw};
 use hbvib::{Campbell, Hooks, LinearContacts, Model, Speed, campbell, damped_modes};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};
 use plotters::style::{BLACK, Color, Palette, Palette99, RED};

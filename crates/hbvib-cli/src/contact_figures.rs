@@ -1,7 +1,7 @@
 //! Figures of contacts: force over motion, and slip fraction over frequency.
 
 use crate::build::Outcome;
-use crate::svg::{bounds, draw};
+use crate::figure::{bounds, draw, scientific};
 use hbvib::{Branch, ContactLoop, Special};
 use plotters::prelude::{ChartBuilder, LineSeries, PathElement, Rectangle};
 use plotters::style::{BLACK, Color, HSLColor, Palette, Palette99, RGBColor, WHITE};
@@ -34,11 +34,11 @@ pub fn loops_figure(path: &Path, label: &str, loops: &[(Special, ContactLoop)]) 
             .margin(16)
             .x_label_area_size(44)
             .y_label_area_size(90)
-            .build_cartesian_2d(x, y)?;
+            .build_cartesian_2d(x.clone(), y.clone())?;
         let mesh = &mut chart.configure_mesh();
         mesh.x_desc("relative motion").y_desc("force");
-        mesh.x_label_formatter(&|v| format!("{v:.2e}"));
-        mesh.y_label_formatter(&|v| format!("{v:.2e}")).draw()?;
+        let (x_label, y_label) = (scientific(&x), scientific(&y));
+        mesh.x_label_formatter(&x_label).y_label_formatter(&y_label).draw()?;
         for (i, (name, curve)) in curves.iter().enumerate() {
             let colour = Palette99::pick(i).to_rgba();
             chart

@@ -1,9 +1,10 @@
 //! The contacts of a job.
 
 use crate::build::Outcome;
-use crate::job::{ContactPart, Job, KindName, Node, NodesPart};
-use crate::node_match::pairs;
-use crate::node_table::{NodeDofs, coordinates, dofs_of};
+use crate::job::{ContactPart, Job, KindName, Node, NodeList, NodesPart};
+use crate::mesh::Mesh;
+use crate::node_match::{Positioned, pairs};
+use crate::node_table::{Nodes, node_list, positions};
 use hbvib::{Contact, ContactKind, Frame};
 
 /// Degrees of freedom of all pairs of an entry, those of one pair after another, and their areas.
@@ -17,7 +18,7 @@ struct Pairs {
 ///
 /// # Errors
 /// A sentence that names the list and its node or degree of freedom.
-pub fn contacts(job: &Job, part: &ContactPart, table: &NodeDofs) -> Outcome<Vec<Contact>> {
+pub fn contacts(job: &Job, part: &ContactPart, table: &Nodes) -> Outcome<Vec<Contact>> {
     let places = places(part);
     let width = places.len();
     let pairs = match &part.nodes {
@@ -75,7 +76,9 @@ pub fn contacts(job: &Job, part: &ContactPart, table: &NodeDofs) -> Outcome<Vec<
 /// Places of the law's degrees of freedom in those of a contact.
 fn places(part: &ContactPart) -> &'static [usize] {
     let two = match &part.nodes {
-        Some(nodes) => matches!(nodes.a.first(), Some(Node::Dofs(dofs)) if dofs.len() == 2),
+        Some(nodes) => {
+            matches!(&nodes.a, NodeList::Nodes(a) if matches!(a.first(), Some(Node::Dofs(dofs)) if dofs.len() == 2))
+        }
         None => part.a.len() == 2,
     };
     match (part.kind, part.normal) {
@@ -106,29 +109,43 @@ fn listed(part: &ContactPart, width: usize) -> Outcome<Pairs> {
     })
 }
 
-fn matched(job: &Job, nodes: &NodesPart, places: &[usize], table: &NodeDofs) -> Outcome<Pairs> {
+fn matched(job: &Job, nodes: &NodesPart, places: &[usize], table: &Nodes) -> Outcome<Pairs> {
+    let own = match &nodes.coordinates {
+        Some(path) => Some(Mesh::read(&job.path(path))?),
+        None => None,
+    };
+    let mesh = own.as_ref().or(table.mesh.as_ref());
+    let said = |e: String| format!("nodes: {e}");
+    let [a, b] = [("a", &nodes.a), ("b", &nodes.b)].map(|(name, list)| node_list(name, list, mesh).map_err(said));
+    let (a, b) = (a?, b?);
     let areas = match nodes.areas[..] {
-        [] => vec![1.0; nodes.a.len()],
-        [area] => vec![area; nodes.a.len()],
-        _ if nodes.areas.len() == nodes.a.len() => nodes.areas.clone(),
+        [] => vec![1.0; a.len()],
+        [area] => vec![area; a.len()],
+        _ if nodes.areas.len() == a.len() => nodes.areas.clone(),
         _ => {
             return Err(format!(
                 "nodes: areas has {} entries, needs {} as a has, or one",
                 nodes.areas.len(),
-                nodes.a.len()
+                a.len()
             ));
         }
     };
     if let Some(i) = areas.iter().position(|area| !(area.is_finite() && *area >= 0.0)) {
         return Err(format!("nodes: areas[{i}] = {}, needs a finite number >= 0", areas[i]));
     }
-    let (at_a, at_b) = coordinates(job, nodes)?;
-    let partner = pairs(nodes, &at_a, &at_b)?;
-    let (mut a, mut b) = (Vec::new(), Vec::new());
+    let at_a = positions("a", &a, &nodes.a_coordinates, mesh).map_err(said)?;
+    let at_b = positions("b", &b, &nodes.b_coordinates, mesh).map_err(said)?;
+    let list = |name, nodes, at| Positioned { name, nodes, at };
+    let partner = pairs(&list("a", &a, &at_a), &list("b", &b, &at_b), nodes.largest_distance).map_err(said)?;
+    let (mut dofs_a, mut dofs_b) = (Vec::new(), Vec::new());
     for (i, &j) in partner.iter().enumerate() {
-        let of = |name: &str, node| dofs_of(node, places, table).map_err(|e| format!("nodes: {name}: {e}"));
-        a.extend(of(&format!("a[{i}]"), &nodes.a[i])?);
-        b.extend(of(&format!("b[{j}]"), &nodes.b[j])?);
+        let of = |name: &str, node| table.dofs_of(node, places).map_err(|e| format!("nodes: {name}: {e}"));
+        dofs_a.extend(of(&format!("a[{i}]"), &a[i])?);
+        dofs_b.extend(of(&format!("b[{j}]"), &b[j])?);
     }
-    Ok(Pairs { a, b, areas })
+    Ok(Pairs {
+        a: dofs_a,
+        b: dofs_b,
+        areas,
+    })
 }

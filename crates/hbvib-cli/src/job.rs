@@ -76,6 +76,8 @@ pub struct ModelPart {
     pub engine_order: i64,
     #[serde(default)]
     pub fixed: Vec<usize>,
+    /// Positions and sets of nodes: lines of number, x, y, z, or an Abaqus or CalculiX mesh with *NODE and *NSET.
+    pub mesh: Option<PathBuf>,
     pub faces: Option<FacesPart>,
 }
 
@@ -83,15 +85,17 @@ pub struct ModelPart {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct FacesPart {
-    /// Degrees of freedom of each node, -1 where one is missing.
-    pub left: Vec<Vec<i64>>,
-    pub right: Vec<Vec<i64>>,
+    /// Nodes of model.mesh, in any order, or the degrees of freedom of each node, -1 where one is missing, with entry i
+    /// of right the image of entry i of left.
+    pub left: NodeList,
+    pub right: NodeList,
     #[serde(default)]
     pub frame: FrameName,
     #[serde(default = "z")]
     pub axis: [f64; 3],
     #[serde(default = "forward")]
     pub direction: i64,
+    /// Positions where degrees of freedom name the nodes.
     pub left_coordinates: Option<Vec<[f64; 3]>>,
     pub right_coordinates: Option<Vec<[f64; 3]>>,
 }
@@ -161,14 +165,14 @@ pub struct ContactPart {
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct NodesPart {
-    pub a: Vec<Node>,
-    pub b: Vec<Node>,
+    pub a: NodeList,
+    pub b: NodeList,
     /// x, y, z of each node of a.
     #[serde(default)]
     pub a_coordinates: Vec<[f64; 3]>,
     #[serde(default)]
     pub b_coordinates: Vec<[f64; 3]>,
-    /// File with number, x, y, z of each node: lines of numbers, or an Abaqus or CalculiX mesh with *NODE.
+    /// File with the positions of these nodes, instead of model.mesh.
     pub coordinates: Option<PathBuf>,
     /// Largest distance of a pair.
     pub largest_distance: f64,
@@ -185,11 +189,28 @@ pub enum Node {
     Dofs(Vec<i64>),
 }
 
+/// Nodes, or the name of a set of the mesh.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum NodeList {
+    Set(String),
+    Nodes(Vec<Node>),
+}
+
+/// A degree of freedom by its number from 0, or by node and direction from 1 as "12.3", where the name of a set of one node
+/// may stand for the node: "TIP.3".
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum DofName {
+    Number(usize),
+    Node(String),
+}
+
 /// A force Re(value exp(i harmonic omega t)).
 #[derive(Debug, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct ForcePart {
-    pub dof: usize,
+    pub dof: DofName,
     #[serde(default = "one")]
     pub harmonic: usize,
     pub value: Amplitude,
@@ -214,7 +235,7 @@ pub struct ForcedPart {
     /// A fixed highest harmonic, instead of a tolerance.
     pub harmonics: Option<usize>,
     pub tolerance: Option<f64>,
-    pub response_dof: Option<usize>,
+    pub response_dof: Option<DofName>,
     #[serde(default)]
     pub estimate_error: bool,
     /// Stability of each point: unstable stretches are dashed in figures.
@@ -239,7 +260,7 @@ pub struct ModePart {
     pub log10_to: f64,
     pub harmonics: Option<usize>,
     pub tolerance: Option<f64>,
-    pub response_dof: Option<usize>,
+    pub response_dof: Option<DofName>,
     #[serde(default)]
     pub estimate_error: bool,
 }
@@ -273,9 +294,9 @@ pub struct CampbellPart {
     #[serde(default)]
     pub contacts: StateName,
     pub csv: Option<PathBuf>,
-    /// SVG
+    /// SVG or, where its name ends with .png, PNG.
     pub figure: Option<PathBuf>,
-    /// Frequencies over nodal diameter with the engine orders (SAFE diagram), SVG.
+    /// Frequencies over nodal diameter with the engine orders (SAFE diagram).
     pub interference_figure: Option<PathBuf>,
     /// Speed of the interference figure; that of to_rpm unless given.
     pub interference_rpm: Option<f64>,
@@ -324,11 +345,11 @@ pub struct VerifyPart {
 pub struct OutputPart {
     pub csv: Option<PathBuf>,
     pub npz: Option<PathBuf>,
-    /// SVG
+    /// SVG or, where its name ends with .png, PNG.
     pub figure: Option<PathBuf>,
     /// Slip fraction of each contact over frequency, CSV.
     pub slip_csv: Option<PathBuf>,
-    /// The same as SVG, a row for each contact.
+    /// The same as a figure, a row for each contact.
     pub slip_figure: Option<PathBuf>,
     #[serde(default)]
     pub hysteresis: Vec<HysteresisPart>,
@@ -349,7 +370,7 @@ pub struct HysteresisPart {
     #[serde(default = "samples")]
     pub samples: usize,
     pub csv: Option<PathBuf>,
-    /// SVG
+    /// SVG or, where its name ends with .png, PNG.
     pub figure: Option<PathBuf>,
 }
 

@@ -9,10 +9,14 @@
 
 mod build;
 mod campbell;
+mod canvas;
 mod contact_figures;
 mod contact_tables;
 mod contacts;
+mod faces;
+mod figure;
 mod job;
+mod mesh;
 mod nearest_name;
 mod node_match;
 mod node_table;
@@ -20,15 +24,14 @@ mod npz;
 mod output;
 mod points;
 mod progress;
-mod svg;
 mod verification;
 
-use build::Outcome;
+use build::{Built, Outcome};
 use hbvib::{
     Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status, Waves,
     forced_response, nonlinear_mode,
 };
-use job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
+use job::{DofName, ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use progress::Bar;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
@@ -77,7 +80,7 @@ fn schema() -> Outcome<ExitCode> {
 
 fn check(path: &Path) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
-    let model = build::model(&job)?;
+    let model = build::built(&job)?.model;
     print(&format!(
         "{}: {} degrees of freedom, {} sectors, {} contacts, {} forces\n",
         path.display(),
@@ -94,7 +97,7 @@ const LISTED: usize = 10;
 
 fn modes(path: &Path) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
-    let model = build::model(&job)?;
+    let model = build::built(&job)?.model;
     let mut text = String::from("diameter,mode,free_hz,stuck_hz\n");
     for diameter in 0..=model.structure().sectors() / 2 {
         let count = LISTED.min(model.structure().ndof());
@@ -115,7 +118,8 @@ fn modes(path: &Path) -> Outcome<ExitCode> {
 
 fn run(path: &Path) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
-    let (model, names) = build::named_model(&job)?;
+    let built = build::built(&job)?;
+    let (model, names) = (&built.model, &built.names);
     let stop = Arc::new(AtomicBool::new(false));
     let handler = Arc::clone(&stop);
     ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed)).map_err(|e| format!("Ctrl-C: {e}"))?;
@@ -125,7 +129,7 @@ fn run(path: &Path) -> Outcome<ExitCode> {
             cancelled: Some(&cancelled),
             ..Hooks::default()
         };
-        let (text, written) = campbell::write(&job, part, &model, &mut hooks)?;
+        let (text, written) = campbell::write(&job, part, model, &mut hooks)?;
         print(&text)?;
         for path in written {
             print(&format!("wrote {}\n", path.display()))?;
@@ -134,21 +138,21 @@ fn run(path: &Path) -> Outcome<ExitCode> {
             return Ok(ExitCode::SUCCESS);
         }
     }
-    let branch = solve(&job, &model, &stop)?;
+    let branch = solve(&job, &built, &stop)?;
     let mut written = output::write(&job, &branch)?;
-    written.extend(contact_tables::write(&job, &branch, &names)?);
+    written.extend(contact_tables::write(&job, &branch, names)?);
     print(&output::summary(&branch))?;
     for path in written {
         print(&format!("wrote {}\n", path.display()))?;
     }
     if branch.status() == Status::Ok {
         return match &job.verify {
-            Some(part) => verified(&job, part, (&model, &branch), &stop),
+            Some(part) => verified(&job, part, (model, &branch), &stop),
             None => Ok(ExitCode::SUCCESS),
         };
     }
     if let Some(part) = job.verify.as_ref().filter(|_| !stop.load(Ordering::Relaxed)) {
-        verified(&job, part, (&model, &branch), &stop)?;
+        verified(&job, part, (model, &branch), &stop)?;
     }
     let reason = branch.reason().map_or(String::new(), |e| format!(": {e}"));
     let _ = writeln!(
@@ -181,7 +185,7 @@ fn verified(job: &Job, part: &VerifyPart, (model, branch): (&Model, &Branch), st
     })
 }
 
-fn solve(job: &Job, model: &Model, stop: &AtomicBool) -> Outcome<Branch> {
+fn solve(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<Branch> {
     let bar = Bar::new();
     let mut progress = |progress: &Progress| {
         bar.show(progress);
@@ -194,8 +198,8 @@ fn solve(job: &Job, model: &Model, stop: &AtomicBool) -> Outcome<Branch> {
         ..Hooks::default()
     };
     match (&job.forced, &job.mode) {
-        (Some(part), _) => forced(part, model, &mut hooks),
-        (None, Some(part)) => mode(part, model, &mut hooks),
+        (Some(part), _) => forced(part, built, &mut hooks),
+        (None, Some(part)) => mode(part, built, &mut hooks),
         (None, None) => Err("names no analysis".into()),
     }
 }
@@ -218,7 +222,12 @@ fn solver(
     }
 }
 
-fn forced(part: &ForcedPart, model: &Model, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+fn response_dof(name: Option<&DofName>, built: &Built) -> Outcome<Option<usize>> {
+    name.map(|name| built.nodes.dof(name).map_err(|e| format!("response_dof: {e}")))
+        .transpose()
+}
+
+fn forced(part: &ForcedPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
     let at: Vec<f64> = part.at_hz.iter().map(|f| TAU * f).collect();
     let range = ForcedOptions {
         omega_start: TAU * part.from_hz,
@@ -226,23 +235,25 @@ fn forced(part: &ForcedPart, model: &Model, hooks: &mut Hooks<'_>) -> Outcome<Br
         at: &at,
         guess: None,
     };
+    let response_dof = response_dof(part.response_dof.as_ref(), built).map_err(|e| format!("[forced]: {e}"))?;
     let solver = SolverOptions {
         stability: part.stability.map(|waves| match waves {
             WavesName::Wave => Waves::Wave,
             WavesName::Wheel => Waves::Wheel,
         }),
-        ..solver(part.harmonics, part.tolerance, part.response_dof, part.estimate_error)
+        ..solver(part.harmonics, part.tolerance, response_dof, part.estimate_error)
     };
-    forced_response(model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))
+    forced_response(&built.model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))
 }
 
-fn mode(part: &ModePart, model: &Model, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
+fn mode(part: &ModePart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
     let range = ModeOptions {
         choice: ModeChoice::Index(part.index),
         log10_start: part.log10_from,
         log10_stop: part.log10_to,
         ..ModeOptions::default()
     };
-    let solver = solver(part.harmonics, part.tolerance, part.response_dof, part.estimate_error);
-    nonlinear_mode(model, &solver, &range, hooks).map_err(|e| format!("[mode]: {e}"))
+    let response_dof = response_dof(part.response_dof.as_ref(), built).map_err(|e| format!("[mode]: {e}"))?;
+    let solver = solver(part.harmonics, part.tolerance, response_dof, part.estimate_error);
+    nonlinear_mode(&built.model, &solver, &range, hooks).map_err(|e| format!("[mode]: {e}"))
 }

@@ -1,53 +1,69 @@
 //! Pairs of nodes by nearest distance.
 
 use crate::build::Outcome;
-use crate::job::{Node, NodesPart};
+use crate::job::Node;
 
 /// Distances that differ by less than this share of the larger are equal.
 const EQUAL: f64 = 1e-9;
+
+/// A list of nodes with their positions.
+pub struct Positioned<'a> {
+    /// Name of the list in the job.
+    pub name: &'a str,
+    pub nodes: &'a [Node],
+    pub at: &'a [[f64; 3]],
+}
+
+impl Positioned<'_> {
+    /// A node as the job names it.
+    fn node(&self, i: usize) -> String {
+        let list = self.name;
+        match self.nodes.get(i) {
+            Some(Node::Number(number)) => format!("{list}[{i}] (node {number})"),
+            Some(Node::Dofs(dofs)) => format!("{list}[{i}] (degrees of freedom {dofs:?})"),
+            None => format!("{list}[{i}]"),
+        }
+    }
+}
 
 /// The number in list b of each node of list a: its nearest one.
 ///
 /// # Errors
 /// A sentence that names the node: none of b within the largest distance, two equally near, a node of b that is the
 /// nearest of two or of none; a distance that is no number above zero.
-pub fn pairs(nodes: &NodesPart, at_a: &[[f64; 3]], at_b: &[[f64; 3]]) -> Outcome<Vec<usize>> {
-    let largest = nodes.largest_distance;
+pub fn pairs(a: &Positioned<'_>, b: &Positioned<'_>, largest: f64) -> Outcome<Vec<usize>> {
     if !(largest.is_finite() && largest > 0.0) {
-        return Err(format!(
-            "nodes: largest_distance = {largest}, needs a finite distance > 0"
-        ));
+        return Err(format!("largest_distance = {largest}, needs a finite distance > 0"));
     }
-    if at_a.is_empty() || at_b.is_empty() {
-        return Err("nodes: a and b need at least one node each".into());
+    if a.at.is_empty() || b.at.is_empty() {
+        return Err(format!("{} and {} need at least one node each", a.name, b.name));
     }
-    let a = |i: usize| name("a", i, &nodes.a);
-    let b = |j: usize| name("b", j, &nodes.b);
-    let mut taken: Vec<Option<usize>> = vec![None; at_b.len()];
-    let mut partner = Vec::with_capacity(at_a.len());
-    for (i, x) in at_a.iter().enumerate() {
-        let ((near, j), second) = nearest_two(x, at_b);
+    let mut taken: Vec<Option<usize>> = vec![None; b.at.len()];
+    let mut partner = Vec::with_capacity(a.at.len());
+    for (i, x) in a.at.iter().enumerate() {
+        let ((near, j), second) = nearest_two(x, b.at);
         if near > largest {
             return Err(format!(
-                "nodes: {} has no node of b within {largest}: the nearest, {}, lies {near:.6e} away",
-                a(i),
-                b(j)
+                "{} has no node of {} within {largest}: the nearest, {}, lies {near:.6e} away",
+                a.node(i),
+                b.name,
+                b.node(j)
             ));
         }
         if let Some((far, k)) = second.filter(|(far, _)| far - near <= EQUAL * far) {
             return Err(format!(
-                "nodes: {} is as near to {} as to {}, {far:.6e}: the pair is not one to one",
-                a(i),
-                b(j),
-                b(k)
+                "{} is as near to {} as to {}, {far:.6e}: the pair is not one to one",
+                a.node(i),
+                b.node(j),
+                b.node(k)
             ));
         }
         if let Some(other) = taken[j] {
             return Err(format!(
-                "nodes: {} is the nearest of both {} and {}: the pair is not one to one",
-                b(j),
-                a(other),
-                a(i)
+                "{} is the nearest of both {} and {}: the pair is not one to one",
+                b.node(j),
+                a.node(other),
+                a.node(i)
             ));
         }
         taken[j] = Some(i);
@@ -55,20 +71,12 @@ pub fn pairs(nodes: &NodesPart, at_a: &[[f64; 3]], at_b: &[[f64; 3]]) -> Outcome
     }
     if let Some(j) = taken.iter().position(Option::is_none) {
         return Err(format!(
-            "nodes: {} is the nearest of no node of a: the pairs are not one to one",
-            b(j)
+            "{} is the nearest of no node of {}: the pairs are not one to one",
+            b.node(j),
+            a.name
         ));
     }
     Ok(partner)
-}
-
-/// A node as the job names it.
-fn name(list: &str, i: usize, nodes: &[Node]) -> String {
-    match nodes.get(i) {
-        Some(Node::Number(number)) => format!("{list}[{i}] (node {number})"),
-        Some(Node::Dofs(dofs)) => format!("{list}[{i}] (degrees of freedom {dofs:?})"),
-        None => format!("{list}[{i}]"),
-    }
 }
 
 type Near = (f64, usize);
@@ -90,20 +98,14 @@ fn nearest_two(x: &[f64; 3], points: &[[f64; 3]]) -> (Near, Option<Near>) {
 
 #[cfg(test)]
 mod tests {
-    use super::pairs;
-    use crate::job::{Node, NodesPart};
+    use super::{Positioned, pairs};
+    use crate::job::Node;
 
     fn matched(at_a: &[[f64; 3]], at_b: &[[f64; 3]], largest_distance: f64) -> Result<Vec<usize>, String> {
-        let nodes = NodesPart {
-            a: (0..at_a.len() as i64).map(|i| Node::Number(100 + i)).collect(),
-            b: (0..at_b.len() as i64).map(|i| Node::Number(200 + i)).collect(),
-            a_coordinates: Vec::new(),
-            b_coordinates: Vec::new(),
-            coordinates: None,
-            largest_distance,
-            areas: Vec::new(),
-        };
-        pairs(&nodes, at_a, at_b)
+        let numbers = |from: i64, count: usize| (from..).take(count).map(Node::Number).collect::<Vec<_>>();
+        let (a, b) = (numbers(100, at_a.len()), numbers(200, at_b.len()));
+        let list = |name, nodes, at| Positioned { name, nodes, at };
+        pairs(&list("a", &a, at_a), &list("b", &b, at_b), largest_distance)
     }
 
     #[test]

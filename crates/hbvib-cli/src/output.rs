@@ -1,9 +1,9 @@
 //! Files and summary of a result.
 
 use crate::build::Outcome;
+use crate::figure::{bounds, draw, scientific};
 use crate::job::Job;
 use crate::npz::Npz;
-use crate::svg::{bounds, draw};
 use hbvib::{BifurcationKind, Branch, Special};
 use num_complex::Complex64;
 use plotters::prelude::{ChartBuilder, DashedLineSeries, LineSeries};
@@ -146,10 +146,10 @@ fn figure(path: &Path, branch: &Branch) -> Outcome<()> {
             .margin(16)
             .x_label_area_size(44)
             .y_label_area_size(90)
-            .build_cartesian_2d(x, y)?;
+            .build_cartesian_2d(x, y.clone())?;
         let mesh = &mut chart.configure_mesh();
         mesh.x_desc("frequency, Hz").y_desc("amplitude");
-        mesh.y_label_formatter(&|v| format!("{v:.2e}")).draw()?;
+        mesh.y_label_formatter(&scientific(&y)).draw()?;
         for stretch in &stretches {
             let points = stretch
                 .points

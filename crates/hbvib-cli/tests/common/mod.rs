@@ -1,4 +1,5 @@
 //! Jobs on the ring damper, and the command that runs them.
+#![allow(dead_code, reason = "each test uses a part of this module")]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
