@@ -2,8 +2,9 @@
 //! the header (`crates/bindings`).
 //!
 //! Infrastructure: `boundary` turns panics and errors into statuses, `handles` turns objects into numbers that cannot
-//! be confused, `versioned_struct` has the rules by which structs cross the boundary, `arrays` and `indices` check
-//! the pointers and numbers of the caller, `reserve` is the allocator, `process` is for fork and unloading, `float_environment` separates the settings of the floating-point unit. All
+//! be confused, `versioned_struct` has the rules by which structs cross the boundary, `arrays`, `indices` and
+//! `stored_point` check the pointers and numbers of the caller, `reserve` is the allocator, `process` is for fork and
+//! unloading, `float_environment` separates the settings of the floating-point unit. All
 //! other files are named after the sections of the header (`crates/bindings/src/header.rs` has their order), and a
 //! file lists its items in the order of the header. No file here contains numerics.
 //!
@@ -24,6 +25,7 @@ mod last_error;
 mod outcome;
 pub mod process;
 pub mod reserve;
+mod stored_point;
 mod versioned_struct;
 
 mod batch;

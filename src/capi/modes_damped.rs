@@ -5,13 +5,14 @@
 use super::arrays::{check_pointer, count, input};
 use super::boundary::{WithArgument, call};
 use super::cyclic::nodal_diameter;
-use super::handles::read;
+use super::handles::{Reading, read};
 use super::model::hbvib_model;
 use super::modes_linear::contact_state_of;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::version_and_errors::hbvib_status;
 use crate::analysis::campbell::campbell;
 use crate::analysis::damped_modes::damped_modes;
+use crate::analysis::linear_contacts::LinearContacts;
 use crate::error::{Result, Status, fail};
 use crate::model::Model;
 
@@ -112,12 +113,7 @@ pub unsafe extern "C" fn hbvib_campbell(
 ) -> hbvib_status {
     call(|| {
         let hooks = unsafe { load_hooks(hooks, 10) }?;
-        let model = read::<Model>(model, 1)?;
-        let n = self::count(n, 2, "n")?;
-        let speeds = unsafe { input(speeds, n, 3, "speeds") }?;
-        let diameter = nodal_diameter(&model, diameter, 4)?;
-        let state = contact_state_of(contacts, 5)?;
-        let wanted = modes(count, &model, 6)?;
+        let (model, speeds, at) = unsafe { diagram(model, (n, speeds), diameter, contacts, count) }?;
         check_pointer(omega, 7, "omega")?;
         if !damping_ratio.is_null() {
             check_pointer(damping_ratio, 8, "damping_ratio")?;
@@ -125,7 +121,6 @@ pub unsafe extern "C" fn hbvib_campbell(
         if !direction.is_null() {
             check_pointer(direction, 9, "direction")?;
         }
-        let at = (diameter, state, wanted);
         let found = unsafe { with_hooks(&hooks, |hooks| campbell(&model, speeds, at, &[], hooks)) }.with_argument(3)?;
         unsafe {
             omega.copy_from(found.omega.as_ptr(), found.omega.len());
@@ -175,12 +170,7 @@ pub unsafe extern "C" fn hbvib_campbell_crossings(
 ) -> hbvib_status {
     call(|| {
         let hooks = unsafe { load_hooks(hooks, 13) }?;
-        let model = read::<Model>(model, 1)?;
-        let n = self::count(n, 2, "n")?;
-        let speeds = unsafe { input(speeds, n, 3, "speeds") }?;
-        let diameter = nodal_diameter(&model, diameter, 4)?;
-        let state = contact_state_of(contacts, 5)?;
-        let wanted = modes(count, &model, 6)?;
+        let (model, speeds, at) = unsafe { diagram(model, (n, speeds), diameter, contacts, count) }?;
         if engine_order < 1 {
             return fail!(Argument, "engine_order = {engine_order}, needs at least 1").with_argument(7);
         }
@@ -193,10 +183,9 @@ pub unsafe extern "C" fn hbvib_campbell_crossings(
             check_pointer(direction, 11, "direction")?;
         }
         check_pointer(found, 12, "found")?;
-        let at = (diameter, state, wanted);
-        let diagram = unsafe { with_hooks(&hooks, |hooks| campbell(&model, speeds, at, &[engine_order], hooks)) }
-            .with_argument(3)?;
-        let crossings = &diagram.crossings;
+        let crossings = unsafe { with_hooks(&hooks, |hooks| campbell(&model, speeds, at, &[engine_order], hooks)) }
+            .with_argument(3)?
+            .crossings;
         unsafe { found.write(crossings.len() as i64) };
         if crossings.len() > capacity {
             return Ok(Status::Ok);
@@ -212,4 +201,28 @@ pub unsafe extern "C" fn hbvib_campbell_crossings(
         }
         Ok(Status::Ok)
     })
+}
+
+/// Nodal diameter, state of the contacts and number of modes.
+type Requested = (usize, LinearContacts, usize);
+
+/// The model, the speeds, and what is requested at each:
+/// arguments 1 to 6 of the functions of a Campbell diagram.
+///
+/// # Safety
+/// The caller of the C function states that `n` readable speeds lie at the pointer.
+unsafe fn diagram<'a>(
+    model: *const hbvib_model,
+    (n, speeds): (i64, *const f64),
+    diameter: i64,
+    contacts: i32,
+    count: i64,
+) -> Result<(Reading<Model>, &'a [f64], Requested)> {
+    let model = read::<Model>(model, 1)?;
+    let n = self::count(n, 2, "n")?;
+    let speeds = unsafe { input(speeds, n, 3, "speeds") }?;
+    let diameter = nodal_diameter(&model, diameter, 4)?;
+    let state = contact_state_of(contacts, 5)?;
+    let wanted = modes(count, &model, 6)?;
+    Ok((model, speeds, (diameter, state, wanted)))
 }

@@ -4,17 +4,16 @@
 
 use super::arrays::{Range, count, disjoint, output};
 use super::boundary::{WithArgument, call};
-use super::handles::{KeptBranch, read};
-use super::indices::{index, number};
+use super::indices::number;
 use super::model::hbvib_model;
 use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
+use super::stored_point::StoredPoint;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, check_reserved, fill_out, init, load};
 use crate::analysis;
 use crate::contact::time_piece::Grazing;
-use crate::error::{Result, Status, fail};
-use crate::model::Model;
+use crate::error::{Result, fail};
 use crate::options::{FloquetOptions, Waves};
 use crate::results::MultiplierClass;
 use num_complex::Complex64;
@@ -201,10 +200,7 @@ pub unsafe extern "C" fn hbvib_floquet(
     out: *mut hbvib_floquet_info,
 ) -> hbvib_status {
     call(|| {
-        let model = read::<Model>(model, 1)?;
-        let kept = read::<KeptBranch>(branch, 2)?;
-        let branch = &kept.branch;
-        let point = index(point, branch.stored(), 3, "point")?;
+        let at = StoredPoint::read(model, branch, point)?;
         let options = unsafe { floquet_options(options) }?;
         let hooks = unsafe { load_hooks(hooks, 5) }?;
         let room = room(multipliers.is_null(), multipliers_len, 7, "multipliers_len")?;
@@ -221,14 +217,10 @@ pub unsafe extern "C" fn hbvib_floquet(
         )?;
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                analysis::floquet(&model, branch, point, &options, hooks)
+                analysis::floquet(&at.model, at.branch(), at.number, &options, hooks)
             })
         }
-        .map_err(|e| match e.status {
-            Status::Unsupported if branch.mode().is_some() => e.in_argument(3),
-            Status::Argument => e.in_argument(1),
-            _ => e,
-        })?;
+        .map_err(|e| at.blame(e, 3))?;
         if room > 0 {
             let values = unsafe { output::<Complex64>(multipliers.cast(), room, 6, "multipliers") }?;
             for (value, m) in values.iter_mut().zip(&found.multipliers) {

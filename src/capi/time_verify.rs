@@ -4,17 +4,16 @@
 
 use super::arrays::{Range, disjoint, optional_len, output};
 use super::boundary::{WithArgument, call};
-use super::handles::{KeptBranch, read};
-use super::indices::{index, number};
+use super::indices::number;
 use super::model::hbvib_model;
 use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
+use super::stored_point::StoredPoint;
 use super::time::{hbvib_steady_method, steady_method};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
 use crate::analysis;
-use crate::error::{Result, Status};
-use crate::model::Model;
+use crate::error::Result;
 use crate::options::VerifyOptions;
 use num_complex::Complex64;
 
@@ -181,10 +180,8 @@ pub unsafe extern "C" fn hbvib_verify(
     out: *mut hbvib_verification,
 ) -> hbvib_status {
     call(|| {
-        let model = read::<Model>(model, 1)?;
-        let kept = read::<KeptBranch>(branch, 2)?;
-        let branch = &kept.branch;
-        let point = index(point, branch.stored(), 3, "point")?;
+        let at = StoredPoint::read(model, branch, point)?;
+        let branch = at.branch();
         let options = unsafe { verify_options(options) }?;
         let hooks = unsafe { load_hooks(hooks, 5) }?;
         let rows = branch.harmonics() + 1;
@@ -201,12 +198,12 @@ pub unsafe extern "C" fn hbvib_verify(
                 Range::new(errors, errors_len, 8, "errors")?,
             ],
         )?;
-        let found = unsafe { with_hooks(&hooks, |hooks| analysis::verify(&model, branch, point, &options, hooks)) }
-            .map_err(|e| match e.status {
-                Status::Unsupported if branch.mode().is_some() => e.in_argument(2),
-                Status::Argument => e.in_argument(1),
-                _ => e,
-            })?;
+        let found = unsafe {
+            with_hooks(&hooks, |hooks| {
+                analysis::verify(&at.model, branch, at.number, &options, hooks)
+            })
+        }
+        .map_err(|e| at.blame(e, 2))?;
         if harmonics_len > 0 {
             unsafe { output::<Complex64>(harmonics.cast(), harmonics_len, 6, "harmonics") }?
                 .copy_from_slice(&found.harmonics);

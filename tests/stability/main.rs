@@ -8,6 +8,7 @@ mod bifurcations;
 mod floquet_classes;
 mod floquet_references;
 mod floquet_wheel;
+mod hard_cases_in_time;
 mod limit_cycles;
 
 use hbvib::analysis::floquet;

@@ -1,0 +1,175 @@
+//! Stability of the motions of the hard cases: which of their solutions a machine would show.
+
+use crate::common::{B2, BASE, Blisk, D, R, SECTORS, data, harmonics, number, one_mass, solve_at, sweep};
+use crate::{multipliers, ordinary};
+use hbvib::Floquet;
+use hbvib::analysis::floquet;
+use hbvib::contact::Contact;
+use hbvib::error::Status;
+use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{FloquetOptions, Waves};
+use hbvib::results::Branch;
+use std::f64::consts::TAU;
+
+/// A parameter of a case of `data/hardcases.json`.
+fn parameter(id: &str, name: &str) -> f64 {
+    let all = data("hardcases.json");
+    let mut cases = all.as_array().unwrap().iter();
+    number(&cases.find(|case| case["id"] == id).unwrap()["params"][name])
+}
+
+fn told(id: &str, branch: &Branch, point: usize, found: &Floquet) {
+    println!(
+        "{id:<6} {:>8.5} {:>12.5e} {:>13.10} {:>2} unstable, {} neutral, moved {:.0e}",
+        branch.omega_at(point).unwrap(),
+        branch.amplitude().first().copied().unwrap_or(f64::NAN),
+        found.radius,
+        found.unstable,
+        found.neutral,
+        found.orbit_change
+    );
+}
+
+fn at(id: &str, model: &Model, omega: f64, highest: usize) -> Floquet {
+    let branch = solve_at(model, &harmonics(highest), omega);
+    let found = multipliers(model, &branch, 0, Waves::Wave);
+    told(id, &branch, 0, &found);
+    found
+}
+
+/// One mass with a slider.
+fn sliding(id: &str) -> Model {
+    let slider = Contact::jenkins(0, None, parameter(id, "kt"), 1.0, parameter(id, "fc"));
+    one_mass(parameter(id, "c"), &slider, parameter(id, "F"))
+}
+
+/// Where nothing slips the radius is e^{−cT/2} in closed form.
+#[test]
+fn linear_cases_decay_as_their_damping_says() {
+    for (id, limit) in [("HC01", 0.0), ("HC02", f64::INFINITY)] {
+        let omega = parameter(id, "w");
+        let slider = Contact::jenkins(0, None, parameter(id, "kt"), 1.0, limit);
+        let model = one_mass(parameter(id, "c"), &slider, parameter(id, "F"));
+        let found = at(id, &model, omega, 7);
+        let decay = (-0.5 * parameter(id, "c") * TAU / omega).exp();
+        assert!((found.radius - decay).abs() < 1e-11 && found.unstable == 0);
+    }
+    for (id, gap) in [("HC16", parameter("HC16", "gap")), ("HC17", parameter("HC17", "gap"))] {
+        let omega = parameter(id, "w");
+        let stop = Contact::unilateral(None, Some(0), parameter(id, "kn"), gap);
+        let found = at(id, &one_mass(parameter(id, "c"), &stop, parameter(id, "F")), omega, 7);
+        let decay = (-0.5 * parameter(id, "c") * TAU / omega).exp();
+        assert!((found.radius - decay).abs() < 1e-9 && found.unstable == 0);
+    }
+}
+
+/// Friction takes energy from every perturbation of one mass: nearly rigid contacts and an undamped resonance included.
+#[test]
+fn sliding_cases_are_stable() {
+    for (id, highest) in [("HC04a", 63), ("HC04b", 127), ("HC06", 31)] {
+        let found = at(id, &sliding(id), parameter(id, "w"), highest);
+        assert!(found.radius < 1.0 && found.unstable == 0, "{id}");
+        assert_eq!(ordinary(&found).len(), 2);
+    }
+    let slider = Contact::jenkins(0, None, 1.0, 1.0, 0.3);
+    let mut third = one_mass(0.02, &slider, 0.0);
+    third.add_force(0, 3, 0.2.into()).unwrap();
+    assert_eq!(at("HC29", &third, parameter("HC29", "w"), 9).unstable, 0);
+    let mut pushed = one_mass(0.02, &slider, 0.2);
+    pushed.add_force(0, 0, parameter("HC21", "F0").into()).unwrap();
+    assert_eq!(at("HC21", &pushed, parameter("HC21", "w"), 31).unstable, 0);
+}
+
+/// Of three motions of a mass behind a gap the one between the folds is unstable.
+#[test]
+fn the_middle_one_of_coexisting_motions_is_unstable() {
+    let id = "HC18";
+    let stop = Contact::unilateral(None, Some(0), parameter(id, "kn"), parameter(id, "gap"));
+    let model = one_mass(parameter(id, "c"), &stop, parameter(id, "F"));
+    let branch = sweep(&model, &harmonics(31), 0.9, 1.5, &[parameter(id, "w")]);
+    let mut solutions = branch.at(0).to_vec();
+    solutions.sort_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+    let counts: Vec<usize> = solutions
+        .iter()
+        .map(|s| {
+            let found = multipliers(&model, &branch, s.point, Waves::Wave);
+            println!("{id} {:.6} {:.9} {}", s.amplitude, found.radius, found.unstable);
+            found.unstable
+        })
+        .collect();
+    assert_eq!(counts, [0, 1, 0]);
+}
+
+/// Contacts that all switch at once are one contact of their sums.
+#[test]
+fn a_hundred_equal_contacts_are_one() {
+    let part = Contact::jenkins(0, None, 0.01, 1.0, 0.003);
+    let mut many = one_mass(0.02, &part, parameter("HC26", "F"));
+    for _ in 1..100 {
+        many.add_contact(&part).unwrap();
+    }
+    let whole = one_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), parameter("HC26", "F"));
+    let omega = parameter("HC26", "w");
+    let gap = at("HC26", &many, omega, 21).radius - at("HC26", &whole, omega, 21).radius;
+    assert!(gap.abs() < 1e-9, "{gap}");
+}
+
+/// The blisk of a case, forced at the blade tips alone.
+fn blisk(id: &str, engine_order: i64, ring_mass: f64) -> Model {
+    let wheel = Blisk {
+        ring_mass: Some(ring_mass),
+        engine_order,
+        ..BASE
+    };
+    let a = wheel.matrices();
+    let mut model = Model::cyclic(a.n, SECTORS).unwrap();
+    for (kind, matrix) in [(MatrixKind::Mass, &a.mass), (MatrixKind::Stiffness, &a.own)] {
+        model.set_matrix(kind, &MatrixView::dense(a.n, matrix)).unwrap();
+    }
+    model
+        .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(a.n, &a.next))
+        .unwrap();
+    model.set_wave(engine_order);
+    let slider = Contact::jenkins(D, Some(R), parameter(id, "kt"), 1.0, parameter(id, "fc"));
+    model.add_contact(&slider).unwrap();
+    model.set_rayleigh(0.0, parameter(id, "beta")).unwrap();
+    model.add_force(B2, 1, parameter(id, "F").into()).unwrap();
+    model
+}
+
+/// The wheel's verdict counts more perturbations than the wave's.
+#[test]
+fn waves_of_the_blisk_are_stable_over_the_wheel() {
+    let mut cases = vec![("HC09", 2, 208.5), ("HC11", 24, 91.3)];
+    cases.extend([22, 26, 46].map(|order| ("HC12", order, 208.5)));
+    cases.extend([676.5, 811.0, 850.0].map(|f| ("HC14", 3, f)));
+    for (id, order, frequency) in cases {
+        let model = blisk(id, order, 0.03);
+        let branch = solve_at(&model, &harmonics(31), TAU * frequency);
+        let [wave, wheel] = [Waves::Wave, Waves::Wheel].map(|waves| {
+            let found = multipliers(&model, &branch, 0, waves);
+            println!("engine order {order}, {waves:?}:");
+            told(id, &branch, 0, &found);
+            found
+        });
+        assert!(
+            wave.radius <= wheel.radius + 1e-9 && wheel.unstable == 0,
+            "{id} {order}"
+        );
+    }
+    let model = blisk("HC10", 2, 0.0);
+    let branch = solve_at(&model, &harmonics(15), TAU * 208.5);
+    let e = floquet(&model, &branch, 0, &FloquetOptions::default(), &mut Hooks::default()).unwrap_err();
+    assert_eq!(e.status, Status::Unsupported);
+}
+
+/// A stiffer slider under a larger force, of which a reference has three digits.
+#[test]
+fn a_stiff_slider_has_the_multipliers_of_its_flow() {
+    let model = one_mass(0.02, &Contact::jenkins(0, None, 5.0, 1.0, 0.3), 0.5);
+    let found = at("stiff", &model, 1.3, 63);
+    assert!((found.radius - 0.538).abs() < 5e-4, "{}", found.radius);
+}
