@@ -5,7 +5,7 @@ use crate::layout::{Defaults, Layout};
 use std::fmt::Write as _;
 
 /// The declarations of hbvib.h as plain C99 without directives and comments, as programs that parse C read them.
-pub fn plain_header(all: &Declarations) -> Result<String> {
+pub fn plain_header(all: &Declarations) -> String {
     let mut text = String::from(
         "typedef signed int int32_t;\ntypedef unsigned int uint32_t;\ntypedef signed long long int64_t;\n\
          typedef unsigned long long size_t;\n",
@@ -33,47 +33,43 @@ pub fn plain_header(all: &Declarations) -> Result<String> {
         writeln!(
             text,
             "typedef {}(*{})({});",
-            declared(&c.result, "")?,
+            declared(&c.result, ""),
             c.name,
-            arguments(c)?
+            arguments(c)
         )
         .unwrap();
     }
     for s in &all.structs {
         writeln!(text, "struct {} {{", s.name).unwrap();
         for field in &s.fields {
-            writeln!(text, "  {};", variable(field)?).unwrap();
+            writeln!(text, "  {};", variable(field)).unwrap();
         }
         text += "};\n";
     }
     for f in &all.functions {
-        writeln!(text, "{}({});", declared(&f.result, &f.name)?, arguments(f)?).unwrap();
+        writeln!(text, "{}({});", declared(&f.result, &f.name), arguments(f)).unwrap();
     }
-    Ok(text)
+    text
 }
 
-fn arguments(f: &Function) -> Result<String> {
+fn arguments(f: &Function) -> String {
     if f.arguments.is_empty() {
-        return Ok("void".into());
+        return "void".into();
     }
-    let list: Result<Vec<_>> = f.arguments.iter().map(variable).collect();
-    Ok(list?.join(", "))
+    let list: Vec<_> = f.arguments.iter().map(variable).collect();
+    list.join(", ")
 }
 
-fn variable(v: &Variable) -> Result<String> {
-    Ok(match v.kind.array {
-        Some(n) => format!("{}[{n}]", declared(&v.kind, &v.name)?),
-        None => declared(&v.kind, &v.name)?,
-    })
+fn variable(v: &Variable) -> String {
+    match v.kind.array {
+        Some(n) => format!("{}[{n}]", declared(&v.kind, &v.name)),
+        None => declared(&v.kind, &v.name),
+    }
 }
 
-fn declared(kind: &Type, name: &str) -> Result<String> {
+fn declared(kind: &Type, name: &str) -> String {
     let constant = if kind.is_const { "const " } else { "" };
-    Ok(format!(
-        "{constant}{} {}{name}",
-        base(&kind.base),
-        "*".repeat(kind.pointers)
-    ))
+    format!("{constant}{} {}{name}", base(&kind.base), "*".repeat(kind.pointers))
 }
 
 fn base(base: &Base) -> &str {
@@ -111,7 +107,7 @@ pub fn tables(all: &Declarations, defaults: &Defaults) -> Result<String> {
                 "| {} | {} | `{}{array}` | `{}` | {} |",
                 place.offset,
                 place.size * place.count,
-                declared(&field.kind, "")?.trim_end(),
+                declared(&field.kind, "").trim_end(),
                 field.name,
                 value(all.resolved(&field.kind.base), &field.kind, entry)?
             )
@@ -147,7 +143,7 @@ mod tests {
 
     #[test]
     fn the_plain_header_has_every_declaration() {
-        let text = plain_header(&Declarations::parse(HEADER).unwrap()).unwrap();
+        let text = plain_header(&Declarations::parse(HEADER).unwrap());
         for line in [
             "typedef int32_t hbvib_status;",
             "typedef struct hbvib_model hbvib_model;",

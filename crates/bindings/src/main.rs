@@ -54,7 +54,7 @@ fn write() -> Result<()> {
         ("include/hbvib.f90", vec![fortran::module(&all, &defaults)?]),
         ("include/hbvib/_c.py", vec![python::module(&all)?]),
         ("include/hbvib/_types.py", vec![python_types::module(&all, &defaults)?]),
-        ("include/hbvib_plain.h", vec![foreign::plain_header(&all)?]),
+        ("include/hbvib_plain.h", vec![foreign::plain_header(&all)]),
         ("docs/foreign-calls.md", vec![foreign::tables(&all, &defaults)?]),
         ("tests/programs/layout.rs", vec![lists::layouts(&all)]),
         ("tests/languages/fortran/layout.f90", vec![calls, layouts]),
