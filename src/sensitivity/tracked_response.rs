@@ -223,7 +223,7 @@ impl<'a> TrackedResponse<'a> {
         self.matrix.fill(0.0);
         for (column, from) in self
             .matrix
-            .chunks_exact_mut(n)
+            .chunks_exact_mut(n.max(1))
             .zip(point.jacobian().chunks_exact(m.max(1)))
         {
             column[..m].copy_from_slice(from);
