@@ -12,7 +12,7 @@ use crate::linalg::lu::Lu;
 use num_complex::Complex64;
 use std::f64::consts::{PI, TAU};
 
-const CONTEXT: &str = "the path of a friction force";
+pub(super) const CONTEXT: &str = "the path of a friction force";
 
 /// Panels per turn and reduced harmonic: a force that turns in slip, times the highest harmonic, is integrated to
 /// about 1e-11 over such panels.
@@ -272,6 +272,12 @@ impl PlanePath {
     #[must_use]
     pub fn sign(&self) -> f64 {
         if self.turn < TAU { -1.0 } else { 1.0 }
+    }
+
+    /// The largest limit at the nodes; 0 where the sides are apart at all of them.
+    #[must_use]
+    pub fn largest_limit(&self) -> f64 {
+        self.grid.iter().fold(0.0, |m, at| m.max(at.limit))
     }
 
     /// Motion and limit at τ.

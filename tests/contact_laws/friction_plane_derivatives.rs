@@ -2,7 +2,9 @@
 
 use crate::common::plane::{Random, evaluate, largest, law};
 use hbvib::aft::Evaluation;
+use hbvib::contact::contact_state::State;
 use hbvib::contact::law::Law;
+use hbvib::contact::plane_path::PlanePiece;
 use hbvib::fourier::HarmonicSet;
 use hbvib::interrupt::Interrupt;
 use std::f64::consts::PI;
@@ -100,5 +102,51 @@ fn a_slider_dragged_across_rests_with_the_force_at_the_limit_and_its_derivative(
         let rest = (limit * limit - pull * pull).sqrt();
         assert!((out.force[3] - rest).abs() < 1e-12 && out.force[0].abs() < 1e-12);
         assert!((exact + law.kt * pull / rest).abs() < 1e-8 && (central / exact - 1.0).abs() < 1e-4);
+    }
+}
+
+#[test]
+fn a_stick_that_a_closing_leaves_for_a_moment_only_has_finite_derivatives() {
+    let set = HarmonicSet::all(2).unwrap();
+    let law = law(0.0, true);
+    let packed = set.packed_len();
+    // N = kn·(0.5 − cos τ) closes at τ = π/3 with R′ = μ kn sin(π/3).
+    let closing = PI / 3.0;
+    let limit_rate = law.mu * law.kn * (PI / 3.0).sin();
+    for share in [0.9, 0.99, 0.9999, 0.999_999, 1.0, 1.01] {
+        // Along (0.6, −0.8) the motion has the rate share·R′/kt at the closing, and grows from there: a sin(τ − τc) + b (1 − cos 2(τ − τc)).
+        let (a, b) = (share * limit_rate / law.kt, 0.3);
+        let (sin, cos) = closing.sin_cos();
+        let (sin2, cos2) = (2.0 * closing).sin_cos();
+        let along = [b, -a * sin, -a * cos, -b * cos2, b * sin2];
+        let mut motion = vec![0.0; 3 * packed];
+        for (k, x) in along.into_iter().enumerate() {
+            motion[k] = 0.6 * x;
+            motion[packed + k] = -0.8 * x;
+        }
+        motion[2 * packed] = -0.5;
+        motion[2 * packed + 1] = 1.0;
+        let (out, mut way) = evaluate(&law, &set, &motion);
+        let states: Vec<State> = way.path().pieces.iter().map(PlanePiece::state).collect();
+        let sticks = states.contains(&State::Stick);
+        assert!(states.contains(&State::Open) && states.contains(&State::Slip));
+        assert!(sticks || share > 0.999, "share {share}: no stick after the closing");
+        let mut other = Evaluation::new(&set, 3).unwrap();
+        let h = 1e-7;
+        let mut worst = 0.0_f64;
+        for c in 0..motion.len() {
+            let mut at = |t: f64| {
+                let mut x = motion.clone();
+                x[c] += t;
+                way.evaluate(&law, &set, &x, &mut other, &Interrupt::none()).unwrap();
+                other.force.clone()
+            };
+            let (up, down) = (at(h), at(-h));
+            for (r, exact) in out.jacobian[c * motion.len()..][..motion.len()].iter().enumerate() {
+                worst = worst.max((exact - (up[r] - down[r]) / (2.0 * h)).abs());
+            }
+        }
+        println!("u′/R′ = {share} at the closing: sticks {sticks}, derivatives {worst:.1e}");
+        assert!(worst < 1e-5, "share {share}: {worst:e}");
     }
 }

@@ -8,8 +8,8 @@
 //! then shorten towards the opening. At a closing the force starts from zero: in stick where |u′| < R′, else along u′, the one direction
 //! whose turn stays finite.
 
-use crate::contact::laws::friction_3d_slip::{Solved, first_zero, solve};
-use crate::contact::plane_path::{PlaneForce, PlaneInstant, PlanePath, PlanePiece, SlipPanel};
+use crate::contact::laws::friction_3d_slip::{Solved, along_motion, first_zero, solve, turn_rate};
+use crate::contact::plane_path::{CONTEXT, PlaneForce, PlaneInstant, PlanePath, PlanePiece, SlipPanel};
 use crate::contact::radau::{POINTS, STAGES};
 use crate::error::{Error, Result, Status, try_push};
 use std::f64::consts::TAU;
@@ -57,7 +57,7 @@ pub(super) struct Walk<'a> {
 
 impl<'a> Walk<'a> {
     pub fn new(path: &'a mut PlanePath) -> Self {
-        let size = path.grid.iter().fold(0.0_f64, |m, at| m.max(at.limit));
+        let size = path.largest_limit();
         path.pieces.clear();
         Self {
             path,
@@ -90,9 +90,7 @@ impl<'a> Walk<'a> {
         if at.rate[0].hypot(at.rate[1]) <= at.limit_rate {
             Phase::Stick { force: [0.0; 2] }
         } else {
-            Phase::Slip {
-                angle: at.rate[1].atan2(at.rate[0]),
-            }
+            along_rate(&at)
         }
     }
 
@@ -189,27 +187,45 @@ impl<'a> Walk<'a> {
         let scale = (self.size * self.size).recip();
         let forces =
             |at: &PlaneInstant| -> [f64; 2] { core::array::from_fn(|i| force[i] + at.pull[i] - start.pull[i]) };
-        // (R − |f|)(R + |f|) and its derivative.
-        let margin = |at: &PlaneInstant| {
+        // (R − |f|)(R + |f|) and its derivative. After a closing it rises from zero like the square of the time since; their
+        // ratio starts at R′² − |u′|².
+        let after_closing = self.closes;
+        let margin = |at: &PlaneInstant, tau: f64| {
             let f = forces(at);
             let length = f[0].hypot(f[1]);
-            let value = (at.limit - length) * (at.limit + length);
-            let slope = 2.0 * (at.limit * at.limit_rate - f[0] * at.rate[0] - f[1] * at.rate[1]);
-            (scale * value, scale * slope)
+            let value = scale * (at.limit - length) * (at.limit + length);
+            let slope = 2.0 * scale * (at.limit * at.limit_rate - f[0] * at.rate[0] - f[1] * at.rate[1]);
+            let since = tau - from;
+            if !after_closing {
+                (value, slope)
+            } else if since > 0.0 {
+                let square = since * since;
+                (value / square, (slope - 2.0 * value / since) / square)
+            } else {
+                let speed = at.rate[0].hypot(at.rate[1]);
+                (scale * (at.limit_rate - speed) * (at.limit_rate + speed), 0.0)
+            }
         };
         let mut tau = from;
         while tau < to {
             let (end, panel) = self.panel_end(tau, to);
             let nodes = self.nodes(tau, end, panel);
             let first = if tau > from { self.path.at(tau) } else { start };
-            let values: [f64; POINTS] = core::array::from_fn(|i| margin(if i == 0 { &first } else { &nodes[i - 1] }).0);
             let length = end - tau;
+            let values: [f64; POINTS] = core::array::from_fn(|i| match i {
+                0 => margin(&first, tau).0,
+                _ => margin(&nodes[i - 1], tau + length * self.path.tables.nodes[i - 1]).0,
+            });
             let zero = first_zero(&self.path.tables, &values, |share| {
-                let (value, slope) = margin(&self.path.at(tau + length * share));
+                let at = tau + length * share;
+                let (value, slope) = margin(&self.path.at(at), at);
                 (value, length * slope)
             });
             if let Some(share) = zero {
                 let onset = tau + length * share;
+                if after_closing && onset <= from {
+                    return Ok((from, along_rate(&start)));
+                }
                 let f = forces(&self.path.at(onset));
                 let size = f[0].hypot(f[1]);
                 self.push(
@@ -353,15 +369,15 @@ impl<'a> Walk<'a> {
             force: *force,
             closes,
         };
-        try_push(&mut self.path.pieces, piece, "the path of a friction force")
+        try_push(&mut self.path.pieces, piece, CONTEXT)
     }
 }
 
-/// θ′ in slip; 0 where it is not finite, as at a closing.
-fn turn_rate(at: &PlaneInstant, angle: f64) -> f64 {
-    let (sin, cos) = angle.sin_cos();
-    let rate = (cos * at.rate[1] - sin * at.rate[0]) / at.limit;
-    if rate.is_finite() { rate } else { 0.0 }
+/// Slip from a closing on: along the motion.
+fn along_rate(at: &PlaneInstant) -> Phase {
+    Phase::Slip {
+        angle: at.rate[1].atan2(at.rate[0]),
+    }
 }
 
 /// The step of the secant to the zero of e·u′ − R′, from the end of a panel of slip and the node before it.
@@ -370,23 +386,4 @@ fn correction(panel: &SlipPanel, nodes: &[PlaneInstant; STAGES], length: f64, be
     let (last, next) = (margin(STAGES - 1), margin(STAGES - 2));
     let step = -last * before * length / (last - next);
     if step.is_finite() { step } else { 0.0 }
-}
-
-/// A panel, too short to matter, over which the force turns to the motion at once: the limit is nearly zero.
-fn along_motion(nodes: &[PlaneInstant; STAGES], angle: f64) -> Solved {
-    let last = nodes[STAGES - 1];
-    let turned = last.rate[1].atan2(last.rate[0]);
-    let (sin, cos) = turned.sin_cos();
-    Solved {
-        panel: SlipPanel {
-            angle,
-            angles: [turned; STAGES],
-            directions: [[cos, sin]; STAGES],
-            limits: nodes.each_ref().map(|at| at.limit.max(f64::MIN_POSITIVE)),
-            along: nodes.each_ref().map(|at| cos * at.rate[0] + sin * at.rate[1]),
-            across: [0.0; STAGES],
-        },
-        tail: 0.0,
-        by_start: 0.0,
-    }
 }

@@ -5,9 +5,9 @@
 //! one that returns, found by Newton's method.
 
 use crate::contact::laws::friction_3d_path::{Phase, Walk};
-use crate::contact::laws::friction_3d_stuck::{Disc, stuck_slider};
+use crate::contact::laws::friction_3d_stuck::{Disc, StuckSlider, stuck_slider};
 use crate::contact::piece::Piece;
-use crate::contact::plane_path::{Drift, Hold, PlaneForce, PlaneInstant, PlanePath, PlanePiece, Repetition};
+use crate::contact::plane_path::{CONTEXT, Drift, Hold, PlaneForce, PlaneInstant, PlanePath, PlanePiece, Repetition};
 use crate::contact::radau::{POINTS, STAGES};
 use crate::error::{Error, Result, Status, try_push};
 use crate::fourier::{jet, safe_newton};
@@ -29,9 +29,6 @@ const SQUARE_RETURNS: f64 = 1e-7;
 /// The same where the difference before promised more, or after [`PATIENCE`] turns.
 const ENOUGH: f64 = 1e-10;
 
-/// The same after all turns.
-const NEARLY: f64 = 1e-5;
-
 /// Searches of the times that hold a slider at rest.
 const ROUNDS: usize = 8;
 
@@ -40,8 +37,6 @@ const SETTLED: f64 = 1e-15;
 
 /// Distance beyond a limit, against the largest motion, that is rounding.
 const ROUNDING: f64 = 1e-13;
-
-const CONTEXT: &str = "the path of a friction force";
 
 /// Times closer than this, against a panel, are the same time found more exactly.
 const NEIGHBOURS: f64 = 0.2;
@@ -56,17 +51,20 @@ pub(super) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt
         path.repetition = Repetition::FromNothing;
         return closed_times(normal, path);
     }
-    if largest_limit(path) <= 0.0 {
+    if path.largest_limit() <= 0.0 {
         // The sides touch without load.
         path.repetition = Repetition::FromNothing;
         let turn = path.turn;
         return Walk::new(path).open(0.0, turn);
     }
-    if let Some(holds) = rest(path)? {
+    let settled = settle(path)?;
+    if let Some(settled) = &settled
+        && let Some(holds) = rest(path, settled)?
+    {
         path.repetition = Repetition::Rests(holds);
         return Ok(());
     }
-    repeat(path, interrupt)
+    repeat(path, settled.as_ref(), interrupt)
 }
 
 /// Follows every closed time from its closing on.
@@ -91,10 +89,6 @@ fn closed_times(normal: &[Piece], path: &mut PlanePath) -> Result<()> {
     Ok(())
 }
 
-fn largest_limit(path: &PlanePath) -> f64 {
-    path.grid.iter().fold(0.0, |m, at| m.max(at.limit))
-}
-
 fn disc(at: &PlaneInstant) -> Disc {
     Disc {
         centre: at.pull,
@@ -107,9 +101,9 @@ fn grid_time(path: &PlanePath, j: usize) -> f64 {
     path.spacing() * ((j / STAGES) as f64 + path.tables.nodes[j % STAGES])
 }
 
-/// The times that hold the slider if it can rest, with the path.
-fn rest(path: &mut PlanePath) -> Result<Option<[Option<Hold>; 2]>> {
-    let mirrored = path.turn < TAU;
+/// The slider at rest by the times at which circles hold it, or midway between two circles that are apart: `moments` of
+/// the path has those times, which are found anew from each place of the slider until it settles.
+fn settle(path: &mut PlanePath) -> Result<Option<StuckSlider>> {
     let size = path
         .grid
         .iter()
@@ -117,7 +111,6 @@ fn rest(path: &mut PlanePath) -> Result<Option<[Option<Hold>; 2]>> {
     path.moments.clear();
     // Along one circle the slider rests at the point nearest to 0, where a virgin one is furthest beyond its limit.
     let mut place = [0.0; 2];
-    let mut holds = [None; 2];
     look_closer(path, place)?;
     if path.moments.is_empty() {
         // A motion whose distance from the limit does not change has no closest time; any will do.
@@ -128,23 +121,12 @@ fn rest(path: &mut PlanePath) -> Result<Option<[Option<Hold>; 2]>> {
             try_push(&mut path.moments, (tau, at), CONTEXT)?;
         }
     }
+    let mut settled = None;
     for _ in 0..ROUNDS {
-        let found = stuck_slider(path.moments.len(), |j| disc(&path.moments[j].1));
-        let Some(found) = found.filter(|found| found.is_common) else {
-            return Ok(None);
+        settled = stuck_slider(path.moments.len(), |j| disc(&path.moments[j].1));
+        let Some(found) = settled else {
+            break;
         };
-        // Under an odd motion the mirrored circles hold the slider back: it rests at 0 or nowhere.
-        if mirrored && found.holding[0].is_some() {
-            return Ok(None);
-        }
-        holds = found.holding.map(|held| {
-            held.map(|held| Hold {
-                tau: path.moments[held.disc].0,
-                by_pull: held.by_centre,
-                by_limit: held.by_radius,
-                drift: None,
-            })
-        });
         let change = (found.at[0] - place[0]).hypot(found.at[1] - place[1]);
         place = found.at;
         if change <= SETTLED * size {
@@ -152,6 +134,28 @@ fn rest(path: &mut PlanePath) -> Result<Option<[Option<Hold>; 2]>> {
         }
         look_closer(path, place)?;
     }
+    Ok(settled)
+}
+
+/// The times that hold the slider if it can rest, with the path.
+fn rest(path: &mut PlanePath, settled: &StuckSlider) -> Result<Option<[Option<Hold>; 2]>> {
+    // Under an odd motion the mirrored circles hold the slider back: it rests at 0 or nowhere.
+    if !settled.is_common || (path.turn < TAU && settled.holding[0].is_some()) {
+        return Ok(None);
+    }
+    let size = path
+        .grid
+        .iter()
+        .fold(0.0_f64, |m, at| m.max(at.pull[0].hypot(at.pull[1])));
+    let place = settled.at;
+    let mut holds = settled.holding.map(|held| {
+        held.map(|held| Hold {
+            tau: path.moments[held.disc].0,
+            by_pull: held.by_centre,
+            by_limit: held.by_radius,
+            drift: None,
+        })
+    });
     // A place that the circles at other times exclude is none.
     let beyond = |at: &PlaneInstant| (at.pull[0] - place[0]).hypot(at.pull[1] - place[1]) - at.limit;
     if path.grid.iter().any(|at| beyond(at) > ROUNDING * size) {
@@ -198,7 +202,7 @@ fn drift(path: &PlanePath, place: [f64; 2], tau: f64) -> Option<Drift> {
 
 /// Adds the times between the nodes at which a slider at rest is closest to its limit, or beyond it.
 fn look_closer(path: &mut PlanePath, place: [f64; 2]) -> Result<()> {
-    let size = largest_limit(path);
+    let size = path.largest_limit();
     let margin = |at: &PlaneInstant| {
         let f = [at.pull[0] - place[0], at.pull[1] - place[1]];
         (f[0].hypot(f[1]), f)
@@ -262,21 +266,20 @@ fn look_closer(path: &mut PlanePath, place: [f64; 2]) -> Result<()> {
 
 /// Where to start, and a force near the one that returns. A slider midway between two circles that are apart slips
 /// at the times of both; after one of them it lies on that circle, up to the other it sticks.
-fn guess(path: &PlanePath) -> (f64, [f64; 2]) {
-    let found = if path.turn < TAU {
-        None
-    } else {
-        stuck_slider(path.grid.len(), |j| disc(&path.grid[j]))
+fn guess(path: &PlanePath, settled: Option<&StuckSlider>) -> (f64, [f64; 2]) {
+    let (place, from, until) = match settled.map(|settled| (settled.at, settled.holding)) {
+        Some((place, [Some(a), Some(b)])) if path.turn >= TAU => {
+            (place, path.moments[a.disc], Some(path.moments[b.disc].0))
+        }
+        _ => {
+            let first = furthest(path);
+            ([0.0; 2], (grid_time(path, first), path.grid[first]), None)
+        }
     };
-    let (place, first, second) = match found.map(|found| (found.at, found.holding)) {
-        Some((place, [Some(a), Some(b)])) => (place, a.disc, Some(b.disc)),
-        _ => ([0.0; 2], furthest(path), None),
-    };
-    let at = &path.grid[first];
+    let (from, at) = from;
     let stretch = [at.pull[0] - place[0], at.pull[1] - place[1]];
     let share = (at.limit / stretch[0].hypot(stretch[1])).min(1.0);
-    let from = grid_time(path, first);
-    let until = second.map_or(from + path.turn, |b| grid_time(path, b));
+    let until = until.unwrap_or(from + path.turn);
     let start = from + 0.5 * (until - from).rem_euclid(path.turn + f64::EPSILON);
     let here = path.at(start);
     let slider = [at.pull[0] - share * stretch[0], at.pull[1] - share * stretch[1]];
@@ -297,9 +300,9 @@ fn furthest(path: &PlanePath) -> usize {
 }
 
 /// Follows turns until the force returns.
-fn repeat(path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
-    let size = largest_limit(path);
-    let (start, mut force) = guess(path);
+fn repeat(path: &mut PlanePath, settled: Option<&StuckSlider>, interrupt: &Interrupt<'_>) -> Result<()> {
+    let size = path.largest_limit();
+    let (start, mut force) = guess(path, settled);
     let end = start + path.turn;
     let sign = path.sign();
     let (mut before, mut is_last) = (f64::INFINITY, false);
@@ -344,10 +347,6 @@ fn repeat(path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
         is_last =
             turn > PATIENCE || factor * defect <= RETURNS * size || (by_newton && defect <= SQUARE_RETURNS * size);
         force = [force[0] + taken[0], force[1] + taken[1]];
-    }
-    // Just beyond the onset of slip the force returns ever more slowly; what is left of it is this small.
-    if before <= NEARLY * size {
-        return Ok(());
     }
     Err(Error::new(
         Status::NoConvergence,

@@ -101,6 +101,32 @@ pub(super) fn solve(
     })
 }
 
+/// θ′ in slip; 0 where it is not finite, as at a closing.
+pub(super) fn turn_rate(at: &PlaneInstant, angle: f64) -> f64 {
+    let (sin, cos) = angle.sin_cos();
+    let rate = (cos * at.rate[1] - sin * at.rate[0]) / at.limit;
+    if rate.is_finite() { rate } else { 0.0 }
+}
+
+/// A panel, too short to matter, over which the force turns to the motion at once: the limit is nearly zero.
+pub(super) fn along_motion(nodes: &[PlaneInstant; STAGES], angle: f64) -> Solved {
+    let last = nodes[STAGES - 1];
+    let turned = last.rate[1].atan2(last.rate[0]);
+    let (sin, cos) = turned.sin_cos();
+    Solved {
+        panel: SlipPanel {
+            angle,
+            angles: [turned; STAGES],
+            directions: [[cos, sin]; STAGES],
+            limits: nodes.each_ref().map(|at| at.limit.max(f64::MIN_POSITIVE)),
+            along: nodes.each_ref().map(|at| cos * at.rate[0] + sin * at.rate[1]),
+            across: [0.0; STAGES],
+        },
+        tail: 0.0,
+        by_start: 0.0,
+    }
+}
+
 /// Directions at the angles, and the parts of u′ along and across them.
 fn turn(panel: &mut SlipPanel, nodes: &[PlaneInstant; STAGES]) {
     for (j, at) in nodes.iter().enumerate() {
