@@ -5,10 +5,11 @@ from typing import TYPE_CHECKING, Any, Sequence
 
 import numpy as np
 
+from ._errors import ArgumentError
 from ._results import Campbell
 
 if TYPE_CHECKING:
-    from . import Branch
+    from ._branch import Branch
 
 
 def axes(count: int = 1) -> Any:
@@ -60,7 +61,6 @@ def plot(branch: Branch, ax: Any, hertz: bool, line: dict[str, Any]) -> Any:
 
 def stretches(branch: Branch) -> list[tuple[bool, Any, Any]]:
     """The curve in parts, each with True where it is unstable; they meet at the bifurcations."""
-    from . import ArgumentError
     try:
         unstable = branch.unstable_directions > 0
     except ArgumentError:

@@ -7,8 +7,10 @@ from typing import TYPE_CHECKING, Any, Callable, NoReturn, Optional, TypeVar
 
 import numpy as np
 
-from . import ArgumentError, Branch, OutOfRangeError, UnsupportedError, __version__
+from ._branch import Branch
 from ._c import Field, ModeMultiple, Status
+from ._errors import ArgumentError, OutOfRangeError, UnsupportedError
+from ._library import __version__
 from ._results import Bifurcations, LimitCycles, Points, Wanted
 from ._tables import fields
 from ._types import Energy, ModeInfo, ModePoint, Reduction

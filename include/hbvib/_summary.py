@@ -2,14 +2,13 @@
 from __future__ import annotations
 
 import html
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
 
+from ._branch import Branch
 from ._c import Status
-
-if TYPE_CHECKING:
-    from . import Branch, Model
+from ._model import Model
 
 
 def counted(number: int, one: str) -> str:
@@ -26,17 +25,31 @@ def model_rows(model: Model) -> list[tuple[str, str]]:
     return rows + [("contacts", str(model.contacts)), ("forces", str(len(model.forces.dof)))]
 
 
-def model_line(model: Model) -> str:
-    """A model in one line."""
+def line(shown: Any) -> str:
+    """A model or a branch in one line."""
+    name = "hbvib." + type(shown).__name__
+    if shown.is_freed:
+        return f"<{name}, freed>"
+    parts = model_parts(shown) if isinstance(shown, Model) else branch_parts(shown)
+    return f"<{name}: {', '.join(parts)}>"
+
+
+def table(shown: Any) -> str:
+    """A model or a branch as HTML."""
+    rows = [("freed", "")]
+    if not shown.is_freed:
+        rows = model_rows(shown) if isinstance(shown, Model) else branch_rows(shown)
+    lines = "".join(f"<tr><th style='text-align:left'>{html.escape(name)}</th><td style='text-align:left'>"
+                    f"{html.escape(value)}</td></tr>" for name, value in rows)
+    return f"<table><caption>hbvib.{type(shown).__name__}</caption>{lines}</table>"
+
+
+def model_parts(model: Model) -> list[str]:
+    """The numbers of a model, in words."""
     parts = [counted(model.ndof, "degree of freedom")]
     if model.sectors > 1:
         parts += [counted(model.sectors, "sector"), f"engine order {model.engine_order}"]
-    return f"<hbvib.Model: {', '.join([*parts, counted(model.contacts, 'contact')])}>"
-
-
-def model_table(model: Model) -> str:
-    """A model as HTML."""
-    return _table("hbvib.Model", [] if model.is_freed else model_rows(model))
+    return [*parts, counted(model.contacts, "contact")]
 
 
 def branch_rows(branch: Branch) -> list[tuple[str, str]]:
@@ -60,21 +73,7 @@ def branch_rows(branch: Branch) -> list[tuple[str, str]]:
     return rows
 
 
-def branch_line(branch: Branch) -> str:
-    """A branch in one line."""
-    if branch.is_freed:
-        return "<hbvib.Branch, freed>"
-    points, (_, status), *rows = branch_rows(branch)
-    parts = [counted(len(branch), "point"), *(f"{name} {value}" for name, value in rows), status]
-    return f"<hbvib.{type(branch).__name__}: {', '.join(parts)}>"
-
-
-def branch_table(branch: Branch) -> str:
-    """A branch as HTML."""
-    return _table("hbvib." + type(branch).__name__, [] if branch.is_freed else branch_rows(branch))
-
-
-def _table(title: str, rows: list[tuple[str, str]]) -> str:
-    lines = "".join(f"<tr><th style='text-align:left'>{html.escape(name)}</th><td style='text-align:left'>"
-                    f"{html.escape(value)}</td></tr>" for name, value in rows or [("freed", "")])
-    return f"<table><caption>{html.escape(title)}</caption>{lines}</table>"
+def branch_parts(branch: Branch) -> list[str]:
+    """Range, peak and status of a branch, in words."""
+    _, (_, status), *rows = branch_rows(branch)
+    return [counted(len(branch), "point"), *(f"{name} {value}" for name, value in rows), status]

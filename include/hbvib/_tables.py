@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ._c import Field
+from ._errors import ArgumentError
 
 if TYPE_CHECKING:
-    from . import Branch
+    from ._branch import Branch
 
 
 def fields(branch: Branch) -> dict[str, np.ndarray]:
     """The fields that a branch has, by name, copied: (points), slip_fraction (points, contacts)."""
-    from . import ArgumentError
     found = {}
     for field in Field:
         with contextlib.suppress(ArgumentError):

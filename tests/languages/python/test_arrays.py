@@ -23,7 +23,7 @@ for field in hbvib.Field:
             field,
         )
         continue
-    view = hbvib._new("hbvib_view")
+    view = hbvib._structs._new("hbvib_view")
     hbvib.lib.hbvib_branch_field(branch.handle, field, view)
     check(f"{field.name} is the library's memory", array.ctypes.data == view.data)
     check(f"two views of {field.name} are one memory", np.shares_memory(array, branch.field(field.name.lower())))
@@ -91,7 +91,7 @@ def with_stiffness(matrix, **options):
 
 
 def address(matrix):
-    return hbvib._matrix(matrix, "full").values
+    return hbvib._structs._matrix(matrix, "full").values
 
 
 wide = np.full((6, 9), np.nan)

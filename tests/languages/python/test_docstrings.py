@@ -42,7 +42,7 @@ for name in hbvib.__all__:
     if inspect.isfunction(value) or inspect.isclass(value):
         explained(name, value, name in with_example)
 for kind in (hbvib.Model, hbvib.Branch):
-    for name, value in vars(kind).items():
+    for name, value in {name: value for base in reversed(kind.__mro__[:-1]) for name, value in vars(base).items()}.items():
         value = value.__func__ if isinstance(value, classmethod) else value
         is_field = name == "mode_energy" or name.upper() in hbvib.Field.__members__
         if not name.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):

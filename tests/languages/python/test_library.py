@@ -30,7 +30,7 @@ for name, text in declared:
             wanted.append("h")
         else:
             wanted.append(struct if kind in hbvib.structs else "p")
-    check(f"{name} has the header's arguments", hbvib._ARGUMENTS.get(name) == wanted, wanted)
+    check(f"{name} has the header's arguments", hbvib._library._ARGUMENTS.get(name) == wanted, wanted)
     check(f"{name} is reachable", callable(getattr(hbvib.lib, name, None)))
 
 # Every struct and every constant.
@@ -94,10 +94,10 @@ said = imported(HBVIB_LIBRARY="")
 check("an empty HBVIB_LIBRARY is an ImportError", "ImportError" in said, said)
 other = ctypes.util.find_library("m")
 if other:
-    raises("another library is refused by what it lacks", OSError, hbvib._open, other, words="has no function")
-version, hbvib._VERSION = hbvib._VERSION, (hbvib._VERSION[0], hbvib._VERSION[1] + 1)
-raises("a library of another version is refused", OSError, hbvib._open, path, words=f"is version {hbvib.__version__}")
-hbvib._VERSION = version
+    raises("another library is refused by what it lacks", OSError, hbvib._library._open, other, words="has no function")
+version, hbvib._library._VERSION = hbvib._library._VERSION, (hbvib._library._VERSION[0], hbvib._library._VERSION[1] + 1)
+raises("a library of another version is refused", OSError, hbvib._library._open, path, words=f"is version {hbvib.__version__}")
+hbvib._library._VERSION = version
 
 with tempfile.TemporaryDirectory() as prefix:
     prefix = os.path.realpath(prefix)

@@ -115,7 +115,7 @@ check("freed objects still print", "freed" in repr(copy) and "freed" in repr(oth
 raises(
     "a raw call on a stale handle is the library's own refusal",
     hbvib.FreedError,
-    hbvib._call,
+    hbvib._calls._call,
     "hbvib_model_clear_forces",
     12345,
 )

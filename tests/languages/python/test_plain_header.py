@@ -23,7 +23,7 @@ for item in tree.ext:
             negative = isinstance(member.value, c_ast.UnaryOp)
             constants[member.name] = -int(member.value.expr.value) if negative else int(member.value.value)
 check("every function has its arguments", {n: len(a) for n, a in functions.items()} == {
-    n: len(a) for n, a in hbvib._ARGUMENTS.items()}, set(functions) ^ set(hbvib._ARGUMENTS))
+    n: len(a) for n, a in hbvib._library._ARGUMENTS.items()}, set(functions) ^ set(hbvib._library._ARGUMENTS))
 check("every struct has its fields", structs == {
     n: [field for field, _ in s._fields_] for n, s in hbvib.structs.items()}, set(structs) ^ set(hbvib.structs))
 with open(os.path.join(INCLUDE, "hbvib.h"), encoding="utf-8") as file:

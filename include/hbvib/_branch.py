@@ -1,0 +1,224 @@
+"""The branch: how it is freed, saved and drawn. Its other methods are in the modules of its bases."""
+from __future__ import annotations
+
+import weakref
+from typing import Any, Callable
+
+from ._branch_fields import _BranchFields
+from ._branch_points import _BranchPoints
+from ._c import Field, Status
+from ._calls import _call
+from ._errors import ArgumentError, BusyError
+from ._library import lib
+
+
+class Branch(_BranchFields, _BranchPoints):
+    """Solutions along a curve, from a forced response or a nonlinear mode; made by the solves.
+
+    Fields (`omega`, `amplitude`, ...) are read-only arrays over the points of the curve without a copy: each keeps the
+    branch's memory, and `free` is refused with BufferError while one lives. All else is copied out. Points are numbers
+    0 .. len(branch) - 1 on the curve; `peaks`, `folds` and `at` have the numbers of the points beside it.
+
+    message   the library's sentence where the solve stopped early, else empty.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> branch
+    <hbvib.Branch: 44 points, omega 0.8 to 1.6, peak 0.583649 at omega = 1.23202, OK>
+    """
+
+    _release = staticmethod(lib.hbvib_branch_free)
+
+    def __init__(self, handle: int, kept: tuple[Any, ...], message: str) -> None:
+        self._handle, self._kept, self.message = handle, kept, message
+        self._leases: Any = weakref.WeakSet()
+
+    def free(self) -> None:
+        """Frees the branch. BufferError while arrays look into its memory, BusyError while a call uses it, FreedError
+        if it was freed.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> branch.free()
+        >>> branch
+        <hbvib.Branch, freed>
+        """
+        handle, self._handle = self.handle, None  # first, so that no thread borrows an array from here on
+        try:
+            if len(self._leases):
+                raise BufferError(
+                    f"{len(self._leases)} arrays look into the memory of this branch: delete or copy them")
+            _call("hbvib_branch_free", handle)
+        except (BufferError, BusyError):
+            self._handle = handle
+            raise
+        self._kept = ()
+
+    def __len__(self) -> int:
+        """Number of points on the curve."""
+        return _call("hbvib_branch_points", self.handle)
+
+    @property
+    def stored(self) -> int:
+        """Number of all stored points: the curve, then peaks, folds and requested solutions.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> branch.stored - len(branch)  # peaks, folds and requested solutions
+        1
+        """
+        return _call("hbvib_branch_stored", self.handle)
+
+    @property
+    def status(self) -> Status:
+        """Status of the solve: OK, or why it stopped early.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> branch.status
+        <Status.OK: 0>
+        """
+        return Status(_call("hbvib_branch_status", self.handle))
+
+    @property
+    def complete(self) -> bool:
+        """Whether the whole range was covered.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> branch.complete
+        True
+        """
+        return self.status == Status.OK
+
+    @property
+    def is_mode(self) -> bool:
+        """Whether the branch is a nonlinear mode.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> branch.is_mode
+        False
+        """
+        try:
+            self.field(Field.DAMPING_RATIO)
+        except ArgumentError:
+            return False
+        return True
+
+    def __reduce__(self) -> tuple[Callable[..., Branch], tuple[Any, ...]]:
+        """A pickle holds what a file holds, see save."""
+        from ._storage import SavedBranch, contents
+        return SavedBranch, (contents(self),)
+
+    def __copy__(self) -> Branch:
+        """The branch itself, which never changes."""
+        return self
+
+    def __deepcopy__(self, _: dict[str, Any]) -> Branch:
+        return self
+
+    def save(self, path: Any, *, harmonics: bool = True) -> None:
+        """Writes the branch to one file in numpy's NPZ format: fields, special points, energies and slip fractions of all
+        stored points, to the last bit. `hbvib.load` reads it; np.load(path) too, in any version of numpy.
+
+        harmonics   with those of all degrees of freedom at all points, most of the file.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> import os, tempfile
+        >>> path = os.path.join(tempfile.mkdtemp(), "branch.npz")
+        >>> branch.save(path)
+        >>> hbvib.load(path)
+        <hbvib.SavedBranch: 44 points, omega 0.8 to 1.6, peak 0.583649 at omega = 1.23202, OK>
+        """
+        from . import _storage
+        _storage.save(self, path, harmonics)
+
+    def to_dataframe(self) -> Any:
+        """A pandas.DataFrame, a row for each point of the curve: columns named as the fields, slip_fraction_0 and so on for
+        contacts; `attrs` has status and message. ImportError without pandas.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> branch.to_dataframe()[["omega", "amplitude"]].shape == (len(branch), 2)
+        True
+        """
+        from . import _tables
+        return _tables.dataframe(self)
+
+    def to_xarray(self) -> Any:
+        """An xarray.Dataset of the fields over point and contact, with omega (in a mode log10_amplitude) as coordinate.
+        ImportError without xarray.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> dict(branch.to_xarray().sizes)["contact"]
+        1
+        """
+        from . import _tables
+        return _tables.dataset(self)
+
+    def plot(self, ax: Any = None, *, hertz: bool = False, **line: Any) -> Any:
+        """Draws the branch with matplotlib: amplitude over angular frequency, peaks as dots; of a nonlinear mode
+        frequency and damping ratio over the modal amplitude. Returns the axes, of a mode two. ImportError without
+        matplotlib.
+
+        ax      axes to draw into, of a mode a pair; None: new ones.
+        hertz   True: frequencies omega / (2 pi).    line   options of ax.plot, such as label or color.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> axes = branch.plot(label="0.2 N")
+        >>> axes.get_xlabel()
+        'angular frequency omega'
+        """
+        from . import _plots
+        return _plots.plot(self, ax, hertz, line)
+
+    def plot_loop(self, point: int, contact: int, direction: int = 0, n: int = 256, *, ax: Any = None,
+                  **line: Any) -> Any:
+        """Draws the hysteresis loop of a contact at a point with matplotlib: force over relative motion. Returns the
+        axes. ImportError without matplotlib. Arguments as in `loop` and `plot`.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> axes = branch.plot_loop(branch.peaks().point[0], 0)
+        >>> axes.get_ylabel()
+        'force of contact 0'
+        """
+        from . import _plots
+        return _plots.loop(self, point, contact, direction, n, ax, line)

@@ -1,0 +1,94 @@
+"""Fields of a branch: arrays in the library's own memory."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ._c import Field, Scalar
+from ._calls import _call, _Owner
+from ._convert import _member
+from ._structs import _new
+
+
+class _Lease:
+    """Owner of a borrowed array (its `base`): keeps the branch, and its memory with it."""
+
+    __slots__ = ("branch", "__array_interface__", "__weakref__")
+
+    def __init__(self, branch: _BranchFields) -> None:
+        self.branch = branch
+
+
+def _field_property(field: Any, text: str) -> property:
+    return property(lambda self: self.field(field), doc=text)
+
+
+class _BranchFields(_Owner):
+    """Methods of Branch for its fields."""
+
+    _leases: Any
+
+    def field(self, field: Any) -> np.ndarray:
+        """A field, by Field or name, in the library's memory: (points), slip_fraction (points, contacts).
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> bool((branch.field("omega") == branch.omega).all())
+        True
+        """
+        lease = _Lease(self)
+        self._leases.add(lease)  # before the handle is read: free looks for leases after it has taken the handle
+        view = _new("hbvib_view")
+        try:
+            _call("hbvib_branch_field", self.handle, _member(Field, field), view)
+        except BaseException:
+            self._leases.discard(lease)  # the traceback holds it, and no array was made
+            raise
+        dtype = np.dtype(np.complex128 if view.scalar == Scalar.COMPLEX else np.float64)
+        shape = tuple(view.shape[:view.rank])
+        if not view.data or 0 in shape:
+            empty = np.empty(shape, dtype)
+            empty.flags.writeable = False
+            return empty
+        lease.__array_interface__ = dict(  # type: ignore[attr-defined]
+            version=3, typestr=dtype.str, shape=shape, data=(view.data, True),
+            strides=tuple(dtype.itemsize * distance for distance in view.stride[:view.rank]))
+        return np.asarray(lease)
+
+    omega = _field_property(Field.OMEGA, "Angular frequency.")
+    amplitude = _field_property(Field.AMPLITUDE, "Peak amplitude of the fundamental of the response dof.")
+    residual = _field_property(Field.RESIDUAL, "Relative residual.")
+    newton_iterations = _field_property(Field.NEWTON_ITERATIONS, "Newton iterations, as float64.")
+    harmonics_used = _field_property(Field.HARMONICS_USED, "Highest harmonic number carried, as float64.")
+    slip_fraction = _field_property(Field.SLIP_FRACTION, "Share of the period that each contact slips.")
+    sampling_error = _field_property(Field.SAMPLING_ERROR, "Relative change of forces with half the samples; NaN where a law"
+                                     " failed at the other samples.")
+    error_estimate = _field_property(Field.ERROR_ESTIMATE, "Relative error of the response (modes: of the frequency) by"
+                                     " harmonics left out; NaN where unknown, or with a fixed number unless estimate_error.")
+    floquet_radius = _field_property(Field.FLOQUET_RADIUS, "With `stability`: largest modulus of the ordinary Floquet"
+                                     " multipliers; NaN where unknown.")
+    unstable_directions = _field_property(Field.UNSTABLE_DIRECTIONS, "With `stability`: number of those outside the unit"
+                                          " circle, as float64; 0 for a stable motion.")
+    damping_error_estimate = _field_property(Field.DAMPING_ERROR_ESTIMATE, "Modes: error of D, NaN as error_estimate.")
+    damping_ratio = _field_property(Field.DAMPING_RATIO, "Modes: damping ratio D.")
+    mode_energy = _field_property(Field.ENERGY, "Modes: twice the mean kinetic energy of a sector.")
+    dissipation = _field_property(Field.DISSIPATION, "Modes: work of friction per cycle and sector.")
+    structural_loss = _field_property(Field.STRUCTURAL_LOSS, "Modes: work of the structure's damping per cycle.")
+    log10_amplitude = _field_property(Field.LOG10_AMPLITUDE, "Modes: log10 of the amplitude, the parameter.")
+    modal_amplitude = _field_property(Field.MODAL_AMPLITUDE, "Modes: sqrt(X_1^H M X_1).")
+    parameter_values = _field_property(Field.PARAMETER_VALUE, """Parameter responses: value of the parameter.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+        >>> model.add_force(0, 0.2)
+        >>> found = model.parameter_response(hbvib.Parameter("force"), (1, 3), omega=1.0, harmonics=1)
+        >>> float(found.parameter_values[-1])
+        3.0
+        """)
+    d_amplitude = _field_property(Field.D_AMPLITUDE, "Parameter responses: total derivative of the amplitude by the"
+                                  " parameter; NaN where there is none.")
+    modal_assurance = _field_property(Field.MODAL_ASSURANCE, "Modes: likeness to the point before, 0 to 1.")

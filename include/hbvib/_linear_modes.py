@@ -1,0 +1,106 @@
+"""Natural modes of the linear model, and Campbell diagrams."""
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any, Optional, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._c import ContactState
+from ._calls import _stoppable
+from ._convert import _array, _member
+from ._matrices import _Matrices
+from ._results import Campbell, Crossings, DampedModes, Modes
+
+if TYPE_CHECKING:
+    from ._calls import CancelFlag, Hook
+
+
+class _LinearModes(_Matrices):
+    """Methods of Model for its linear modes."""
+
+    def linear_modes(self, count: int, diameter: int = 0, contacts: Any = ContactState.STUCK, *,
+                     phase: Hook = None,
+                     cancel: Optional[CancelFlag] = None) -> Modes:
+        """Undamped natural modes: omega (count), ascending, and shapes (count, ndof), complex, phi^H M phi = 1.
+
+        diameter   nodal diameter of the wave, 0 .. sectors / 2.    contacts   "stuck", "free" or "static".
+        phase, cancel   as in forced_response; Stopped is raised where they stop it.
+
+        >>> import hbvib
+        >>> stiffness = [[2, -1], [-1, 2]]
+        >>> model = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=stiffness)
+        >>> modes = model.linear_modes(2)
+        >>> modes.omega.round(12), modes.shapes.shape
+        (array([1.        , 1.73205081]), (2, 2))
+        """
+        omega, shapes = np.empty(count), np.empty((count, self.ndof), complex)
+        _stoppable("hbvib_linear_modes", self.handle, diameter, _member(ContactState, contacts), count, omega, shapes,
+                   phase=phase, cancel=cancel)
+        return Modes(omega, shapes)
+
+    def damped_modes(self, count: int, diameter: int = 0, contacts: Any = ContactState.STUCK) -> DampedModes:
+        """Damped natural modes at the speed of the model, by rising frequency: eigenvalue (upper half plane), omega
+        (its imaginary part), damping_ratio (minus its real part over its modulus; negative: the motion grows), shape
+        (count, ndof), phi^H M phi = 1, and direction: 1 forward, -1 backward, 0 undefined, the sign of the change of
+        omega with the speed at fixed K1. Motions that do not oscillate are not counted.
+
+        >>> import hbvib
+        >>> stiffness = [[2, -1], [-1, 2]]
+        >>> model = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=stiffness)
+        >>> model.set_rayleigh(0.02, 0)
+        >>> model.damped_modes(2).damping_ratio.round(6)
+        array([0.01    , 0.005774])
+        """
+        eigenvalue, shape = np.empty(count, complex), np.empty((count, self.ndof), complex)
+        direction = np.empty(count, np.int64)
+        self._call("hbvib_damped_modes", diameter, _member(ContactState, contacts), count, eigenvalue, shape, direction,
+                   None)
+        ratio = -eigenvalue.real / np.abs(eigenvalue)
+        return DampedModes(eigenvalue, eigenvalue.imag.copy(), ratio, shape, direction)
+
+    def campbell(self, speeds: ArrayLike, count: int, engine_orders: Sequence[int] = (1,), diameter: int = 0,
+                 contacts: Any = ContactState.STUCK) -> Campbell:
+        """Campbell diagram: omega, damping_ratio and direction (speeds, count) of the damped modes at rising speeds, NaN
+        where fewer motions oscillate, and the crossings with engine orders, omega = engine_order Omega.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=[[1, 0], [0, 1]])
+        >>> model.set_matrix("gyroscopic", [[0, 0.2], [-0.2, 0]])
+        >>> model.campbell([0.0, 0.5, 1.0, 1.5], 2).crossings.speed.round(4)  # critical speeds
+        array([0.9129, 1.118 ])
+        """
+        speeds, state = _array("speeds", speeds, np.float64).ravel(), _member(ContactState, contacts)
+        omega, ratio = np.empty((speeds.size, count)), np.empty((speeds.size, count))
+        direction = np.empty((speeds.size, count), np.int64)
+        self._call("hbvib_campbell", speeds.size, speeds, diameter, state, count, omega, ratio, direction, None)
+        room, found, rows = speeds.size * count, ctypes.c_int64(), []
+        at, frequency, sense = np.empty(room), np.empty(room), np.empty(room, np.int64)
+        for order in engine_orders:
+            self._call("hbvib_campbell_crossings", speeds.size, speeds, diameter, state, count, order, room, at,
+                       frequency, sense, found, None)
+            rows += [(int(order), *row) for row in zip(at[:found.value], frequency, sense)]
+        orders, critical, frequencies, senses = zip(*rows) if rows else ((), (), (), ())
+        crossings = Crossings(np.array(orders, np.int64), np.array(critical, float), np.array(frequencies, float),
+                              np.array(senses, np.int64))
+        return Campbell(speeds, omega, ratio, direction, crossings)
+
+    def plot_campbell(self, speeds: ArrayLike, count: int, engine_orders: Sequence[int] = (1,), diameter: int = 0,
+                      contacts: Any = ContactState.STUCK, *, ax: Any = None, hertz: bool = False, **line: Any) -> Any:
+        """Draws the Campbell diagram with matplotlib: natural frequencies over the speed of rotation, lines of engine
+        orders, crossings as dots. Returns the axes. ImportError without matplotlib.
+
+        speeds, count, engine_orders, diameter, contacts   as in campbell, in rad per time unit.
+        ax      axes to draw into; None: new ones.    hertz   True: axes in 1 / time unit.    line   options of ax.plot.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=[[1, 0], [0, 1]])
+        >>> model.set_matrix("gyroscopic", [[0, 0.2], [-0.2, 0]])
+        >>> axes = model.plot_campbell([0.0, 0.5, 1.0, 1.5], 2, engine_orders=(1, 2))
+        >>> axes.get_ylabel()
+        'angular frequency omega'
+        """
+        from . import _plots
+        diagram = self.campbell(speeds, count, engine_orders, diameter, contacts)
+        return _plots.campbell(diagram, engine_orders, ax, hertz, line)

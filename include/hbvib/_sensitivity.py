@@ -1,0 +1,103 @@
+"""Parameters of a model, and derivatives of results by them."""
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any, Optional, Sequence, Union
+
+import numpy as np
+
+from ._c import Derivative, LogLevel, ParameterKind, Part, Quantity, Scaling, Status
+from ._calls import _call, _Guard, _hooks, _Owner
+from ._convert import _member
+from ._errors import Stopped, _sentence
+from ._library import structs
+from ._structs import _matrix, _new
+
+if TYPE_CHECKING:
+    from ._branch import Branch
+    from ._calls import CancelFlag, Hook
+
+
+class Parameter:
+    """A parameter of a model, by which results are differentiated.
+
+    kind       "force": a factor on all forces; "preload", "mu", "kt", "kn", "gap": a constant of a contact; "mass",
+               "damping", "stiffness"; "speed": the fixed speed of rotation; or a ParameterKind.
+    contact    number of the contact; -1: the constant of all contacts that have it, changed together.
+    direction  of mass, damping and stiffness, ndof x ndof: the parameter is the coefficient, 0 at present, of this
+               matrix, which is added; in a cyclic model to the block of the sector itself.
+    scaling    "additive", or "factor": a factor, 1 at present, on the whole matrix with its couplings.
+
+    >>> import hbvib
+    >>> hbvib.Parameter("kt", contact=0)
+    hbvib.Parameter('kt', contact=0)
+    """
+
+    def __init__(self, kind: Any, contact: int = -1, direction: Any = None, scaling: Any = "additive") -> None:
+        self.kind, self.contact = _member(ParameterKind, kind), contact
+        self.direction, self.scaling = direction, _member(Scaling, scaling)
+
+    def __repr__(self) -> str:
+        text = f"hbvib.Parameter({self.kind.name.lower()!r}"
+        if self.contact != -1:
+            text += f", contact={self.contact}"
+        if self.direction is not None:
+            text += ", direction=..."
+        return text + (", scaling='factor')" if self.scaling == Scaling.FACTOR else ")")
+
+    def _description(self) -> Any:
+        described = _new("hbvib_parameter", kind=self.kind, contact=self.contact, scaling=self.scaling)
+        if self.direction is not None:
+            described.matrix = _matrix(self.direction, Part.GENERAL)  # kept as long as the struct
+            described.direction = ctypes.addressof(described.matrix)
+        return described
+
+
+class Sensitivities(np.ndarray):
+    """Derivatives of a result by parameters, an array in their order; `reasons` has for each the reason why it is NaN,
+    or an empty text."""
+    reasons: tuple[str, ...]
+
+    def __array_finalize__(self, other: Any) -> None:
+        self.reasons = getattr(other, "reasons", ())
+
+
+class _Sensitivity(_Owner):
+    """Methods of Model for derivatives."""
+
+    def sensitivity(self, branch: Branch, point: int, parameters: Union[Parameter, Sequence[Parameter]],
+                    of: Any = "amplitude", *, phase: Hook = None,
+                    cancel: Optional[CancelFlag] = None) -> Sensitivities:
+        """Exact derivatives of a result at a point of this model by parameters, from one adjoint solution for all.
+
+        of      "amplitude": of a forced response at fixed frequency; "peak_amplitude", "peak_omega": of a peak, which
+                moves; "mode_omega", "mode_damping": of a nonlinear mode at fixed amplitude; or a Quantity.
+        phase, cancel   as in forced_response; Stopped is raised where they stop it.
+        NaN where a derivative does not exist, as at the onset of slip: `reasons` tells why.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> branch = model.forced_response((0.8, 1.6))
+        >>> by_preload, by_force = model.sensitivity(
+        ...     branch, branch.peaks().point[0], [hbvib.Parameter("preload"), hbvib.Parameter("force")], "peak_amplitude")
+        >>> bool(abs(by_preload + by_force - branch.peaks().amplitude[0]) < 1e-8)  # both together scale the motion
+        True
+        """
+        listed = [parameters] if isinstance(parameters, Parameter) else parameters
+        given = [parameter._description() for parameter in listed]
+        array = (structs["hbvib_parameter"] * len(given))(*given)
+        values, reasons, onset = np.empty(len(given)), np.empty(len(given), np.int64), ctypes.c_int64()
+        with _Guard() as guard:
+            hooks = _hooks(guard, None, None, LogLevel.INFO, cancel, phase)
+            status = _call("hbvib_sensitivity", self.handle, branch.handle, point, _member(Quantity, of), array,
+                           len(given), values, values.size, reasons, onset, hooks, guard=guard)
+        if status == Status.STOPPED_BY_CALLER:
+            raise Stopped(_sentence(status), Status(status), 0)
+        texts = {Derivative.EXISTS: "", Derivative.ONSET_OF_SLIP: f"contact {onset.value} is at the onset of slip",
+                 Derivative.ONE_SIDED: "the constant is 0, and a derivative exists on one side only",
+                 Derivative.FOLD: "the point is a fold"}
+        found = values.view(Sensitivities)
+        found.reasons = tuple(texts[Derivative(int(reason))] for reason in reasons)
+        return found
