@@ -2,3 +2,4 @@
 
 mod index;
 mod layering;
+mod python;
