@@ -18,33 +18,46 @@ import hbvib
 
 
 def contact_laws() -> Any:
-    """Force over motion of six laws under 0.5 cos(t), friction_2d while its normal load changes."""
-    figure, places = pyplot.subplots(2, 3, figsize=(9, 5.4), layout="constrained")
+    """Force over motion of nine laws: seven under 0.5 cos(t), the others at the resonance of an oscillator."""
+    figure, places = pyplot.subplots(3, 3, figsize=(9, 8), layout="constrained")
     turn = 2 * np.pi * np.arange(401) / 400
+    waves: Any = np.exp(1j * np.outer(turn, np.arange(64)))
+    free = iter(places.flat)
 
-    def draw(ax: Any, title: str, force: Any, harmonics: Any) -> None:
-        waves: Any = np.exp(1j * np.outer(turn, np.arange(len(force))))
-        ax.plot((waves @ np.asarray(harmonics)).real, (waves @ force).real)
+    def draw(title: str, motion: Any, force: Any) -> None:
+        ax = next(free)
+        ax.plot(motion, force)
         ax.set(title=title, xlabel="motion", ylabel="force")
+
+    def prescribed(title: str, harmonics: Any, force: Any) -> None:
+        draw(title, (waves @ harmonics).real, (waves @ force).real)
 
     y = np.zeros(64, complex)
     y[1] = 0.5
-    draw(places[0, 0], "jenkins", hbvib.evaluate_contact("jenkins", y, kt=1, mu=0.3, preload=1).force, y)
+    prescribed("jenkins", y, hbvib.evaluate_contact("jenkins", y, kt=1, mu=0.3, preload=1).force)
     normal = np.zeros(64, complex)
     normal[0], normal[1] = -0.5, 0.4j  # pressed by 0.5 at rest, more and less in quadrature
-    both = hbvib.evaluate_contact("friction_2d", np.array([y, normal]), kt=1, kn=2, mu=0.4).force
-    draw(places[0, 1], "friction_2d", both[0], y)
-    draw(places[0, 2], "unilateral", hbvib.evaluate_contact("unilateral", y, kn=1, gap=0.1).force, y)
-    draw(places[1, 0], "cubic", hbvib.evaluate_contact("cubic", y, kt=0.5, cubic=3).force, y)
-    smooth = hbvib.evaluate_contact("regularised", y, mu=0.3, preload=1, velocity=0.05).force
-    draw(places[1, 1], "regularised", smooth, y)
-    model = hbvib.Model(mass=1, stiffness=1)
-    joint = model.add_iwan(0, slip_force=0.3, stiffness=1, chi=-0.5, beta=1, elements=100)
+    prescribed("friction_2d", y, hbvib.evaluate_contact("friction_2d", np.array([y, normal]), kt=1, kn=2, mu=0.4).force[0])
+    across = 0.7j * y  # an ellipse
+    prescribed("friction_3d", y, hbvib.evaluate_contact("friction_3d", np.array([y, across]), kt=1, mu=0.3, preload=1).force[0])
+    prescribed("unilateral", y, hbvib.evaluate_contact("unilateral", y, kn=1, gap=0.1).force)
+    prescribed("cubic", y, hbvib.evaluate_contact("cubic", y, kt=0.5, cubic=3).force)
+    prescribed("regularised", y, hbvib.evaluate_contact("regularised", y, mu=0.3, preload=1, velocity=0.05).force)
+    joint = hbvib.Model(mass=1, stiffness=1)
     total = np.zeros(64, complex)
-    for number in joint:
-        given = model.contact(number).constants
+    for number in joint.add_iwan(0, slip_force=0.3, stiffness=1, chi=-0.5, beta=1, elements=100):
+        given = joint.contact(number).constants
         total += hbvib.evaluate_contact("jenkins", y, kt=given["kt"], mu=given["mu"], preload=given["preload"]).force
-    draw(places[1, 2], "Iwan joint, 100 elements", total, y)
+    prescribed("Iwan joint, 100 elements", y, total)
+
+    spring, damper = (hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.05)) for _ in range(2))
+    spring.add_table(0, displacement=[-1, -0.3, 0.3, 1], force=[-1, -0.05, 0.05, 1])
+    damper.add_spring_damper(0, damper=[0, 0, 0.5])
+    for model, title in ((spring, "table"), (damper, "polynomial damper, 0.5 v\N{SUPERSCRIPT THREE}")):
+        model.add_force(0, 0.05 if model is spring else 0.3)
+        branch = model.forced_response((0.5, 2))
+        loop = branch.loop(int(branch.peaks().point[0]), 0)
+        draw(title, np.append(loop.motion, loop.motion[0]), np.append(loop.force, loop.force[0]))
     return figure
 
 
