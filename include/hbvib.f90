@@ -52,6 +52,8 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_GROUND = -1
    ! hbvib_block
    integer(c_int32_t), parameter, public :: HBVIB_BLOCK_OWN = 0, HBVIB_BLOCK_NEXT = 1, HBVIB_BLOCK_PREVIOUS = 2
+   ! hbvib_aero_form
+   integer(c_int32_t), parameter, public :: HBVIB_AERO_DISPLACEMENT = 0, HBVIB_AERO_VELOCITY = 1
    ! hbvib_sector_frame
    integer(c_int32_t), parameter, public :: HBVIB_CARTESIAN = 0, HBVIB_CYLINDRICAL = 1
    ! hbvib_contact_kind
@@ -660,6 +662,30 @@ module hbvib
          integer(c_int64_t), value :: engine_order
          integer(c_int32_t) :: status
       end function hbvib_cyclic_set_wave
+
+      function hbvib_cyclic_set_aero(model, n_dofs, dofs, n_offsets, coefficients, offsets, form) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int64_t), value :: n_dofs
+         integer(c_int64_t), intent(in) :: dofs(*)
+         integer(c_int64_t), value :: n_offsets
+         complex(c_double_complex), intent(in) :: coefficients(*)
+         integer(c_int64_t), intent(in) :: offsets(*)
+         integer(c_int32_t), value :: form
+         integer(c_int32_t) :: status
+      end function hbvib_cyclic_set_aero
+
+      function hbvib_cyclic_aero(model, form, capacity, dof_force, dof_motion, offset, coefficient, &
+         count) bind(c) result(status)
+         import
+         type(c_ptr), value :: model
+         integer(c_int32_t), value :: form
+         integer(c_int64_t), value :: capacity
+         integer(c_int64_t), intent(inout), optional :: dof_force(*), dof_motion(*), offset(*)
+         complex(c_double_complex), intent(inout), optional :: coefficient(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_cyclic_aero
 
       function hbvib_sector_init(s, size_of_s) bind(c) result(status)
          import
@@ -1546,6 +1572,7 @@ module hbvib
       procedure :: set_speed_per_omega => model_set_speed_per_omega
       procedure :: add_unbalance => model_add_unbalance
       procedure :: set_wave => model_set_wave
+      procedure :: set_aero => model_set_aero
       procedure :: clear_forces => model_clear_forces
       procedure :: add_contact => model_add_contact
       procedure :: set_preload => model_set_preload
@@ -1623,7 +1650,7 @@ module hbvib
    private :: model_sectors, model_contacts, dense, address, dense_real, dense_complex, sparse, set, couple, set_real
    private :: set_sparse_real, couple_real, couple_sparse_real, set_complex, set_sparse_complex, couple_complex
    private :: couple_sparse_complex, set_struct, couple_struct, model_set_rayleigh, model_set_wave, add_force_complex
-   private :: model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
+   private :: model_set_aero, model_set_loss_factor, model_set_modal_damping, model_set_speed, model_add_unbalance
    private :: model_set_speed_per_omega, model_damped_modes, model_campbell, model_campbell_crossings
    private :: add_force_real, model_clear_forces, model_linear_modes, model_add_contact, model_set_preload
    private :: model_add_jenkins, model_add_springs, sides, model_add_iwan, model_add_table, model_add_spring_damper, side
@@ -2320,6 +2347,25 @@ contains
       integer(i32) :: status
       status = hbvib_cyclic_set_wave(self%handle, int(engine_order, i64))
    end function model_set_wave
+
+   !> Aerodynamic forces: coefficients(i, j, k) on dofs(i) of a sector per motion of dofs(j) of the sector at offsets(k), real or
+   !> complex values as complex numbers; form HBVIB_AERO_DISPLACEMENT or HBVIB_AERO_VELOCITY. Empty arrays remove those of a form.
+   function model_set_aero(self, dofs, coefficients, offsets, form) result(status)
+      class(hbvib_model), intent(inout) :: self
+      integer, intent(in) :: dofs(:), offsets(:)
+      complex(dp), intent(in) :: coefficients(:, :, :)
+      integer(i32), intent(in) :: form
+      integer(i32) :: status
+      integer(i64), allocatable :: zero(:)
+      status = HBVIB_OK
+      call to_zero_all(status, 'dofs', dofs, hbvib_model_dofs(self%handle), zero)
+      call same_length(status, 'coefficients', size(coefficients, 1, i64), size(dofs, kind=i64))
+      call same_length(status, 'coefficients', size(coefficients, 2, i64), size(dofs, kind=i64))
+      call same_length(status, 'coefficients', size(coefficients, 3, i64), size(offsets, kind=i64))
+      ! Rows come one after the other in C.
+      if (status == HBVIB_OK) status = hbvib_cyclic_set_aero(self%handle, size(dofs, kind=i64), zero, size(offsets, kind=i64), &
+         reshape(coefficients, shape(coefficients), order=[2, 1, 3]), int(offsets, i64), form)
+   end function model_set_aero
 
    !> Adds the force Re(force * exp(i harmonic omega t)), force real or complex, double precision: (5d0, 0d0).
    function add_force_complex(self, dof, harmonic, force) result(status)

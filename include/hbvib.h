@@ -59,7 +59,7 @@
  *   Version and errors  the version in use, status codes, the sentence behind a status
  *   Matrices            views of dense and sparse matrices of the caller
  *   Model               structures, their matrices, springs and forces
- *   Cyclic structures   sectors, their faces and couplings, nodal diameters, engine order
+ *   Cyclic structures   sectors, their faces and couplings, diameters, engine order, aerodynamics
  *   Contacts            friction, unilateral contacts, nonlinear springs and dampers, patches
  *   Laws of the caller  forces computed by a callback, and the check of their derivatives
  *   Solve               options, progress and cancellation, forced responses
@@ -630,7 +630,7 @@ HBVIB_NODISCARD
 hbvib_status hbvib_model_load(int64_t length, const void *bytes, hbvib_model **out);
 
 /* ==============================================================================================
- * Cyclic structures: sectors, their faces and couplings, nodal diameters, engine order
+ * Cyclic structures: sectors, their faces and couplings, diameters, engine order, aerodynamics
  * ============================================================================================== */
 
 /// Creates a cyclic structure, described by one of its sectors, under engine order 0: all matrices
@@ -694,6 +694,66 @@ hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model,
 /// Errors: HBVIB_E_HANDLE, HBVIB_E_BUSY. Threads: one at a time per model.
 HBVIB_NODISCARD
 hbvib_status hbvib_cyclic_set_wave(hbvib_model *model, int64_t engine_order);
+
+/// Motion that aerodynamic forces follow.
+typedef enum {
+  /// Displacements: coefficients are forces per displacement.
+  HBVIB_AERO_DISPLACEMENT = 0,
+  /// Velocities: coefficients are forces per velocity.
+  HBVIB_AERO_VELOCITY = 1,
+} hbvib_aero_form;
+
+/// Sets aerodynamic forces, which follow the motion of this and other sectors. On the right-hand
+/// side f_i of sector s is the sum over k and j of c[k][i][j] x_j of sector s + offsets[k], or of
+/// the velocities x_j'. In the wave in which sector s + 1 lags by 2 pi d / N the forces are A(d) x,
+/// A(d) = sum c[k] exp(-i offsets[k] 2 pi d / N), per velocity i p omega A(d) x in harmonic p,
+/// which belongs to d = p EO mod N. Natural modes and modal damping are those without aerodynamic
+/// forces; all other analyses have them. A later call of the same form replaces an earlier one.
+///
+/// n_dofs        degrees of freedom that take part, >= 0; 0 removes the forces of this form.
+/// dofs          their numbers, from 0, each once; n_dofs numbers. Fixed ones have no effect.
+/// n_offsets     number of offsets, >= 0; 0 removes the forces of this form.
+/// coefficients  complex force per displacement or velocity: for each offset a square matrix, rows
+///               (forces) one after the other; 2 * n_offsets * n_dofs * n_dofs doubles, finite.
+///               The mean has the real part. Imaginary parts mean nothing in time: time
+///               integration, verification and stability refuse them.
+/// offsets       sector of the motion counted from that of the force, 0 the same sector, each
+///               sector once; n_offsets numbers.
+/// form          HBVIB_AERO_DISPLACEMENT or HBVIB_AERO_VELOCITY.
+/// Errors: HBVIB_E_UNSUPPORTED for a plain structure; HBVIB_E_INDEX (dofs), HBVIB_E_ARGUMENT (dofs
+/// or offsets twice, form), HBVIB_E_NOT_FINITE (coefficients), HBVIB_E_DIMENSION (n_dofs,
+/// n_offsets), after all of which the model is unchanged; HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY. Threads: one at a time per model.
+HBVIB_NODISCARD
+hbvib_status hbvib_cyclic_set_aero(hbvib_model *model,
+                                   int64_t n_dofs,
+                                   const int64_t *dofs,
+                                   int64_t n_offsets,
+                                   const double *coefficients,
+                                   const int64_t *offsets,
+                                   int32_t form);
+
+/// The coefficients of the aerodynamic forces of a form, in the order in which they were given.
+///
+/// form         HBVIB_AERO_DISPLACEMENT or HBVIB_AERO_VELOCITY.
+/// capacity     entries that fit into each array.
+/// dof_force    receives numbers of the degrees of freedom of forces, or NULL.
+/// dof_motion   receives numbers of the degrees of freedom of motions, or NULL.
+/// offset       receives numbers of sectors from that of the force to that of the motion, or NULL.
+/// coefficient  receives complex coefficients, 2 * capacity doubles, or NULL.
+/// count        receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_ARGUMENT (form), HBVIB_E_DIMENSION (capacity), HBVIB_E_NULL, HBVIB_E_HANDLE,
+/// HBVIB_E_BUSY (being changed). Threads: any number on one model.
+HBVIB_NODISCARD
+hbvib_status hbvib_cyclic_aero(const hbvib_model *model,
+                               int32_t form,
+                               int64_t capacity,
+                               int64_t *dof_force,
+                               int64_t *dof_motion,
+                               int64_t *offset,
+                               double *coefficient,
+                               int64_t *count);
 
 /// Frame of the degrees of freedom of a sector with faces.
 typedef enum {

@@ -1103,6 +1103,13 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   }
   void set_diameter(hbvib_matrix_kind which, Index diameter, const Matrix& a) { use(hbvib_cyclic_set_diameter, which, diameter, &a); }
   void set_wave(Index engine_order) { use(hbvib_cyclic_set_wave, engine_order); }
+  /// Aerodynamic forces: for each offset a square matrix over `dofs`, row after row; {} removes those of this form.
+  void set_aero(In<Index> dofs, In<Complex> coefficients, In<Index> offsets, hbvib_aero_form form) {
+    const Index n = dofs.length();
+    if (coefficients.length() != n * n * offsets.length())
+      throw Error(HBVIB_E_DIMENSION, 5, std::to_string(coefficients.length()) + " coefficients, needs offsets x dofs x dofs");
+    use(hbvib_cyclic_set_aero, n, dofs.data(), offsets.length(), reinterpret_cast<const double*>(coefficients.data()), offsets.data(), form);
+  }
 
   /// Adds Re(amplitude exp(i harmonic omega t)) on a degree of freedom.
   void add_force(Index dof, Index harmonic, Complex amplitude) {
@@ -1235,6 +1242,24 @@ class Model : public detail::Object<hbvib_model, hbvib_model_free> {
   Contact contact(Index id) const {
     Contact c;
     return use(hbvib_model_contact, id, &c, nullptr), c;
+  }
+  /// A coefficient of aerodynamic forces, read back; the offset counts from the sector of the force to that of the motion.
+  struct AeroEntry {
+    Index dof_force;
+    Index dof_motion;
+    Index offset;
+    Complex coefficient;
+  };
+  /// The aerodynamic forces of a form, in the order in which they were given.
+  std::vector<AeroEntry> aero(hbvib_aero_form form) const {
+    Index n = 0;
+    use(hbvib_cyclic_aero, form, 0, nullptr, nullptr, nullptr, nullptr, &n);
+    std::vector<Index> force(detail::extent(n)), motion(force), offset(force);
+    std::vector<Complex> coefficient(force.size());
+    use(hbvib_cyclic_aero, form, n, force.data(), motion.data(), offset.data(), reinterpret_cast<double*>(coefficient.data()), &n);
+    std::vector<AeroEntry> entries;
+    for (std::size_t i = 0; i < force.size(); i++) entries.push_back({force[i], motion[i], offset[i], coefficient[i]});
+    return entries;
   }
   /// A force, read back; over the square of the angular frequency if it is that of an unbalance.
   struct Force {

@@ -74,6 +74,10 @@ typedef enum {
   HBVIB_BLOCK_PREVIOUS = 2
 } hbvib_block;
 typedef enum {
+  HBVIB_AERO_DISPLACEMENT = 0,
+  HBVIB_AERO_VELOCITY = 1
+} hbvib_aero_form;
+typedef enum {
   HBVIB_CARTESIAN = 0,
   HBVIB_CYLINDRICAL = 1
 } hbvib_sector_frame;
@@ -644,6 +648,8 @@ hbvib_status hbvib_cyclic_set_coupling(hbvib_model *model, int32_t which, const 
 hbvib_status hbvib_cyclic_set_coupling_previous(hbvib_model *model, int32_t which, const hbvib_matrix *to_previous);
 hbvib_status hbvib_cyclic_set_diameter(hbvib_model *model, int32_t which, int64_t diameter, const hbvib_matrix *a);
 hbvib_status hbvib_cyclic_set_wave(hbvib_model *model, int64_t engine_order);
+hbvib_status hbvib_cyclic_set_aero(hbvib_model *model, int64_t n_dofs, const int64_t *dofs, int64_t n_offsets, const double *coefficients, const int64_t *offsets, int32_t form);
+hbvib_status hbvib_cyclic_aero(const hbvib_model *model, int32_t form, int64_t capacity, int64_t *dof_force, int64_t *dof_motion, int64_t *offset, double *coefficient, int64_t *count);
 hbvib_status hbvib_sector_init(hbvib_sector *s, size_t size_of_s);
 hbvib_status hbvib_cyclic_from_sector(const hbvib_sector *sector, hbvib_model **out);
 hbvib_status hbvib_contact_init(hbvib_contact *c, size_t size_of_c);

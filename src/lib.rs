@@ -84,6 +84,7 @@ pub use contact::relative_motion::{Direction, Frame};
 pub use contact::{Contact, ContactKind};
 pub use linalg::matrix_view::{MatrixView, Part, Storage, Values};
 pub use model::Model;
+pub use model::aero::{AeroEntry, AeroForm, AeroInfluence};
 pub use model::linear_modes::{ContactState, LinearModes};
 pub use model::sector_faces::{SectorDescription, SectorFrame};
 pub use model::speed::Speed;

@@ -7,6 +7,7 @@ from typing import Any, Optional, Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._aero import _Aero
 from ._analyses import _Analyses
 from ._batch import _Batches
 from ._c import SectorFrame
@@ -20,7 +21,7 @@ from ._structs import _new
 from ._time_integration import _TimeIntegration
 
 
-class Model(_CallerLaws, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches):
+class Model(_CallerLaws, _Aero, _LinearModes, _Analyses, _TimeIntegration, _Sensitivity, _Batches):
     """A structure with its contacts and forces; `Model.cyclic` makes one of equal sectors, `Model.sector` one of a
     sector with both faces.
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     StringArray = NDArray[np.str_]
 
 __all__ = [
-    "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "LimitCycles", "Loop", "Modes",
+    "AeroEntries", "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "LimitCycles", "Loop", "Modes",
     "Optima", "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Verification", "Wanted",
 ]
 
@@ -57,6 +57,14 @@ class Forces(NamedTuple):
     harmonic: IntArray
     force: ComplexArray
     unbalance: NDArray[np.bool_]
+
+
+class AeroEntries(NamedTuple):
+    """Aerodynamic forces of a model: degrees of freedom of force and motion, sector of the motion, complex coefficient."""
+    dof_force: IntArray
+    dof_motion: IntArray
+    offset: IntArray
+    coefficient: ComplexArray
 
 
 class Springs(NamedTuple):

@@ -218,7 +218,13 @@ pub unsafe extern "C" fn hbvib_model_forces(
 ///
 /// # Safety
 /// The caller of the C function states that a number fits into `count`.
-unsafe fn fits(len: usize, wanted: bool, capacity: i64, argument: i32, out: (*mut i64, i32)) -> Result<bool> {
+pub(super) unsafe fn fits(
+    len: usize,
+    wanted: bool,
+    capacity: i64,
+    argument: i32,
+    out: (*mut i64, i32),
+) -> Result<bool> {
     let capacity = count(capacity, argument, "capacity")?;
     check_pointer(out.0, out.1, "count")?;
     unsafe { out.0.write(len as i64) };

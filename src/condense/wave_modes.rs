@@ -101,6 +101,7 @@ impl WaveModes {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let other_terms = model.structure().has_structural_matrix()
+            || model.structure().has_aero()
             || model.structure().is_rotating()
             || block.unbalance.is_some()
             || !matches!(block.artificial, Artificial::None);

@@ -73,6 +73,7 @@ pub(super) fn reduced_blocks(
     if structure.has_structural_damping()
         || structure.is_rotating()
         || structure.has_modal_damping()
+        || structure.has_aero()
         || model.excitation().has_unbalance()
     {
         return declined(forced);
@@ -118,7 +119,7 @@ fn declined<T>(forced: bool) -> Result<Option<T>> {
     fail!(
         Unsupported,
         "flexibility = krylov needs Hermitian stiffness and mass, a mass by which K + shift M is positive definite, and neither \
-         structural or modal damping nor a speed of rotation or unbalance"
+         structural or modal damping nor aerodynamic influence, a speed of rotation or unbalance"
     )
 }
 

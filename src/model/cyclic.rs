@@ -6,6 +6,7 @@
 
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::aero::AeroForm;
 use crate::model::part_of_turn::lag;
 use crate::model::reduced_wave::WaveKey;
 use crate::model::speed::Speed;
@@ -98,8 +99,8 @@ impl Structure {
         i128::from(offset).rem_euclid(self.sectors() as i128) == 0
     }
 
-    /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh and modal damping and ΩG at a fixed
-    /// speed, the structural matrix ηK; the mean has the real part of complex matrices, and no structural damping.
+    /// The matrix of harmonic `harmonic` of the wave. The damping includes Rayleigh and modal damping, ΩG at a fixed
+    /// speed and aerodynamic forces per velocity, the structural matrix ηK; the mean has the real part of complex matrices, and no structural damping.
     ///
     /// # Errors
     /// `Argument` when the nodal diameter of the harmonic was not given; `OutOfMemory`.
@@ -133,11 +134,15 @@ impl Structure {
             MatrixKind::Damping => self.modal_damping_of(residue, real)?,
             _ => None,
         };
+        let aero = match which {
+            MatrixKind::Damping => self.aero_matrix(AeroForm::Velocity, residue, real)?,
+            _ => None,
+        };
         let given = self.given(which, residue, real)?;
-        if of_mass == 0.0 && of_stiffness == 0.0 && modal.is_none() && speed == 0.0 {
+        if of_mass == 0.0 && of_stiffness == 0.0 && modal.is_none() && speed == 0.0 && aero.is_none() {
             return Ok(given);
         }
-        let mut terms = Vec::with_capacity(5);
+        let mut terms = Vec::with_capacity(6);
         terms.push((Complex64::ONE, &given, Form::Plain));
         let (mass, stiffness, gyroscopic);
         if of_mass != 0.0 {
@@ -152,8 +157,8 @@ impl Structure {
             gyroscopic = self.given(MatrixKind::Gyroscopic, residue, real)?;
             terms.push((speed.into(), &gyroscopic, Form::Plain));
         }
-        if let Some(modal) = &modal {
-            terms.push((Complex64::ONE, modal, Form::Plain));
+        for added in [&modal, &aero].into_iter().flatten() {
+            terms.push((Complex64::ONE, added, Form::Plain));
         }
         Csc::sum(self.ndof(), &terms)
     }
@@ -187,6 +192,36 @@ impl Structure {
             *v *= speed * speed;
         }
         Ok(Some(matrix))
+    }
+
+    /// K of the wave with what acts like it: Ω²K₁ at a fixed speed and aerodynamic forces per displacement.
+    ///
+    /// # Errors
+    /// As [`Self::wave_matrix`].
+    pub fn acting_stiffness(&self, wave: Wave) -> Result<Csc> {
+        let own = self.of_wave(MatrixKind::Stiffness, wave)?;
+        let added = [
+            self.stiffness_of_speed(wave)?,
+            self.aero_of_wave(AeroForm::Displacement, wave)?,
+        ];
+        if added.iter().all(Option::is_none) {
+            return Ok(own);
+        }
+        let mut terms = Vec::with_capacity(3);
+        terms.push((Complex64::ONE, &own, Form::Plain));
+        terms.extend(added.iter().flatten().map(|a| (Complex64::ONE, a, Form::Plain)));
+        Csc::sum(self.ndof(), &terms)
+    }
+
+    /// The matrix −A of the aerodynamic influence in a wave, on the left-hand side; `None` without influence.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn aero_of_wave(&self, form: AeroForm, wave: Wave) -> Result<Option<Csc>> {
+        match wave {
+            Wave::Harmonic(h) => self.aero_matrix(form, self.residue(h as i64), h == 0),
+            Wave::Diameter(d) => self.aero_matrix(form, d % self.sectors(), false),
+        }
     }
 
     /// ΩG of the wave at a fixed speed; `None` where it is zero.

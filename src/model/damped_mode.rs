@@ -114,7 +114,9 @@ impl Model {
             damping: 0.0,
             shape: try_copy(&start.shape, CONTEXT)?,
         };
-        let conservative = problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
+        // The undamped mode is one without aerodynamic forces.
+        let conservative = !structure.has_aero_stiffness()
+            && problem.stiffness.worst_hermitian_pair().2 <= 1e-10 * problem.stiffness.max_abs();
         if conservative && problem.damping.max_abs() == 0.0 {
             // Linear damping does not need the artificial damping here, but friction will.
             let strain = quadratic(&problem.own, &undamped.shape);

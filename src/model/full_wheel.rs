@@ -7,6 +7,7 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::linalg::sparse::{Csc, Form};
+use crate::model::aero::AeroForm;
 use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 
@@ -32,7 +33,7 @@ impl Structure {
     }
 
     /// M, C or K of [`Self::repeating_sectors`] sectors closed to a ring, sector after sector; the damping includes
-    /// Rayleigh and modal damping and ΩG, the stiffness Ω²K₁.
+    /// Rayleigh and modal damping and ΩG, the stiffness Ω²K₁; aerodynamic forces are in both.
     ///
     /// # Errors
     /// `Unsupported` for complex matrices, which have no meaning in time; `Argument` when a nodal diameter was not
@@ -67,6 +68,14 @@ impl Structure {
         if which == MatrixKind::Damping && !self.modal_damping.is_empty() {
             let modal = self.blocks_of_waves(Self::modal_damping_of_diameter)?;
             try_push(&mut parts, (1.0, modal), "the matrices of the wheel")?;
+        }
+        let aero = match which {
+            MatrixKind::Damping => self.aero_around(AeroForm::Velocity)?,
+            MatrixKind::Stiffness => self.aero_around(AeroForm::Displacement)?,
+            _ => None,
+        };
+        if let Some(aero) = aero {
+            try_push(&mut parts, (1.0, aero), "the matrices of the wheel")?;
         }
         let mut terms = Vec::new();
         for (factor, a) in &parts {

@@ -1,5 +1,5 @@
 //! Undamped natural modes of the structure with its contacts removed or stuck: with Ω²K₁ and gyroscopic forces at a
-//! fixed speed, with those of the own frequency where the speed is tied to that.
+//! fixed speed, with those of the own frequency where the speed is tied to that. Aerodynamic forces are left out.
 
 use crate::contact::Role;
 use crate::error::{Result, Status, check_memory, fail, try_extend, try_push, try_vec};
@@ -178,8 +178,13 @@ impl Model {
         }
     }
 
-    /// K and M of a wave, checked.
+    /// K and M of a wave, checked, without aerodynamic forces.
     pub(super) fn pencil(&self, wave: Wave, contacts: ContactState<'_>) -> Result<Pencil> {
+        if self.structure().has_aero_stiffness() {
+            let mut in_vacuum = self.try_clone()?;
+            *in_vacuum.structure_mut().aero_mut() = Default::default();
+            return in_vacuum.pencil(wave, contacts);
+        }
         let structure = self.structure();
         let highest = structure.sectors() / 2;
         let mass = match wave {

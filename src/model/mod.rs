@@ -1,5 +1,6 @@
 //! The model: structure, contacts, excitation. The analyses take their matrices and contact data from here.
 
+pub mod aero;
 mod blocks;
 pub mod contents;
 pub mod cyclic;

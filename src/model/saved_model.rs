@@ -1,8 +1,8 @@
 //! A model as bytes: a mark, the version of the format, the length, the model and a checksum. Everything that decides
 //! about results is in them; a loaded model solves to the same bits.
 //!
-//! Version 1, little-endian: mark (8 bytes), version (4), 0 (4), length L of the model (8), the model (L), checksum of all
-//! bytes before it (8).
+//! Little-endian: mark (8 bytes), version (4), 0 (4), length L of the model (8), the model (L), checksum of all
+//! bytes before it (8). Version 2 adds the aerodynamic influence; a model without is written as version 1.
 
 use crate::byte_stream::{ByteReader, ByteWriter, checksum};
 use crate::contact::Contact;
@@ -19,7 +19,7 @@ use num_complex::Complex64;
 const MARK: [u8; 8] = *b"\x89HBVIB\r\n";
 
 /// Version of the format.
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// Bytes before the model.
 const HEAD: usize = 24;
@@ -47,7 +47,7 @@ impl Model {
     pub fn save_into(&self, buffer: &mut [u8]) -> Result<usize> {
         let mut out = ByteWriter::new(buffer);
         out.bytes(&MARK);
-        out.u32(VERSION);
+        out.u32(if self.structure.has_aero() { VERSION } else { 1 });
         out.u32(0);
         // The length is known at the end.
         out.count(0);
@@ -71,9 +71,9 @@ impl Model {
     /// `Argument` for bytes that are no saved model, or a damaged or incomplete one; `Unsupported` for one of a newer
     /// format; `OutOfMemory`.
     pub fn load(bytes: &[u8]) -> Result<Self> {
-        let model = content(bytes).map_err(|e| e.at(format_args!("saved model")))?;
+        let (model, version) = content(bytes).map_err(|e| e.at(format_args!("saved model")))?;
         let mut input = ByteReader::new(model);
-        let loaded = Self::content_from(&mut input).and_then(|loaded| match input.left() {
+        let loaded = Self::content_from(&mut input, version).and_then(|loaded| match input.left() {
             0 => Ok(loaded),
             left => fail!(Argument, "damaged: {left} bytes follow its end"),
         });
@@ -108,10 +108,13 @@ impl Model {
                 out.f64(value);
             }
         }
+        if self.structure.has_aero() {
+            self.save_aero(out);
+        }
         Ok(())
     }
 
-    fn content_from(input: &mut ByteReader<'_>) -> Result<Self> {
+    fn content_from(input: &mut ByteReader<'_>, version: u32) -> Result<Self> {
         let mut model = Self {
             structure: Structure::load_from(input)?,
             kept: KeptWaves::default(),
@@ -166,12 +169,15 @@ impl Model {
             }
             try_push(&mut model.speed_loads, load, CONTEXT)?;
         }
+        if version >= 2 {
+            model.load_aero(input)?;
+        }
         Ok(model)
     }
 }
 
-/// The bytes of the model itself, their frame checked.
-fn content(bytes: &[u8]) -> Result<&[u8]> {
+/// The bytes of the model itself and the version of their format, their frame checked.
+fn content(bytes: &[u8]) -> Result<(&[u8], u32)> {
     if bytes.len() < MARK.len() || !bytes.starts_with(&MARK) {
         return fail!(
             Argument,
@@ -208,5 +214,5 @@ fn content(bytes: &[u8]) -> Result<&[u8]> {
     if checksum(text).to_le_bytes() != tail || version == 0 || reserved != 0 {
         return fail!(Argument, "damaged: its checksum is another one; save or copy it again");
     }
-    Ok(&text[HEAD..])
+    Ok((&text[HEAD..], version))
 }

@@ -5,7 +5,6 @@ use crate::error::{Result, try_push};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::spring::Row;
-use crate::model::structure::MatrixKind;
 pub use crate::model::wave::Wave;
 use num_complex::Complex64;
 
@@ -53,7 +52,8 @@ impl Model {
         Ok(rows)
     }
 
-    /// K of a wave, at a fixed speed with Ω²K₁, with the springs of the model and those of the `stuck` contacts.
+    /// K of a wave, at a fixed speed with Ω²K₁, with aerodynamic forces per displacement, the springs of the model and
+    /// those of the `stuck` contacts.
     ///
     /// # Errors
     /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
@@ -73,14 +73,7 @@ impl Model {
     ) -> Result<Csc> {
         let structure = self.structure();
         let n = structure.ndof();
-        let mut own = structure.of_wave(MatrixKind::Stiffness, wave)?;
-        if let Some(of_speed) = structure.stiffness_of_speed(wave)? {
-            let terms = [
-                (Complex64::ONE, &own, Form::Plain),
-                (Complex64::ONE, &of_speed, Form::Plain),
-            ];
-            own = Csc::sum(n, &terms)?;
-        }
+        let own = structure.acting_stiffness(wave)?;
         let mut entries = Vec::new();
         for (force, motion, stiffness) in self.spring_rows_with(wave, contacts, stiffness)? {
             for (p, x) in force.iter().flatten() {

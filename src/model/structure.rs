@@ -4,6 +4,7 @@
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::model::aero::{AeroInfluence, FORMS};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use crate::model::sector_faces::{Faces, SectorDescription};
@@ -68,6 +69,8 @@ pub struct Structure {
     pub(super) speed: Speed,
     /// Modal damping as a matrix per nodal diameter 0 ..= N/2; empty: none.
     pub(super) modal_damping: Vec<Option<Csc>>,
+    /// Aerodynamic influence per displacement and per velocity.
+    aero: [Option<Arc<AeroInfluence>>; FORMS],
 }
 
 impl Structure {
@@ -87,6 +90,7 @@ impl Structure {
             loss_factor: 0.0,
             speed: Speed::Fixed(0.0),
             modal_damping: Vec::new(),
+            aero: Default::default(),
         })
     }
 
@@ -97,6 +101,7 @@ impl Structure {
             || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
             || !self.modal_damping.is_empty()
             || self.has_structural_damping()
+            || self.has_aero()
     }
 
     /// Whether damping without a causal law was given: a loss factor or a structural matrix.
@@ -147,7 +152,9 @@ impl Structure {
     /// Whether all blocks are real.
     pub(super) fn is_real(&self) -> bool {
         let kinds = [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness];
+        let aero = self.aero.iter().flatten();
         kinds.into_iter().flat_map(|kind| self.parts(kind)).all(Csc::is_real)
+            && aero.map(Arc::as_ref).all(AeroInfluence::is_real)
     }
 
     /// Whether the matrices of a nodal diameter can be made of what was given.
@@ -176,6 +183,7 @@ impl Structure {
             degrees: self.degrees.clone(),
             blocks: Arc::clone(&self.blocks),
             modal_damping,
+            aero: self.aero.clone(),
             ..*self
         })
     }
@@ -234,8 +242,18 @@ impl Structure {
             degrees,
             blocks: Arc::new(blocks),
             modal_damping: Vec::new(),
+            aero: self.aero.clone(),
             ..*self
         })
+    }
+
+    /// Aerodynamic influence by its form.
+    pub(super) fn aero(&self) -> &[Option<Arc<AeroInfluence>>; FORMS] {
+        &self.aero
+    }
+
+    pub(super) fn aero_mut(&mut self) -> &mut [Option<Arc<AeroInfluence>>; FORMS] {
+        &mut self.aero
     }
 
     /// Number of sectors N; 1 for a plain structure.

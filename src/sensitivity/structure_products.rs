@@ -10,6 +10,7 @@ use crate::linalg::inner;
 use crate::linalg::matrix_view::MatrixView;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
+use crate::model::aero::AeroForm;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
@@ -107,6 +108,13 @@ pub(super) fn with_whole(model: &Model, condensed: &Condensed, adjoint: &Adjoint
             && let Some(gyroscopic) = model.structure().gyroscopic_at_speed(Wave::Harmonic(number))?
         {
             gyroscopic.multiply_add(-Complex64::ONE, b, &mut product);
+        }
+        if which == MatrixKind::Damping
+            && let Some(aero) = model
+                .structure()
+                .aero_of_wave(AeroForm::Velocity, Wave::Harmonic(number))?
+        {
+            aero.multiply_add(-Complex64::ONE, b, &mut product);
         }
         Ok(inner(a, &product))
     })

@@ -9,6 +9,7 @@ use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::sector_motion::SectorMotion;
 use crate::model::structure::{MatrixKind, Structure};
+use crate::model::wave::Wave;
 use crate::stability::closure::Closure;
 use crate::time_integration::System;
 use num_complex::Complex64;
@@ -166,7 +167,11 @@ fn matrix(structure: &Structure, which: MatrixKind, closure: &Closure) -> Result
     let mut waves = Vec::new();
     for d in 0..sectors {
         let diameter = d * count + closure.index;
-        try_push(&mut waves, structure.diameter_matrix(which, diameter)?, CONTEXT)?;
+        let wave = match which {
+            MatrixKind::Stiffness => structure.acting_stiffness(Wave::Diameter(diameter))?,
+            which => structure.diameter_matrix(which, diameter)?,
+        };
+        try_push(&mut waves, wave, CONTEXT)?;
     }
     let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
     let share = 1.0 / sectors as f64;

@@ -47,6 +47,7 @@ static int32_t intrude(void *user, const hbvib_progress *p)
     s->wrong += hbvib_cyclic_set_coupling_previous(s->model, HBVIB_DAMPING, &a) != HBVIB_E_BUSY;
     s->wrong += hbvib_cyclic_set_diameter(s->model, HBVIB_MASS, 0, &a) != HBVIB_E_BUSY;
     s->wrong += hbvib_cyclic_set_wave(s->model, 3) != HBVIB_E_BUSY;
+    s->wrong += hbvib_cyclic_set_aero(s->model, 0, NULL, 0, NULL, NULL, 0) != HBVIB_E_BUSY;
     s->wrong += hbvib_model_add_table(s->model, 0, 1, 0, 2, two, two, NULL) != HBVIB_E_BUSY;
     s->wrong += hbvib_model_add_spring_damper(s->model, 0, 1, 0, 1, two, 0, NULL, NULL) != HBVIB_E_BUSY;
     s->wrong += hbvib_model_add_polynomial(s->model, &dof, 1, 1, &dof, two, &power, NULL, NULL) != HBVIB_E_BUSY;

@@ -39,6 +39,7 @@ static void no_model(const char *row, hbvib_model *m, const char *words)
     REFUSED(row, hbvib_cyclic_set_coupling_previous(m, HBVIB_DAMPING, &a), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_cyclic_set_diameter(m, HBVIB_MASS, 0, &a), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_cyclic_set_wave(m, 2), HBVIB_E_HANDLE, 1, words);
+    REFUSED(row, hbvib_cyclic_set_aero(m, 0, NULL, 0, NULL, NULL, 0), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_model_clone(m, &out), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_model_free(m), HBVIB_E_HANDLE, 1, words);
     REFUSED(row, hbvib_model_add_contact(m, &c, NULL), HBVIB_E_HANDLE, 1, words);

@@ -90,6 +90,11 @@ fn models_are_read_back_as_they_were_given() {
 }
 
 #[test]
+fn aerodynamic_influence_acts_and_is_checked() {
+    silent("aero", |_| vec![]);
+}
+
+#[test]
 fn results_are_what_they_say() {
     silent("results", |_| vec![]);
 }

@@ -428,7 +428,7 @@ fn fortran_feels_native() {
         &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
     ]
     .concat();
-    for name in ["batch", "misuse", "physics", "saved", "statuses", "threads"] {
+    for name in ["aero", "batch", "misuse", "physics", "saved", "statuses", "threads"] {
         let folder = workshop(&format!("fortran_tests/{name}"));
         let source = root().join(format!("tests/languages/fortran/{name}.f90"));
         let sources = [fortran_module(), common.clone(), source];

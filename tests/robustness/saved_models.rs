@@ -269,7 +269,7 @@ fn bytes_that_are_no_saved_model_are_refused_with_their_reason() {
         bytes[place] = value;
         bytes
     };
-    refused(&newer(8, 2), Status::Unsupported, "format 2 is newer than 1");
+    refused(&newer(8, 3), Status::Unsupported, "format 3 is newer than 2");
     refused(
         &[&bytes[..], b"\n"].concat(),
         Status::Argument,

@@ -245,7 +245,8 @@ static void change_model(void)
     case 8: CALL(hbvib_model_set_speed, model, one_in(2) ? 0 : number(0.4)); break;
     case 9:
         if (one_in(4)) CALL(hbvib_model_fix, model, 1, a);
-        else CALL(hbvib_cyclic_set_wave, model, count((int64_t)(next() % 7) - 3));
+        else if (one_in(2)) CALL(hbvib_cyclic_set_wave, model, count((int64_t)(next() % 7) - 3));
+        else CALL(hbvib_cyclic_set_aero, model, one_in(20) ? -1 : 1, a, one_in(9) ? 0 : 1, x, a + 1, (int32_t)(next() % 3));
         break;
     case 10:
         m = dense(which < 0 ? 3 : dofs[which], x);

@@ -7,7 +7,7 @@ use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::Waves;
-use hbvib::{Floquet, MultiplierClass};
+use hbvib::{Floquet, MultiplierClass, Speed};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -139,4 +139,32 @@ fn blocks_of_waves_make_up_the_wheel() {
             }
         }
     }
+}
+
+/// K + Ω²K₁ at a fixed speed has the multipliers of the same stiffness given at once.
+#[test]
+fn stiffness_of_a_fixed_speed_is_in_the_multipliers() {
+    const OF_SPEED: [f64; 4] = [0.4, 0.1, 0.1, -0.2];
+    const SPEED: f64 = 0.8;
+    let mut rotating = sector(6, 2, &contacts());
+    rotating
+        .set_matrix(MatrixKind::StiffnessSpeed2, &MatrixView::dense(2, &OF_SPEED))
+        .unwrap();
+    rotating.set_speed(Speed::Fixed(SPEED)).unwrap();
+    let stiffness: [f64; 4] = core::array::from_fn(|i| STIFFNESS[i] + SPEED * SPEED * OF_SPEED[i]);
+    let mut fixed = sector(6, 2, &contacts());
+    fixed
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &stiffness))
+        .unwrap();
+    let of = |model: &Model| {
+        ordinary(&multipliers(
+            model,
+            &solve_at(model, &harmonics(21), 1.05),
+            0,
+            Waves::Wheel,
+        ))
+    };
+    let gap = gap(&of(&rotating), &of(&fixed));
+    println!("{gap:.1e}");
+    assert!(gap < 1e-9);
 }

@@ -3,6 +3,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod aero_influence;
 mod along_branch;
 mod bifurcations;
 mod floquet_classes;

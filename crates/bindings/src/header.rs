@@ -35,8 +35,8 @@ pub const SECTIONS: [Section; 13] = [
     },
     Section {
         title: "Cyclic structures",
-        about: "sectors, their faces and couplings, nodal diameters, engine order",
-        files: &["cyclic", "cyclic_faces"],
+        about: "sectors, their faces and couplings, diameters, engine order, aerodynamics",
+        files: &["cyclic", "cyclic_aero", "cyclic_faces"],
     },
     Section {
         title: "Contacts",

@@ -49,6 +49,25 @@ void linear_modes() {
   faces.set_matrix(HBVIB_STIFFNESS, springs);
   faces.fix(still);
   lagged.set_coupling_previous(HBVIB_STIFFNESS, next);
+  // Aerodynamic forces of a symmetric influence change the stiffness of each wave; natural modes leave them out.
+  auto blown = Model::cyclic(1, 10);
+  blown.set_matrix(HBVIB_MASS, one);
+  blown.set_matrix(HBVIB_STIFFNESS, own);
+  const std::vector<Complex> influence{{-0.5, 0}, {0.1, 0}, {0.1, 0}};
+  const std::vector<Index> offsets{0, 1, -1}, blade{0};
+  blown.set_aero(blade, influence, offsets, HBVIB_AERO_DISPLACEMENT);
+  const auto entries = blown.aero(HBVIB_AERO_DISPLACEMENT);
+  claim(entries.size() == 3 && entries[2].offset == -1 && entries[1].coefficient == influence[1], "influence is read back");
+  claim(blown.aero(HBVIB_AERO_VELOCITY).empty(), "the other form is not set");
+  blown.set_wave(3);
+  claim(blown.forced_response(SolverOptions{}, {1.0, 1.0}).status() == HBVIB_STOPPED_NO_FORCE, "flutter is no forced response");
+  blown.add_force(0, 1, 1);
+  SolverOptions single;
+  single.tolerance = 0, single.harmonics = 1;
+  const auto x = blown.forced_response(single, {1.0, 1.0}).harmonics(0);
+  near(x(1, 0).real(), 1 / (6.5 - 1 + 0.5 - 0.2 * std::cos(2 * PI * 3 / 10)), 1e-12, "the response with influence");
+  near(blown.linear_modes(3, HBVIB_CONTACTS_FREE, 1).omega[0], std::sqrt(6.5), 1e-13, "the natural mode without");
+  refused("coefficients of another size", HBVIB_E_DIMENSION, 5, "needs offsets", [&] { blown.set_aero(blade, influence, blade, HBVIB_AERO_DISPLACEMENT); });
   for (Index d = 0; d <= 5; d++) {
     const double square = 0.5 + 6 * (1 - std::cos(2 * PI * static_cast<double>(d) / 10)), wave[1][1] = {{square}};
     waves.set_diameter(HBVIB_MASS, d, one);

@@ -14,7 +14,7 @@ int main() {
             [&] { Model::load(std::vector<unsigned char>(bytes.begin(), bytes.begin() + 100)); });
     bytes[80] = static_cast<unsigned char>(~bytes[80]);
     refused("damage", HBVIB_E_ARGUMENT, 2, "checksum", [&] { Model::load(bytes); });
-    bytes[8] = 2;
+    bytes[8] = 9;
     refused("a newer format", HBVIB_E_UNSUPPORTED, 2, "newer", [&] { Model::load(bytes); });
     auto forced = oscillator(1, 0.02, 1, 0.1);
     forced.add_user_force({{0}, [](const hbvib::ForceCall&) {}});
