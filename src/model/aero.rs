@@ -1,194 +1,15 @@
-//! Aerodynamic influence: forces on a sector that follow the motion of this and other sectors.
-//!
-//! On the right-hand side f_s = Σ_k c_k x_{s+k}, or the same with the velocities. In the wave in which sector s + 1 lags
-//! by 2πd/N they are f = A(d) x with A(d) = Σ_k c_k e^{−2πikd/N}, per velocity iωh A(d) x in harmonic h, which belongs to
-//! d = h·EO mod N (Crawley 1988, AGARD-AG-298, chapter 19; Hanamura, Tanaka & Yamaguchi 1980,
-//! doi:10.1299/jsme1958.23.880).
+//! Aerodynamic influence of a model: its coefficients, and its matrices in a wave and around the wheel.
 
 use crate::byte_stream::{ByteReader, ByteWriter};
-use crate::error::{Result, fail, try_copy, try_push, try_vec};
+use crate::error::{Result, fail, try_push};
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
+use crate::model::degree_map::DegreeMap;
+pub use crate::model::influence::{AeroEntry, AeroForm, AeroInfluence};
+use crate::model::influence::{CONTEXT, FORMS};
 use crate::model::structure::Structure;
 use num_complex::Complex64;
 use std::sync::Arc;
-
-const CONTEXT: &str = "the aerodynamic influence";
-
-/// Motion that aerodynamic forces follow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AeroForm {
-    /// Displacements: a force per displacement.
-    Displacement = 0,
-    /// Velocities: a force per velocity.
-    Velocity = 1,
-}
-
-/// Number of forms.
-pub(super) const FORMS: usize = 2;
-
-/// Influence coefficients as they were given, checked.
-#[derive(Clone, Debug)]
-pub struct AeroInfluence {
-    dofs: Vec<usize>,
-    offsets: Vec<i64>,
-    coefficients: Vec<Complex64>,
-}
-
-/// A coefficient.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct AeroEntry {
-    /// Degree of freedom of the force.
-    pub force: usize,
-    /// Degree of freedom of the motion.
-    pub motion: usize,
-    /// Sector of the motion, counted from that of the force.
-    pub offset: i64,
-    /// Force per motion.
-    pub coefficient: Complex64,
-}
-
-impl AeroInfluence {
-    fn new(structure: &Structure, dofs: &[usize], offsets: &[i64], coefficients: &[Complex64]) -> Result<Option<Self>> {
-        if structure.sectors() == 1 {
-            return fail!(
-                Unsupported,
-                "aerodynamic influence: a plain structure has no other sectors; use a cyclic model, or the stiffness and \
-                 damping matrices"
-            );
-        }
-        let ndof = structure.degrees().given();
-        for (i, &dof) in dofs.iter().enumerate() {
-            if dof >= ndof {
-                return fail!(
-                    Index,
-                    "aerodynamic influence: dofs[{i}] = {dof}, needs 0 .. {}",
-                    ndof - 1
-                );
-            }
-        }
-        let sectors = structure.sectors() as i64;
-        once("dofs", "degree of freedom", dofs, |&dof| dof)?;
-        once("offsets", "sector", offsets, |k| k.rem_euclid(sectors))?;
-        let n = dofs.len();
-        let needed = n.checked_mul(n).and_then(|square| square.checked_mul(offsets.len()));
-        if needed != Some(coefficients.len()) {
-            return fail!(
-                Dimension,
-                "aerodynamic influence: {} coefficients, needs {} offsets x {n} x {n} degrees of freedom",
-                coefficients.len(),
-                offsets.len()
-            );
-        }
-        if let Some(at) = coefficients.iter().position(|c| !c.re.is_finite() || !c.im.is_finite()) {
-            return fail!(
-                NotFinite,
-                "aerodynamic influence: coefficients[{at}] = {}, needs finite numbers",
-                coefficients[at]
-            );
-        }
-        if coefficients.is_empty() {
-            return Ok(None);
-        }
-        Ok(Some(Self {
-            dofs: try_copy(dofs, CONTEXT)?,
-            offsets: try_copy(offsets, CONTEXT)?,
-            coefficients: try_copy(coefficients, CONTEXT)?,
-        }))
-    }
-
-    /// The coefficients, those of one offset after another, row after row.
-    #[must_use]
-    pub fn entries(&self) -> impl ExactSizeIterator<Item = AeroEntry> + '_ {
-        let n = self.dofs.len();
-        self.coefficients
-            .iter()
-            .enumerate()
-            .map(move |(at, &coefficient)| AeroEntry {
-                force: self.dofs[at / n % n],
-                motion: self.dofs[at % n],
-                offset: self.offsets[at / (n * n)],
-                coefficient,
-            })
-    }
-
-    pub(super) fn is_real(&self) -> bool {
-        self.coefficients.iter().all(|c| c.im == 0.0)
-    }
-
-    /// Calls `take` with (offset of the sector, row, column, coefficient) over the independent degrees of freedom.
-    fn visit(
-        &self,
-        structure: &Structure,
-        mut take: impl FnMut(i64, usize, usize, Complex64) -> Result<()>,
-    ) -> Result<()> {
-        let (degrees, sectors) = (structure.degrees(), structure.sectors() as i64);
-        for entry in self.entries().filter(|e| e.coefficient != Complex64::ZERO) {
-            let (row_sector, rows) = degrees.image(entry.force);
-            for (p, a) in rows {
-                let (column_sector, columns) = degrees.image(entry.motion);
-                for (q, b) in columns {
-                    let offset = entry.offset.rem_euclid(sectors) + column_sector - row_sector;
-                    take(offset, p, q, entry.coefficient * (a * b))?;
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn save_to(&self, out: &mut ByteWriter<'_>) {
-        out.count(self.dofs.len());
-        for &dof in &self.dofs {
-            out.count(dof);
-        }
-        out.count(self.offsets.len());
-        for &offset in &self.offsets {
-            out.i64(offset);
-        }
-        for c in &self.coefficients {
-            out.f64(c.re);
-            out.f64(c.im);
-        }
-    }
-
-    fn load_from(structure: &Structure, input: &mut ByteReader<'_>) -> Result<Option<Self>> {
-        let mut dofs = Vec::new();
-        for _ in 0..input.entries(8)? {
-            try_push(&mut dofs, input.count()?, CONTEXT)?;
-        }
-        let mut offsets = Vec::new();
-        for _ in 0..input.entries(8)? {
-            try_push(&mut offsets, input.i64()?, CONTEXT)?;
-        }
-        let count = dofs.len().saturating_mul(dofs.len()).saturating_mul(offsets.len());
-        if count > input.left() / 16 {
-            return Err(input.damaged("coefficients of the aerodynamic influence are missing"));
-        }
-        let mut coefficients = try_vec(count, Complex64::ZERO, CONTEXT)?;
-        for c in &mut coefficients {
-            *c = Complex64::new(input.finite()?, input.finite()?);
-        }
-        Self::new(structure, &dofs, &offsets, &coefficients)
-    }
-}
-
-/// Refuses a list that names something twice.
-fn once<T: Copy, K: Ord>(list: &str, thing: &str, values: &[T], key: impl Fn(&T) -> K) -> Result<()> {
-    let mut places = Vec::new();
-    for (i, value) in values.iter().enumerate() {
-        try_push(&mut places, (key(value), i), CONTEXT)?;
-    }
-    places.sort_unstable();
-    match places.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-        Some(pair) => fail!(
-            Argument,
-            "aerodynamic influence: {list}[{}] and {list}[{}] are the same {thing}, needs each once",
-            pair[0].1,
-            pair[1].1
-        ),
-        None => Ok(()),
-    }
-}
 
 impl Model {
     /// Sets forces on a sector that follow the motion of its neighbours: with f on the right-hand side,
@@ -206,7 +27,7 @@ impl Model {
         offsets: &[i64],
         form: AeroForm,
     ) -> Result<()> {
-        let given = AeroInfluence::new(self.structure(), dofs, offsets, coefficients)?;
+        let given = AeroInfluence::new(self.structure().wheel(), dofs, offsets, coefficients)?;
         self.changed_structure().aero_mut()[form as usize] = given.map(Arc::new);
         Ok(())
     }
@@ -229,7 +50,7 @@ impl Model {
     pub(super) fn load_aero(&mut self, input: &mut ByteReader<'_>) -> Result<()> {
         for form in 0..FORMS {
             if input.bool()? {
-                let loaded = AeroInfluence::load_from(self.structure(), input)?;
+                let loaded = AeroInfluence::load_from(self.structure().wheel(), input)?;
                 self.structure_mut().aero_mut()[form] = loaded.map(Arc::new);
             }
         }
@@ -238,6 +59,11 @@ impl Model {
 }
 
 impl Structure {
+    /// Degrees of freedom and number of sectors.
+    fn wheel(&self) -> (&DegreeMap, usize) {
+        (self.degrees(), self.sectors())
+    }
+
     /// Whether aerodynamic forces act.
     #[must_use]
     pub fn has_aero(&self) -> bool {
@@ -256,7 +82,7 @@ impl Structure {
             return Ok(None);
         };
         let mut entries = Vec::new();
-        influence.visit(self, |offset, p, q, c| {
+        influence.visit(self.wheel(), |offset, p, q, c| {
             try_push(&mut entries, (p, q, -c * self.wave_phase(residue, offset)), CONTEXT)
         })?;
         let mut matrix = Csc::from_triplets(self.ndof(), self.ndof(), entries)?;
@@ -285,7 +111,7 @@ impl Structure {
         }
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let mut entries = Vec::new();
-        influence.visit(self, |offset, p, q, c| {
+        influence.visit(self.wheel(), |offset, p, q, c| {
             for s in 0..sectors {
                 let to = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
                 try_push(&mut entries, (s * ndof + p, to * ndof + q, -c), CONTEXT)?;

@@ -6,7 +6,7 @@
 
 use crate::error::{Result, fail};
 use crate::linalg::sparse::{Csc, Form};
-use crate::model::aero::AeroForm;
+use crate::model::influence::AeroForm;
 use crate::model::part_of_turn::lag;
 use crate::model::reduced_wave::WaveKey;
 use crate::model::speed::Speed;

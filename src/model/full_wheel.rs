@@ -7,7 +7,7 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::linalg::sparse::{Csc, Form};
-use crate::model::aero::AeroForm;
+use crate::model::influence::AeroForm;
 use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 

@@ -9,6 +9,7 @@ pub mod degree_map;
 pub mod excitation;
 mod face_coordinates;
 pub mod full_wheel;
+pub mod influence;
 pub mod linear_modes;
 mod mechanical_model;
 mod modal_damping;

@@ -4,9 +4,9 @@
 use crate::error::{Result, fail, try_push, try_vec};
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::{Csc, Form, Symmetry};
-use crate::model::aero::{AeroInfluence, FORMS};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
+use crate::model::influence::{AeroInfluence, FORMS};
 use crate::model::sector_faces::{Faces, SectorDescription};
 use crate::model::sector_matrices::{self, of_independent, restricted};
 use crate::model::speed::Speed;
