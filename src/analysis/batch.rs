@@ -28,8 +28,8 @@ const PAUSE: Duration = Duration::from_millis(2);
 /// Memory of the stack of a thread.
 const STACK: usize = 8 << 20;
 
-/// Runs the work of a thread in the surroundings that its caller wants.
-pub type Surroundings<'a> = dyn Fn(&mut dyn FnMut()) + Sync + 'a;
+/// Runs the work of a thread in the surroundings that its caller wants; false: the thread cannot work, and others do it all.
+pub type Surroundings<'a> = dyn Fn(&mut dyn FnMut()) -> bool + Sync + 'a;
 
 /// Results of a batch.
 #[derive(Debug)]
@@ -179,7 +179,10 @@ pub fn batch(
     (parameters, values): (&[Parameter<'_>], &[f64]),
     hooks: &mut Hooks<'_>,
 ) -> Result<Batch> {
-    batch_within(model, solver, options, (parameters, values), hooks, &|work| work())
+    batch_within(model, solver, options, (parameters, values), hooks, &|work| {
+        work();
+        true
+    })
 }
 
 /// The same, whose threads work within the surroundings of the caller.
@@ -292,8 +295,11 @@ fn run(
             let task = || {
                 // A thread that was lost, which no design causes, is told as such.
                 let mut outcome = fail!(Internal, "a thread of the batch ended early");
-                surroundings(&mut || outcome = work.run());
-                outcome
+                if surroundings(&mut || outcome = work.run()) {
+                    outcome
+                } else {
+                    Ok(Vec::new())
+                }
             };
             match thread::Builder::new().stack_size(STACK).spawn_scoped(scope, task) {
                 Ok(handle) => handles.push(handle),

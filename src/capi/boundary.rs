@@ -4,6 +4,7 @@ use super::float_environment::FloatEnvironment;
 use super::last_error::LAST;
 use super::outcome::Outcome;
 use super::reserve;
+use super::thread_memory;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Error, Result, Status, TEXT_CAPACITY, Text};
 use crate::shortage;
@@ -73,12 +74,16 @@ pub(super) fn outside<T>(callback: impl FnOnce() -> T) -> T {
 }
 
 /// Runs work of the library on a thread of its own: in the default floating-point environment, and a panic is not
-/// printed.
-pub(super) fn within(work: &mut dyn FnMut()) {
+/// printed. False: there is no memory for the thread, and nothing was done.
+pub(super) fn within(work: &mut dyn FnMut()) -> bool {
     INSIDE.set(true);
     FloatEnvironment::enter();
+    if thread_memory::prepare().is_err() || shortage::is_noted() {
+        return false;
+    }
     // Work that panics leaves its outcome as it was, which says so.
     let _ = catch_unwind(AssertUnwindSafe(work));
+    true
 }
 
 fn guarded<T>(body: impl FnOnce() -> Result<T>) -> Result<T> {

@@ -6,6 +6,7 @@
 //!
 //! A program in Rust may use it too, as its `#[global_allocator]`; the crate itself sets none.
 
+use super::thread_memory::take_aside;
 use crate::error::{Error, Result};
 use crate::shortage;
 use core::alloc::{GlobalAlloc, Layout};
@@ -89,7 +90,7 @@ fn grains(layout: Layout) -> usize {
 fn take(layout: Layout) -> *mut u8 {
     let (count, step) = (grains(layout), layout.align().div_ceil(GRAIN));
     if count > GRAINS || layout.align() > 4096 {
-        return core::ptr::null_mut();
+        return take_aside(layout);
     }
     let found = locked(|map| {
         let first = find(map, count, step)?;

@@ -4,6 +4,7 @@
 
 use super::arrays::check_pointer;
 use super::boundary::{WithArgument, call, outside};
+use super::thread_memory;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::error::{Result, Status, TEXT_CAPACITY, fail};
@@ -229,8 +230,10 @@ pub(super) unsafe fn with_interrupt<T>(h: &hbvib_hooks, then: impl FnOnce(&Inter
     unsafe { with_hooks(h, |hooks| then(&hooks.interrupt())) }
 }
 
-/// The hooks given as the argument of this number; NULL is none.
+/// The hooks given as the argument of this number; NULL is none. A call with hooks may multiply large matrices, for
+/// which this thread is prepared.
 pub(super) unsafe fn load_hooks(p: *const hbvib_hooks, argument: i32) -> Result<hbvib_hooks> {
+    thread_memory::prepare()?;
     if p.is_null() {
         return Ok(hbvib_hooks::defaults());
     }

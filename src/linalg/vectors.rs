@@ -1,5 +1,6 @@
 //! Products and norms of plain vectors.
 
+use crate::error::{Result, try_vec};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
@@ -50,6 +51,25 @@ pub fn power_of_two(x: f64) -> f64 {
 
 /// Order up to which plain loops multiply as fast as vector instructions chosen at run time.
 const LOOPS_UP_TO: usize = 32;
+
+/// A product of matrices so large that the memory for packing them, which a thread keeps, is there afterwards.
+///
+/// # Errors
+/// `OutOfMemory` for the matrices.
+pub fn first_product() -> Result<()> {
+    const ORDER: usize = 40;
+    let mut out = try_vec(ORDER * ORDER, 0.0_f64, "a product")?;
+    let one = try_vec(ORDER * ORDER, 1.0_f64, "a product")?;
+    matmul(
+        MatMut::from_column_major_slice_mut(&mut out, ORDER, ORDER),
+        Accum::Add,
+        MatRef::from_column_major_slice(&one, ORDER, ORDER),
+        MatRef::from_column_major_slice(&one, ORDER, ORDER),
+        1.0,
+        Par::Seq,
+    );
+    Ok(())
+}
 
 /// out += factor·A x for a column-major A with `out.len()` rows.
 pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {

@@ -2,11 +2,13 @@
  *  - the call returns HBVIB_E_OUT_OF_MEMORY, or the results that it has with memory, bit by bit;
  *  - all memory is free again;
  *  - the same model then has the same results; slow analyses are repeated after one failure in eight.
- * Run under LD_PRELOAD=failing_malloc.so as: failing_allocations <share> [name], where share 1 takes every request and
- * share n about one in n. Prints a line for each analysis and one for all. */
-#include "analyses.h"
+ * The first analysis is also tried as the first call of a process.
+ * Run under LD_PRELOAD=failing_malloc.so as: failing_allocations <share> [name], where share 1 takes every request, of
+ * analyses that would take minutes one in some, and share n about one in n. Prints a line for each analysis and one for all. */
+#include "designs.h"
 #include "failing_malloc.h"
 
+#include <pthread.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <sys/mman.h>
@@ -20,7 +22,10 @@ typedef struct outcomes {
     int64_t n; /* request that fails now */
 } outcomes;
 
-static int64_t share = 1;
+static int64_t share = 1, given = 1;
+
+/* Seconds of solving above which not every request of an analysis fails. */
+enum { LONGEST = 200 };
 
 /* Whether an analysis is so quick that it is repeated after each failure; others are after one in eight. */
 static int quick;
@@ -79,28 +84,83 @@ static void try_building(const analysis *a, int32_t for_good, outcomes *all)
     }
 }
 
-/* Requests of an analysis, each of a new model. */
+/* An analysis in a thread of its own, which also asks for what a thread needs once. */
+typedef struct task {
+    const analysis *analysis;
+    const hbvib_model *model;
+    int64_t n, requests;
+    int32_t for_good;
+    hbvib_status status;
+    uint64_t sum;
+} task;
+
+static void *work(void *user)
+{
+    task *t = user;
+    memory_arm(t->n, t->for_good);
+    t->status = t->analysis->run(t->model, &t->sum);
+    t->requests = memory_disarm();
+    return NULL;
+}
+
+/* Requests of an analysis, each of a new model in a new thread. */
 static void try_running(const analysis *a, int32_t for_good, outcomes *all, uint64_t reference)
 {
     for (;; all->n = next(all->n)) {
         hbvib_model *model = NULL;
         const int64_t before = memory_blocks();
-        hbvib_status status;
-        uint64_t sum = 1, again = 1;
-        int64_t requests;
+        uint64_t again = 1;
+        pthread_t thread;
+        task t = {a, NULL, 0, 0, 0, HBVIB_OK, 1};
         if (a->build(&model) < 0) abort();
-        memory_arm(all->n, for_good);
-        status = a->run(model, &sum);
-        requests = memory_disarm();
-        if (requests >= all->n) judge(a, "analysis", for_good, all, status, sum == reference);
+        t.model = model;
+        t.n = all->n;
+        t.for_good = for_good;
+        if (pthread_create(&thread, NULL, work, &t) != 0 || pthread_join(thread, NULL) != 0) abort();
+        if (t.requests >= all->n) judge(a, "analysis", for_good, all, t.status, t.sum == reference);
         if ((all->n % 8 == 0 || quick) && (a->run(model, &again) < 0 || again != reference)) {
             all->changed++;
             complain(a, "analysis", for_good, all->n, "the model has other results afterwards");
         }
         if (hbvib_model_free(model) != HBVIB_OK) abort();
         leak(a, "analysis", for_good, all, before);
-        if (requests < all->n) return;
+        if (t.requests < all->n) return;
     }
+}
+
+/* The first analysis of a process, which also asks for what is set up once: each request in a process of its own. */
+static void try_first(const analysis *a, int32_t for_good, outcomes *all, task *t)
+{
+    for (;; all->n = next(all->n)) {
+        int result = 0;
+        pid_t child = fork();
+        if (child < 0) abort();
+        if (child == 0) {
+            hbvib_model *model = NULL;
+            t->sum = 1;
+            memory_arm(all->n, for_good);
+            t->status = a->build(&model);
+            if (t->status >= 0) t->status = a->run(model, &t->sum);
+            t->requests = memory_disarm();
+            _exit(0);
+        }
+        if (waitpid(child, &result, 0) != child) abort();
+        if (!WIFEXITED(result) || WEXITSTATUS(result) != 0) {
+            all->died++;
+            complain(a, "first call", for_good, all->n, "the process died");
+        } else {
+            if (t->requests < all->n) return;
+            judge(a, "first call", for_good, all, t->status, 1);
+        }
+    }
+}
+
+/* Two threads at one time: their stacks and tables stay in the process, and are used again. */
+static void *nothing(void *user)
+{
+    pthread_t thread;
+    if (user != NULL && (pthread_create(&thread, NULL, nothing, NULL) != 0 || pthread_join(thread, NULL) != 0)) abort();
+    return user;
 }
 
 /* Tries a phase in a process, and in another one after each request at which it dies. */
@@ -112,6 +172,8 @@ static void survive(const analysis *a, int building, int32_t for_good, outcomes 
         pid_t child = fork();
         if (child < 0) abort();
         if (child == 0) {
+            pthread_t thread;
+            if (pthread_create(&thread, NULL, nothing, all) != 0 || pthread_join(thread, NULL) != 0) abort();
             if (building) try_building(a, for_good, all);
             else try_running(a, for_good, all, reference);
             _exit(0);
@@ -127,30 +189,42 @@ static void survive(const analysis *a, int building, int32_t for_good, outcomes 
 int main(int argc, char **argv)
 {
     outcomes *all = mmap(NULL, sizeof *all, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    int64_t tried = 0, bad = 0, i;
+    task *first = mmap(NULL, sizeof *first, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    int64_t tried = 0, bad = 0, requests, i;
     outcomes sum = {0};
-    if (all == MAP_FAILED || argc < 2) return 2;
-    share = atoll(argv[1]);
-    for (i = 0; i < N_ANALYSES; i++) {
-        const analysis *a = &ANALYSES[i];
+    if (all == MAP_FAILED || first == MAP_FAILED || argc < 2) return 2;
+    given = atoll(argv[1]);
+    for (i = 0; i < N_ALL; i++) {
+        const analysis *a = analysis_number((int)i);
         hbvib_model *model = NULL;
         uint64_t reference = 1, again = 1;
-        const clock_t begin = clock();
+        clock_t begin;
+        double seconds;
         int32_t for_good;
         if (argc > 2 && strcmp(argv[2], a->name) != 0) continue;
+        memset(all, 0, sizeof *all);
+        share = given;
+        for (for_good = 0; for_good < 2 && i == 0; for_good++) {
+            all->n = 1;
+            try_first(a, for_good, all, first);
+        }
+        begin = clock();
         /* Twice, so that what is set up once in a process is there. */
+        memory_arm(0, 0);
         if (a->build(&model) < 0 || a->run(model, &reference) < 0 || a->run(model, &again) < 0 || again != reference) {
             fprintf(stderr, "%s cannot be solved twice: %s\n", a->name, hbvib_last_error());
             return 2;
         }
         if (hbvib_model_free(model) != HBVIB_OK) return 2;
-        quick = (clock() - begin) / 2 < CLOCKS_PER_SEC / 100;
-        memset(all, 0, sizeof *all);
+        seconds = (double)(clock() - begin) / 2 / CLOCKS_PER_SEC;
+        quick = seconds < 0.01;
+        requests = memory_disarm() / 2;
+        share = given == 1 ? 1 + (int64_t)(seconds * (double)requests / LONGEST) : given * (1 + requests / 2000);
         for (for_good = 0; for_good < 2; for_good++) {
             survive(a, 1, for_good, all, reference);
             survive(a, 0, for_good, all, reference);
         }
-        printf("%-32s %lld refused, %lld without effect, %lld deaths, %lld leaks, %lld changed, %lld other\n", a->name,
+        printf("%-36s %lld refused, %lld without effect, %lld deaths, %lld leaks, %lld changed, %lld other\n", a->name,
                (long long)all->refused, (long long)all->unharmed, (long long)all->died, (long long)all->leaked,
                (long long)all->changed, (long long)all->other);
         fflush(stdout);

@@ -49,9 +49,10 @@ int64_t memory_peak(void)
 
 static int fails(void)
 {
+    int64_t number;
     if (!armed) return 0;
-    asked++;
-    if (fail_at == 0 || asked < fail_at || (!permanent && asked > fail_at)) return 0;
+    number = __atomic_add_fetch(&asked, 1, __ATOMIC_RELAXED);
+    if (fail_at == 0 || number < fail_at || (!permanent && number > fail_at)) return 0;
     errno = ENOMEM;
     return 1;
 }
@@ -59,11 +60,18 @@ static int fails(void)
 static void *counted(void *block)
 {
     if (block != NULL) {
-        live_blocks++;
-        live_bytes += (int64_t)malloc_usable_size(block);
-        if (live_bytes > peak_bytes) peak_bytes = live_bytes;
+        int64_t bytes;
+        __atomic_add_fetch(&live_blocks, 1, __ATOMIC_RELAXED);
+        bytes = __atomic_add_fetch(&live_bytes, (int64_t)malloc_usable_size(block), __ATOMIC_RELAXED);
+        if (bytes > peak_bytes) peak_bytes = bytes;
     }
     return block;
+}
+
+static void uncounted(size_t bytes)
+{
+    __atomic_sub_fetch(&live_blocks, 1, __ATOMIC_RELAXED);
+    __atomic_sub_fetch(&live_bytes, (int64_t)bytes, __ATOMIC_RELAXED);
 }
 
 void *malloc(size_t size)
@@ -79,8 +87,7 @@ void *calloc(size_t n, size_t size)
 void free(void *block)
 {
     if (block == NULL) return;
-    live_blocks--;
-    live_bytes -= (int64_t)malloc_usable_size(block);
+    uncounted(malloc_usable_size(block));
     __libc_free(block);
 }
 
@@ -91,10 +98,7 @@ void *realloc(void *block, size_t size)
     if (fails()) return NULL;
     moved = __libc_realloc(block, size);
     if (moved == NULL) return NULL;
-    if (block != NULL) {
-        live_blocks--;
-        live_bytes -= (int64_t)before;
-    }
+    if (block != NULL) uncounted(before);
     return counted(moved);
 }
 

@@ -1,4 +1,4 @@
-/* Controls of failing_malloc.c. The counts are those of a process with one thread. */
+/* Controls of failing_malloc.c. The counts are those of all threads; the peak is exact for one thread. */
 #ifndef FAILING_MALLOC_H
 #define FAILING_MALLOC_H
 

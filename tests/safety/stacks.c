@@ -2,7 +2,7 @@
  * used. Run as: stacks <bytes> [small], where "small" takes building, forced responses and modes alone. Prints the use of
  * each analysis and the largest. */
 #define _GNU_SOURCE
-#include "analyses.h"
+#include "designs.h"
 
 #include <pthread.h>
 #include <stdio.h>
@@ -54,11 +54,11 @@ int main(int argc, char **argv)
     if (argc < 2) return 2;
     bytes = (size_t)atoll(argv[1]);
     setvbuf(stdout, NULL, _IOLBF, 1024);
-    for (i = 0; i < N_ANALYSES; i++) {
-        const analysis *a = &ANALYSES[i];
+    for (i = 0; i < N_ALL; i++) {
+        const analysis *a = analysis_number(i);
         int64_t n;
         if (small && a->run != forced && a->run != forced_to_tolerance && a->run != mode && a->run != mode_to_tolerance) continue;
-        printf("%-32s ", a->name);
+        printf("%-36s ", a->name);
         fflush(stdout);
         n = used(a, bytes);
         if (n < 0) {

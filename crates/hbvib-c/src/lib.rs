@@ -6,6 +6,9 @@ use engine::capi::reserve::ReserveAllocator;
 #[global_allocator]
 static ALLOCATOR: ReserveAllocator = ReserveAllocator;
 
+#[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+mod thread_exit;
+
 #[cfg(target_os = "linux")]
 mod loading {
     use engine::capi::process::{after_fork, at_unload, before_fork};
@@ -24,9 +27,18 @@ mod loading {
         // SAFETY: the functions stay until the library is unloaded, which removes them. Without memory for the entry, a
         // copy of the process that is made while another thread looks up a handle might wait for ever.
         let _ = unsafe { libc::pthread_atfork(Some(prepare), Some(copied), Some(copied)) };
+        #[cfg(all(target_env = "gnu", target_arch = "x86_64"))]
+        {
+            super::thread_exit::at_load();
+            // SAFETY: a number of the system.
+            let cache = unsafe { libc::sysconf(libc::_SC_LEVEL3_CACHE_SIZE) };
+            engine::capi::thread_memory::set_cache_size(usize::try_from(cache).unwrap_or(0));
+        }
     }
 
     extern "C" fn unloaded() {
+        #[cfg(all(target_env = "gnu", target_arch = "x86_64"))]
+        super::thread_exit::at_unload();
         at_unload();
     }
 
