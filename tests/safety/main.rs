@@ -7,6 +7,7 @@ mod common;
 
 mod failing_allocations;
 mod lifetime;
+mod null_pointers;
 mod programs;
 mod random_calls;
 mod stacks;
