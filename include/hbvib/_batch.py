@@ -68,7 +68,8 @@ class Batch:
         return len(self.status)
 
     def __repr__(self) -> str:
-        return f"<hbvib.Batch: {len(self)} designs, {np.count_nonzero(self.status)} without a complete result>"
+        from ._summary import counted
+        return f"<hbvib.Batch: {counted(len(self), 'design')}, {np.count_nonzero(self.status)} without a complete result>"
 
     def reason(self, design: int) -> str:
         """The sentence of a status other than OK; empty for OK."""

@@ -13,6 +13,7 @@ mod canvas;
 mod contact_figures;
 mod contact_tables;
 mod contacts;
+mod counted;
 mod faces;
 mod figure;
 mod job;
@@ -27,6 +28,7 @@ mod progress;
 mod verification;
 
 use build::{Built, Outcome};
+use counted::counted;
 use hbvib::{
     Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status, Waves,
     forced_response, nonlinear_mode,
@@ -81,14 +83,15 @@ fn schema() -> Outcome<ExitCode> {
 fn check(path: &Path) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
     let model = build::built(&job)?.model;
-    print(&format!(
-        "{}: {} degrees of freedom, {} sectors, {} contacts, {} forces\n",
-        path.display(),
-        model.ndof(),
-        model.structure().sectors(),
-        model.contacts().len(),
-        model.excitation().forces().len()
-    ))?;
+    let structure = model.structure();
+    let mut parts = vec![counted(model.ndof(), "degree of freedom")];
+    if structure.sectors() > 1 {
+        parts.push(counted(structure.sectors(), "sector"));
+        parts.push(format!("engine order {}", structure.engine_order()));
+    }
+    parts.push(counted(model.contacts().len(), "contact"));
+    parts.push(counted(model.excitation().forces().len(), "force"));
+    print(&format!("{}: {}\n", path.display(), parts.join(", ")))?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -1,6 +1,7 @@
 //! Files and summary of a result.
 
 use crate::build::Outcome;
+use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::job::Job;
 use crate::npz::Npz;
@@ -182,8 +183,8 @@ fn stability(text: &mut String, branch: &Branch) {
     let counts = branch.unstable_directions();
     let _ = writeln!(
         text,
-        "{} points unstable, stability unknown at {}",
-        counts.iter().filter(|n| **n > 0.0).count(),
+        "{} unstable, stability unknown at {}",
+        counted(counts.iter().filter(|n| **n > 0.0).count(), "point"),
         counts.iter().filter(|n| n.is_nan()).count()
     );
 }
@@ -193,8 +194,8 @@ pub fn summary(branch: &Branch) -> String {
     let mut text = String::new();
     let _ = writeln!(
         text,
-        "{} points, {:.6} to {:.6} Hz, response degree of freedom {}",
-        branch.points(),
+        "{}, {:.6} to {:.6} Hz, response degree of freedom {}",
+        counted(branch.points(), "point"),
         branch.omega().first().map_or(f64::NAN, |w| w / TAU),
         branch.omega().last().map_or(f64::NAN, |w| w / TAU),
         branch.response_dof()
@@ -215,12 +216,16 @@ pub fn summary(branch: &Branch) -> String {
     let removed = branch.reduction();
     let _ = writeln!(
         text,
-        "{} unknowns from {} degrees of freedom of {} sectors; {} of {} contacts never slip, {} have no force; even harmonics {}",
-        removed.unknowns,
-        removed.degrees_of_freedom,
-        removed.sectors,
+        "{} from {}{}; of {}, {} never slip and {} have no force; even harmonics {}",
+        counted(removed.unknowns, "unknown"),
+        counted(removed.degrees_of_freedom, "degree of freedom"),
+        if removed.sectors > 1 {
+            format!(" of {}", counted(removed.sectors, "sector"))
+        } else {
+            String::new()
+        },
+        counted(removed.contacts, "contact"),
         removed.never_slipping,
-        removed.contacts,
         removed.inert,
         if removed.even_removed { "removed" } else { "carried" }
     );

@@ -200,7 +200,7 @@ fn check_and_modes_report_without_solving() {
     let text = printed(&output.stdout);
     assert!(output.status.success());
     assert!(
-        text.contains("4 degrees of freedom, 24 sectors, 1 contacts, 2 forces"),
+        text.contains("4 degrees of freedom, 24 sectors, engine order 2, 1 contact, 2 forces"),
         "{text}"
     );
     let output = hbvib("modes", &path);

@@ -108,7 +108,7 @@ fn separate_files_name_the_nodes_and_must_agree() {
     let output = hbvib("check", "agree", &job(&matrix("two_MASS1.mtx", [11, 10])));
     assert!(output.status.success(), "{}", printed(&output.stderr));
     assert!(
-        printed(&output.stdout).contains("6 degrees of freedom") && printed(&output.stdout).contains(" 1 contacts")
+        printed(&output.stdout).contains("6 degrees of freedom") && printed(&output.stdout).contains(" 1 contact,")
     );
     let output = hbvib("check", "differ", &job(&matrix("other_MASS1.mtx", [10, 12])));
     assert_eq!(output.status.code(), Some(1));
