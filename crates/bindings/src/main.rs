@@ -8,6 +8,8 @@
 //! and to build the library without it, as users do. Then it reads the header and, from the shared library, the
 //! defaults of its structs, and writes the generated parts of the Fortran and Python modules and of the tests. These
 //! parts are between the lines `BEGIN GENERATED` and `END GENERATED`; the rest of these files is written by hand.
+//!
+//! `cargo run -p hbvib-bindings -- rust-api` documents the library and lists its public Rust interface in `docs/rust-api.txt`.
 
 mod declarations;
 mod foreign;
@@ -22,6 +24,7 @@ mod lists;
 mod python;
 mod python_types;
 mod regions;
+mod rust_api;
 
 use declarations::{Declarations, Result};
 use regions::Regions;
@@ -31,17 +34,40 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 fn main() {
-    if let Err(error) = write() {
+    let arguments: Vec<String> = env::args().skip(1).collect();
+    let written = match &arguments[..] {
+        [] => write(),
+        [one] if one == "rust-api" => write_rust_api(),
+        _ => Err("needs no argument, or rust-api".into()),
+    };
+    if let Err(error) = written {
         eprintln!("error: {error}");
         std::process::exit(1);
     }
 }
 
+/// The checkout.
+fn checkout() -> &'static Path {
+    let own = Path::new(env!("CARGO_MANIFEST_DIR"));
+    own.ancestors().nth(2).unwrap_or(Path::new(""))
+}
+
+/// Writes the list of the public Rust interface.
+fn write_rust_api() -> Result<()> {
+    let root = checkout();
+    // Pages of items that are gone would stay.
+    let pages = target()?.join("doc/hbvib");
+    if pages.exists() {
+        fs::remove_dir_all(&pages).map_err(|error| format!("{}: {error}", pages.display()))?;
+    }
+    cargo(root, &["doc", "--release", "-p", "hbvib", "--no-deps"])?;
+    let path = root.join("docs/rust-api.txt");
+    let old = fs::read_to_string(&path).unwrap_or_default();
+    replace(&path, &old, &rust_api::list(&pages)?)
+}
+
 fn write() -> Result<()> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .ancestors()
-        .nth(2)
-        .unwrap_or(Path::new(""));
+    let root = checkout();
     cargo(
         root,
         &["check", "--release", "-p", "hbvib", "--lib", "--features", "bindings"],
@@ -107,11 +133,16 @@ fn defaults(_: &Declarations) -> Result<layout::Defaults> {
     Err("the library is loaded by dlopen, which this system does not have".into())
 }
 
+/// The folder of builds, which holds that of this program.
+fn target() -> Result<PathBuf> {
+    let program = env::current_exe().map_err(|error| error.to_string())?;
+    Ok(program.ancestors().nth(2).unwrap_or(Path::new(".")).to_owned())
+}
+
 /// The shared library in the folder of release builds, beside that of this program.
 #[cfg(unix)]
 fn shared_library() -> Result<PathBuf> {
-    let program = env::current_exe().map_err(|error| error.to_string())?;
-    let target = program.ancestors().nth(2).unwrap_or(Path::new("."));
+    let target = target()?;
     let name = if cfg!(target_os = "macos") {
         "libhbvib.dylib"
     } else {
