@@ -3192,7 +3192,7 @@ hbvib_status hbvib_sensitivity(const hbvib_model *model,
                                int64_t *onset,
                                const hbvib_hooks *hooks);
 
-/// What a parameter response follows.
+/// Quantity that a parameter response follows.
 typedef enum {
   /// The response at a fixed frequency.
   HBVIB_FOLLOW_OMEGA = 0,

@@ -338,7 +338,7 @@ class Derivative(enum.IntEnum):
 
 
 class Follow(enum.IntEnum):
-    """What a parameter response follows."""
+    """Quantity that a parameter response follows."""
     OMEGA = 0  #: The response at a fixed frequency.
     PEAK = 1  #: A peak of the response.
 

@@ -23,7 +23,7 @@ def fields(branch: Branch) -> dict[str, np.ndarray]:
 
 
 def attributes(branch: Branch) -> dict[str, str]:
-    """What holds for the whole branch."""
+    """Attributes of the whole branch."""
     return dict(status=branch.status.name, message=branch.message)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 
 __all__ = ["Matrices", "ReadError", "read"]
 
-#: What a file holds: sparse matrices or None, and dofs, an array (n, 2) of node and direction, or None.
+#: Contents of a file: sparse matrices or None, and dofs, an array (n, 2) of node and direction, or None.
 Matrices = namedtuple("Matrices", "stiffness mass damping dofs")
 
 _HERE = os.path.dirname(os.path.abspath(__file__))
@@ -82,7 +82,7 @@ def _sparse(matrix: _Matrix) -> Any:
 
 
 def read(path: Any) -> Matrices:
-    """(stiffness, mass, damping, dofs) of a file; what it does not hold is None.
+    """(stiffness, mass, damping, dofs) of a file, None for those that it does not hold.
 
     Any file of a CalculiX job reads all of them. A format that does not say what it holds, as Matrix Market and
     Harwell-Boeing, has its matrix as stiffness. dofs is an array (n, 2) of node and direction. ReadError names file, line

@@ -17,7 +17,7 @@ use crate::error::{Result, Status, fail};
 use crate::model::Model;
 use core::ptr;
 
-/// What a parameter response follows.
+/// Quantity that a parameter response follows.
 #[repr(C)]
 pub enum hbvib_follow {
     /// The response at a fixed frequency.

@@ -37,26 +37,26 @@ impl Constant {
 /// Factors of the parts of an evaluation whose sum is the derivative of a force.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Combination {
-    /// Of the motion in the direction of the force.
+    /// Factor of the motion in the direction of the force.
     pub motion: f64,
-    /// Of J x over the tangential motions.
+    /// Factor of J x over the tangential motions.
     pub by_tangential: f64,
-    /// Of J y over the normal motion.
+    /// Factor of J y over the normal motion.
     pub by_normal: f64,
-    /// Of J e, with a normal motion of 1 at all times.
+    /// Factor of J e, with a normal motion of 1 at all times.
     pub by_shift: f64,
-    /// Of the force f.
+    /// Factor of the force f.
     pub force: f64,
-    /// Of f − J x − J y: zero while the contact sticks.
+    /// Factor of f − J x − J y: zero while the contact sticks.
     pub offset: f64,
 }
 
 /// The derivative of the forces of a contact by a constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ForceDerivative {
-    /// Of the forces along the tangential directions.
+    /// Derivative of the forces along the tangential directions.
     pub tangential: Combination,
-    /// Of the force along the normal.
+    /// Derivative of the force along the normal.
     pub normal: Combination,
     /// Whether the force begins to depend on the constant at its present value, zero: a derivative then exists on one
     /// side only.

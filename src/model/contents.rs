@@ -1,4 +1,4 @@
-//! What a model holds, read back: blocks of its matrices, normal loads as they were given.
+//! Contents of a model, read back: blocks of its matrices, normal loads as they were given.
 
 use crate::error::{Result, fail};
 use crate::linalg::sparse::Csc;

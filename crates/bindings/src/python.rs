@@ -247,7 +247,7 @@ mod tests {
     use super::*;
 
     const HEADER: &str = "typedef int32_t hbvib_status;\n\n\
-        /// States. Of contacts.\ntypedef enum {\n  /// It sticks.\n  HBVIB_STATE_STICK = 0,\n  HBVIB_STATE_SLIP = 1,\n} hbvib_state;\n\n\
+        /// States. They are of contacts.\ntypedef enum {\n  /// It sticks.\n  HBVIB_STATE_STICK = 0,\n  HBVIB_STATE_SLIP = 1,\n} hbvib_state;\n\n\
         /// Outcomes.\ntypedef enum {\n  HBVIB_OK = 0,\n  HBVIB_E_NULL = -1,\n} hbvib_status_code;\n\n\
         /// Bits.\ntypedef enum {\n  HBVIB_BITS_A = 1,\n  HBVIB_BITS_B = 2,\n} hbvib_some_flag;\n\n\
         typedef enum {\n  /// Below. All.\n  HBVIB_GROUND = -1,\n} hbvib_dof;\n\n\

@@ -1,4 +1,4 @@
-! What the Fortran tests share: checks that are counted and name the claim that failed, and the ring damper as reference case.
+! Shared parts of the Fortran tests: checks that are counted and name the claim that failed, and the ring damper as reference case.
 module common
    use, intrinsic :: iso_fortran_env, only: error_unit
    use hbvib

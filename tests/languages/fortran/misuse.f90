@@ -1,4 +1,4 @@
-! What is asked wrongly is refused in the library's words, in indices from 1, and leaves the model as it was.
+! Wrong arguments are refused in the library's words, in indices from 1, and leave the model as it was.
 module stopping
    use hbvib
    implicit none

@@ -1,4 +1,4 @@
-"""What the tests share: checks that name their claim, and the ring damper as reference model."""
+"""Shared parts of the tests: checks that name their claim, and the ring damper as reference model."""
 
 import math
 import os

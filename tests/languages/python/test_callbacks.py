@@ -83,7 +83,7 @@ check("which nothing else holds", error.__context__ is None and error.__cause__ 
 
 
 def lost():
-    """What a failure keeps alive once it was dealt with, without the collector's help."""
+    """Objects that a failure keeps alive once it was dealt with, without the collector's help."""
     try:
         solve(model, progress=lambda state: 1 / 0)
     except ZeroDivisionError as error:

@@ -71,7 +71,7 @@ check("the version is the library's", hbvib.__version__.encode() == hbvib.lib.hb
 
 
 def imported(module=MODULE, **environment):
-    """What an interpreter says that imports a copy of the module."""
+    """The output of an interpreter that imports a copy of the module."""
     kept = {key: value for key, value in os.environ.items() if key not in ("HBVIB_LIBRARY", "PYTHONPATH")}
     run = subprocess.run(
         [sys.executable, "-c", "import hbvib; print(hbvib.lib._name)"],

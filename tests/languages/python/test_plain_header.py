@@ -31,7 +31,7 @@ with open(os.path.join(INCLUDE, "hbvib.h"), encoding="utf-8") as file:
 known = {name: int(value) for name, value in re.findall(r"\b(HBVIB_\w+) = (-?\d+)", header)}
 check("every constant has its value", constants == known, set(constants.items()) ^ set(known.items()))
 
-# What ctypes finds at the offsets of the table in the book.
+# The fields that ctypes finds at the offsets of the table in the book.
 HERE = os.path.dirname(os.path.abspath(__file__))
 with open(os.path.join(HERE, "../../../docs/foreign-calls.md"), encoding="utf-8") as file:
     page = file.read()
