@@ -31,6 +31,7 @@ Ctrl-C      stops every call that may be long within a fraction of a second: whi
 """
 from __future__ import annotations
 
+import importlib
 from typing import Any
 
 from . import _c, _results, _types
@@ -77,8 +78,7 @@ def __getattr__(name: str) -> Any:
     """hbvib.io: the readers of finite-element files, a module and library of their own, loaded on first use."""
     if name != "io":
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from . import io
-    return io
+    return importlib.import_module("hbvib.io")
 
 
 # Classes are named hbvib.Model in messages and pickles, whichever module they are in.

@@ -31,7 +31,15 @@ class Batch:
     peak_amplitude, peak_omega   NaN where the amplitude has no maximum within the range, or the design failed.
     status                       numbers of Status: OK, STOPPED_NO_PEAK, or why the design has no result or a part of one.
     points                       points of each curve.
-    Batches are pickled without their branches."""
+    Batches are pickled without their branches.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> model.batch((0.8, 1.6), hbvib.Parameter("preload"), [0.5, 1.0, 1.5], harmonics=9)
+    <hbvib.Batch: 3 designs, 0 without a complete result>
+    """
 
     peak_amplitude: np.ndarray[Any, np.dtype[np.float64]]
     peak_omega: np.ndarray[Any, np.dtype[np.float64]]
@@ -72,11 +80,30 @@ class Batch:
         return f"<hbvib.Batch: {counted(len(self), 'design')}, {np.count_nonzero(self.status)} without a complete result>"
 
     def reason(self, design: int) -> str:
-        """The sentence of a status other than OK; empty for OK."""
+        """The sentence of a status other than OK; empty for OK. IndexError for a design that is not there.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> batch = model.batch((0.8, 1.6), hbvib.Parameter("mu"), [0.3, -1.0], harmonics=3)
+        >>> batch.reason(0), batch.reason(1) != ""
+        ('', True)
+        """
         return self._reasons.get(range(len(self))[design], "")
 
     def branch(self, design: int) -> Branch:
-        """The branch of a design, where keep was set. ArgumentError where there is none."""
+        """The branch of a design, where keep was set. ArgumentError where there is none, IndexError for a design that is
+        not there.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> batch = model.batch((0.8, 1.6), hbvib.Parameter("preload"), [0.5, 1.0], keep=True, harmonics=9)
+        >>> batch.branch(1).peaks().amplitude.round(4)
+        array([0.5836])
+        """
         design = range(len(self))[design]
         if design not in self._branches:
             if self._owner is None:
@@ -89,7 +116,16 @@ class Batch:
 
     @staticmethod
     def concatenate(batches: Sequence[Batch]) -> Batch:
-        """One batch of the designs of several, without their branches."""
+        """One batch of the designs of several, without their branches.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+        >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+        >>> model.add_force(0, 0.2)
+        >>> parts = [model.batch((0.8, 1.6), hbvib.Parameter("preload"), values, harmonics=9) for values in ([0.5], [1.0, 1.5])]
+        >>> hbvib.Batch.concatenate(parts).peak_amplitude.round(4)
+        array([1.3914, 0.5836, 0.6641])
+        """
         reasons: dict[int, str] = {}
         first = 0
         for batch in batches:

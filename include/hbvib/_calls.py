@@ -116,12 +116,35 @@ class CancelFlag:
         self.value = ctypes.c_int32(0)
 
     def set(self) -> None:
+        """Stops the calls that have this flag.
+
+        >>> import hbvib
+        >>> cancel = hbvib.CancelFlag()
+        >>> cancel.set()
+        >>> cancel.is_set()
+        True
+        """
         self.value.value = 1
 
     def clear(self) -> None:
+        """Makes the flag ready for the next call.
+
+        >>> import hbvib
+        >>> cancel = hbvib.CancelFlag()
+        >>> cancel.set()
+        >>> cancel.clear()
+        >>> cancel.is_set()
+        False
+        """
         self.value.value = 0
 
     def is_set(self) -> bool:
+        """Whether `set` was called since the flag was made or cleared.
+
+        >>> import hbvib
+        >>> hbvib.CancelFlag().is_set()
+        False
+        """
         return self.value.value != 0
 
 

@@ -55,7 +55,17 @@ class Parameter:
 
 class Sensitivities(np.ndarray):
     """Derivatives of a result by parameters, an array in their order; `reasons` has for each the reason why it is NaN,
-    or an empty text."""
+    or an empty text.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, stiffness=1, rayleigh=(0, 0.02))
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> found = model.sensitivity(branch, branch.peaks().point[0], [hbvib.Parameter("kt"), hbvib.Parameter("mu")])
+    >>> found.shape, found.reasons
+    ((2,), ('', ''))
+    """
     reasons: tuple[str, ...]
 
     def __array_finalize__(self, other: Any) -> None:

@@ -86,7 +86,20 @@ def read(path: Any) -> Matrices:
 
     Any file of a CalculiX job reads all of them. A format that does not say what it holds, as Matrix Market and
     Harwell-Boeing, has its matrix as stiffness. dofs is an array (n, 2) of node and direction. ReadError names file, line
-    and reason."""
+    and reason.
+
+    >>> import hbvib, hbvib.io
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "k.mtx")
+    >>> with open(path, "w") as file:
+    ...     print("%%MatrixMarket matrix coordinate real symmetric\\n2 2 3\\n1 1 2\\n2 1 -1\\n2 2 2", file=file)
+    ...
+    >>> found = hbvib.io.read(path)
+    >>> found.stiffness.toarray()
+    array([[ 2., -1.],
+           [-1.,  2.]])
+    >>> model = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=found.stiffness)  # in any format of scipy
+    """
     handle = ctypes.c_void_p()
     if _lib.hbvib_io_read(os.fsencode(os.fspath(path)), ctypes.byref(handle)) != 0:
         raise ReadError(_lib.hbvib_io_last_error().decode(errors="replace"))

@@ -468,6 +468,10 @@ fn python_feels_native() {
     }
 }
 
+/// The reader of files is an attribute of the package, and its example gives what it says.
+const READER: &str = "import doctest, hbvib; failed, tried = doctest.testmod(hbvib.io); assert tried > 4 and not failed; \
+                      print(hbvib.lib._name)";
+
 #[test]
 fn the_wheel_brings_its_library() {
     let folder = workshop("wheel");
@@ -501,7 +505,7 @@ fn the_wheel_brings_its_library() {
     check_table("the wheel", &text);
     let reported = printed(
         Command::new(python())
-            .args(["-c", "import hbvib, hbvib.io; print(hbvib.lib._name)"])
+            .args(["-c", READER])
             .env("PYTHONPATH", folder.join("site"))
             .env_remove("HBVIB_LIBRARY"),
     );

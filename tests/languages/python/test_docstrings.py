@@ -22,7 +22,8 @@ check("a name is listed once", len(hbvib.__all__) == len(set(hbvib.__all__)))
 
 runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
 finder = doctest.DocTestFinder(recurse=False)
-with_example = ("Model", "Branch", "CancelFlag", "ForceCall", "evaluate_contact", "load", "get_include")
+with_example = ("Model", "Branch", "Batch", "Parameter", "Sensitivities", "CancelFlag", "ForceCall", "evaluate_contact", "load",
+                "get_include")
 
 
 def explained(name, value, needs_example):
@@ -41,9 +42,9 @@ for name in hbvib.__all__:
     value = getattr(hbvib, name)
     if inspect.isfunction(value) or inspect.isclass(value):
         explained(name, value, name in with_example)
-for kind in (hbvib.Model, hbvib.Branch):
+for kind in (hbvib.Model, hbvib.Branch, hbvib.Batch, hbvib.CancelFlag):
     for name, value in {name: value for base in reversed(kind.__mro__[:-1]) for name, value in vars(base).items()}.items():
-        value = value.__func__ if isinstance(value, classmethod) else value
+        value = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
         is_field = name == "mode_energy" or name.upper() in hbvib.Field.__members__
         if not name.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
             explained(f"{kind.__name__}.{name}", value, not is_field)
