@@ -21,6 +21,7 @@ strip=${STRIP:-strip}
 
 [ "$(uname -s)" = Linux ] || { echo "install.sh supports shared libraries of Linux only; elsewhere use cargo-c" >&2; exit 1; }
 "$cargo" build --release --lib
+"$cargo" build --release --lib -p hbvib-io
 target=$("$cargo" metadata --format-version 1 --no-deps | sed -n 's/.*"target_directory":"\([^"]*\)".*/\1/p')
 built=$target/${CARGO_BUILD_TARGET:+$CARGO_BUILD_TARGET/}release
 version=$(sed -n 's/^version = "\(.*\)"/\1/p' Cargo.toml | head -n 1)
@@ -57,8 +58,11 @@ ln -sf "libhbvib.so.$version" "$prefix/lib/libhbvib.so.$abi"
 ln -sf "libhbvib.so.$abi" "$prefix/lib/libhbvib.so"
 stripped libhbvib.a --strip-debug
 put 644 "$scratch/libhbvib.a" lib/libhbvib.a
+# The readers of finite-element files, which hbvib.io of Python needs.
+stripped libhbvib_io.so --strip-unneeded
+put 755 "$scratch/libhbvib_io.so" lib/libhbvib_io.so
 
-for file in hbvib.h hbvib_plain.h hbvib.hpp hbvib.f90; do put 644 "include/$file" "include/$file"; done
+for file in hbvib.h hbvib_io.h hbvib_plain.h hbvib.hpp hbvib.f90; do put 644 "include/$file" "include/$file"; done
 for file in include/hbvib/*.py include/hbvib/py.typed; do put 644 "$file" "share/hbvib/hbvib/${file##*/}"; done
 for file in LICENSE-MIT LICENSE-APACHE; do put 644 "$file" "share/doc/hbvib/$file"; done
 fill hbvib.pc lib/pkgconfig/hbvib.pc

@@ -51,8 +51,9 @@ if { [ -e .venv ] || ! complete python3; } && ! complete .venv/bin/python; then
     }
 fi
 
-# The library first: the programs link against it; and the examples, which tests run.
+# The libraries first: the programs link against them; and the examples, which tests run.
 cargo build --release --lib --examples
+cargo build --release --lib -p hbvib-io
 cargo test --release --lib --tests
 # The readers of files, a library of their own, and the command.
 cargo test --release -p hbvib-io --lib --tests

@@ -10,3 +10,4 @@ mod languages;
 mod layout;
 mod ring_damper_example;
 mod ring_damper_mode;
+mod wheel;
