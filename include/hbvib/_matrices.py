@@ -122,7 +122,8 @@ class _Matrices(_Owner):
         array([[0.1, 0. ],
                [0. , 0.1]])
         """
-        self._call("hbvib_model_set_matrix", _member(MatrixKind, which), _matrix(matrix, part))
+        kind = _member(MatrixKind, which)
+        self._call("hbvib_model_set_matrix", kind, _matrix(matrix, part, kind.name.lower()))
 
     def fix(self, dofs: ArrayLike) -> None:
         """Fixes degrees of freedom: they do not move, whatever matrices, contacts and forces say. Numbers stay as
@@ -205,7 +206,9 @@ class _Matrices(_Owner):
         >>> model.matrix("stiffness", "next")
         array([[-1.]])
         """
-        self._call("hbvib_cyclic_set_coupling", _member(MatrixKind, which), _matrix(to_next, Part.GENERAL))
+        kind = _member(MatrixKind, which)
+        coupling = _matrix(to_next, Part.GENERAL, f"coupling of the {kind.name.lower()}")
+        self._call("hbvib_cyclic_set_coupling", kind, coupling)
 
     def set_coupling_previous(self, which: Any, to_previous: Any) -> None:
         """Coupling to the previous sector where it is not the transpose: damping and stiffness only.
@@ -217,7 +220,9 @@ class _Matrices(_Owner):
         >>> model.matrix("damping", "previous")
         array([[-0.1]])
         """
-        self._call("hbvib_cyclic_set_coupling_previous", _member(MatrixKind, which), _matrix(to_previous, Part.GENERAL))
+        kind = _member(MatrixKind, which)
+        coupling = _matrix(to_previous, Part.GENERAL, f"coupling of the {kind.name.lower()}")
+        self._call("hbvib_cyclic_set_coupling_previous", kind, coupling)
 
     def set_diameter(self, which: Any, diameter: int, matrix: Any, part: Any = Part.FULL) -> None:
         """The complex matrix of the wave of a nodal diameter 0 .. sectors / 2, instead of sector blocks.
@@ -231,7 +236,8 @@ class _Matrices(_Owner):
         >>> model.linear_modes(1, diameter=2).omega.round(12)  # sqrt(3)
         array([1.73205081])
         """
-        self._call("hbvib_cyclic_set_diameter", _member(MatrixKind, which), diameter, _matrix(matrix, part))
+        kind = _member(MatrixKind, which)
+        self._call("hbvib_cyclic_set_diameter", kind, diameter, _matrix(matrix, part, kind.name.lower()))
 
     def set_wave(self, engine_order: int) -> None:
         """Engine order of the excitation, of any sign and size.

@@ -65,30 +65,30 @@ def _with_options(struct: str, options: type) -> Callable[[_Function], _Function
     return decorated
 
 
-def _matrix(value: Any, part: Any) -> Any:
+def _matrix(value: Any, part: Any, name: str = "matrix") -> Any:
     """Description of a matrix: dense without a copy where its strides allow, sparse of any scipy format."""
     part = _member(Part, part)
     if hasattr(value, "tocsc"):
         sparse = value.tocsc()
-        numbers = _numbers("matrix", sparse.data, np.complex128)
+        numbers = _numbers(name, sparse.data, np.complex128)
         number: Any = np.complex128 if numbers.dtype.kind == "c" else np.float64
         rows, cols = sparse.shape
         starts = _array("indptr", sparse.indptr, np.int64, [cols + 1])
         places = _array("indices", sparse.indices, np.int64, [None])
         if starts[-1] > min(len(places), len(numbers)):  # all that the library cannot check itself
             raise ValueError(
-                f"matrix: indptr ends at {starts[-1]}, beyond {len(places)} indices and {len(numbers)} numbers")
+                f"{name}: indptr ends at {starts[-1]}, beyond {len(places)} indices and {len(numbers)} numbers")
         return _new("hbvib_matrix", storage=Storage.CSC, scalar=int(number is np.complex128), part=part, rows=rows,
-                    cols=cols, values=_array("matrix", numbers, number), col_ptr=starts, row_idx=places)
-    dense = _numbers("matrix", value, np.complex128)
+                    cols=cols, values=_array(name, numbers, number), col_ptr=starts, row_idx=places)
+    dense = _numbers(name, value, np.complex128)
     if dense.ndim == 0:
         dense = dense.reshape(1, 1)
     if dense.ndim != 2:
-        raise ValueError(f"matrix has shape {dense.shape}, needs two dimensions")
+        raise ValueError(f"{name} has shape {dense.shape}, needs two dimensions")
     kind: Any = np.complex128 if dense.dtype.kind == "c" else np.float64
     dtype = np.dtype(kind)
     if not np.can_cast(dense.dtype, dtype, "safe"):
-        raise TypeError(f"matrix holds {dense.dtype}, which is not {dtype} without loss")
+        raise TypeError(f"{name} holds {dense.dtype}, which is not {dtype} without loss")
     dense = np.require(dense, dtype, "A")  # native and aligned; no copy of what is
     (rows, cols), (down, right), size = dense.shape, dense.strides, dtype.itemsize
     if (right == size or cols == 1) and down % size == 0 and down >= cols * size:

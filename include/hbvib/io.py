@@ -1,8 +1,8 @@
 """Matrices of finite-element programs as scipy matrices: hbvib.io.read(path).
 
 Matrix Market (also gzipped), Abaqus *MATRIX GENERATE (.mtx), CalculiX (.sti, .mas, .dof), Harwell-Boeing text, Nastran
-OP4 text. Needs scipy and the library libhbvib_io (cargo build --release -p hbvib-io), named by HBVIB_IO_LIBRARY, or in
-the places where hbvib looks."""
+OP4 text. Needs scipy, and the library libhbvib_io: the wheel brings it; in the checkout, cargo build
+--release -p hbvib-io builds it, and HBVIB_IO_LIBRARY names one elsewhere."""
 
 from __future__ import annotations
 
@@ -68,7 +68,10 @@ def _array(address: int, count: int, kind: Any) -> np.ndarray:
 
 
 def _sparse(matrix: _Matrix) -> Any:
-    from scipy import sparse  # type: ignore[import-untyped, unused-ignore]
+    try:
+        from scipy import sparse  # type: ignore[import-untyped, unused-ignore]
+    except ImportError:
+        raise ImportError("matrices from files need scipy: pip install scipy") from None
     row, column = (_array(address, matrix.entries, np.uint32).astype(np.int64) for address in (matrix.row, matrix.column))
     kind = np.complex128 if matrix.is_complex else np.float64
     values = _array(matrix.values, matrix.entries, kind)
