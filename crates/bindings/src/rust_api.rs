@@ -52,7 +52,9 @@ fn item(html: &str) -> Option<String> {
 
 /// The parts of a text between two marks.
 fn between<'a>(text: &'a str, open: &'a str, close: &'a str) -> impl Iterator<Item = &'a str> {
-    text.split(open).skip(1).filter_map(move |part| part.split(close).next())
+    text.split(open)
+        .skip(1)
+        .filter_map(move |part| part.split(close).next())
 }
 
 /// HTML as one line of text. The label of a folded list of fields is no text.
@@ -68,7 +70,11 @@ fn line(html: &str) -> String {
         };
     }
     text += rest;
-    let text = text.replace("&lt;", "<").replace("&gt;", ">").replace("&#39;", "'").replace("&quot;", "\"");
+    let text = text
+        .replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&#39;", "'")
+        .replace("&quot;", "\"");
     let words: Vec<&str> = text.split_whitespace().collect();
     words.join(" ").replace("&amp;", "&").replace("&nbsp;", " ")
 }
