@@ -36,6 +36,8 @@ pub enum Status {
     StoppedNoForce = 9,
     /// The whole range was covered, but the amplitude has no maximum in it; all points are kept.
     StoppedNoPeak = 10,
+    /// The followed peak, or maximum of damping, vanished: it met a minimum; the points found so far are kept.
+    StoppedPeakVanished = 11,
     /// A required pointer is NULL.
     Null = -1,
     /// An argument has a value outside its range.
@@ -88,6 +90,7 @@ impl Status {
             Self::StoppedUnbounded => c"HBVIB_STOPPED_UNBOUNDED",
             Self::StoppedNoForce => c"HBVIB_STOPPED_NO_FORCE",
             Self::StoppedNoPeak => c"HBVIB_STOPPED_NO_PEAK",
+            Self::StoppedPeakVanished => c"HBVIB_STOPPED_PEAK_VANISHED",
             Self::Null => c"HBVIB_E_NULL",
             Self::Argument => c"HBVIB_E_ARGUMENT",
             Self::Dimension => c"HBVIB_E_DIMENSION",
@@ -139,12 +142,15 @@ impl Status {
             Self::StoppedNoPeak => {
                 "the amplitude has no maximum within the range; all points are kept; widen the range of frequency"
             }
+            Self::StoppedPeakVanished => {
+                "the followed maximum met a minimum and vanished; the points found so far are kept; follow another peak from there"
+            }
             _ => "",
         }
     }
 
     /// All values, for tables and for the conversion of an integer into a status.
-    pub const ALL: [Self; 28] = [
+    pub const ALL: [Self; 29] = [
         Self::Ok,
         Self::StoppedByCaller,
         Self::StoppedStepTooSmall,
@@ -156,6 +162,7 @@ impl Status {
         Self::StoppedUnbounded,
         Self::StoppedNoForce,
         Self::StoppedNoPeak,
+        Self::StoppedPeakVanished,
         Self::Null,
         Self::Argument,
         Self::Dimension,

@@ -108,7 +108,8 @@ pub use analysis::harmonic_residual::{
 };
 pub use analysis::linear_contacts::LinearContacts;
 pub use analysis::nonlinear_mode::nonlinear_mode;
-pub use analysis::parameter_response::{Follow, ParameterRange, parameter_response};
+pub use analysis::parameter_range::{Follow, ParameterRange};
+pub use analysis::parameter_response::parameter_response;
 pub use analysis::point_error::{estimate_at, estimate_at_with};
 pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
@@ -128,8 +129,8 @@ pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeInfo, ModePoint};
 pub use results::{
-    Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, LimitCycle, Multiplier, MultiplierClass,
-    Optimum, Special, Stretch,
+    Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, HigherPeak, LimitCycle, Multiplier,
+    MultiplierClass, Optimum, Special, Stretch,
 };
 pub use time_integration::TimeResponse;
 

@@ -3,7 +3,7 @@
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, fail, try_push};
 use crate::error_estimate::affordable;
-use crate::fourier::gcd;
+use crate::fourier::{HarmonicSet, gcd};
 use crate::model::Model;
 use crate::options::{MAX_SAMPLES, SolverOptions};
 use std::sync::Arc;
@@ -81,6 +81,16 @@ impl<'m> HarmonicLevels<'m> {
     /// The lowest level with all harmonics up to h; if there is none, the last affordable one.
     pub fn level_with(&self, h: usize) -> usize {
         self.models.slot_with(h).min(self.last())
+    }
+
+    /// The lowest level that carries these harmonics; with a fixed number there is one.
+    pub fn level_of(&self, set: &HarmonicSet) -> usize {
+        self.level_with(set.numbers().last().copied().unwrap_or(0))
+    }
+
+    /// The highest harmonic that a level requests.
+    pub fn highest(&self, level: usize) -> usize {
+        self.models.highest(level)
     }
 
     /// The lowest level with at least half as many harmonics as one.

@@ -195,7 +195,7 @@ fn first_point(
 }
 
 /// The harmonics in which forces act.
-fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
+pub(super) fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
     let mut forced = Vec::new();
     let forces = model.excitation().forces().iter();
     let degrees = model.structure().degrees();

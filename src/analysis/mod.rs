@@ -5,8 +5,10 @@ mod branch_stability;
 pub mod campbell;
 pub mod check_jacobian;
 pub mod damped_modes;
+mod damping_maximum;
 pub mod design_peak;
 pub mod floquet;
+mod followed;
 mod forced_discretised;
 pub mod forced_response;
 pub mod harmonic_residual;
@@ -15,6 +17,8 @@ mod mode_discretised;
 mod mode_equations;
 mod mode_onset;
 pub mod nonlinear_mode;
+mod parameter_curve;
+pub mod parameter_range;
 pub mod parameter_response;
 pub mod point_error;
 mod residual_numbering;
@@ -23,6 +27,7 @@ pub mod sensitivity_analysis;
 mod static_solution;
 pub mod synthesis;
 pub mod time_response;
+mod tracked_damping;
 mod unbounded_response;
 pub mod verify;
 
@@ -35,7 +40,8 @@ pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
 };
 pub use crate::analysis::nonlinear_mode::nonlinear_mode;
-pub use crate::analysis::parameter_response::{Follow, ParameterRange, parameter_response};
+pub use crate::analysis::parameter_range::{Follow, ParameterRange};
+pub use crate::analysis::parameter_response::parameter_response;
 pub use crate::analysis::point_error::estimate_at;
 pub use crate::analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, sensitivity_with};
 pub use crate::analysis::synthesis::{synthesise, synthesise_with};

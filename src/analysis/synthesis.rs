@@ -128,6 +128,7 @@ pub fn synthesise_with(
             "the branch is a forced response; responses are synthesised from a nonlinear mode"
         );
     };
+    branch.check_one_model()?;
     check_model(branch, data, model)?;
     let ndof = model.structure().ndof();
     let mut force = try_vec(ndof, Complex64::ZERO, CONTEXT)?;

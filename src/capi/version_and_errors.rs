@@ -66,6 +66,9 @@ pub enum hbvib_status_code {
     HBVIB_STOPPED_NO_FORCE = 9,
     /// Batches only: the amplitude has no maximum within the range.
     HBVIB_STOPPED_NO_PEAK = 10,
+    /// Parameter responses only: the followed peak, or maximum of damping, met a minimum and
+    /// vanished.
+    HBVIB_STOPPED_PEAK_VANISHED = 11,
     /// A required pointer is NULL.
     HBVIB_E_NULL = -1,
     /// A value lies outside its range.
@@ -121,6 +124,7 @@ same!(
     HBVIB_STOPPED_UNBOUNDED = StoppedUnbounded,
     HBVIB_STOPPED_NO_FORCE = StoppedNoForce,
     HBVIB_STOPPED_NO_PEAK = StoppedNoPeak,
+    HBVIB_STOPPED_PEAK_VANISHED = StoppedPeakVanished,
     HBVIB_E_NULL = Null,
     HBVIB_E_ARGUMENT = Argument,
     HBVIB_E_DIMENSION = Dimension,

@@ -113,6 +113,11 @@ impl Branch {
         &self.amplitude[..self.curve]
     }
 
+    /// The same at a stored point; NaN where there is none.
+    pub(crate) fn stored_amplitude(&self, point: usize) -> f64 {
+        self.amplitude.get(point).copied().unwrap_or(f64::NAN)
+    }
+
     /// Relative residual of each point.
     #[must_use]
     pub fn residual(&self) -> &[f64] {

@@ -189,6 +189,15 @@ impl Branch {
         Ok(())
     }
 
+    /// Stores a point of a result over a parameter: on the curve, an optimum by its number alone, or a requested one.
+    pub(crate) fn push_followed(&mut self, kind: Option<SpecialKind>, record: &Record<'_>) -> Result<()> {
+        match kind {
+            None => self.push_curve(record),
+            Some(SpecialKind::Peak) => self.push(record).map(|_| ()),
+            Some(kind) => self.push_special(kind, self.points().saturating_sub(1), record),
+        }
+    }
+
     /// Stores a point beside the curve, which lies after the first `after` points of the curve.
     pub(crate) fn push_special(&mut self, kind: SpecialKind, after: usize, record: &Record<'_>) -> Result<()> {
         let point = self.push(record)?;

@@ -9,12 +9,26 @@ pub struct Optimum {
     pub point: usize,
     /// Angular frequency.
     pub omega: f64,
-    /// Amplitude of the response degree of freedom.
+    /// Amplitude of the response degree of freedom; where the maximum of damping of a mode is followed, the damping
+    /// ratio.
     pub amplitude: f64,
     /// Value of the parameter.
     pub parameter: f64,
-    /// Whether the amplitude is largest there, else smallest.
+    /// Whether it is largest there, else smallest.
     pub is_maximum: bool,
+}
+
+/// A peak that is higher than the followed one, in the same design.
+#[derive(Clone, Copy, Debug)]
+pub struct HigherPeak {
+    /// Number of the stored point of the followed peak.
+    pub point: usize,
+    /// Value of the parameter.
+    pub parameter: f64,
+    /// Angular frequency of the higher peak.
+    pub omega: f64,
+    /// Its amplitude.
+    pub amplitude: f64,
 }
 
 /// Numbers of the stored points over a parameter.
@@ -24,23 +38,42 @@ pub(crate) struct ParameterData {
     pub(super) parameter: Vec<f64>,
     /// Total derivative of the amplitude by it; NaN where there is none.
     pub(super) d_amplitude: Vec<f64>,
+    /// Total derivative of the largest damping ratio by it; NaN where a response is followed.
+    pub(super) d_damping: Vec<f64>,
     pub(super) optima: Vec<Optimum>,
+    pub(super) higher: Vec<HigherPeak>,
 }
 
 impl ParameterData {
     /// Stores the numbers of a point, or nothing if memory is exhausted.
-    pub fn push(&mut self, parameter: f64, d_amplitude: f64) -> Result<()> {
+    pub fn push(&mut self, parameter: f64, (d_amplitude, d_damping): (f64, f64)) -> Result<()> {
         const CONTEXT: &str = "the points of the branch";
-        for numbers in [&mut self.parameter, &mut self.d_amplitude] {
+        for numbers in [&mut self.parameter, &mut self.d_amplitude, &mut self.d_damping] {
             numbers.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
         }
         self.parameter.push(parameter);
         self.d_amplitude.push(d_amplitude);
+        self.d_damping.push(d_damping);
         Ok(())
     }
 
     /// Stores an optimum.
     pub fn push_optimum(&mut self, optimum: Optimum) -> Result<()> {
         try_push(&mut self.optima, optimum, "the optima")
+    }
+
+    /// Stores a higher peak.
+    pub fn push_higher(&mut self, peak: HigherPeak) -> Result<()> {
+        try_push(&mut self.higher, peak, "the higher peaks")
+    }
+
+    /// The optima stored so far.
+    pub fn optima(&self) -> &[Optimum] {
+        &self.optima
+    }
+
+    /// Value of the parameter at a stored point.
+    pub fn parameter_at(&self, point: usize) -> Option<f64> {
+        self.parameter.get(point).copied()
     }
 }

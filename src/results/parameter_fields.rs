@@ -2,7 +2,7 @@
 
 use crate::error::{Result, fail};
 use crate::results::Branch;
-use crate::results::parameter_branch::{Optimum, ParameterData};
+use crate::results::parameter_branch::{HigherPeak, Optimum, ParameterData};
 
 impl Branch {
     pub(crate) fn set_parameter_data(&mut self, data: ParameterData) {
@@ -21,6 +21,26 @@ impl Branch {
         self.parameter.as_ref().map(|data| &data.d_amplitude[..self.points()])
     }
 
+    /// Total derivative of the largest damping ratio of a mode by the parameter at each point of the curve; NaN where a
+    /// response is followed.
+    #[must_use]
+    pub fn d_damping(&self) -> Option<&[f64]> {
+        self.parameter.as_ref().map(|data| &data.d_damping[..self.points()])
+    }
+
+    /// The same at a stored point, the special ones included.
+    #[must_use]
+    pub fn d_damping_at(&self, point: usize) -> Option<f64> {
+        self.parameter.as_ref()?.d_damping.get(point).copied()
+    }
+
+    /// Peaks that are higher than the followed one at its first point, its optima or its last point; none for other
+    /// branches.
+    #[must_use]
+    pub fn higher_peaks(&self) -> &[HigherPeak] {
+        self.parameter.as_ref().map_or(&[], |data| &data.higher)
+    }
+
     /// Parameter, and the total derivative of the amplitude by it, at a stored point, the special ones included.
     #[must_use]
     pub fn parameter_at(&self, point: usize) -> Option<(f64, f64)> {
@@ -31,7 +51,7 @@ impl Branch {
             .zip(data.d_amplitude.get(point).copied())
     }
 
-    /// Minima and maxima of the amplitude over the parameter; none for other branches.
+    /// Minima and maxima of the amplitude, or of the largest damping ratio, over the parameter; none for other branches.
     #[must_use]
     pub fn optima(&self) -> &[Optimum] {
         self.parameter.as_ref().map_or(&[], |data| &data.optima)

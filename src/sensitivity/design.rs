@@ -35,6 +35,15 @@ impl Parameter<'_> {
         }
     }
 
+    /// Factor on the derivative of a model that has the value: a factor or a force is relative to the one that the model
+    /// has.
+    pub(crate) fn relative_at(&self, value: f64) -> f64 {
+        match self {
+            Self::Force | Self::Factor { .. } => 1.0 / value,
+            Self::Contact { .. } | Self::Direction { .. } | Self::Speed => 1.0,
+        }
+    }
+
     /// Whether a change of the parameter leaves the matrices of the structure as they are.
     #[must_use]
     pub(crate) fn keeps_structure(&self) -> bool {

@@ -106,12 +106,44 @@ impl<'a> ForcedPoint<'a> {
         Ok(gradient)
     }
 
-    /// The adjoint motion of λ at the point linearised last, and what belongs to it.
-    fn of_lambda(&mut self, (u, omega): (&[f64], f64), amplitude: Complex64, lambda: &[f64]) -> Result<Adjoint> {
+    /// The derivatives of −L wᵀR by the motions and by ω with the unit of lengths L, and the adjoint motion of w.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn residual_gradient(&mut self, u: &[f64], omega: f64, w: &[f64]) -> Result<(Vec<f64>, Adjoint)> {
+        let n = u.len();
+        let mut gradient = try_vec(n + 1, 0.0, CONTEXT)?;
+        self.linearise(u, omega, &mut gradient[..n])?;
+        for (g, column) in gradient.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
+            *g = -self.condensed.length() * dot(column, w);
+        }
+        let adjoint = self.of_lambda((u, omega), Complex64::ZERO, w)?;
+        gradient[n] = adjoint.by_omega;
+        Ok((gradient, adjoint))
+    }
+
+    /// Evaluates the equations at `u`; returns the derivative of the amplitude by the motions and the complex amplitude,
+    /// both in the unit of lengths.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn amplitude(&mut self, u: &[f64], omega: f64) -> Result<(Vec<f64>, Complex64)> {
+        let mut gradient = try_vec(u.len(), 0.0, CONTEXT)?;
+        let amplitude = self.linearise(u, omega, &mut gradient)?;
+        Ok((gradient, amplitude))
+    }
+
+    /// The adjoint motion of λ at the point linearised last, and what belongs to it, for the result A − λᵀR. With an
+    /// amplitude of 0 the result is −λᵀR alone.
+    ///
+    /// # Errors
+    /// As [`Self::adjoint`].
+    pub fn of_lambda(&mut self, (u, omega): (&[f64], f64), amplitude: Complex64, lambda: &[f64]) -> Result<Adjoint> {
         let condensed = self.condensed;
         let mut adjoint = Adjoint::new(condensed, (omega, 0.0), try_copy(u, CONTEXT)?)?;
         let set = condensed.set();
         let (m, n) = (set.packed_len(), condensed.ndof());
+        let observes = amplitude != Complex64::ZERO;
         let turn = amplitude / amplitude.norm();
         let independent = condensed.degrees().independent();
         let mut x = try_vec(n, Complex64::ZERO, CONTEXT)?;
@@ -132,7 +164,7 @@ impl<'a> ForcedPoint<'a> {
                     field[p] += a.conj() * of_row;
                 }
             }
-            if i == self.problem.observed() {
+            if observes && i == self.problem.observed() {
                 for &(p, a) in self.response.terms() {
                     field[p] += a.conj() * turn;
                 }

@@ -15,6 +15,7 @@
 mod adjoint;
 mod contact_products;
 mod design;
+mod fold_point;
 mod forced_point;
 mod mode_point;
 mod one_sided;
@@ -22,6 +23,7 @@ mod parameter;
 mod peak_shift;
 mod structure_products;
 mod total_derivative;
+pub(crate) mod tracked;
 mod tracked_response;
 
 pub(crate) use adjoint::Adjoint;
@@ -32,4 +34,4 @@ pub(crate) use one_sided::contact_at_onset;
 pub use parameter::{Parameter, Reason};
 pub(crate) use peak_shift::peak_shift;
 pub(crate) use total_derivative::TotalDerivative;
-pub(crate) use tracked_response::TrackedResponse;
+pub(crate) use tracked_response::{ResponsePoint, TrackedResponse};

@@ -1,25 +1,34 @@
-//! A forced response as a function of a parameter of the model, as a [`Problem`]: at a fixed frequency, or in a peak.
+//! A forced response as a function of a parameter of the model, as a [`Problem`]: at a fixed frequency, in a peak, or in
+//! a fold over the frequency.
 //!
-//! The unknowns are the packed relative motions u and in a peak also ln ω. At a fixed frequency the equations are
+//! The unknowns are the packed relative motions u and in a peak or fold also ln ω. At a fixed frequency the equations are
 //! R(u, p) = 0; in a peak follows dA/dω = g(u, ω, p) = ∂A/∂ω − λᵀ ∂R/∂ω = 0 with the adjoint λ of the amplitude. With
 //! the direction t = (du/dω, 1) of the branch over ω, the derivatives of g by u and ω are those of ∂A − (∂R)ᵀ λ along t at
-//! a fixed λ: by one difference of exact Jacobians.
+//! a fixed λ: by one difference of exact Jacobians. The condition of a fold is that of [`fold_point`].
+//!
+//! [`fold_point`]: crate::sensitivity::fold_point
 
-use crate::condense::{Condensed, Reference, Resolution};
+use crate::condense::{Condensed, ModelCache, Reference, Resolution};
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_copy, try_vec};
+use crate::error_estimate::forced_response_error::ForcedEstimator;
+use crate::error_estimate::{Corrected, Estimate, Solved};
+use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::Jacobian;
-use crate::linalg::norm;
+use crate::linalg::lu::Lu;
+use crate::linalg::{dot, norm};
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
 use crate::sensitivity::adjoint::{Adjoint, CONTEXT};
 use crate::sensitivity::design::design;
+use crate::sensitivity::fold_point::{Borders, fold_gradient};
 use crate::sensitivity::forced_point::ForcedPoint;
 use crate::sensitivity::parameter::Parameter;
 use crate::sensitivity::total_derivative::TotalDerivative;
+use crate::sensitivity::tracked::{Tracked, by_differences, observed};
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -32,6 +41,20 @@ const PARAMETER_STEP: f64 = 1e-5;
 /// Step of the differences along the branch over ω, over the width of the peak.
 const BRANCH_STEP: f64 = 1e-4;
 
+/// Newton iterations by which the work of an estimate is bounded: those of a point that is solved by homotopy.
+const ITERATIONS: usize = 200;
+
+/// Point of a response over the frequency that is followed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ResponsePoint {
+    /// That at a fixed frequency.
+    Fixed,
+    /// A maximum of the amplitude.
+    Peak,
+    /// A turning point of the frequency.
+    Fold,
+}
+
 /// The response as a function of a parameter.
 pub(crate) struct TrackedResponse<'a> {
     model: &'a Model,
@@ -39,17 +62,23 @@ pub(crate) struct TrackedResponse<'a> {
     solver: SolverOptions,
     response_dof: usize,
     range: (f64, f64),
-    /// Frequency at a fixed one, or that of the first peak.
+    /// Frequency at a fixed one, or that of the first peak or fold.
     omega: f64,
-    is_peak: bool,
+    kind: ResponsePoint,
     /// Unit of lengths of the unknowns.
     length: f64,
     start: Vec<f64>,
     interrupt: &'a Interrupt<'a>,
     matrix: Vec<f64>,
-    /// Amplitude, its derivative by ω and by the parameter at the point evaluated last.
+    /// Borders of the condition of a fold, from the first evaluation on.
+    borders: Option<Borders>,
+    /// Amplitude at the point evaluated last, its total derivative by the parameter, and its change with all unknowns and
+    /// the parameter along solutions.
     amplitude: f64,
-    slopes: [f64; 2],
+    d_amplitude: f64,
+    gradient: Vec<f64>,
+    /// d²A/dω² of a peak.
+    curvature: f64,
     /// Whether the reciprocal of the amplitude is observed.
     is_reciprocal: bool,
 }
@@ -71,15 +100,14 @@ impl<'a> TrackedResponse<'a> {
         (solver, response_dof): (&SolverOptions, usize),
         range: (f64, f64),
         (motion, length, omega): (&[f64], f64, f64),
-        is_peak: bool,
+        kind: ResponsePoint,
         interrupt: &'a Interrupt<'a>,
     ) -> Result<Self> {
-        let n = motion.len() + usize::from(is_peak);
+        let n = motion.len() + usize::from(kind != ResponsePoint::Fixed);
         let mut start = try_vec(n, 0.0, CONTEXT)?;
         start[..motion.len()].copy_from_slice(motion);
-        let Some(size) = n.checked_mul(n) else {
-            return fail!(OutOfMemory, "the Jacobian of {n} unknowns cannot be stored");
-        };
+        // The unknown of the frequency is 1 at the first one: unknowns of size 0 have no unit.
+        start[motion.len()..].fill(1.0);
         Ok(Self {
             model,
             parameter,
@@ -87,89 +115,28 @@ impl<'a> TrackedResponse<'a> {
             response_dof,
             range,
             omega,
-            is_peak,
+            kind,
             length,
             start,
             interrupt,
-            matrix: try_vec(size, 0.0, CONTEXT)?,
+            matrix: square(n)?,
+            borders: None,
             amplitude: 0.0,
-            slopes: [0.0; 2],
+            d_amplitude: 0.0,
+            gradient: try_vec(n + 1, 0.0, CONTEXT)?,
+            curvature: f64::NAN,
             is_reciprocal: false,
         })
     }
 
-    /// Stores a point in a branch: on its curve, or where `kind` is given beside it. Returns its number.
-    ///
-    /// # Errors
-    /// Those of the model at the point; `OutOfMemory`.
-    pub fn store(
-        &mut self,
-        point: &Point,
-        branch: &mut Branch,
-        data: &mut ParameterData,
-        kind: Option<SpecialKind>,
-    ) -> Result<Special> {
-        let (u, p) = (point.unknowns(), point.parameter());
-        let mut values = try_vec(u.len(), 0.0, CONTEXT)?;
-        self.equations(u, p, true, &mut values)?;
-        let omega = self.frequency(u);
-        let At { condensed, .. } = self.at(p, omega)?;
-        let mut motion = try_copy(&u[..self.motions()], CONTEXT)?;
-        for y in &mut motion {
-            *y *= self.length / condensed.length();
-        }
-        let resolution = Resolution {
-            condensed: Arc::new(condensed),
-            samples: self.solver.samples,
-        };
-        let condensed = &*resolution.condensed;
-        let mut at = ForcedPoint::new(
-            condensed,
-            (self.response_dof, self.solver.samples),
-            omega,
-            self.interrupt,
-        )?;
-        let mut response = try_vec(condensed.blocks().len(), Complex64::ZERO, CONTEXT)?;
-        let slip_fractions = at.response(&motion, omega, &mut response)?;
-        let record = Record {
-            resolution: &resolution,
-            omega,
-            motion: &motion,
-            amplitude: Complex64::from(self.amplitude / condensed.length()),
-            response: &response,
-            residual: point.residual,
-            iterations: point.iterations,
-            slip_fractions: &slip_fractions,
-            sampling_error: f64::NAN,
-            errors: (f64::NAN, f64::NAN),
-        };
-        match kind {
-            None => branch.push_curve(&record)?,
-            Some(SpecialKind::Peak) => {
-                branch.push(&record)?;
-            }
-            Some(kind) => branch.push_special(kind, branch.points().saturating_sub(1), &record)?,
-        }
-        data.push(p, self.slopes[1])?;
-        Ok(Special {
-            point: branch.stored() - 1,
-            omega,
-            amplitude: self.amplitude,
-        })
-    }
-
-    /// Observes the reciprocal of the amplitude, whose maxima are the minima of the amplitude.
-    pub fn set_reciprocal(&mut self, is_reciprocal: bool) {
-        self.is_reciprocal = is_reciprocal;
-    }
-
-    fn motions(&self) -> usize {
-        self.start.len() - usize::from(self.is_peak)
+    /// Whether the frequency is an unknown.
+    fn is_free(&self) -> bool {
+        self.kind != ResponsePoint::Fixed
     }
 
     fn frequency(&self, u: &[f64]) -> f64 {
-        if self.is_peak {
-            self.omega * (OMEGA_UNIT * u[u.len() - 1]).exp()
+        if self.is_free() {
+            self.omega * (OMEGA_UNIT * (u[u.len() - 1] - 1.0)).exp()
         } else {
             self.omega
         }
@@ -188,75 +155,301 @@ impl<'a> TrackedResponse<'a> {
         Ok(At { model, condensed })
     }
 
-    /// Evaluates the equations at one value of the parameter; returns the residual of the motions and g·ω/A, and writes
-    /// derivatives and results if `fully`.
+    /// Motions in the unit of lengths of a condensed model.
+    fn own_motion(&self, u: &[f64], condensed: &Condensed) -> Result<Vec<f64>> {
+        let mut own = try_copy(&u[..self.motions()], CONTEXT)?;
+        for y in &mut own {
+            *y *= self.length / condensed.length();
+        }
+        Ok(own)
+    }
+
+    /// Evaluates the equations at one value of the parameter; returns the scale of the residual, and writes derivatives
+    /// and results if `fully`.
     fn equations(&mut self, u: &[f64], p: f64, fully: bool, values: &mut [f64]) -> Result<f64> {
-        let (m, n) = (self.motions(), u.len());
+        let m = self.motions();
         let omega = self.frequency(u);
         let At { model, condensed } = self.at(p, omega)?;
         let unit = self.length / condensed.length();
-        let mut own = try_copy(&u[..m], CONTEXT)?;
-        for y in &mut own {
-            *y *= unit;
-        }
+        let own = self.own_motion(u, &condensed)?;
         let mut point = ForcedPoint::new(
             &condensed,
             (self.response_dof, self.solver.samples),
             omega,
             self.interrupt,
         )?;
-        let Some(adjoint) = point.adjoint(&own, omega)? else {
+        let (models, at) = ((&model, &condensed), (&*own, omega, p));
+        let scale = if self.kind == ResponsePoint::Fold {
+            self.fold_equations(&mut point, models, at, (fully, values))?
+        } else {
+            self.peak_equations(&mut point, models, at, (fully, values))?
+        };
+        for value in &mut values[..m] {
+            *value /= unit;
+        }
+        // Without contacts the condition of the frequency, whose size is 1, is the only equation.
+        Ok(if m == 0 { 1.0 } else { scale / unit })
+    }
+
+    /// The equations at a fixed frequency or in a peak, and the scale of their residual, in the unit of the condensed model.
+    fn peak_equations(
+        &mut self,
+        point: &mut ForcedPoint<'_>,
+        (model, condensed): (&Model, &Condensed),
+        (own, omega, p): (&[f64], f64, f64),
+        (fully, values): (bool, &mut [f64]),
+    ) -> Result<f64> {
+        let m = own.len();
+        let unit = self.length / condensed.length();
+        let Some(adjoint) = point.adjoint(own, omega)? else {
             return fail!(Singular, "the response is in a fold over the frequency");
         };
-        for (value, r) in values.iter_mut().zip(point.residual()) {
-            *value = r / unit;
-        }
-        let scale = point.scale() / unit;
-        let amplitude = adjoint.amplitude;
-        let by_gauge = OMEGA_UNIT * omega / amplitude;
-        if self.is_peak {
+        values[..m].copy_from_slice(point.residual());
+        let scale = point.scale();
+        let by_gauge = OMEGA_UNIT * omega / adjoint.amplitude;
+        if self.is_free() {
             values[m] = adjoint.by_omega * by_gauge;
         }
         if !fully {
             return Ok(scale);
         }
+        self.fill_motions(point.jacobian());
+        self.gradient.fill(0.0);
+        if self.is_free() {
+            let by_omega = point.residual_by_omega(omega)?;
+            let (row, curvature) = peak_row(point, own, omega, &adjoint)?;
+            self.curvature = curvature;
+            self.fill_frequency((&by_omega, &row), omega, unit, by_gauge);
+            self.gradient[m] = adjoint.by_omega * OMEGA_UNIT * omega;
+        }
+        let slope = self.by_parameter((model, condensed), p, &adjoint)?;
+        self.gradient[values.len()] = slope;
+        (self.amplitude, self.d_amplitude) = (adjoint.amplitude, slope);
+        Ok(scale)
+    }
+
+    /// The same in a fold.
+    fn fold_equations(
+        &mut self,
+        point: &mut ForcedPoint<'_>,
+        (model, condensed): (&Model, &Condensed),
+        (own, omega, p): (&[f64], f64, f64),
+        (fully, values): (bool, &mut [f64]),
+    ) -> Result<f64> {
+        let (m, n) = (own.len(), values.len());
+        let length = condensed.length();
+        let unit = self.length / length;
+        let (by_motion, amplitude) = point.amplitude(own, omega)?;
+        values[..m].copy_from_slice(point.residual());
+        let scale = point.scale();
+        let borders = match self.borders.take() {
+            Some(borders) => borders,
+            None => Borders::near(point.jacobian(), m, self.interrupt)?,
+        };
+        let at = borders.condition(point.jacobian(), self.interrupt);
+        self.borders = Some(borders);
+        let at = at?;
+        values[m] = at.value;
+        if !fully {
+            return Ok(scale);
+        }
+        self.fill_motions(point.jacobian());
+        let none = try_vec(m, 0.0, CONTEXT)?;
+        let partial = point.of_lambda((own, omega), amplitude, &none)?;
+        let by_omega = point.residual_by_omega(omega)?;
+        let models = (model, condensed);
+        let g = fold_gradient(point, (own, omega, length), &at, |adjoint| {
+            self.by_parameter(models, p, adjoint)
+        })?;
+        self.fill_frequency((&by_omega, &g.by_unknowns), omega, unit, 1.0);
+        self.amplitude = length * amplitude.norm();
+        // The change of the amplitude with all unknowns: in a fold its adjoint at a fixed frequency does not exist.
+        for (to, from) in self.gradient.iter_mut().zip(&by_motion) {
+            *to = self.length * from;
+        }
+        self.gradient[m] = partial.by_omega * OMEGA_UNIT * omega;
+        self.gradient[n] = self.by_parameter(models, p, &partial)?;
+        // The adjoint of motions, frequency and condition together.
+        let mut system = Lu::new(n, 1)?;
+        system.matrix().copy_from_slice(&self.matrix);
+        self.d_amplitude = f64::NAN;
+        if system.factor(self.interrupt).is_ok() {
+            let mut lambda = try_copy(&self.gradient[..n], CONTEXT)?;
+            system.solve_transposed(&mut lambda);
+            // R is in the unit of the unknowns, and the result of an adjoint motion in that of the condensed model.
+            let weight = lambda.pop().unwrap_or(f64::NAN);
+            for x in &mut lambda {
+                *x /= self.length;
+            }
+            point.amplitude(own, omega)?;
+            let adjoint = point.of_lambda((own, omega), amplitude, &lambda)?;
+            self.d_amplitude = self.by_parameter(models, p, &adjoint)? - weight * g.by_parameter;
+        }
+        Ok(scale)
+    }
+
+    /// Writes Newton's matrix of the motions.
+    fn fill_motions(&mut self, jacobian: &[f64]) {
+        let (m, n) = (self.motions(), self.start.len());
         self.matrix.fill(0.0);
         for (column, from) in self
             .matrix
             .chunks_exact_mut(n.max(1))
-            .zip(point.jacobian().chunks_exact(m.max(1)))
+            .zip(jacobian.chunks_exact(m.max(1)))
         {
             column[..m].copy_from_slice(from);
         }
-        if self.is_peak {
-            let by_omega = point.residual_by_omega(omega)?;
-            for (x, r) in self.matrix[m * n..m * n + m].iter_mut().zip(&by_omega) {
-                *x = OMEGA_UNIT * omega * r / unit;
-            }
-            let row = peak_row(&mut point, &own, omega, &adjoint)?;
-            for (k, x) in row[..m].iter().enumerate() {
-                // The unknowns are in another unit than those of the condensed model.
-                self.matrix[k * n + m] = x * unit * by_gauge;
-            }
-            self.matrix[m * n + m] = row[m] * OMEGA_UNIT * omega * by_gauge;
+    }
+
+    /// Writes the column of the frequency, and the row of its condition times a factor.
+    fn fill_frequency(&mut self, (column, row): (&[f64], &[f64]), omega: f64, unit: f64, factor: f64) {
+        let (m, n) = (self.motions(), self.start.len());
+        for (x, r) in self.matrix[m * n..m * n + m].iter_mut().zip(column) {
+            *x = OMEGA_UNIT * omega * r / unit;
         }
-        let at_frequency = model.at_frequency(omega)?;
-        let solution = (&condensed, self.solver.samples);
-        let mut total = TotalDerivative::new((&model, &at_frequency), solution, &adjoint, self.interrupt)?;
+        for (k, x) in row[..m].iter().enumerate() {
+            // The unknowns are in another unit than those of the condensed model.
+            self.matrix[k * n + m] = x * unit * factor;
+        }
+        self.matrix[m * n + m] = row[m] * OMEGA_UNIT * omega * factor;
+    }
+
+    /// The derivative of the result of an adjoint motion by the parameter.
+    fn by_parameter(&self, (model, condensed): (&Model, &Condensed), p: f64, adjoint: &Adjoint) -> Result<f64> {
+        let at_frequency = model.at_frequency(adjoint.omega)?;
+        let solution = (condensed, self.solver.samples);
+        let mut total = TotalDerivative::new((model, &at_frequency), solution, adjoint, self.interrupt)?;
         let (by_parameter, _) = total.by(&self.parameter)?;
-        self.amplitude = amplitude;
-        // A factor or a force is relative to the value that the model has now.
-        let relative = match self.parameter {
-            Parameter::Force | Parameter::Factor { .. } => 1.0 / p,
-            Parameter::Contact { .. } | Parameter::Direction { .. } | Parameter::Speed => 1.0,
-        };
-        self.slopes = [adjoint.by_omega, relative * by_parameter];
-        Ok(scale)
+        Ok(self.parameter.relative_at(p) * by_parameter)
     }
 }
 
-/// The derivatives of g = ∂A/∂ω − λᵀ ∂R/∂ω by the motions and by ω, at fixed p.
-fn peak_row(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64, adjoint: &Adjoint) -> Result<Vec<f64>> {
+impl Tracked for TrackedResponse<'_> {
+    fn problem(&mut self) -> &mut dyn Problem {
+        self
+    }
+
+    fn motions(&self) -> usize {
+        self.start.len() - usize::from(self.is_free())
+    }
+
+    fn select(&mut self, from: &HarmonicSet, to: &Resolution, highest: usize) -> Result<()> {
+        let motions = to.condensed.unknowns();
+        let n = motions + usize::from(self.is_free());
+        if let Some(borders) = &mut self.borders {
+            borders.transfer(from, to.condensed.set(), motions)?;
+        }
+        self.start = try_vec(n, 0.0, CONTEXT)?;
+        self.matrix = square(n)?;
+        self.gradient = try_vec(n + 1, 0.0, CONTEXT)?;
+        self.solver.harmonics = highest;
+        self.solver.samples = self.solver.samples.max(to.samples);
+        Ok(())
+    }
+
+    fn estimate(&mut self, point: &Point) -> Result<Option<(f64, Estimate)>> {
+        if self.kind == ResponsePoint::Fold {
+            return Ok(None);
+        }
+        let (u, p) = (point.unknowns(), point.parameter());
+        let omega = self.frequency(u);
+        let At { model, condensed } = self.at(p, omega)?;
+        let own = self.own_motion(u, &condensed)?;
+        let samples = (self.response_dof, self.solver.samples);
+        let mut at = ForcedPoint::new(&condensed, samples, omega, self.interrupt)?;
+        let (_, amplitude) = at.amplitude(&own, omega)?;
+        let solved = Solved {
+            condensed: &condensed,
+            motion: &own,
+            omega,
+            response: amplitude * condensed.length(),
+            sticks: None,
+            iterations: ITERATIONS,
+        };
+        let models = ModelCache::for_estimates()?;
+        let mut estimator = ForcedEstimator::new(&model, &self.solver, self.response_dof, &models, self.interrupt);
+        let estimate = estimator.at(&solved)?;
+        Ok(Some((estimate.response, estimate)))
+    }
+
+    fn take_corrected(&self, corrected: &Corrected, set: &HarmonicSet, v: &mut [f64]) {
+        let motions = self.motions();
+        set.transfer(&corrected.set, &corrected.motion, 1.0 / self.length, &mut v[..motions]);
+    }
+
+    fn store(
+        &mut self,
+        point: &Point,
+        error: f64,
+        branch: &mut Branch,
+        data: &mut ParameterData,
+        kind: Option<SpecialKind>,
+    ) -> Result<Special> {
+        let (u, p) = (point.unknowns(), point.parameter());
+        let mut values = try_vec(u.len(), 0.0, CONTEXT)?;
+        self.equations(u, p, true, &mut values)?;
+        let omega = self.frequency(u);
+        let At { condensed, .. } = self.at(p, omega)?;
+        let motion = self.own_motion(u, &condensed)?;
+        let resolution = Resolution {
+            condensed: Arc::new(condensed),
+            samples: self.solver.samples,
+        };
+        let condensed = &*resolution.condensed;
+        let samples = (self.response_dof, self.solver.samples);
+        let mut at = ForcedPoint::new(condensed, samples, omega, self.interrupt)?;
+        let mut response = try_vec(condensed.blocks().len(), Complex64::ZERO, CONTEXT)?;
+        let slip_fractions = at.response(&motion, omega, &mut response)?;
+        if let Some(borders) = &mut self.borders {
+            at.amplitude(&motion, omega)?;
+            let null = borders.condition(at.jacobian(), self.interrupt)?;
+            borders.follow(&null)?;
+        }
+        let record = Record {
+            resolution: &resolution,
+            omega,
+            motion: &motion,
+            amplitude: Complex64::from(self.amplitude / condensed.length()),
+            response: &response,
+            residual: point.residual,
+            iterations: point.iterations,
+            slip_fractions: &slip_fractions,
+            sampling_error: f64::NAN,
+            errors: (error, f64::NAN),
+        };
+        branch.push_followed(kind, &record)?;
+        data.push(p, (self.d_amplitude, f64::NAN))?;
+        Ok(Special {
+            point: branch.stored() - 1,
+            omega,
+            amplitude: self.amplitude,
+        })
+    }
+
+    fn set_reciprocal(&mut self, is_reciprocal: bool) {
+        self.is_reciprocal = is_reciprocal;
+    }
+
+    fn exists(&mut self, point: &Point) -> Result<bool> {
+        if self.kind != ResponsePoint::Peak {
+            return Ok(true);
+        }
+        let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
+        self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
+        Ok(self.curvature <= 0.0)
+    }
+}
+
+/// Memory of a square matrix.
+fn square(n: usize) -> Result<Vec<f64>> {
+    match n.checked_mul(n) {
+        Some(size) => try_vec(size, 0.0, CONTEXT),
+        None => fail!(OutOfMemory, "the Jacobian of {n} unknowns cannot be stored"),
+    }
+}
+
+/// The derivatives of g = ∂A/∂ω − λᵀ ∂R/∂ω by the motions and by ω, at fixed p, and d²A/dω².
+fn peak_row(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64, adjoint: &Adjoint) -> Result<(Vec<f64>, f64)> {
     let tangent = point.tangent(omega)?;
     let speed = norm(&tangent);
     let width = if speed > 0.0 { norm(u) / speed } else { omega };
@@ -275,7 +468,8 @@ fn peak_row(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64, adjoint: &Adjoin
             }
         }
     }
-    Ok(row)
+    let curvature = dot(&row[..u.len()], &tangent) + row[u.len()];
+    Ok((row, curvature))
 }
 
 impl Jacobian for TrackedResponse<'_> {
@@ -292,23 +486,8 @@ impl Jacobian for TrackedResponse<'_> {
 
 impl Problem for TrackedResponse<'_> {
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        let n = u.len();
         let step = PARAMETER_STEP * (self.range.1 - self.range.0).abs();
-        let mut below = try_vec(n, 0.0, CONTEXT)?;
-        let mut above = try_vec(n, 0.0, CONTEXT)?;
-        // At the end of what the parameter may be the difference is taken to one side.
-        let (mut low, mut high) = (p - step, p + step);
-        if self.equations(u, low, false, &mut below).is_err() {
-            low = p;
-            self.equations(u, low, false, &mut below)?;
-        }
-        if self.equations(u, high, false, &mut above).is_err() {
-            high = p;
-            self.equations(u, high, false, &mut above)?;
-        }
-        for ((d, above), below) in out.d_parameter.iter_mut().zip(&above).zip(&below) {
-            *d = (above - below) / (high - low);
-        }
+        by_differences(out, (p, step), |p, values| self.equations(u, p, false, values))?;
         out.scale = self.equations(u, p, true, &mut out.values)?;
         out.rounding = 0.0;
         Ok(())
@@ -316,16 +495,9 @@ impl Problem for TrackedResponse<'_> {
 
     /// The amplitude; its derivative is that along the curve of solutions.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
-        let n = u.len();
-        let mut change = self.slopes[1] * direction[n];
-        if self.is_peak {
-            change += self.slopes[0] * OMEGA_UNIT * self.frequency(u) * direction[n - 1];
-        }
-        if self.is_reciprocal {
-            change /= -self.amplitude * self.amplitude;
-            return ((1.0 / self.amplitude).into(), change.into());
-        }
-        (self.amplitude.into(), change.into())
+        let mut change = dot(&self.gradient[..u.len()], &direction[..u.len()]);
+        change += self.gradient[u.len()] * direction[u.len()];
+        observed((self.amplitude, change), self.is_reciprocal)
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {

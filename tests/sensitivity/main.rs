@@ -9,4 +9,7 @@ mod cost;
 mod design;
 mod differences;
 mod ring_damper_preload;
+mod tracked_damping;
+mod tracked_ends;
+mod tracked_fold;
 mod tracked_peak;
