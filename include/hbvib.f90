@@ -34,10 +34,11 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_OK = 0, HBVIB_STOPPED_BY_CALLER = 1, HBVIB_STOPPED_STEP_TOO_SMALL = 2, &
       HBVIB_STOPPED_MAX_POINTS = 3, HBVIB_STOPPED_MAX_HARMONICS = 4, HBVIB_STOPPED_STALLED = 5, HBVIB_STOPPED_LEFT_RANGE = 6, &
       HBVIB_STOPPED_CALLBACK = 7, HBVIB_STOPPED_UNBOUNDED = 8, HBVIB_STOPPED_NO_FORCE = 9, HBVIB_STOPPED_NO_PEAK = 10, &
-      HBVIB_E_NULL = -1, HBVIB_E_ARGUMENT = -2, HBVIB_E_DIMENSION = -3, HBVIB_E_NOT_FINITE = -4, HBVIB_E_NOT_HERMITIAN = -5, &
-      HBVIB_E_SINGULAR = -6, HBVIB_E_NO_CONVERGENCE = -7, HBVIB_E_STRUCT_SIZE = -8, HBVIB_E_CALLBACK = -9, &
-      HBVIB_E_UNSUPPORTED = -10, HBVIB_E_OUT_OF_MEMORY = -11, HBVIB_E_NO_BOUNDED_SOLUTION = -12, HBVIB_E_HANDLE = -13, &
-      HBVIB_E_BUSY = -14, HBVIB_E_INDEX = -15, HBVIB_E_NOT_POSITIVE_DEFINITE = -16, HBVIB_E_INTERNAL = -99
+      HBVIB_STOPPED_PEAK_VANISHED = 11, HBVIB_E_NULL = -1, HBVIB_E_ARGUMENT = -2, HBVIB_E_DIMENSION = -3, &
+      HBVIB_E_NOT_FINITE = -4, HBVIB_E_NOT_HERMITIAN = -5, HBVIB_E_SINGULAR = -6, HBVIB_E_NO_CONVERGENCE = -7, &
+      HBVIB_E_STRUCT_SIZE = -8, HBVIB_E_CALLBACK = -9, HBVIB_E_UNSUPPORTED = -10, HBVIB_E_OUT_OF_MEMORY = -11, &
+      HBVIB_E_NO_BOUNDED_SOLUTION = -12, HBVIB_E_HANDLE = -13, HBVIB_E_BUSY = -14, HBVIB_E_INDEX = -15, &
+      HBVIB_E_NOT_POSITIVE_DEFINITE = -16, HBVIB_E_INTERNAL = -99
    ! hbvib_storage
    integer(c_int32_t), parameter, public :: HBVIB_COL_MAJOR = 0, HBVIB_ROW_MAJOR = 1, HBVIB_CSC = 2
    ! hbvib_scalar
@@ -78,7 +79,8 @@ module hbvib
       HBVIB_DISSIPATION = 4, HBVIB_RESIDUAL = 5, HBVIB_NEWTON_ITERATIONS = 6, HBVIB_ERROR_ESTIMATE = 7, &
       HBVIB_HARMONICS_USED = 8, HBVIB_SLIP_FRACTION = 9, HBVIB_LOG10_AMPLITUDE = 10, HBVIB_MODAL_AMPLITUDE = 11, &
       HBVIB_STRUCTURAL_LOSS = 12, HBVIB_MODAL_ASSURANCE = 13, HBVIB_SAMPLING_ERROR = 14, HBVIB_DAMPING_ERROR_ESTIMATE = 15, &
-      HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17, HBVIB_PARAMETER_VALUE = 18, HBVIB_D_AMPLITUDE = 19
+      HBVIB_FLOQUET_RADIUS = 16, HBVIB_UNSTABLE_DIRECTIONS = 17, HBVIB_PARAMETER_VALUE = 18, HBVIB_D_AMPLITUDE = 19, &
+      HBVIB_D_DAMPING = 20
    ! hbvib_state
    integer(c_int32_t), parameter, public :: HBVIB_STATE_STICK = 0, HBVIB_STATE_SLIP = 1, HBVIB_STATE_OPEN = 2
    ! hbvib_contact_state
@@ -116,7 +118,8 @@ module hbvib
    integer(c_int32_t), parameter, public :: HBVIB_DERIVATIVE_EXISTS = 0, HBVIB_DERIVATIVE_ONSET_OF_SLIP = 1, &
       HBVIB_DERIVATIVE_ONE_SIDED = 2, HBVIB_DERIVATIVE_FOLD = 3
    ! hbvib_follow
-   integer(c_int32_t), parameter, public :: HBVIB_FOLLOW_OMEGA = 0, HBVIB_FOLLOW_PEAK = 1
+   integer(c_int32_t), parameter, public :: HBVIB_FOLLOW_OMEGA = 0, HBVIB_FOLLOW_PEAK = 1, HBVIB_FOLLOW_FOLD = 2, &
+      HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
    ! Version of the library that this module was written for; hbvib_version() is that of the one in use.
    integer(c_int32_t), parameter, public :: HBVIB_VERSION_MAJOR = 0, HBVIB_VERSION_MINOR = 1, HBVIB_VERSION_PATCH = 0, &
       HBVIB_VERSION_NUMBER = 256
@@ -348,11 +351,12 @@ module hbvib
 
    !> Range of a parameter response.
    type, bind(c) :: hbvib_parameter_options
-      integer(c_int32_t) :: struct_size = 56, follow = 0
+      integer(c_int32_t) :: struct_size = 72, follow = 0
       type(c_ptr) :: parameter = c_null_ptr
       real(c_double) :: start = 0, stop = 0, omega = 0
       type(c_ptr) :: at = c_null_ptr
       integer(c_int64_t) :: at_len = 0
+      real(c_double) :: log10_start = 0, log10_stop = 0
    end type hbvib_parameter_options
 
    !> Options of hbvib_batch_solve.
@@ -1396,7 +1400,7 @@ module hbvib
       function hbvib_parameter_response(model, solver, options, hooks, out) bind(c) result(status)
          import
          type(c_ptr), value :: model
-         type(hbvib_solver_options), intent(in) :: solver
+         type(hbvib_solver_options), intent(in), optional :: solver
          type(hbvib_parameter_options), intent(in) :: options
          type(hbvib_hooks), intent(in), optional :: hooks
          type(c_ptr), intent(inout) :: out
@@ -1412,6 +1416,16 @@ module hbvib
          integer(c_int64_t), intent(inout) :: count
          integer(c_int32_t) :: status
       end function hbvib_branch_optima
+
+      function hbvib_branch_higher_peaks(branch, capacity, parameter, omega, amplitude, point, count) bind(c) result(status)
+         import
+         type(c_ptr), value :: branch
+         integer(c_int64_t), value :: capacity
+         real(c_double), intent(inout), optional :: parameter(*), omega(*), amplitude(*)
+         integer(c_int64_t), intent(inout), optional :: point(*)
+         integer(c_int64_t), intent(inout) :: count
+         integer(c_int32_t) :: status
+      end function hbvib_branch_higher_peaks
 
       function hbvib_batch_options_init(o, size_of_o) bind(c) result(status)
          import
@@ -1620,6 +1634,7 @@ module hbvib
       procedure :: bifurcations => branch_bifurcations
       procedure :: limit_cycles => branch_limit_cycles
       procedure :: optima => branch_optima
+      procedure :: higher_peaks => branch_higher_peaks
       procedure :: at => branch_at
       procedure :: energy => branch_energy
       procedure :: time_history => branch_time_history
@@ -1662,7 +1677,7 @@ module hbvib
    private :: branch_contact_summary, contact_to_zero, branch_mode_point, branch_mode_info, branch_synthesis
    private :: branch_synthesis_peaks, model_verify, model_floquet, model_sensitivity, model_batch, branch_limit_cycles
    private :: branch_bifurcations
-   private :: model_parameter_response, branch_optima
+   private :: model_parameter_response, branch_optima, branch_higher_peaks
    real(c_double), target, save, private :: nothing_1(0), nothing_2(0, 0)
 
 contains
@@ -2829,9 +2844,11 @@ contains
       if (status == HBVIB_OK) status = hbvib_forced_response(self%handle, chosen, forced, hooks, branch%handle)
    end function model_forced_response
 
-   !> Forced response over a parameter from start to stop: at the frequency omega, or of the peak near it with
-   !> follow = HBVIB_FOLLOW_PEAK. The solver must have tolerance = 0; contacts are counted from 1 in parameter%contact.
-   function model_parameter_response(self, branch, parameter, start, stop, omega, solver, follow, hooks, at) result(status)
+   !> A result over a parameter from start to stop: the response at the frequency omega, or with follow =
+   !> HBVIB_FOLLOW_PEAK or _FOLD the peak or fold near it, or with HBVIB_FOLLOW_MODE_MAX_DAMPING the largest damping ratio of
+   !> the nonlinear mode near it, sought within log10_amplitude(1) .. (2). Contacts are counted from 1 in parameter%contact.
+   function model_parameter_response(self, branch, parameter, start, stop, omega, solver, follow, hooks, at, log10_amplitude) &
+      result(status)
       class(hbvib_model), intent(in) :: self
       type(hbvib_branch), intent(inout) :: branch
       type(hbvib_parameter), intent(in) :: parameter
@@ -2840,6 +2857,7 @@ contains
       integer(i32), intent(in), optional :: follow
       type(hbvib_hooks), intent(in), optional :: hooks
       real(dp), intent(in), contiguous, target, optional :: at(:)
+      real(dp), intent(in), optional :: log10_amplitude(2)
       integer(i32) :: status
       type(hbvib_parameter_options) :: range
       type(hbvib_parameter), target :: given
@@ -2855,6 +2873,10 @@ contains
       range%stop = stop
       range%omega = omega
       if (present(follow)) range%follow = follow
+      if (present(log10_amplitude)) then
+         range%log10_start = log10_amplitude(1)
+         range%log10_stop = log10_amplitude(2)
+      end if
       if (present(at)) then
          range%at_len = size(at)
          if (size(at) > 0) range%at = c_loc(at)
@@ -3359,6 +3381,27 @@ contains
       if (present(maximum)) maximum = m == 1
       if (present(point)) point = int(p) + 1
    end function branch_optima
+
+   !> Peaks that are higher than the followed one of a parameter response; point: numbers of that one.
+   function branch_higher_peaks(self, parameter, omega, amplitude, point) result(status)
+      class(hbvib_branch), intent(in) :: self
+      real(dp), allocatable, intent(inout), optional :: parameter(:), omega(:), amplitude(:)
+      integer, allocatable, intent(inout), optional :: point(:)
+      integer(i32) :: status
+      real(dp), allocatable :: v(:), w(:), a(:)
+      integer(i64), allocatable :: p(:)
+      integer(i64) :: n
+      n = 0
+      status = hbvib_branch_higher_peaks(self%handle, 0_i64, count=n)
+      if (status /= HBVIB_OK) return
+      allocate (v(n), w(n), a(n), p(n))
+      status = hbvib_branch_higher_peaks(self%handle, n, v, w, a, p, n)
+      if (status /= HBVIB_OK) return
+      if (present(parameter)) parameter = v
+      if (present(omega)) omega = w
+      if (present(amplitude)) amplitude = a
+      if (present(point)) point = int(p) + 1
+   end function branch_higher_peaks
 
    !> Solutions found at entry `wanted` of the array `at`.
    function branch_at(self, wanted, amplitude, point) result(status)

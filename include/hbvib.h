@@ -157,6 +157,9 @@ typedef enum {
   HBVIB_STOPPED_NO_FORCE = 9,
   /// Batches only: the amplitude has no maximum within the range.
   HBVIB_STOPPED_NO_PEAK = 10,
+  /// Parameter responses only: the followed peak, or maximum of damping, met a minimum and
+  /// vanished.
+  HBVIB_STOPPED_PEAK_VANISHED = 11,
   /// A required pointer is NULL.
   HBVIB_E_NULL = -1,
   /// A value lies outside its range.
@@ -1706,8 +1709,11 @@ typedef enum {
   /// Parameter responses only: value of the parameter.
   HBVIB_PARAMETER_VALUE = 18,
   /// Parameter responses only: total derivative of the amplitude by the parameter, NaN where there
-  /// is none.
+  /// is none, and in those of a mode.
   HBVIB_D_AMPLITUDE = 19,
+  /// Parameter responses of the largest damping ratio of a mode only: total derivative of that
+  /// ratio by the parameter.
+  HBVIB_D_DAMPING = 20,
 } hbvib_field;
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -3192,19 +3198,23 @@ hbvib_status hbvib_sensitivity(const hbvib_model *model,
                                int64_t *onset,
                                const hbvib_hooks *hooks);
 
-/// Quantity that a parameter response follows.
+/// Result that a parameter response follows.
 typedef enum {
   /// The response at a fixed frequency.
   HBVIB_FOLLOW_OMEGA = 0,
   /// A peak of the response.
   HBVIB_FOLLOW_PEAK = 1,
+  /// A fold of the response over the frequency.
+  HBVIB_FOLLOW_FOLD = 2,
+  /// The largest damping ratio along a nonlinear mode.
+  HBVIB_FOLLOW_MODE_MAX_DAMPING = 3,
 } hbvib_follow;
 
 /// Range of a parameter response. Fill it by hbvib_parameter_options_init.
 typedef struct {
   /// Bytes of this struct as the caller knows it.
   uint32_t struct_size;
-  /// HBVIB_FOLLOW_OMEGA or HBVIB_FOLLOW_PEAK.
+  /// A value of enum hbvib_follow.
   int32_t follow;
   /// The parameter: must be set.
   const hbvib_parameter *parameter;
@@ -3213,13 +3223,20 @@ typedef struct {
   double start;
   /// Last value; below the first for a downward response.
   double stop;
-  /// Angular frequency: the fixed one, or one within a tenth of which the peak next to it is
-  /// sought at the first value.
+  /// Angular frequency: the fixed one, or one within a tenth of which the peak or fold next to it
+  /// is sought at the first value. With HBVIB_FOLLOW_MODE_MAX_DAMPING the mode is the one whose
+  /// linear mode with stuck contacts is next to it.
   double omega;
   /// Values at which every solution is computed exactly, or NULL.
   const double *at;
   /// Number of these values.
   int64_t at_len;
+  /// HBVIB_FOLLOW_MODE_MAX_DAMPING only: log10 of the modal amplitude from which the maximum of
+  /// damping is sought at the first value. Equal to log10_stop, as 0 and 0: from the onset of slip
+  /// to a thousand times its amplitude.
+  double log10_start;
+  /// The same up to which it is sought.
+  double log10_stop;
 } hbvib_parameter_options;
 
 /// Fills the options of a parameter response with zeros: parameter, range and omega must be set.
@@ -3230,21 +3247,25 @@ typedef struct {
 HBVIB_NODISCARD
 hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
 
-/// Follows the amplitude of a forced response over a parameter, at a fixed frequency or in a peak,
-/// by arc-length continuation: folds are passed, minima and maxima refined. All points have the
-/// same harmonics, so that the tolerance of the solver must be 0. The branch has the fields
-/// HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, and hbvib_branch_optima; its points belong to
+/// Follows a result over a parameter by arc-length continuation: the amplitude of a forced
+/// response at a fixed frequency, in a peak or in a fold, or the largest damping ratio of a
+/// nonlinear mode. Folds over the parameter are passed, minima and maxima refined. The harmonics
+/// are chosen at each point by the tolerance of the solver, or the same at all points with a
+/// tolerance of 0. The branch has the fields HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, of a
+/// mode HBVIB_D_DAMPING and those of a mode, and hbvib_branch_optima; its points belong to
 /// different models, so that functions of a model and a branch refuse it.
 ///
-/// solver   options, with tolerance = 0.
-/// options  parameter, range, and what is followed.
+/// solver   options of the solver; NULL: the defaults.
+/// options  parameter, range, and the result to follow.
 /// hooks    progress, log and cancellation; NULL: none.
 /// out      receives the branch; untouched on error. Free it by hbvib_branch_free.
-/// A positive status says why the branch ends early; a peak that vanishes in a fold ends with
-/// HBVIB_STOPPED_STEP_TOO_SMALL.
-/// Errors: those of hbvib_forced_response and of the parameters of hbvib_sensitivity;
-/// HBVIB_E_UNSUPPORTED also for a tolerance above 0; HBVIB_E_NO_CONVERGENCE also where there is no
-/// peak near the frequency. Threads: as for hbvib_forced_response.
+/// A positive status says why the branch ends early: HBVIB_STOPPED_PEAK_VANISHED where a peak or
+/// a maximum of damping met a minimum. Two folds that meet in a cusp are one curve, which comes
+/// back: HBVIB_STOPPED_LEFT_RANGE. A peak that is no longer the highest is told by
+/// hbvib_branch_higher_peaks.
+/// Errors: those of hbvib_forced_response, hbvib_nonlinear_mode and of the parameters of
+/// hbvib_sensitivity; HBVIB_E_NO_CONVERGENCE also where there is no peak, fold or maximum of
+/// damping near the frequency. Threads: as for hbvib_forced_response.
 HBVIB_NODISCARD
 hbvib_status hbvib_parameter_response(const hbvib_model *model,
                                       const hbvib_solver_options *solver,
@@ -3252,12 +3273,12 @@ hbvib_status hbvib_parameter_response(const hbvib_model *model,
                                       const hbvib_hooks *hooks,
                                       hbvib_branch **out);
 
-/// Minima and maxima of the amplitude over the parameter, refined on the solution, in the order of
+/// Minima and maxima of the result over the parameter, refined on the solution, in the order of
 /// the branch. Other branches have none.
 ///
 /// capacity   numbers that fit into each array.
 /// parameter  receives the values of the parameter, or NULL.
-/// amplitude  receives the amplitudes, or NULL.
+/// amplitude  receives the amplitudes, of a mode the damping ratios, or NULL.
 /// maximum    receives numbers: 1 for a maximum, 0 for a minimum; or NULL.
 /// point      receives their point numbers for hbvib_branch_harmonics, numbers, or NULL.
 /// count      receives how many there are, also when `capacity` is too small.
@@ -3272,6 +3293,28 @@ hbvib_status hbvib_branch_optima(const hbvib_branch *branch,
                                  int64_t *maximum,
                                  int64_t *point,
                                  int64_t *count);
+
+/// Peaks that are higher than the followed one. At the first and the last point of the curve and
+/// at the optima the response is swept over a tenth of the frequency below and above the followed
+/// peak; a sweep that fails shows none. Other branches have none.
+///
+/// capacity   numbers that fit into each array.
+/// parameter  receives the values of the parameter, or NULL.
+/// omega      receives the angular frequencies of the higher peaks, or NULL.
+/// amplitude  receives their amplitudes, or NULL.
+/// point      receives the point numbers of the followed peak, or NULL.
+/// count      receives how many there are, also when `capacity` is too small.
+/// Without arrays only the count is returned.
+/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
+/// HBVIB_E_HANDLE. Threads: any number on one branch.
+HBVIB_NODISCARD
+hbvib_status hbvib_branch_higher_peaks(const hbvib_branch *branch,
+                                       int64_t capacity,
+                                       double *parameter,
+                                       double *omega,
+                                       double *amplitude,
+                                       int64_t *point,
+                                       int64_t *count);
 
 /// The peaks of many designs, created by hbvib_batch_solve.
 typedef struct hbvib_batch hbvib_batch;

@@ -581,6 +581,8 @@ struct ParameterOptions : Filled<hbvib_parameter_options, hbvib_parameter_option
       : kept_(std::make_shared<const Parameter>(changed)) {
     parameter = kept_.get(), start = from, stop = to, omega = frequency, follow = what;
   }
+  /// log10 of the modal amplitudes between which the maximum of damping is sought, with HBVIB_FOLLOW_MODE_MAX_DAMPING.
+  ParameterOptions& amplitudes(double from, double to) { return log10_start = from, log10_stop = to, *this; }
   /// Values of the parameter at which every solution is computed exactly.
   ParameterOptions& wanted(Span<const double> values) { return at = values.data(), at_len = values.length(), *this; }
 
@@ -833,6 +835,11 @@ struct Optimum {
   bool is_maximum;
   Index point;
 };
+/// A peak that is higher than the followed one of a parameter response, and the point number of that one.
+struct HigherPeak {
+  double parameter, omega, amplitude;
+  Index point;
+};
 /// Multipliers of one period of a motion by falling modulus, and the reason of each.
 struct Floquet {
   hbvib_status status;
@@ -937,6 +944,18 @@ class Branch : public detail::Object<hbvib_branch, hbvib_branch_free> {
     use(hbvib_branch_optima, count, parameter.data(), amplitude.data(), maximum.data(), point.data(), &count);
     std::vector<Optimum> out;
     for (std::size_t i = 0; i < n; i++) out.push_back({parameter[i], amplitude[i], maximum[i] == 1, point[i]});
+    return out;
+  }
+  /// Peaks that are higher than the followed one of a parameter response, with the point numbers of that one.
+  std::vector<HigherPeak> higher_peaks() const {
+    Index count = 0;
+    use(hbvib_branch_higher_peaks, 0, nullptr, nullptr, nullptr, nullptr, &count);
+    const std::size_t n = detail::extent(count);
+    std::vector<double> parameter(n), omega(n), amplitude(n);
+    std::vector<Index> point(n);
+    use(hbvib_branch_higher_peaks, count, parameter.data(), omega.data(), amplitude.data(), point.data(), &count);
+    std::vector<HigherPeak> out;
+    for (std::size_t i = 0; i < n; i++) out.push_back({parameter[i], omega[i], amplitude[i], point[i]});
     return out;
   }
   /// Points of a nonlinear mode where its damping ratio is zero.

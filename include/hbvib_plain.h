@@ -21,6 +21,7 @@ typedef enum {
   HBVIB_STOPPED_UNBOUNDED = 8,
   HBVIB_STOPPED_NO_FORCE = 9,
   HBVIB_STOPPED_NO_PEAK = 10,
+  HBVIB_STOPPED_PEAK_VANISHED = 11,
   HBVIB_E_NULL = -1,
   HBVIB_E_ARGUMENT = -2,
   HBVIB_E_DIMENSION = -3,
@@ -150,7 +151,8 @@ typedef enum {
   HBVIB_FLOQUET_RADIUS = 16,
   HBVIB_UNSTABLE_DIRECTIONS = 17,
   HBVIB_PARAMETER_VALUE = 18,
-  HBVIB_D_AMPLITUDE = 19
+  HBVIB_D_AMPLITUDE = 19,
+  HBVIB_D_DAMPING = 20
 } hbvib_field;
 typedef enum {
   HBVIB_STATE_STICK = 0,
@@ -236,7 +238,9 @@ typedef enum {
 } hbvib_derivative;
 typedef enum {
   HBVIB_FOLLOW_OMEGA = 0,
-  HBVIB_FOLLOW_PEAK = 1
+  HBVIB_FOLLOW_PEAK = 1,
+  HBVIB_FOLLOW_FOLD = 2,
+  HBVIB_FOLLOW_MODE_MAX_DAMPING = 3
 } hbvib_follow;
 typedef struct hbvib_matrix hbvib_matrix;
 typedef struct hbvib_sector hbvib_sector;
@@ -603,6 +607,8 @@ struct hbvib_parameter_options {
   double omega;
   const double *at;
   int64_t at_len;
+  double log10_start;
+  double log10_stop;
 };
 struct hbvib_batch_options {
   uint32_t struct_size;
@@ -728,6 +734,7 @@ hbvib_status hbvib_sensitivity(const hbvib_model *model, const hbvib_branch *bra
 hbvib_status hbvib_parameter_options_init(hbvib_parameter_options *o, size_t size_of_o);
 hbvib_status hbvib_parameter_response(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_parameter_options *options, const hbvib_hooks *hooks, hbvib_branch **out);
 hbvib_status hbvib_branch_optima(const hbvib_branch *branch, int64_t capacity, double *parameter, double *amplitude, int64_t *maximum, int64_t *point, int64_t *count);
+hbvib_status hbvib_branch_higher_peaks(const hbvib_branch *branch, int64_t capacity, double *parameter, double *omega, double *amplitude, int64_t *point, int64_t *count);
 hbvib_status hbvib_batch_options_init(hbvib_batch_options *o, size_t size_of_o);
 hbvib_status hbvib_batch_solve(const hbvib_model *model, const hbvib_solver_options *solver, const hbvib_batch_options *options, const hbvib_hooks *hooks, const hbvib_parameter *parameters, int64_t count, int64_t designs, const double *values, hbvib_batch **out);
 hbvib_status hbvib_batch_free(hbvib_batch *batch);

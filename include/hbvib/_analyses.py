@@ -127,20 +127,24 @@ class _Analyses(_Matrices):
     @_with_options("hbvib_solver_options", SolverOptions)
     def parameter_response(self, parameter: Parameter, values: Sequence[float], *, omega: float,
                            follow: Any = Follow.OMEGA, at: Optional[ArrayLike] = None,
+                           log10_amplitude: Sequence[float] = (0, 0),
                            progress: Union[bool, Callable[[Progress], Any], None] = None,
                            log: Optional[Callable[[LogLevel, str], Any]] = None, log_level: Any = LogLevel.INFO,
                            cancel: Optional[CancelFlag] = None,
                            phase: Hook = None, **solver: Unpack[SolverOptions]) -> Branch:
-        """Follows the amplitude of the forced response over a parameter: Branch.parameter_values, .amplitude,
-        .d_amplitude, .optima.
+        """Follows a result over a parameter: Branch.parameter_values, .amplitude, .d_amplitude (of a mode .damping_ratio
+        and .d_damping), .optima and .higher_peaks.
 
         values    (start, stop), downward where stop is the lower: of a constant or of the speed the value itself, of a
                   factor 1 as at present, of a direction its coefficient.
-        omega     the frequency held, or one within a tenth of which the peak next to it is sought at the start.
-        follow    "omega": the response at this frequency; "peak": the peak.
+        omega     the frequency held, or one within a tenth of which the peak or fold next to it is sought at the start,
+                  or one near the linear mode with stuck contacts.
+        follow    "omega": the response at this frequency; "peak": the peak; "fold": a fold over the frequency;
+                  "mode_max_damping": the largest damping ratio along a nonlinear mode.
         at        values within the range at which every solution is computed exactly: Branch.at.
-        The rest as in forced_response. All points have the same `harmonics`, which must be given: without a
-        tolerance. Options of the solver:
+        log10_amplitude   of the modal amplitudes between which the maximum of damping is sought at the start; equal ones:
+                  from the onset of slip to a thousand times its amplitude.
+        The rest as in forced_response. Options of the solver:
 
         {options}
 
@@ -156,6 +160,7 @@ class _Analyses(_Matrices):
         start, stop = _range("values", values, "parameter_response(parameter, (1, 2), at=values)")
         described = parameter._description()
         options = _new("hbvib_parameter_options", start=start, stop=stop, omega=omega, follow=_member(Follow, follow),
+                       log10_start=log10_amplitude[0], log10_stop=log10_amplitude[1],
                        **_counted_array("at", at))
         options.described = described  # kept as long as the struct
         options.parameter = ctypes.addressof(described)

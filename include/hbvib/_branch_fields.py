@@ -91,4 +91,6 @@ class _BranchFields(_Owner):
         """)
     d_amplitude = _field_property(Field.D_AMPLITUDE, "Parameter responses: total derivative of the amplitude by the"
                                   " parameter; NaN where there is none.")
+    d_damping = _field_property(Field.D_DAMPING, "Parameter responses of a mode: total derivative of its largest damping"
+                                " ratio by the parameter.")
     modal_assurance = _field_property(Field.MODAL_ASSURANCE, "Modes: likeness to the point before, 0 to 1.")

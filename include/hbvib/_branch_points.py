@@ -8,7 +8,7 @@ import numpy as np
 from ._c import Bifurcation
 from ._calls import _Owner, _stoppable
 from ._convert import _whole
-from ._results import Bifurcations, LimitCycles, Loop, Optima, Points, Synthesis, SynthesisPeaks, Wanted
+from ._results import Bifurcations, HigherPeaks, LimitCycles, Loop, Optima, Points, Synthesis, SynthesisPeaks, Wanted
 from ._structs import _new, _options, _record, _Record, _with_options
 from ._types import ContactSummary, Energy, ModeInfo, ModePoint, Reduction, SynthesisOptions
 
@@ -225,8 +225,8 @@ class _BranchPoints(_Owner):
         return Bifurcations(omega, amplitude, names, *rest)
 
     def optima(self) -> Optima:
-        """Minima and maxima of the amplitude over the parameter of a parameter response: value of the parameter,
-        amplitude, kind ("minimum" or "maximum"), point number.
+        """Minima and maxima over the parameter of a parameter response: value of the parameter, amplitude (of a mode the
+        damping ratio), kind ("minimum" or "maximum"), point number.
 
         >>> import hbvib
         >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
@@ -237,6 +237,20 @@ class _BranchPoints(_Owner):
         """
         found = self._listed("hbvib_branch_optima", (), [float, float, np.int64, np.int64])
         return Optima(found[0], found[1], np.where(found[2] == 1, "maximum", "minimum"), found[3])
+
+    def higher_peaks(self) -> HigherPeaks:
+        """Peaks that are higher than the one that a parameter response follows: value of the parameter, omega, amplitude,
+        point number of the followed peak. They are sought at the first and the last point and at the optima, within a
+        tenth of the frequency.
+
+        >>> import hbvib
+        >>> model = hbvib.Model(mass=1, stiffness=1, damping=0.1)
+        >>> model.add_force(0, 0.2)
+        >>> found = model.parameter_response(hbvib.Parameter("force"), (1, 3), omega=1.0, follow="peak")
+        >>> len(found.higher_peaks().omega)  # there is one peak
+        0
+        """
+        return HigherPeaks(*self._listed("hbvib_branch_higher_peaks", (), [float, float, float, np.int64]))
 
     def limit_cycles(self) -> LimitCycles:
         """Points of a nonlinear mode where its damping ratio is zero, motions of the model without forces: omega, log10

@@ -29,6 +29,8 @@ class Status(enum.IntEnum):
     STOPPED_UNBOUNDED = 8
     STOPPED_NO_FORCE = 9  #: No force acts on the model: its response is zero, or the static motion under preloads.
     STOPPED_NO_PEAK = 10  #: Batches only: the amplitude has no maximum within the range.
+    #: Parameter responses only: the followed peak, or maximum of damping, met a minimum and vanished.
+    STOPPED_PEAK_VANISHED = 11
     E_NULL = -1  #: A required pointer is NULL.
     E_ARGUMENT = -2  #: A value lies outside its range.
     E_DIMENSION = -3  #: A count or length does not fit.
@@ -207,8 +209,11 @@ class Field(enum.IntEnum):
     #: The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
     UNSTABLE_DIRECTIONS = 17
     PARAMETER_VALUE = 18  #: Parameter responses only: value of the parameter.
-    #: Parameter responses only: total derivative of the amplitude by the parameter, NaN where there is none.
+    #: Parameter responses only: total derivative of the amplitude by the parameter, NaN where there is none, and in
+    #: those of a mode.
     D_AMPLITUDE = 19
+    #: Parameter responses of the largest damping ratio of a mode only: total derivative of that ratio by the parameter.
+    D_DAMPING = 20
 
 
 class State(enum.IntEnum):
@@ -338,9 +343,11 @@ class Derivative(enum.IntEnum):
 
 
 class Follow(enum.IntEnum):
-    """Quantity that a parameter response follows."""
+    """Result that a parameter response follows."""
     OMEGA = 0  #: The response at a fixed frequency.
     PEAK = 1  #: A peak of the response.
+    FOLD = 2  #: A fold of the response over the frequency.
+    MODE_MAX_DAMPING = 3  #: The largest damping ratio along a nonlinear mode.
 
 _VERSION = (0, 1)  # of the library that this module was written for
 
@@ -395,7 +402,7 @@ floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 coun
     double orbit_change residual
 parameter: uint32 struct_size; int32 kind; int64 contact; pointer direction; int32 scaling reserved
 parameter_options: uint32 struct_size; int32 follow; pointer parameter; double start stop omega; pointer at; int64
-    at_len
+    at_len; double log10_start log10_stop
 batch_options: uint32 struct_size; int32 threads; double omega_start omega_stop; int32 keep reserved
 """
 
@@ -526,6 +533,7 @@ sensitivity: h h l i parameter l p l p p hooks
 parameter_options_init: parameter_options z
 parameter_response: h solver_options parameter_options hooks p
 branch_optima: h l p p p p p
+branch_higher_peaks: h l p p p p p
 batch_options_init: batch_options z
 batch_solve: h solver_options batch_options hooks parameter l l p p
 batch_free: h
@@ -703,6 +711,8 @@ if TYPE_CHECKING:
         def hbvib_parameter_response(self, model: Any, solver: Any, options: Any, hooks: Any, out: Any) -> int: ...
         def hbvib_branch_optima(self, branch: Any, capacity: int, parameter: Any, amplitude: Any, maximum: Any, point:
             Any, count: Any) -> int: ...
+        def hbvib_branch_higher_peaks(self, branch: Any, capacity: int, parameter: Any, omega: Any, amplitude: Any,
+            point: Any, count: Any) -> int: ...
         def hbvib_batch_options_init(self, o: Any, size_of_o: int) -> int: ...
         def hbvib_batch_solve(self, model: Any, solver: Any, options: Any, hooks: Any, parameters: Any, count: int,
             designs: int, values: Any, out: Any) -> int: ...

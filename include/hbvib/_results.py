@@ -18,7 +18,8 @@ if TYPE_CHECKING:
     StringArray = NDArray[np.str_]
 
 __all__ = [
-    "AeroEntries", "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "LimitCycles", "Loop", "Modes",
+    "AeroEntries", "Bifurcations", "Campbell", "ContactForce", "Contact", "Crossings", "DampedModes", "Floquet", "Forces", "HigherPeaks",
+    "LimitCycles", "Loop", "Modes",
     "Optima", "Points", "Progress", "Residual", "Springs", "Synthesis", "SynthesisPeaks", "TimeResponse", "Verification", "Wanted",
 ]
 
@@ -195,10 +196,18 @@ class Verification(NamedTuple):
 
 
 class Optima(NamedTuple):
-    """Optima of a parameter response: value of the parameter, amplitude, "minimum" or "maximum", point number."""
+    """Optima of a parameter response: value of the parameter, amplitude or damping ratio, kind, point number."""
     parameter: FloatArray
     value: FloatArray
     kind: StringArray
+    point: IntArray
+
+
+class HigherPeaks(NamedTuple):
+    """Peaks higher than a followed one: value of the parameter, omega, amplitude, point number of the followed one."""
+    parameter: FloatArray
+    omega: FloatArray
+    amplitude: FloatArray
     point: IntArray
 
 

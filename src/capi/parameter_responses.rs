@@ -1,10 +1,10 @@
-//! Section "Design studies" of the header: a forced response over a parameter of the model, and its optima.
+//! Section "Design studies" of the header: a result over a parameter of the model.
 
 #![allow(non_camel_case_types)]
 
-use super::arrays::{check_pointer, count, input, optional};
+use super::arrays::{check_pointer, count, input};
 use super::boundary::{WithArgument, call};
-use super::handles::{KeptBranch, read};
+use super::handles::read;
 use super::model::hbvib_model;
 use super::sensitivities::{hbvib_parameter, parameter};
 use super::solve::{follow, hbvib_branch};
@@ -13,17 +13,21 @@ use super::solve_options::{hbvib_solver_options, solver_options};
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, init, load};
 use crate::analysis::{self, Follow, ParameterRange};
-use crate::error::{Result, Status, fail};
+use crate::error::{Result, fail};
 use crate::model::Model;
 use core::ptr;
 
-/// Quantity that a parameter response follows.
+/// Result that a parameter response follows.
 #[repr(C)]
 pub enum hbvib_follow {
     /// The response at a fixed frequency.
     HBVIB_FOLLOW_OMEGA = 0,
     /// A peak of the response.
     HBVIB_FOLLOW_PEAK = 1,
+    /// A fold of the response over the frequency.
+    HBVIB_FOLLOW_FOLD = 2,
+    /// The largest damping ratio along a nonlinear mode.
+    HBVIB_FOLLOW_MODE_MAX_DAMPING = 3,
 }
 
 /// Range of a parameter response. Fill it by hbvib_parameter_options_init.
@@ -32,7 +36,7 @@ pub enum hbvib_follow {
 pub struct hbvib_parameter_options {
     /// Bytes of this struct as the caller knows it.
     pub struct_size: u32,
-    /// HBVIB_FOLLOW_OMEGA or HBVIB_FOLLOW_PEAK.
+    /// A value of enum hbvib_follow.
     pub follow: i32,
     /// The parameter: must be set.
     pub parameter: *const hbvib_parameter,
@@ -41,13 +45,20 @@ pub struct hbvib_parameter_options {
     pub start: f64,
     /// Last value; below the first for a downward response.
     pub stop: f64,
-    /// Angular frequency: the fixed one, or one within a tenth of which the peak next to it is
-    /// sought at the first value.
+    /// Angular frequency: the fixed one, or one within a tenth of which the peak or fold next to it
+    /// is sought at the first value. With HBVIB_FOLLOW_MODE_MAX_DAMPING the mode is the one whose
+    /// linear mode with stuck contacts is next to it.
     pub omega: f64,
     /// Values at which every solution is computed exactly, or NULL.
     pub at: *const f64,
     /// Number of these values.
     pub at_len: i64,
+    /// HBVIB_FOLLOW_MODE_MAX_DAMPING only: log10 of the modal amplitude from which the maximum of
+    /// damping is sought at the first value. Equal to log10_stop, as 0 and 0: from the onset of slip
+    /// to a thousand times its amplitude.
+    pub log10_start: f64,
+    /// The same up to which it is sought.
+    pub log10_stop: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_parameter_options {
@@ -64,6 +75,8 @@ unsafe impl VersionedStruct for hbvib_parameter_options {
             omega: 0.0,
             at: ptr::null(),
             at_len: 0,
+            log10_start: 0.0,
+            log10_stop: 0.0,
         }
     }
 }
@@ -81,21 +94,25 @@ pub unsafe extern "C" fn hbvib_parameter_options_init(
     call(|| unsafe { init(o, size_of_o) })
 }
 
-/// Follows the amplitude of a forced response over a parameter, at a fixed frequency or in a peak,
-/// by arc-length continuation: folds are passed, minima and maxima refined. All points have the
-/// same harmonics, so that the tolerance of the solver must be 0. The branch has the fields
-/// HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, and hbvib_branch_optima; its points belong to
+/// Follows a result over a parameter by arc-length continuation: the amplitude of a forced
+/// response at a fixed frequency, in a peak or in a fold, or the largest damping ratio of a
+/// nonlinear mode. Folds over the parameter are passed, minima and maxima refined. The harmonics
+/// are chosen at each point by the tolerance of the solver, or the same at all points with a
+/// tolerance of 0. The branch has the fields HBVIB_PARAMETER_VALUE and HBVIB_D_AMPLITUDE, of a
+/// mode HBVIB_D_DAMPING and those of a mode, and hbvib_branch_optima; its points belong to
 /// different models, so that functions of a model and a branch refuse it.
 ///
-/// solver   options, with tolerance = 0.
-/// options  parameter, range, and what is followed.
+/// solver   options of the solver; NULL: the defaults.
+/// options  parameter, range, and the result to follow.
 /// hooks    progress, log and cancellation; NULL: none.
 /// out      receives the branch; untouched on error. Free it by hbvib_branch_free.
-/// A positive status says why the branch ends early; a peak that vanishes in a fold ends with
-/// HBVIB_STOPPED_STEP_TOO_SMALL.
-/// Errors: those of hbvib_forced_response and of the parameters of hbvib_sensitivity;
-/// HBVIB_E_UNSUPPORTED also for a tolerance above 0; HBVIB_E_NO_CONVERGENCE also where there is no
-/// peak near the frequency. Threads: as for hbvib_forced_response.
+/// A positive status says why the branch ends early: HBVIB_STOPPED_PEAK_VANISHED where a peak or
+/// a maximum of damping met a minimum. Two folds that meet in a cusp are one curve, which comes
+/// back: HBVIB_STOPPED_LEFT_RANGE. A peak that is no longer the highest is told by
+/// hbvib_branch_higher_peaks.
+/// Errors: those of hbvib_forced_response, hbvib_nonlinear_mode and of the parameters of
+/// hbvib_sensitivity; HBVIB_E_NO_CONVERGENCE also where there is no peak, fold or maximum of
+/// damping near the frequency. Threads: as for hbvib_forced_response.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn hbvib_parameter_response(
     model: *const hbvib_model,
@@ -129,70 +146,15 @@ unsafe fn parameter_range<'a>(o: &hbvib_parameter_options) -> Result<ParameterRa
         follow: match o.follow {
             0 => Follow::Omega(o.omega),
             1 => Follow::Peak(o.omega),
-            other => {
-                return fail!(
-                    Argument,
-                    "follow = {other}, needs HBVIB_FOLLOW_OMEGA = 0 or HBVIB_FOLLOW_PEAK = 1"
-                );
-            }
+            2 => Follow::Fold(o.omega),
+            3 => Follow::ModeMaxDamping {
+                omega: o.omega,
+                log10_range: (o.log10_start.to_bits() != o.log10_stop.to_bits())
+                    .then_some((o.log10_start, o.log10_stop)),
+            },
+            other => return fail!(Argument, "follow = {other}, needs a value of enum hbvib_follow: 0 .. 3"),
         },
     };
     range.check()?;
     Ok(range)
-}
-
-/// Minima and maxima of the amplitude over the parameter, refined on the solution, in the order of
-/// the branch. Other branches have none.
-///
-/// capacity   numbers that fit into each array.
-/// parameter  receives the values of the parameter, or NULL.
-/// amplitude  receives the amplitudes, or NULL.
-/// maximum    receives numbers: 1 for a maximum, 0 for a minimum; or NULL.
-/// point      receives their point numbers for hbvib_branch_harmonics, numbers, or NULL.
-/// count      receives how many there are, also when `capacity` is too small.
-/// Without arrays only the count is returned.
-/// Errors: HBVIB_E_DIMENSION (capacity too small: the arrays are untouched), HBVIB_E_NULL,
-/// HBVIB_E_HANDLE. Threads: any number on one branch.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn hbvib_branch_optima(
-    branch: *const hbvib_branch,
-    capacity: i64,
-    parameter: *mut f64,
-    amplitude: *mut f64,
-    maximum: *mut i64,
-    point: *mut i64,
-    count: *mut i64,
-) -> hbvib_status {
-    call(|| {
-        let kept = read::<KeptBranch>(branch, 1)?;
-        let capacity = super::arrays::count(capacity, 2, "capacity")?;
-        let reals = [
-            optional((parameter, 3), "parameter")?,
-            optional((amplitude, 4), "amplitude")?,
-        ];
-        let whole = [optional((maximum, 5), "maximum")?, optional((point, 6), "point")?];
-        check_pointer(count, 7, "count")?;
-        let found = kept.branch.optima();
-        unsafe { count.write(found.len() as i64) };
-        if reals.iter().all(Option::is_none) && whole.iter().all(Option::is_none) {
-            return Ok(Status::Ok);
-        }
-        if capacity < found.len() {
-            return fail!(Dimension, "capacity = {capacity}, needs {}", found.len()).with_argument(2);
-        }
-        for (i, optimum) in found.iter().enumerate() {
-            for (column, value) in reals.iter().zip([optimum.parameter, optimum.amplitude]) {
-                if let Some(p) = column {
-                    unsafe { p.add(i).write(value) };
-                }
-            }
-            let numbers = [i64::from(optimum.is_maximum), optimum.point as i64];
-            for (column, value) in whole.iter().zip(numbers) {
-                if let Some(p) = column {
-                    unsafe { p.add(i).write(value) };
-                }
-            }
-        }
-        Ok(Status::Ok)
-    })
 }

@@ -106,8 +106,11 @@ pub enum hbvib_field {
     /// Parameter responses only: value of the parameter.
     HBVIB_PARAMETER_VALUE = 18,
     /// Parameter responses only: total derivative of the amplitude by the parameter, NaN where there
-    /// is none.
+    /// is none, and in those of a mode.
     HBVIB_D_AMPLITUDE = 19,
+    /// Parameter responses of the largest damping ratio of a mode only: total derivative of that
+    /// ratio by the parameter.
+    HBVIB_D_DAMPING = 20,
 }
 
 /// A borrowed array of results, valid until hbvib_branch_free. Fill it by hbvib_view_init.
@@ -185,6 +188,7 @@ pub unsafe extern "C" fn hbvib_branch_field(
     const UNSTABLE: i32 = hbvib_field::HBVIB_UNSTABLE_DIRECTIONS as i32;
     const PARAMETER: i32 = hbvib_field::HBVIB_PARAMETER_VALUE as i32;
     const D_AMPLITUDE: i32 = hbvib_field::HBVIB_D_AMPLITUDE as i32;
+    const D_DAMPING: i32 = hbvib_field::HBVIB_D_DAMPING as i32;
     const SLIP_FRACTION: i32 = hbvib_field::HBVIB_SLIP_FRACTION as i32;
     call(|| {
         let kept = read::<KeptBranch>(branch, 1)?;
@@ -213,16 +217,20 @@ pub unsafe extern "C" fn hbvib_branch_field(
                 )
                 .with_argument(2);
             }
-            PARAMETER | D_AMPLITUDE => {
-                let data = if field == PARAMETER {
-                    branch.parameter()
-                } else {
-                    branch.d_amplitude()
+            PARAMETER | D_AMPLITUDE | D_DAMPING => {
+                let data = match field {
+                    PARAMETER => branch.parameter(),
+                    D_AMPLITUDE => branch.d_amplitude(),
+                    _ => branch.d_damping().filter(|_| branch.mode().is_some()),
                 };
                 match data {
                     Some(data) => data,
                     None => {
-                        return fail!(Argument, "field = {field}: only a parameter response has it").with_argument(2);
+                        return fail!(
+                            Argument,
+                            "field = {field}: only a parameter response has it, the derivative of damping one of a mode"
+                        )
+                        .with_argument(2);
                     }
                 }
             }

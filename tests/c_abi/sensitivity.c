@@ -91,11 +91,23 @@ int main(void)
         REFUSED("no parameter", hbvib_branch_field(branch, HBVIB_D_AMPLITUDE, &view), HBVIB_E_ARGUMENT, 2, "parameter response");
         REFUSED("models", hbvib_sensitivity(model, study, 0, 0, p, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 0, "model of its own");
         WORKS("free", hbvib_branch_free(study));
-        o.follow = 2;
-        REFUSED("follow", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_ARGUMENT, 3, "follow = 2");
+        o.follow = 4;
+        REFUSED("follow", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_ARGUMENT, 3, "follow = 4");
+        o.follow = HBVIB_FOLLOW_FOLD;
+        REFUSED("no fold", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_NO_CONVERGENCE, 0, "no fold");
         o.follow = HBVIB_FOLLOW_OMEGA;
         solver.tolerance = 1e-3;
-        REFUSED("tolerance", hbvib_parameter_response(model, &solver, &o, NULL, &study), HBVIB_E_UNSUPPORTED, 0, "needs 0");
+        WORKS("tolerance", hbvib_parameter_response(model, &solver, &o, NULL, &study));
+        REFUSED("no mode", hbvib_branch_field(study, HBVIB_D_DAMPING, &view), HBVIB_E_ARGUMENT, 2, "of a mode");
+        WORKS("no higher peak", hbvib_branch_higher_peaks(study, 8, value, size, NULL, where, &n));
+        EXPECT("no higher peak", n == 0);
+        WORKS("free", hbvib_branch_free(study));
+        o.follow = HBVIB_FOLLOW_MODE_MAX_DAMPING;
+        WORKS("damping", hbvib_parameter_response(model, &solver, &o, NULL, &study));
+        WORKS("its derivative", hbvib_branch_field(study, HBVIB_D_DAMPING, &view));
+        /* By similarity the largest damping ratio does not depend on the normal load. */
+        EXPECT("its derivative", fabs(view.data[0]) < 1e-10);
+        WORKS("free", hbvib_branch_free(study));
     }
     REFUSED("no peak", hbvib_sensitivity(model, branch, 0, HBVIB_OF_PEAK_OMEGA, p, 4, values, 4, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 0, "no peak");
     REFUSED("of", hbvib_sensitivity(model, branch, 0, 5, p, 4, values, 4, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 4, "of = 5");

@@ -60,7 +60,7 @@ fn in_rust() -> String {
         hbvib_floquet_options { struct_size, waves, refine, reserved, tolerance, max_periods }
         hbvib_floquet_info { struct_size, grazing, omega, radius, count, unstable, neutral, grazing_contact, orbit_change, residual }
         hbvib_parameter { struct_size, kind, contact, direction, scaling, reserved }
-        hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len }
+        hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len, log10_start, log10_stop }
         hbvib_batch_options { struct_size, threads, omega_start, omega_stop, keep, reserved }
         // END GENERATED
     }

@@ -94,7 +94,7 @@ pub const SECTIONS: [Section; 13] = [
     Section {
         title: "Design studies",
         about: "parameters of a model, derivatives of results by them, responses over them",
-        files: &["sensitivities", "parameter_responses", "batch"],
+        files: &["sensitivities", "parameter_responses", "parameter_optima", "batch"],
     },
     Section {
         title: "Low level",

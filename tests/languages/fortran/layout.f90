@@ -466,6 +466,8 @@ contains
       call field('omega', c_loc(s), c_loc(s%omega), c_sizeof(s%omega))
       call field('at', c_loc(s), c_loc(s%at), c_sizeof(s%at))
       call field('at_len', c_loc(s), c_loc(s%at_len), c_sizeof(s%at_len))
+      call field('log10_start', c_loc(s), c_loc(s%log10_start), c_sizeof(s%log10_start))
+      call field('log10_stop', c_loc(s), c_loc(s%log10_stop), c_sizeof(s%log10_stop))
    end subroutine parameter_options
 
    subroutine batch_options()

@@ -275,6 +275,12 @@ check("a study has its range", study.parameter_values[0] == 0.3 and study.parame
 check("and an optimum", list(optima.kind) == ["minimum"] and optima.value[0] <= study.amplitude.min())
 sweep = rubbing.forced_response((1, 1.5), harmonics=9)
 close("a point of it is the peak of the model", study.at(0).amplitude, sweep.peaks().amplitude, 1e-8)
+check("the only peak is the highest", len(study.higher_peaks().omega) == 0)
+damped = rubbing.parameter_response(hbvib.Parameter("preload"), (0.5, 1), omega=1.4, follow="mode_max_damping")
+close("the largest damping does not depend on the load", damped.damping_ratio, np.full(len(damped), damped.damping_ratio[0]), 1e-6)
+check("nor has it a derivative by it", abs(damped.d_damping).max() < 1e-9)
+chosen = rubbing.parameter_response(hbvib.Parameter("preload"), (0.3, 2), omega=1.0, follow="peak")
+check("a tolerance chooses the harmonics", chosen.status == hbvib.Status.OK and chosen.error_estimate.max() < 1e-3)
 started = rubbing.time_response(1.3, harmonics=3, start=point.harmonics(0), method="marching")
 close("marching from a point of a branch finds the same", started.harmonics, truth, 1e-6)
 
