@@ -143,8 +143,7 @@ fn largest_damping_of_a_jenkins_element_is_that_in_closed_form() {
                 let slope = (changed(index, p + h).largest().0 - changed(index, p - h).largest().0) / (2.0 * h);
                 assert!(
                     (found - slope).abs() * p < 1e-7 * largest,
-                    "{parameter:?} {p}: {} {slope}",
-                    found
+                    "{parameter:?} {p}: {found} {slope}"
                 );
             }
         }

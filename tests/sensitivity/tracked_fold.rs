@@ -100,7 +100,7 @@ fn folds_of_duffing_over_the_force_are_those_in_closed_form() {
             assert!((p * force / at(omega).1 - 1.0).abs() < 1e-8, "{p}");
             let h = 1e-5 * omega;
             let expected = (at(omega + h).0 - at(omega - h).0) / (at(omega + h).1 - at(omega - h).1) * force;
-            assert!((slope / expected - 1.0).abs() < 1e-6, "{p}: {} {expected}", slope);
+            assert!((slope / expected - 1.0).abs() < 1e-6, "{p}: {slope} {expected}");
         }
     }
 }
