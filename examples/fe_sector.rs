@@ -38,6 +38,8 @@ mod response;
 mod sector;
 #[path = "fe_sector/single.rs"]
 mod single;
+#[path = "support/stability.rs"]
+mod stability;
 #[path = "support/table.rs"]
 mod table;
 

@@ -30,6 +30,8 @@ mod plot;
 mod progress;
 #[path = "support/response.rs"]
 mod response;
+#[path = "support/stability.rs"]
+mod stability;
 
 fn main() -> ExitCode {
     // Cargo sets this variable for a program that it runs; without it the current folder serves.

@@ -35,6 +35,8 @@ mod progress;
 mod response;
 #[path = "ring_damper/single.rs"]
 mod single;
+#[path = "support/stability.rs"]
+mod stability;
 
 /// The flags that a response and a mode have in common.
 const COMMON: [Flag; 10] = [

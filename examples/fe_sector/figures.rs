@@ -16,6 +16,7 @@ use crate::progress::Bar;
 use crate::response::{Range, Response};
 use crate::sector::{Interface, SECTORS, Sector, Size, natural_frequencies};
 use crate::single::RANGE;
+use crate::stability;
 
 type Outcome = Result<(), Box<dyn Error>>;
 
@@ -139,10 +140,13 @@ fn responses(sector: &Sector, read: Duration, folder: &Path, screen: &mut impl W
                 rows.push(vec![force, harmonics as f64, p.frequency, p.amplitude(), x.re, x.im]);
             }
             let curve = response.points.iter();
-            let points = curve.map(|p| (p.frequency, p.amplitude() / force * 1e6)).collect();
-            let style = if harmonics == 1 { Style::Dashed } else { Style::Line };
+            let points: Vec<_> = curve.map(|p| (p.frequency, p.amplitude() / force * 1e6)).collect();
             let label = format!("{force} N, h = {carried}");
-            series.push(Series::new(label, style, points));
+            if harmonics == 1 {
+                series.push(Series::new(label, Style::Dashed, points));
+            } else {
+                series.extend(stability::series(&label, &points, &stability::between_folds(&response)));
+            }
             if harmonics == 3 {
                 slip_map(sector, &response, force, folder, screen)?;
             }

@@ -14,6 +14,7 @@ use crate::maps;
 use crate::plot::{Figure, Series, Style};
 use crate::progress::Bar;
 use crate::response::{Point, Range, Response};
+use crate::stability;
 
 /// Result of every part of the program.
 pub type Outcome = Result<(), Box<dyn Error>>;
@@ -58,12 +59,14 @@ pub fn run(folder: &Path, screen: &mut impl Write) -> Outcome {
         for p in &response.points {
             rows.push(vec![force, p.frequency, p.amplitude(), amplitude_upwards(p)]);
         }
+        // Integration in time does not take friction in a plane, but folds tell where a motion is unstable.
+        let (label, unstable) = (format!("{force} N"), stability::between_folds(&response));
         let points = response.points.iter();
-        let points = points.map(|p| (p.frequency, 1e6 * p.amplitude() / force)).collect();
-        series.push(Series::new(format!("{force} N"), Style::Line, points));
+        let points: Vec<_> = points.map(|p| (p.frequency, 1e6 * p.amplitude() / force)).collect();
+        series.extend(stability::series(&label, &points, &unstable));
         let points = response.points.iter();
-        let points = points.map(|p| (p.frequency, 1e6 * amplitude_upwards(p))).collect();
-        upwards.push(Series::new(format!("{force} N"), Style::Line, points));
+        let points: Vec<_> = points.map(|p| (p.frequency, 1e6 * amplitude_upwards(p))).collect();
+        upwards.extend(stability::series(&label, &points, &unstable));
         if force == EXAMINED {
             maps::draw(&beam, &response, force, folder, screen)?;
         }
@@ -95,7 +98,7 @@ pub fn run(folder: &Path, screen: &mut impl Write) -> Outcome {
     // The upward bending mode, 651 Hz on a closed lining, is softened by lift-off: its resonance bends far to the
     // left, folds back, and appears in the motion across near the intersection of the two.
     let figure = Figure {
-        title: "Beam on a friction lining: motion of the free end upwards".into(),
+        title: "Beam on a friction lining: motion of the free end upwards (dashed: unstable)".into(),
         y_label: "Amplitude [µm]".into(),
         series: upwards,
         ..figure

@@ -14,6 +14,7 @@ use crate::modes::{self, Overlay};
 use crate::plot::{Figure, Series, Style};
 use crate::progress::Bar;
 use crate::response::{Range, Response};
+use crate::stability;
 
 /// Range of frequency that shows the resonance of nodal diameter 2 from the ring sliding (207.8 Hz) to stuck (210.0
 /// Hz).
@@ -21,6 +22,18 @@ pub const RANGE: (f64, f64) = (207.0, 211.0);
 
 /// Largest step along a curve, small enough for it to be drawn smoothly.
 pub const SMOOTH: f64 = 0.005;
+
+/// Points of a curve whose Floquet multipliers are computed.
+const CHECKS: usize = 4;
+
+/// A response with the value of its parameter.
+struct Case {
+    value: f64,
+    response: Response,
+    /// Whether each point of its curve is unstable.
+    unstable: Vec<bool>,
+    seconds: f64,
+}
 
 /// A parameter that is varied over one figure.
 struct Study {
@@ -163,17 +176,23 @@ impl Study {
         for (i, &value) in self.values.iter().enumerate() {
             let begin = Instant::now();
             let progress = |share: f64| bar.set((i as f64 + share) / count as f64);
-            let response = (self.case)(value)
-                .model()
-                .and_then(|model| Response::follow(&model, &solver, &range, &REPORTED_DOFS, progress))
-                .map_err(|e| format!("{} = {value}: {e}", self.parameter))?;
-            cases.push((value, response, begin.elapsed().as_secs_f64()));
+            let failed = |e: Box<dyn Error>| format!("{} = {value}: {e}", self.parameter);
+            let model = (self.case)(value).model().map_err(failed)?;
+            let response = Response::follow(&model, &solver, &range, &REPORTED_DOFS, progress).map_err(failed)?;
+            let seconds = begin.elapsed().as_secs_f64();
+            cases.push(Case {
+                value,
+                unstable: stability::checked(&model, &response, CHECKS).map_err(failed)?,
+                response,
+                seconds,
+            });
         }
         bar.finish();
 
         let mut rows = Vec::new();
-        for (value, response, _) in &cases {
-            rows.extend(response.points.iter().map(|p| vec![*value, p.frequency, p.amplitude()]));
+        for case in &cases {
+            let points = case.response.points.iter();
+            rows.extend(points.map(|p| vec![case.value, p.frequency, p.amplitude()]));
         }
         let stem = folder.join(format!("figure{}", self.number));
         write_csv(
@@ -184,9 +203,10 @@ impl Study {
         let mut figure = self.plot(&cases, |_| 1.0, "Amplitude of b2 [m]");
         let mut overlay = None;
         if self.number == 5 {
-            let peaks = cases
-                .iter()
-                .map(|(force, r, _)| (*force, r.peak.frequency, r.peak.amplitude()));
+            let peaks = cases.iter().map(|case| {
+                let peak = &case.response.peak;
+                (case.value, peak.frequency, peak.amplitude())
+            });
             let mode = Overlay::new(&solver, &peaks.collect::<Vec<_>>())?;
             figure.series.extend(mode.series());
             mode.write(folder)?;
@@ -205,7 +225,8 @@ impl Study {
             "{:>13}{:>12}{:>18}{:>9}{:>11}",
             self.parameter, "peak [Hz]", "amplitude [m]", "points", "time [ms]"
         )?;
-        for (value, response, seconds) in &cases {
+        for case in &cases {
+            let (value, response, seconds) = (case.value, &case.response, case.seconds);
             let (frequency, amplitude) = (response.peak.frequency, response.peak.amplitude());
             let (points, time) = (response.points.len(), 1e3 * seconds);
             writeln!(
@@ -220,15 +241,21 @@ impl Study {
         Ok(())
     }
 
-    /// The curves with their peaks marked, each divided by `unit` of its parameter.
-    fn plot(&self, cases: &[(f64, Response, f64)], unit: impl Fn(f64) -> f64, y_label: &str) -> Figure {
+    /// The curves with their peaks marked and unstable stretches dashed, each divided by `unit` of its parameter.
+    fn plot(&self, cases: &[Case], unit: impl Fn(f64) -> f64, y_label: &str) -> Figure {
         let mut series = Vec::new();
-        for (value, response, _) in cases {
-            let unit = unit(*value);
+        for Case {
+            value,
+            response,
+            unstable,
+            ..
+        } in cases
+        {
+            let (unit, label) = (unit(*value), value.to_string());
             let curve = response.points.iter().map(|p| (p.frequency, p.amplitude() / unit));
             let peak = (response.peak.frequency, response.peak.amplitude() / unit);
-            series.push(Series::new(value.to_string(), Style::Line, curve.collect()));
-            series.push(Series::new(value.to_string(), Style::Markers, vec![peak]));
+            series.extend(stability::series(&label, &curve.collect::<Vec<_>>(), unstable));
+            series.push(Series::new(label, Style::Markers, vec![peak]));
         }
         Figure {
             title: self.title.into(),

@@ -1,4 +1,4 @@
-//! Runs the example `ring_damper` as a user does.
+//! Builds examples, and runs `ring_damper` as a user does.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -10,37 +10,33 @@ use serde_json::Value;
 /// Names of the degrees of freedom in the files that it writes.
 pub const DOFS: [&str; 4] = ["b2", "b1", "d", "r"];
 
-/// The example, built once into the target folder of this test; cargo says where it lies.
+/// An example, built into the target folder of this test; cargo says where it lies.
+pub fn built(name: &str) -> PathBuf {
+    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
+    let output = Command::new(env!("CARGO"))
+        .args(["build", "--release", "--example", name, "--message-format", "json"])
+        .arg("--manifest-path")
+        .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
+        .arg("--target-dir")
+        .arg(target)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let messages = String::from_utf8(output.stdout).unwrap();
+    let mut built = messages.lines().filter_map(|line| {
+        let message: Value = serde_json::from_str(line).ok()?;
+        let named = message["target"]["name"] == name;
+        named
+            .then(|| message["executable"].as_str().map(PathBuf::from))
+            .flatten()
+    });
+    built.next_back().unwrap()
+}
+
+/// The example `ring_damper`, built once.
 fn program() -> &'static Path {
     static PROGRAM: OnceLock<PathBuf> = OnceLock::new();
-    PROGRAM.get_or_init(|| {
-        let target = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().unwrap();
-        let output = Command::new(env!("CARGO"))
-            .args([
-                "build",
-                "--release",
-                "--example",
-                "ring_damper",
-                "--message-format",
-                "json",
-            ])
-            .arg("--manifest-path")
-            .arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml"))
-            .arg("--target-dir")
-            .arg(target)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-        let messages = String::from_utf8(output.stdout).unwrap();
-        let mut built = messages.lines().filter_map(|line| {
-            let message: Value = serde_json::from_str(line).ok()?;
-            let named = message["target"]["name"] == "ring_damper";
-            named
-                .then(|| message["executable"].as_str().map(PathBuf::from))
-                .flatten()
-        });
-        built.next_back().unwrap()
-    })
+    PROGRAM.get_or_init(|| built("ring_damper"))
 }
 
 /// An empty folder of its own for one test.

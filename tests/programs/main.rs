@@ -6,6 +6,7 @@ mod common;
 mod book;
 mod c_abi;
 mod designs;
+mod flutter_example;
 mod languages;
 mod layout;
 mod ring_damper_example;
