@@ -43,7 +43,7 @@ const AMPLITUDES: (f64, f64) = (-4.5, -1.5);
 /// A limit cycle and what its perturbations do.
 struct Cycle {
     aerodynamic: f64,
-    cycle: LimitCycle,
+    on_mode: LimitCycle,
     /// Amplitude of the blade tip, m.
     tip: f64,
     stability: Floquet,
@@ -80,7 +80,7 @@ fn run(folder: &Path, screen: &mut impl Write) -> Result<(), Box<dyn Error>> {
                 "{percent:>10.3}{:>12.4}{:>14.4e}{:>12.2e}{:>11.6}{:>11}",
                 found.stability.omega / TAU,
                 found.tip,
-                found.cycle.slope,
+                found.on_mode.slope,
                 found.stability.radius,
                 if found.stability.unstable > 0 {
                     "unstable"
@@ -139,7 +139,7 @@ fn verdict(model: &Model, branch: &Branch, cycle: LimitCycle, percent: f64) -> R
     branch.harmonics_at(cycle.point, &mut x)?;
     Ok(Cycle {
         aerodynamic: percent,
-        cycle,
+        on_mode: cycle,
         tip: x[branch.ndof() + B2].norm(),
         stability,
     })
@@ -163,7 +163,7 @@ fn write(folder: &Path, cycles: &[Cycle]) -> Result<(), Box<dyn Error>> {
             c.aerodynamic,
             frequency,
             c.tip,
-            c.cycle.slope,
+            c.on_mode.slope,
             stability.radius,
             unstable,
         ]
@@ -172,7 +172,7 @@ fn write(folder: &Path, cycles: &[Cycle]) -> Result<(), Box<dyn Error>> {
     csv::write_csv(folder.join("limit_cycles.csv"), &header, &rows)?;
     // The damping ratio rises through the smaller cycle and falls through the larger one.
     let side = |smaller: bool| {
-        let same = cycles.iter().filter(|c| (c.cycle.slope > 0.0) == smaller);
+        let same = cycles.iter().filter(|c| (c.on_mode.slope > 0.0) == smaller);
         same.collect::<Vec<_>>()
     };
     let mut series = Vec::new();
