@@ -44,7 +44,9 @@ fn item(html: &str) -> Option<String> {
     for header in between(own, "<h4 class=\"code-header\">", "</h4>") {
         let signature = line(header);
         if signature.starts_with("pub ") {
-            text += &format!("    {signature}\n");
+            text.push_str("    ");
+            text.push_str(&signature);
+            text.push('\n');
         }
     }
     Some(text)
