@@ -37,6 +37,24 @@ pub enum LogLevel {
 pub type LogSink<'a> = dyn FnMut(LogLevel, &str) + 'a;
 
 /// Callbacks of the caller. The library never prints; without hooks a solve has no output.
+///
+/// ```
+/// # use hbvib::{Contact, ForcedOptions, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
+/// use hbvib::{Hooks, Progress, Status};
+///
+/// # let mut model = Model::new(1)?;
+/// # model.set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))?;
+/// # model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[1.0]))?;
+/// # model.set_rayleigh(0.0, 0.02)?;
+/// # model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0))?;
+/// # model.add_force(0, 1, 0.2.into())?;
+/// let mut watch = |state: &Progress| state.point >= 9; // true stops at the tenth point
+/// let mut hooks = Hooks { progress: Some(&mut watch), ..Hooks::default() };
+/// let range = ForcedOptions { omega_start: 0.8, omega_stop: 1.6, ..ForcedOptions::default() };
+/// let branch = forced_response(&model, &SolverOptions::default(), &range, &mut hooks)?;
+/// assert_eq!(branch.status(), Status::StoppedByCaller);
+/// # Ok::<(), hbvib::Error>(())
+/// ```
 #[derive(Default)]
 pub struct Hooks<'a> {
     /// Called at each accepted point; `true` stops the solve and keeps the points so far.

@@ -21,6 +21,25 @@
 //! and the frequency by the amplitude as the parameter. [`time_response`] and [`verify`] integrate in time from event to
 //! event: the same periodic motions without harmonics.
 //!
+//! # Example
+//!
+//! A mass on a spring rubs against the ground; [`forced_response`] follows its response, [`Branch::peaks`] has the resonance.
+//!
+//! ```
+//! use hbvib::{Contact, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
+//!
+//! let mut model = Model::new(1)?;
+//! model.set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))?;
+//! model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[1.0]))?;
+//! model.set_rayleigh(0.0, 0.02)?; // C = 0.02 K
+//! model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0))?; // kt, mu, preload; None is the ground
+//! model.add_force(0, 1, 0.2.into())?; // 0.2 cos ωt on degree of freedom 0
+//! let range = ForcedOptions { omega_start: 0.8, omega_stop: 1.6, ..ForcedOptions::default() };
+//! let branch = forced_response(&model, &SolverOptions::default(), &range, &mut Hooks::default())?;
+//! assert!((branch.peaks()[0].omega - 1.2320).abs() < 1e-4);
+//! # Ok::<(), hbvib::Error>(())
+//! ```
+//!
 //! # Conventions
 //!
 //! Any consistent units; angular frequencies in rad per time unit; amplitudes are peak values. Engine order EO on N
@@ -115,19 +134,20 @@ pub use analysis::sensitivity_analysis::{Quantity, Sensitivities, sensitivity, s
 pub use analysis::synthesis::{Synthesis, SynthesisPeak, SynthesisPoint, Validity, synthesise, synthesise_with};
 pub use analysis::time_response::time_response;
 pub use analysis::verify::{Verification, verify};
-pub use hooks::{Hooks, LogLevel, Progress};
-pub use interrupt::{Interrupt, Phase, PhaseReport};
+pub use hooks::{Hooks, LogLevel, LogSink, Progress};
+pub use interrupt::{Interrupt, Phase, PhaseReport, PhaseSink};
 pub use options::{
     Amplitude, BatchOptions, DampingForm, FloquetOptions, ForcedOptions, ModeChoice, ModeOptions, SolverOptions,
     SteadyMethod, SynthesisOptions, TimeOptions, VerifyOptions, Waves,
 };
 
 // Results.
+pub use condense::Reduction;
 pub use contact::contact_state::State;
 pub use contact::time_piece::Grazing;
 pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
-pub use results::mode_branch::{ModeInfo, ModePoint};
+pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
     Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, HigherPeak, LimitCycle, Multiplier,
     MultiplierClass, Optimum, Special, Stretch,

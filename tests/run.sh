@@ -55,6 +55,8 @@ fi
 cargo build --release --lib --examples
 cargo build --release --lib -p hbvib-io
 cargo test --release --lib --tests
+# Examples in the documentation of the Rust interface.
+cargo test --release --doc -p hbvib
 # The readers of files, a library of their own, and the command.
 cargo test --release -p hbvib-io --lib --tests
 cargo test --release -p hbvib-cli

@@ -25,6 +25,23 @@ pub use crate::time_integration::TimeResponse;
 /// matrices, for friction in a plane and for laws of the caller with states; `Callback` if a callback fails;
 /// `NoConvergence` if no steady state was found, `NoBoundedSolution` if the motion grows without bound;
 /// `OutOfMemory`.
+///
+/// # Example
+/// ```
+/// # use hbvib::{Contact, MatrixKind, MatrixView, Model};
+/// use hbvib::{Hooks, TimeOptions, time_response};
+///
+/// # let mut model = Model::new(1)?;
+/// # model.set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))?;
+/// # model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[1.0]))?;
+/// # model.set_rayleigh(0.0, 0.02)?;
+/// # model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0))?;
+/// # model.add_force(0, 1, 0.2.into())?;
+/// let options = TimeOptions { omega: 1.0, harmonics: 3, ..TimeOptions::default() };
+/// let found = time_response(&model, &options, &mut Hooks::default())?;
+/// assert!((found.harmonics[1].norm() - 0.2).abs() < 1e-3); // harmonic 1 of the only degree of freedom
+/// # Ok::<(), hbvib::Error>(())
+/// ```
 pub fn time_response(model: &Model, options: &TimeOptions<'_>, hooks: &mut Hooks<'_>) -> Result<TimeResponse> {
     options.check(model.ndof())?;
     model.check_matrices(false)?;

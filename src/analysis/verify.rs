@@ -72,6 +72,25 @@ pub struct Verification {
 /// # Errors
 /// `Index` for an unknown point, `Argument` for another model than that of the branch, `Unsupported` for a point of a
 /// nonlinear mode; bad options (see [`VerifyOptions::check`]), and the errors of [`time_response`].
+///
+/// # Example
+/// ```
+/// # use hbvib::{Contact, ForcedOptions, MatrixKind, MatrixView, Model, SolverOptions, forced_response};
+/// use hbvib::{Hooks, VerifyOptions, verify};
+///
+/// # let mut model = Model::new(1)?;
+/// # model.set_matrix(MatrixKind::Mass, &MatrixView::dense(1, &[1.0]))?;
+/// # model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(1, &[1.0]))?;
+/// # model.set_rayleigh(0.0, 0.02)?;
+/// # model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0))?;
+/// # model.add_force(0, 1, 0.2.into())?;
+/// let range = ForcedOptions { omega_start: 0.8, omega_stop: 1.6, ..ForcedOptions::default() };
+/// let branch = forced_response(&model, &SolverOptions::default(), &range, &mut Hooks::default())?;
+/// let peak = branch.peaks()[0].point;
+/// let found = verify(&model, &branch, peak, &VerifyOptions::default(), &mut Hooks::default())?;
+/// assert!(found.same && found.response_error < 1e-3); // the tolerance of the branch
+/// # Ok::<(), hbvib::Error>(())
+/// ```
 pub fn verify(
     model: &Model,
     branch: &Branch,

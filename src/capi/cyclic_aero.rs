@@ -34,9 +34,9 @@ fn form_of(form: i32, argument: i32) -> Result<AeroForm> {
 }
 
 /// Sets aerodynamic forces, which follow the motion of this and other sectors. On the right-hand
-/// side f_i of sector s is the sum over k and j of c[k][i][j] x_j of sector s + offsets[k], or of
+/// side f_i of sector s is the sum over k and j of c(k, i, j) x_j of sector s + offsets(k), or of
 /// the velocities x_j'. In the wave in which sector s + 1 lags by 2 pi d / N the forces are A(d) x,
-/// A(d) = sum c[k] exp(-i offsets[k] 2 pi d / N), per velocity i p omega A(d) x in harmonic p,
+/// A(d) = sum c(k) exp(-i offsets(k) 2 pi d / N), per velocity i p omega A(d) x in harmonic p,
 /// which belongs to d = p EO mod N. Natural modes and modal damping are those without aerodynamic
 /// forces; all other analyses have them. A later call of the same form replaces an earlier one.
 ///

@@ -147,6 +147,7 @@ impl Contact {
     ///
     /// # Errors
     /// Those of [`Self::check_constants`].
+    #[doc(hidden)]
     pub fn law(&self, length: f64) -> Result<Arc<dyn Law>> {
         self.ask(|law| law.law(length))
     }
@@ -155,6 +156,7 @@ impl Contact {
     ///
     /// # Errors
     /// `Unsupported` for laws that cannot be integrated in time.
+    #[doc(hidden)]
     pub fn in_time(&self) -> Result<LawInTime> {
         self.ask(|law| law.in_time())
     }
@@ -199,6 +201,7 @@ impl Contact {
 
     /// Role that the constants of the law give the contact.
     #[must_use]
+    #[doc(hidden)]
     pub fn role(&self) -> Role {
         self.ask(|law| law.role())
     }
@@ -223,6 +226,7 @@ impl Contact {
 
     /// The derivative of the force by a constant of the law; `None` for a constant that it does not have.
     #[must_use]
+    #[doc(hidden)]
     pub fn by_constant(&self, constant: Constant) -> Option<ForceDerivative> {
         self.ask(|law| law.by_constant(constant))
     }

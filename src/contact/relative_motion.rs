@@ -100,6 +100,7 @@ impl Frame {
 
     /// One side's motion along t1, t2 or n (0, 1 or 2). Degrees of freedom without share are left out.
     #[must_use]
+    #[doc(hidden)]
     pub fn side(&self, dofs: [Option<usize>; 3], direction: usize) -> Side {
         let mut side = [None; 3];
         for ((s, dof), &c) in side.iter_mut().zip(dofs).zip(&self.axes[direction]) {

@@ -83,6 +83,7 @@ impl Part {
 
     /// The symmetry that the caller promises.
     #[must_use]
+    #[doc(hidden)]
     pub fn symmetry(self) -> Symmetry {
         match self {
             Self::Full | Self::Lower | Self::Upper => Symmetry::Hermitian,
@@ -93,6 +94,15 @@ impl Part {
 }
 
 /// A borrowed matrix: its entries are copied, the reference is never kept.
+///
+/// ```
+/// use hbvib::{MatrixKind, MatrixView, Model};
+///
+/// let mut model = Model::new(2)?;
+/// model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(2, &[2.0, -1.0, -1.0, 2.0]))?;
+/// assert!(model.set_matrix(MatrixKind::Mass, &MatrixView::dense(2, &[1.0, 0.5, 0.0, 1.0])).is_err()); // no symmetry
+/// # Ok::<(), hbvib::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug)]
 pub struct MatrixView<'a> {
     /// Number of rows.
@@ -147,6 +157,7 @@ impl<'a> MatrixView<'a> {
     ///
     /// # Errors
     /// `Dimension`, `Index`, `NotFinite`, `NotHermitian` or `OutOfMemory`, naming the place.
+    #[doc(hidden)]
     pub fn copy_in(&self, name: &str, order: usize) -> Result<Csc> {
         let a = self.entries(name, order, self.part.symmetry())?;
         match self.part {
@@ -161,6 +172,7 @@ impl<'a> MatrixView<'a> {
     ///
     /// # Errors
     /// As [`Self::copy_in`].
+    #[doc(hidden)]
     pub fn copy_in_skew(&self, name: &str, order: usize) -> Result<Csc> {
         if self.part.symmetry() == Symmetry::Plain {
             return fail!(

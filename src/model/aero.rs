@@ -13,7 +13,7 @@ use std::sync::Arc;
 
 impl Model {
     /// Sets forces on a sector that follow the motion of its neighbours: with f on the right-hand side,
-    /// f_i = Σ_k Σ_j c[k][i][j]·x_j of the sector at the distance `offsets[k]`, or of velocities. `coefficients` has a
+    /// f_i = Σ_k Σ_j c(k, i, j)·x_j of the sector at the distance `offsets[k]`, or of velocities. `coefficients` has a
     /// square matrix over `dofs` for each offset, row after row. A later call of the same form replaces an earlier one;
     /// empty lists remove it. Complex coefficients act on harmonics above 0; the mean has the real part, and time
     /// integration refuses them. [`Self::linear_modes`] leave the influence out.

@@ -22,6 +22,7 @@ impl Model {
     ///
     /// # Errors
     /// `Unsupported` for a matrix that was given per nodal diameter.
+    #[doc(hidden)]
     pub fn block(&self, kind: MatrixKind, block: Block) -> Result<Option<&Csc>> {
         let blocks = &self.structure().blocks[kind as usize];
         if !blocks.diameters.is_empty() {

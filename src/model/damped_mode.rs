@@ -68,6 +68,7 @@ impl Model {
     /// `NoConvergence` where the damping is so strong that no mode is reached; `Singular` where
     /// artificial damping of the stiffness type does not act on the mode; `Dimension` for a shape
     /// of another length; `OutOfMemory`.
+    #[doc(hidden)]
     pub fn damped_mode(&self, start: &SelectedMode, form: DampingForm) -> Result<DampedMode> {
         self.damped_mode_with(start, ContactState::Stuck, form, &Interrupt::none())
     }
@@ -76,6 +77,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::damped_mode`]; `StoppedByCaller`.
+    #[doc(hidden)]
     pub fn damped_mode_with(
         &self,
         start: &SelectedMode,

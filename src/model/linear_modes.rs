@@ -25,6 +25,7 @@ pub enum ContactState<'a> {
     /// Linear springs of their stiffness at small motion.
     Stuck,
     /// Linear springs of their tangent stiffness at a static motion.
+    #[doc(hidden)]
     AboutStatic(&'a StaticTangents),
 }
 
@@ -159,6 +160,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::sprung_stiffness`].
+    #[doc(hidden)]
     pub fn stiffness_at_small_motion(&self, wave: Wave, contacts: ContactState<'_>) -> Result<Csc> {
         let acting = self
             .contacts()

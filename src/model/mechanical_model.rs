@@ -395,6 +395,7 @@ impl Model {
 
     /// The linear structure.
     #[must_use]
+    #[doc(hidden)]
     pub fn structure(&self) -> &Structure {
         &self.structure
     }
@@ -418,6 +419,7 @@ impl Model {
 
     /// The forces.
     #[must_use]
+    #[doc(hidden)]
     pub fn excitation(&self) -> &Excitation {
         &self.excitation
     }

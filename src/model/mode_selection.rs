@@ -56,6 +56,7 @@ impl Model {
     /// Those of [`ModeChoice::check`]; `Index` for a mode that does not exist; `Argument` for a
     /// rigid-body or unstable mode, or a shape without mass; `NotHermitian`,
     /// `NotPositiveDefinite` for the matrices; `NoConvergence`, `Singular`, `OutOfMemory`.
+    #[doc(hidden)]
     pub fn select_mode(&self, choice: ModeChoice<'_>) -> Result<SelectedMode> {
         self.select_mode_with(choice, ContactState::Stuck, &Interrupt::none())
     }
@@ -64,6 +65,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::select_mode`]; `StoppedByCaller`.
+    #[doc(hidden)]
     pub fn select_mode_with(
         &self,
         choice: ModeChoice<'_>,

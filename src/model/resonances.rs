@@ -60,6 +60,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::resonances`].
+    #[doc(hidden)]
     pub fn forced_resonances(
         &self,
         range: (f64, f64),
@@ -92,6 +93,7 @@ impl Model {
     ///
     /// # Errors
     /// `OutOfMemory`, `StoppedByCaller`.
+    #[doc(hidden)]
     pub fn resonances(
         &self,
         h: usize,

@@ -34,6 +34,15 @@ impl Model {
     ///
     /// # Errors
     /// `Unsupported` for a model with a law of the caller, naming the contact; `OutOfMemory`.
+    ///
+    /// # Example
+    /// ```
+    /// use hbvib::Model;
+    ///
+    /// let model = Model::new(3)?;
+    /// assert_eq!(Model::load(&model.save()?)?.ndof(), 3);
+    /// # Ok::<(), hbvib::Error>(())
+    /// ```
     pub fn save(&self) -> Result<Vec<u8>> {
         let mut bytes = try_vec(self.save_into(&mut [])?, 0, "the saved model")?;
         self.save_into(&mut bytes)?;

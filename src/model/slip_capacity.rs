@@ -70,6 +70,7 @@ impl Model {
     ///
     /// # Errors
     /// `OutOfMemory`, and those of [`Self::sprung_stiffness`]; `StoppedByCaller`.
+    #[doc(hidden)]
     pub fn overload(&self, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
         let at_frequency = self.at_frequency(omega)?;
         let mut last = None;
@@ -91,6 +92,7 @@ impl Model {
     ///
     /// # Errors
     /// As [`Self::overload`].
+    #[doc(hidden)]
     pub fn resonance(&self, omega: f64, harmonic: usize, interrupt: &Interrupt<'_>) -> Result<Option<Resonance>> {
         interrupt.check()?;
         let n = self.structure().ndof();

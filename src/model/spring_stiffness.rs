@@ -13,6 +13,7 @@ impl Model {
     ///
     /// # Errors
     /// `OutOfMemory`.
+    #[doc(hidden)]
     pub fn spring_rows<'c>(
         &self,
         wave: Wave,
@@ -57,6 +58,7 @@ impl Model {
     ///
     /// # Errors
     /// Those of [`Structure::wave_matrix`](crate::model::structure::Structure::wave_matrix).
+    #[doc(hidden)]
     pub fn sprung_stiffness<'c>(&self, wave: Wave, stuck: impl Iterator<Item = &'c Contact>) -> Result<Csc> {
         self.stiffness_with(wave, stuck.map(|c| (c, c)), Contact::stiffness_at_small_motion)
     }

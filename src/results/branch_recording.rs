@@ -62,6 +62,7 @@ impl Branch {
     ///
     /// # Errors
     /// `OutOfMemory`.
+    #[doc(hidden)]
     pub fn new(resolution: &Resolution, reduction: Reduction, harmonics: usize, response_dof: usize) -> Result<Self> {
         let mut resolutions = Vec::new();
         try_push(&mut resolutions, resolution.clone(), "the branch")?;
@@ -131,6 +132,7 @@ impl Branch {
     ///
     /// # Errors
     /// `OutOfMemory`; the branch then ends before this point.
+    #[doc(hidden)]
     pub fn push(&mut self, record: &Record<'_>) -> Result<usize> {
         const CONTEXT: &str = "the points of the branch";
         let contacts = self.contacts();

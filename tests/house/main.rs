@@ -3,3 +3,4 @@
 mod index;
 mod layering;
 mod python;
+mod rust_interface;
