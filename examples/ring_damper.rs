@@ -2,8 +2,8 @@
 //! Integrally Bladed Disk Using Frictional Ring Damper".
 //!
 //! `cargo run --release --example ring_damper` draws the paper's figures 4 to 9; with flags (`-- --help` lists
-//! them) it computes one response or, with `--mode`, one nonlinear mode. Exit status: 0 done, 1 a computation or a
-//! file failed, 2 the flags are wrong; in the last two cases no JSON file is written.
+//! them) it computes one response, with `--mode` one nonlinear mode, or with `--study` the best damper. Exit status: 0
+//! done, 1 a computation or a file failed, 2 the flags are wrong; in the last two cases no JSON file is written.
 
 use std::io::Write;
 use std::process::ExitCode;
@@ -37,6 +37,8 @@ mod response;
 mod single;
 #[path = "support/stability.rs"]
 mod stability;
+#[path = "ring_damper/study.rs"]
+mod study;
 
 /// The flags that a response and a mode have in common.
 const COMMON: [Flag; 10] = [
@@ -73,7 +75,7 @@ const COMMON: [Flag; 10] = [
 ];
 
 fn main() -> ExitCode {
-    let known = [&COMMON[..], &single::FLAGS, &mode::FLAGS].concat();
+    let known = [&COMMON[..], &single::FLAGS, &mode::FLAGS, &study::FLAGS].concat();
     let flags = match Flags::read(std::env::args_os().skip(1), &known) {
         Ok(flags) => flags,
         Err(message) => return refuse(&message),
@@ -82,6 +84,11 @@ fn main() -> ExitCode {
         figures::run()
     } else if flags.has("--help") {
         std::io::stdout().write_all(help().as_bytes()).map_err(Into::into)
+    } else if flags.first_of(&study::FLAGS).is_some() {
+        match study::Request::new(&flags) {
+            Ok(request) => request.run(),
+            Err(message) => return refuse(&message),
+        }
     } else if flags.has("--mode") {
         match mode::Request::new(&flags) {
             Ok(request) => request.run(),
@@ -106,12 +113,14 @@ fn help() -> String {
     format!(
         "HarmonicBalance response and nonlinear modes of a bladed disk with a friction ring damper.\n\n\
          Without flags: figures 4 to 9 of the paper, as CSV, SVG and PNG under target/ring_damper/.\n\
-         With flags: one response, or with --mode one nonlinear mode; what is not given has the value in brackets.\n\n\
-         {}\nOf a response only:\n{}\nOf a nonlinear mode only:\n{}\n{}",
+         With flags: one response, with --mode one nonlinear mode, or with --study the best damper; what is not given\n\
+         has the value in brackets.\n\n\
+         {}\nOf a response only:\n{}\nOf a nonlinear mode only:\n{}\n{}\nOf a study only:\n{}",
         flags::table(&COMMON),
         flags::table(&single::FLAGS),
         flags::table(&mode::FLAGS),
-        mode::NOTE
+        mode::NOTE,
+        flags::table(&study::FLAGS)
     )
 }
 

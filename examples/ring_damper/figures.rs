@@ -89,11 +89,7 @@ const STUDIES: [Study; 3] = [
 ///
 /// If a response cannot be computed or a file cannot be written.
 pub fn run() -> Result<(), Box<dyn Error>> {
-    // Cargo sets this variable for a program that it runs; without it the current folder serves.
-    let root = std::env::var_os("CARGO_MANIFEST_DIR")
-        .map(PathBuf::from)
-        .unwrap_or_default();
-    let folder = root.join("target").join("ring_damper");
+    let folder = folder();
     natural_frequencies(&folder)?;
     for study in &STUDIES {
         study.run(&folder)?;
@@ -101,6 +97,15 @@ pub fn run() -> Result<(), Box<dyn Error>> {
     modes::against_energy(&folder)?;
     writeln!(std::io::stdout(), "\nFigures and their data: {}", folder.display())?;
     Ok(())
+}
+
+/// The folder of the figures.
+pub fn folder() -> PathBuf {
+    // Cargo sets this variable for a program that it runs; without it the current folder serves.
+    let root = std::env::var_os("CARGO_MANIFEST_DIR")
+        .map(PathBuf::from)
+        .unwrap_or_default();
+    root.join("target").join("ring_damper")
 }
 
 /// Natural frequencies against nodal diameter, Fig. 4.

@@ -49,6 +49,8 @@ pub enum Style {
     Rings,
     /// A large square at every point, for maps.
     Tiles,
+    /// A small square at every point, for maps of many points.
+    Cells,
 }
 
 /// Named points of one curve. Points that are not finite interrupt the line.
@@ -210,7 +212,7 @@ impl Figure {
         for (shape, (label, color)) in legend.iter().enumerate().filter(|l| !l.1.0.is_empty()) {
             for series in self.series.iter().filter(|s| s.label == *label) {
                 let sample: &[Point] = match series.style {
-                    Style::Markers | Style::Rings | Style::Tiles => &[(left + SAMPLE.0 / 2.0, at)],
+                    Style::Markers | Style::Rings | Style::Tiles | Style::Cells => &[(left + SAMPLE.0 / 2.0, at)],
                     _ => &[(left, at), (left + SAMPLE.0, at)],
                 };
                 let frame = [(left, top), (right, bottom)];

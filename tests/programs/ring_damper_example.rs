@@ -298,3 +298,51 @@ fn figures_show_stuck_softening_and_sliding_and_the_best_damper() {
         assert_eq!(*least.0, best.to_bits());
     }
 }
+
+#[test]
+fn study_finds_the_best_load_and_its_sensitivities() {
+    let folder = folder("study");
+    let output = run(&folder, &["--study", "--grid", "3"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let figures = folder.join("target/ring_damper");
+    for stem in ["study_load", "study_load_derivative", "study_map", "study_tornado"] {
+        for (suffix, begin) in [("svg", &b"<svg"[..]), ("png", b"\x89PNG")] {
+            let file = fs::read(figures.join(format!("{stem}.{suffix}"))).unwrap();
+            assert!(file.starts_with(begin), "{stem}.{suffix}");
+        }
+    }
+    let screen = String::from_utf8(output.stdout).unwrap();
+    // The best load at nine harmonics, and 5 % below with those of the tolerance.
+    assert!(
+        screen.contains("482.852") && screen.contains("208.796528") && screen.contains("1.415704"),
+        "{screen}"
+    );
+    assert!(screen.contains("457.9") && screen.contains("9 designs"), "{screen}");
+    let effects: BTreeMap<String, f64> = fs::read_to_string(figures.join("study_tornado.csv"))
+        .unwrap()
+        .lines()
+        .skip(1)
+        .map(|line| {
+            let cells: Vec<&str> = line.split(',').collect();
+            (cells[0].to_owned(), cells[1].parse().unwrap())
+        })
+        .collect();
+    assert_eq!(effects.len(), 8);
+    // Force and normal load together scale the motion; the load is the best one.
+    assert!(
+        (effects["force"] + effects["normal load"] - 10.0).abs() < 1e-6,
+        "{effects:?}"
+    );
+    assert!(effects["normal load"].abs() < 0.01);
+    assert!((effects["friction coefficient"] - effects["normal load"]).abs() < 1e-9);
+
+    for (flags, sentence) in [
+        (&["--study", "--grid", "1"][..], "--grid 1: needs 2 to 1000"),
+        (&["--study", "--kt", "1e7"], "--kt cannot be given with --study"),
+        (&["--grid", "4"], "--grid belongs to a study"),
+    ] {
+        let refused = run(&folder, flags);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(String::from_utf8_lossy(&refused.stderr).contains(sentence));
+    }
+}

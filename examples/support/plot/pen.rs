@@ -19,6 +19,9 @@ const TOLERANCE: f64 = 0.05;
 /// Half the side of a tile.
 const TILE: f64 = 11.0;
 
+/// The same of a cell.
+const CELL: f64 = 4.1;
+
 /// A canvas `scale` times as large as the figure.
 pub(super) struct Pen<DB: DrawingBackend> {
     pub(super) area: DrawingArea<DB, Shift>,
@@ -84,7 +87,11 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
             }
             Style::Tiles => {
                 let mut shown = points.iter().filter(inside);
-                shown.try_for_each(|p| self.tile(*p, color))
+                shown.try_for_each(|p| self.tile(*p, TILE, color))
+            }
+            Style::Cells => {
+                let mut shown = points.iter().filter(inside);
+                shown.try_for_each(|p| self.tile(*p, CELL, color))
             }
         }
     }
@@ -103,8 +110,8 @@ impl<DB: DrawingBackend<ErrorType: 'static>> Pen<DB> {
         Ok(self.area.draw(&Polygon::new(corners, color.filled()))?)
     }
 
-    fn tile(&self, (x, y): Point, color: RGBColor) -> Outcome {
-        let corners = [self.pixel((x - TILE, y - TILE)), self.pixel((x + TILE, y + TILE))];
+    fn tile(&self, (x, y): Point, half: f64, color: RGBColor) -> Outcome {
+        let corners = [self.pixel((x - half, y - half)), self.pixel((x + half, y + half))];
         Ok(self.area.draw(&Rectangle::new(corners, color.filled()))?)
     }
 
