@@ -85,7 +85,7 @@ impl Request {
     /// # Errors
     ///
     /// If a computation fails or a file cannot be written.
-    pub fn run(&self) -> Result<(), Box<dyn Error>> {
+    pub fn run(self) -> Result<(), Box<dyn Error>> {
         let folder = folder();
         let model = Parameters::default().model()?;
         let optimum = over_load(&model, &folder)?;
@@ -96,7 +96,7 @@ impl Request {
     }
 
     /// Peaks of all designs over ring mass and speed.
-    fn map(&self, model: &Model, optimum: f64, folder: &Path) -> Result<(), Box<dyn Error>> {
+    fn map(self, model: &Model, optimum: f64, folder: &Path) -> Result<(), Box<dyn Error>> {
         let ring = direction(3);
         let parameters = [
             Parameter::Direction {
@@ -164,13 +164,17 @@ impl Request {
         let (low, high) = rows
             .iter()
             .fold((f64::INFINITY, 0.0_f64), |(l, h), r| (l.min(r[4]), h.max(r[4])));
-        let class = |a: f64| ((a / low).ln() / (high / low).ln() * CLASSES as f64).min(CLASSES as f64 - 1.0);
-        let edge = |k: usize| 1000.0 * low * (high / low).powf(k as f64 / CLASSES as f64);
+        let edge = |k: usize| low * (high / low).powf(k as f64 / CLASSES as f64);
+        let class = |a: f64| (1..CLASSES).filter(|&k| a >= edge(k)).count();
         let mut series: Vec<Series> = (0..CLASSES)
             .map(|k| {
-                let inside = rows.iter().filter(|r| class(r[4]).floor() == k as f64);
+                let inside = rows.iter().filter(|r| class(r[4]) == k);
                 let points = inside.map(|r| (r[0], r[1])).collect();
-                Series::new(format!("{:.2} to {:.2}", edge(k), edge(k + 1)), Style::Cells, points)
+                Series::new(
+                    format!("{:.2} to {:.2}", 1000.0 * edge(k), 1000.0 * edge(k + 1)),
+                    Style::Cells,
+                    points,
+                )
             })
             .collect();
         // The hyperbola of the best normal load.
@@ -368,11 +372,12 @@ fn tornado(model: &Model, optimum: Optimum, folder: &Path) -> Result<f64, Box<dy
         "\nChange of the peak at the optimum for 10 % more, by the derivatives\n"
     )?;
     writeln!(screen, "parameter              amplitude [%]   frequency [%]")?;
-    let mut text = String::from("parameter,amplitude_percent,frequency_percent\n");
+    let mut text = Vec::new();
+    writeln!(text, "parameter,amplitude_percent,frequency_percent")?;
     let mut bars = Vec::new();
     for (i, (name, amplitude, frequency)) in effects.iter().enumerate() {
         writeln!(screen, "{name:<22} {amplitude:>13.4} {frequency:>15.5}")?;
-        text += &format!("{name},{amplitude:.16e},{frequency:.16e}\n");
+        writeln!(text, "{name},{amplitude:.16e},{frequency:.16e}")?;
         let row = (effects.len() - i) as f64;
         bars.push(Series::new(*name, Style::Line, vec![(0.0, row), (*amplitude, row)]));
         bars.push(Series::new(*name, Style::Markers, vec![(*amplitude, row)]));
