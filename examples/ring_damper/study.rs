@@ -16,18 +16,14 @@ use crate::COMMON;
 use crate::csv::write_csv;
 use crate::figures::folder;
 use crate::flags::{Flag, Flags};
-use crate::model::{B2, CONTACT, Parameters};
 use crate::mode;
+use crate::model::{B2, CONTACT, Parameters};
 use crate::plot::{Figure, Series, Style};
 use crate::single;
 
 /// The flags that only a study has.
 pub const FLAGS: [Flag; 2] = [
-    Flag::new(
-        "--study",
-        "",
-        "seek the best damper instead of a response",
-    ),
+    Flag::new("--study", "", "seek the best damper instead of a response"),
     Flag::new("--grid", "n", "designs along each side of the map, 2 to 1000 (100)"),
 ];
 
