@@ -157,45 +157,50 @@ impl Request {
             best[1],
             best[2]
         )?;
-        let (low, high) = rows
-            .iter()
-            .fold((f64::INFINITY, 0.0_f64), |(l, h), r| (l.min(r[4]), h.max(r[4])));
-        let edge = |k: usize| low * (high / low).powf(k as f64 / CLASSES as f64);
-        let class = |a: f64| (1..CLASSES).filter(|&k| a >= edge(k)).count();
-        let mut series: Vec<Series> = (0..CLASSES)
-            .map(|k| {
-                let inside = rows.iter().filter(|r| class(r[4]) == k);
-                let points = inside.map(|r| (r[0], r[1])).collect();
-                Series::new(
-                    format!("{:.2} to {:.2}", 1000.0 * edge(k), 1000.0 * edge(k + 1)),
-                    Style::Cells,
-                    points,
-                )
-            })
-            .collect();
-        // The hyperbola of the best normal load.
-        let along = (0..=100).map(|k| MASSES.0 + f64::from(k) / 100.0 * (MASSES.1 - MASSES.0));
-        let best_speed = |mass: f64| {
-            let one = Parameters {
-                ring_mass: mass,
-                rpm: 1.0,
-                ..base
-            };
-            (1000.0 * mass, (optimum / one.normal_load()).sqrt())
-        };
-        series.push(Series::new("best load", Style::Dashed, along.map(best_speed).collect()));
-        Figure {
-            title: "Peak over ring mass and speed".into(),
-            x_label: "Ring mass per sector [g]".into(),
-            y_label: "Speed [rpm]".into(),
-            x_range: Some((1000.0 * MASSES.0, 1000.0 * MASSES.1)),
-            y_range: Some(SPEEDS),
-            legend_title: "Peak [mm]".into(),
-            series,
-            ..Figure::default()
-        }
-        .save(&folder.join("study_map"))
+        map_figure(&rows, optimum, folder)
     }
+}
+
+/// Draws the map from its rows.
+fn map_figure(rows: &[Vec<f64>], optimum: f64, folder: &Path) -> Result<(), Box<dyn Error>> {
+    let (low, high) = rows
+        .iter()
+        .fold((f64::INFINITY, 0.0_f64), |(l, h), r| (l.min(r[4]), h.max(r[4])));
+    let edge = |k: usize| low * (high / low).powf(k as f64 / CLASSES as f64);
+    let class = |a: f64| (1..CLASSES).filter(|&k| a >= edge(k)).count();
+    let mut series: Vec<Series> = (0..CLASSES)
+        .map(|k| {
+            let inside = rows.iter().filter(|r| class(r[4]) == k);
+            let points = inside.map(|r| (r[0], r[1])).collect();
+            Series::new(
+                format!("{:.2} to {:.2}", 1000.0 * edge(k), 1000.0 * edge(k + 1)),
+                Style::Cells,
+                points,
+            )
+        })
+        .collect();
+    // The hyperbola of the best normal load.
+    let along = (0..=100).map(|k| MASSES.0 + f64::from(k) / 100.0 * (MASSES.1 - MASSES.0));
+    let best_speed = |mass: f64| {
+        let one = Parameters {
+            ring_mass: mass,
+            rpm: 1.0,
+            ..Parameters::default()
+        };
+        (1000.0 * mass, (optimum / one.normal_load()).sqrt())
+    };
+    series.push(Series::new("best load", Style::Dashed, along.map(best_speed).collect()));
+    Figure {
+        title: "Peak over ring mass and speed".into(),
+        x_label: "Ring mass per sector [g]".into(),
+        y_label: "Speed [rpm]".into(),
+        x_range: Some((1000.0 * MASSES.0, 1000.0 * MASSES.1)),
+        y_range: Some(SPEEDS),
+        legend_title: "Peak [mm]".into(),
+        series,
+        ..Figure::default()
+    }
+    .save(&folder.join("study_map"))
 }
 
 /// The preload of the contact as a parameter.
