@@ -3,7 +3,7 @@
 
 use crate::error::{Error, Result, Status, fail};
 
-/// Writes into a buffer. What does not fit is counted, not written.
+/// Writes into a buffer. Bytes that do not fit are counted, not written.
 pub struct ByteWriter<'a> {
     out: &'a mut [u8],
     at: usize,

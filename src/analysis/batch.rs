@@ -64,7 +64,7 @@ impl Batch {
     }
 }
 
-/// What all threads share.
+/// Data that all threads share.
 struct Work<'a> {
     model: &'a Model,
     solver: &'a SolverOptions,
@@ -239,7 +239,7 @@ pub fn batch_within(
     }
     let base = model.separate_clone()?;
     if base.structure().ndof() > MAY_HAVE_BASIS && parameters.iter().all(Parameter::keeps_structure) {
-        // What is prepared for the matrices serves all designs. An error is that of each design.
+        // The basis of the matrices serves all designs. An error is that of each design.
         let sweep = (options.omega_start, options.omega_stop);
         if let Err(e) = Condensed::new(&base, solver, sweep, &interrupt)
             && e.status == Status::StoppedByCaller

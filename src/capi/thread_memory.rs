@@ -18,7 +18,7 @@ static BYTES: AtomicUsize = AtomicUsize::new(0);
 
 thread_local! {
     static PREPARED: Cell<bool> = const { Cell::new(false) };
-    /// What is set aside for the first product of this thread, and its size.
+    /// Memory set aside for the first product of this thread, and its size.
     static ASIDE: Cell<(*mut u8, usize)> = const { Cell::new((null_mut(), 0)) };
 }
 
@@ -54,7 +54,7 @@ pub(super) fn prepare() -> Result<()> {
     done
 }
 
-/// What is set aside in this thread, where it has room for a request of the products; otherwise NULL.
+/// Memory set aside in this thread, where it has room for a request of the products; otherwise NULL.
 #[cold]
 pub(super) fn take_aside(layout: Layout) -> *mut u8 {
     let (aside, bytes) = ASIDE.try_with(Cell::get).unwrap_or((null_mut(), 0));

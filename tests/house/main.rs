@@ -1,6 +1,7 @@
 //! The sources themselves: what may import what, and the index of the tests.
 
 mod index;
+mod language;
 mod layering;
 mod python;
 mod rust_interface;

@@ -169,7 +169,7 @@ fn function(declaration: &str, documentation: &str) -> Option<Function> {
     })
 }
 
-/// What a call passes for a parameter that is not NULL.
+/// Value that a call passes for a parameter that is not NULL.
 fn value(function: &Function, number: usize) -> String {
     let Parameter { kind, name } = &function.parameters[number];
     let plain = kind.trim_start_matches("const ");

@@ -83,7 +83,7 @@ fn sliding_cases_are_stable() {
     assert_eq!(at("HC21", &pushed, parameter("HC21", "w"), 31).unstable, 0);
 }
 
-/// Of three motions of a mass behind a gap the one between the folds is unstable.
+/// The middle one of three motions of a mass behind a gap, between the folds, is unstable.
 #[test]
 fn the_middle_one_of_coexisting_motions_is_unstable() {
     let id = "HC18";

@@ -101,7 +101,7 @@ void thrown_by_log() {
   throws_own(4, place, "an exception at the last line of the log", [&] { (void)model.forced_response(options(), range(), hooks); });
 }
 
-// What a callback catches is its own; what it lets go ends the calls that led there, one by one.
+// An exception that a callback catches is its own; one that it lets go ends the calls that led there, one by one.
 void nested() {
   const auto model = ring_damper();
   const auto before = bits(model);

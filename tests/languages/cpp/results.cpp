@@ -229,7 +229,7 @@ void forces() {
   near(std::abs(model.time_response(hbvib::TimeOptions(w)).harmonics(1, 0) - wanted) + 1, 1, 1e-10, "in time as well");
 }
 
-// Of two modes the one most alike a shape is followed.
+// The mode most alike a shape is followed.
 void alike() {
   const double m[2][2] = {{1, 0}, {0, 1}}, k[2][2] = {{2, -1}, {-1, 2}};
   auto model = Model::plain(2);
