@@ -1431,9 +1431,9 @@ typedef struct {
   /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution
   /// with more harmonics at each point; 0 (default): do so only with a tolerance.
   int32_t estimate_error;
-  /// Largest number of bytes for factors and bases of the structure; 0 (default): no limit. What
-  /// needs more is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message has the
-  /// need and the limit.
+  /// Largest number of bytes for factors and bases of the structure; 0 (default): no limit. A
+  /// request beyond it is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message
+  /// has the need and the limit.
   int64_t memory_limit;
   /// Way to the flexibility of the structure at its contacts in a forced response: a value of
   /// enum hbvib_flexibility.

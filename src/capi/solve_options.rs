@@ -81,8 +81,8 @@ pub struct hbvib_solver_options {
     /// with more harmonics at each point; 0 (default): do so only with a tolerance.
     pub estimate_error: i32,
     /// Largest number of bytes for factors and bases of the structure; 0 (default): no limit. A
-    /// request beyond it is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message has the
-    /// need and the limit.
+    /// request beyond it is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message
+    /// has the need and the limit.
     pub memory_limit: i64,
     /// Way to the flexibility of the structure at its contacts in a forced response: a value of
     /// enum hbvib_flexibility.
