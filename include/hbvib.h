@@ -3450,6 +3450,9 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
 /// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
 ///             or NULL.
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
+/// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 100 bytes for each of the samples or of
+/// 128 (H + 1), whichever are more, and 1 MiB, with or without jac. Above 16 GiB nothing is
+/// requested, and the error is HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.
@@ -3502,7 +3505,7 @@ hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c,
 /// of the caller, for continuation methods of the caller and for tests. Nothing is removed:
 /// harmonics 0 .. H of all degrees of freedom, harmonic after harmonic.
 ///
-/// solver       options, of which harmonics and samples are used; NULL: the defaults.
+/// solver       options, of which harmonics, samples and memory_limit are used; NULL: the defaults.
 /// omega        angular frequency, >= 0.
 /// x            (H + 1) x ndof complex numbers; the imaginary part of the mean is no unknown.
 /// x_len        complex numbers in it.
@@ -3514,6 +3517,8 @@ hbvib_status hbvib_contact_evaluate_with_hooks(const hbvib_contact *c,
 /// jac_len      doubles in it; 0 with NULL.
 /// d_omega      receives d R / d omega, complex like r; or NULL.
 /// d_omega_len  complex numbers in it; 0 with NULL.
+/// Memory: that of hbvib_contact_evaluate for each contact, and 96 (H + 1) bytes for each entry of
+/// the matrices; a memory_limit below that is refused with HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_DIMENSION (a length, with the one needed), HBVIB_E_NOT_FINITE,
 /// HBVIB_E_ARGUMENT (options, omega, overlapping arrays, a force beyond the harmonics),
 /// HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL, HBVIB_E_HANDLE, HBVIB_E_BUSY, HBVIB_E_OUT_OF_MEMORY.
@@ -3534,7 +3539,7 @@ hbvib_status hbvib_forced_residual(const hbvib_model *model,
 /// The same as hbvib_forced_residual; a hook or the cancel flag may stop it. The status
 /// is then HBVIB_STOPPED_BY_CALLER, and the arrays are untouched or hold NaN.
 ///
-/// solver       options, of which harmonics and samples are used; NULL: the defaults.
+/// solver       options, of which harmonics, samples and memory_limit are used; NULL: the defaults.
 /// omega        angular frequency, >= 0.
 /// x            (H + 1) x ndof complex numbers; the imaginary part of the mean is no unknown.
 /// x_len        complex numbers in it.

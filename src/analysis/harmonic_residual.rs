@@ -2,6 +2,7 @@
 //! continuation of their own, and for tests. The problem is neither reduced nor condensed.
 
 use crate::aft::{Evaluation, Evaluator};
+use crate::analysis::evaluation_need::{allow_law, allow_residual};
 use crate::analysis::residual_numbering::Numbering;
 use crate::contact::{self, Contact};
 use crate::error::{Result, fail, try_push, try_vec};
@@ -78,6 +79,7 @@ pub fn forced_residual_with(
             );
         }
     }
+    allow_residual(model, solver)?;
     // All steps that can fail come before the arrays of the caller are changed.
     let numbering = Numbering::new(model, highest, jacobian.is_some(), d_omega.is_some())?;
     if let Some(numbering) = numbering {
@@ -466,6 +468,7 @@ pub fn contact_evaluate_with(
     if let Some(i) = motion.iter().position(|z| !z.is_finite()) {
         return fail!(NotFinite, "motion[{i}] is not finite");
     }
+    allow_law(harmonics, directions, samples)?;
     let set = HarmonicSet::all(harmonics)?;
     let m = set.packed_len();
     let mut packed = try_vec(m * directions, 0.0, "a contact motion")?;

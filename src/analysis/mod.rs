@@ -7,6 +7,7 @@ pub mod check_jacobian;
 pub mod damped_modes;
 mod damping_maximum;
 pub mod design_peak;
+mod evaluation_need;
 pub mod floquet;
 mod followed;
 mod forced_discretised;

@@ -10,7 +10,7 @@ use num_complex::Complex64;
 const ARRAYS: usize = 5;
 
 /// Refuses what a limit of bytes does not allow; 0 is no limit.
-pub(super) fn within(limit: usize, need: usize) -> Result<()> {
+pub fn within(limit: usize, need: usize) -> Result<()> {
     if limit == 0 || need <= limit {
         return Ok(());
     }
@@ -18,7 +18,7 @@ pub(super) fn within(limit: usize, need: usize) -> Result<()> {
     Err(Error::new(
         Status::OutOfMemory,
         format_args!(
-            "factors and matrices of the structure need about {} MB, more than memory_limit = {limit} bytes; raise it, or reduce the model",
+            "factors and matrices need about {} MB, more than the limit of {limit} bytes; raise memory_limit, or reduce model or harmonics",
             mega(need)
         ),
     )

@@ -10,7 +10,7 @@ pub mod frequency_cache;
 pub mod frequency_interpolation;
 pub mod harmonic_block;
 mod krylov_wave;
-mod memory_limit;
+pub(crate) mod memory_limit;
 pub mod modal_flexibility;
 pub mod modal_table;
 mod model_cache;

@@ -75,6 +75,11 @@ fn bad_matrices_and_contacts_are_refused() {
 }
 
 #[test]
+fn extreme_models_have_an_answer_or_a_status() {
+    silent("extremes", |_| vec![]);
+}
+
+#[test]
 fn bad_options_and_ranges_are_refused() {
     silent("bad_options", |_| vec![]);
 }

@@ -7,6 +7,7 @@ mod common;
 
 mod failing_allocations;
 mod lifetime;
+mod needs;
 mod null_pointers;
 mod programs;
 mod random_calls;

@@ -1,0 +1,54 @@
+//! Memory that evaluations at a given motion need, counted before any of it is requested.
+
+use crate::condense::memory_limit::within;
+use crate::error::Result;
+use crate::model::Model;
+use crate::model::structure::MatrixKind;
+use crate::options::SolverOptions;
+
+/// Bytes above which the evaluation of a law is refused.
+const MOST_OF_A_LAW: usize = 16 << 30;
+
+/// Bytes that suffice for the evaluation of a law: 8 (1 + d) (2 d (H + 1))² for Jacobians, 100 a sample, of which a law that
+/// is always sampled takes at most 128 (H + 1) by itself, and 1 MiB.
+fn need_of_a_law(harmonics: usize, directions: usize, samples: usize) -> usize {
+    let order = (harmonics + 1).saturating_mul(2 * directions);
+    let samples = samples.max((harmonics + 1).saturating_mul(128));
+    let jacobians = order.saturating_mul(order).saturating_mul(8 * (1 + directions));
+    jacobians
+        .saturating_add(samples.saturating_mul(100))
+        .saturating_add(1 << 20)
+}
+
+/// Bytes that suffice for a residual: its contacts, and two sparse matrices a harmonic, of at most as many entries as all
+/// matrices of the structure have together.
+fn need_of_a_residual(model: &Model, solver: &SolverOptions) -> Result<usize> {
+    let mut entries = 0_usize;
+    for kind in [
+        MatrixKind::Stiffness,
+        MatrixKind::Damping,
+        MatrixKind::Structural,
+        MatrixKind::Mass,
+    ] {
+        entries = entries.saturating_add(model.structure().wave_matrix(kind, 0)?.values.len());
+    }
+    let matrices = (solver.harmonics + 1).saturating_mul(entries.saturating_mul(96));
+    let contacts = model
+        .contacts()
+        .iter()
+        .map(|contact| need_of_a_law(solver.harmonics, contact.directions(), solver.samples));
+    Ok(contacts.fold(matrices, usize::saturating_add))
+}
+
+/// Refuses the evaluation of a law that needs more than 16 GiB.
+pub fn allow_law(harmonics: usize, directions: usize, samples: usize) -> Result<()> {
+    within(MOST_OF_A_LAW, need_of_a_law(harmonics, directions, samples))
+}
+
+/// Refuses a residual that needs more than the limit of the options, if there is one.
+pub fn allow_residual(model: &Model, solver: &SolverOptions) -> Result<()> {
+    if solver.memory_limit == 0 {
+        return Ok(());
+    }
+    within(solver.memory_limit, need_of_a_residual(model, solver)?)
+}

@@ -1,0 +1,123 @@
+/* Evaluations at a given motion need at most the bytes that the header tells, and are refused before they ask for what a
+ * limit does not allow. Run under LD_PRELOAD=libfailing_malloc.so. Prints the largest share of the told bytes. */
+#include "models.h"
+#include "failing_malloc.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { MOST = 1 << 18 };
+
+static double x[MOST], r[MOST], largest;
+static int failures;
+
+/* Judges a call that began with so many bytes. */
+static void judge(const char *what, int64_t before, hbvib_status status, int64_t told)
+{
+    const double share = (double)(memory_peak() - before) / (double)told;
+    memory_disarm();
+    if (share > largest) largest = share;
+    if (status == HBVIB_OK && share <= 1) return;
+    failures++;
+    printf("%s: status %d, %.2f of %lld bytes: %s\n", what, (int)status, share, (long long)told, hbvib_last_error());
+}
+
+static int64_t of_a_law(int64_t d, int64_t h, int64_t samples)
+{
+    if (samples < 128 * (h + 1)) samples = 128 * (h + 1);
+    return 8 * (1 + d) * 4 * d * d * (h + 1) * (h + 1) + 100 * samples + (1 << 20);
+}
+
+static void laws(void)
+{
+    static const int32_t kinds[6] = {HBVIB_JENKINS, HBVIB_FRICTION_2D, HBVIB_FRICTION_3D, HBVIB_UNILATERAL, HBVIB_CUBIC, HBVIB_REGULARISED};
+    static const int64_t directions[6] = {1, 2, 3, 1, 1, 1}, harmonics[3] = {1, 20, 150}, samples[2] = {0, 4096};
+    int i, j, k;
+    for (i = 0; i < 6; i++) {
+        for (j = 0; j < 3; j++) {
+            for (k = 0; k < 2; k++) {
+                const int64_t n = directions[i] * (harmonics[j] + 1), before = memory_bytes();
+                hbvib_contact c = law(kinds[i], 0, 1, 2);
+                hbvib_status status;
+                if (i == 2 && j == 2) continue; /* minutes of events */
+                c.kt = i == 3 || i == 5 ? 0 : 1;
+                c.kn = i == 1 || i == 2 || i == 3 ? 1 : 0;
+                c.mu = i == 3 || i == 4 ? 0 : 0.3;
+                c.preload = i == 4 ? 0 : 0.2;
+                c.cubic = i == 4;
+                c.velocity = i == 5 ? 0.1 : 0;
+                memory_arm(0, 0);
+                status = hbvib_contact_evaluate(&c, harmonics[j], samples[k], 1.1, x, n, r, n, NULL, 0);
+                judge("a law", before, status, of_a_law(directions[i], harmonics[j], samples[k]));
+            }
+        }
+    }
+}
+
+/* Entries of all matrices: 3 x 3, or a band. */
+static void residual(const char *what, hbvib_status (*build)(hbvib_model **), int64_t directions, int64_t contacts, int64_t entries)
+{
+    enum { H = 60 };
+    hbvib_model *model = NULL;
+    hbvib_solver_options s;
+    hbvib_status status;
+    int64_t before, told, n;
+    if (build(&model) != HBVIB_OK || hbvib_solver_options_init(&s, sizeof s) != HBVIB_OK) abort();
+    s.tolerance = 0;
+    s.harmonics = H;
+    n = (H + 1) * hbvib_model_dofs(model);
+    told = contacts * of_a_law(directions, H, 0) + 96 * (H + 1) * entries;
+    before = memory_bytes();
+    memory_arm(0, 0);
+    status = hbvib_forced_residual(model, &s, 1.1, x, n, r, n, NULL, 0, NULL, 0);
+    judge(what, before, status, told);
+    s.memory_limit = told;
+    if (hbvib_forced_residual(model, &s, 1.1, x, n, r, n, NULL, 0, NULL, 0) != HBVIB_OK) {
+        printf("%s with a limit of %lld bytes: %s\n", what, (long long)told, hbvib_last_error());
+        failures++;
+    }
+    s.memory_limit = told / 4;
+    memory_arm(0, 0);
+    before = memory_bytes();
+    status = hbvib_forced_residual(model, &s, 1.1, x, n, r, n, NULL, 0, NULL, 0);
+    if (status != HBVIB_E_OUT_OF_MEMORY || memory_peak() - before > 1 << 15) {
+        printf("%s with a limit: status %d, %lld bytes\n", what, (int)status, (long long)(memory_peak() - before));
+        failures++;
+    }
+    memory_disarm();
+    if (hbvib_model_free(model) != HBVIB_OK) abort();
+}
+
+/* A request beyond any machine is refused before a byte of it is touched. */
+static void too_large(void)
+{
+    enum { H = 100000 };
+    hbvib_contact c = law(HBVIB_JENKINS, 0, HBVIB_GROUND, HBVIB_GROUND);
+    int64_t before = memory_bytes();
+    hbvib_status status;
+    c.kt = c.mu = c.preload = 1;
+    memory_arm(0, 0);
+    status = hbvib_contact_evaluate(&c, H, 0, 1, x, H + 1, r, H + 1, NULL, 0);
+    if (status != HBVIB_E_OUT_OF_MEMORY || memory_peak() - before > 1 << 15) {
+        printf("too large: status %d, %lld bytes\n", (int)status, (long long)(memory_peak() - before));
+        failures++;
+    }
+    memory_disarm();
+}
+
+int main(void)
+{
+    hbvib_contact c = law(HBVIB_CUBIC, 0, HBVIB_GROUND, HBVIB_GROUND);
+    int64_t i;
+    for (i = 0; i < MOST; i++) x[i] = 0.5 / (double)(1 + i) * (double)(i % 3 - 1);
+    c.cubic = 1;
+    /* What a thread needs once. */
+    if (hbvib_contact_evaluate(&c, 1, 0, 1, x, 2, r, 2, NULL, 0) != HBVIB_OK) abort();
+    laws();
+    residual("friction in one direction", friction_2d, 2, 1, 3 * 9);
+    residual("cubic", cubic, 1, 1, 3 * 9);
+    residual("chain", chain, 1, 2, 4 * 3 * LONG);
+    too_large();
+    printf("%.2f of the told bytes at most, %d failures\n", largest, failures);
+    return failures > 0;
+}
