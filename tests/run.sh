@@ -32,6 +32,7 @@ need pkg-config pkg-config --version
 need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
 need bsdutils script --version
+need valgrind valgrind --version
 need calculix-ccx sh -c 'command -v ccx'
 
 # Python with numpy, what builds the wheel, what tables and figures need, and type checkers: the system's, or one of our own.
@@ -60,3 +61,5 @@ cargo test --release --doc -p hbvib
 # The readers of files, a library of their own, and the command.
 cargo test --release -p hbvib-io --lib --tests
 cargo test --release -p hbvib-cli
+# One analysis under valgrind; tests/deep.sh has all, and the sanitisers.
+sh tests/sanitisers.sh valgrind short

@@ -5,6 +5,11 @@
 
 #include "models.h"
 
+/* Arrays of the analyses, not on the stack; a program with threads defines it as static __thread. */
+#ifndef BUFFER
+#define BUFFER static
+#endif
+
 /* FNV-1a. */
 static void digest(uint64_t *sum, const void *bytes, size_t n)
 {
@@ -15,8 +20,8 @@ static void digest(uint64_t *sum, const void *bytes, size_t n)
 /* All that can be asked of a point of a branch. */
 static hbvib_status of_point(const hbvib_branch *branch, int64_t point, int64_t ndof, uint64_t *sum)
 {
-    static double x[2 * 400 * 4], y[64], force[64];
-    static int32_t state[64];
+    BUFFER double x[2 * 400 * 4], y[64], force[64];
+    BUFFER int32_t state[64];
     hbvib_reduction reduction;
     hbvib_energy energy;
     hbvib_contact_summary summary;
@@ -131,7 +136,7 @@ static hbvib_status forced_on_basis(const hbvib_model *model, uint64_t *sum)
 /* A nonlinear mode, and the response synthesised from it. */
 static hbvib_status follow(const hbvib_model *model, hbvib_solver_options s, uint64_t *sum)
 {
-    static double omega[256], response[512], modal[256];
+    BUFFER double omega[256], response[512], modal[256];
     double peak[16];
     int64_t count = 0;
     hbvib_mode_options o;
@@ -168,8 +173,8 @@ static hbvib_status mode_to_tolerance(const hbvib_model *model, uint64_t *sum)
 /* Shooting, marching, a point compared with time, and its multipliers. */
 static hbvib_status in_time(const hbvib_model *model, uint64_t *sum)
 {
-    static double x[2 * 10 * 9], samples[16 * 9], multipliers[2 * 400];
-    static int64_t classes[400];
+    BUFFER double x[2 * 10 * 9], samples[16 * 9], multipliers[2 * 400];
+    BUFFER int64_t classes[400];
     const int64_t ndof = hbvib_model_dofs(model);
     hbvib_solver_options s = options(0);
     hbvib_forced_options o = range(model);
@@ -213,7 +218,7 @@ static hbvib_status in_time(const hbvib_model *model, uint64_t *sum)
 /* Linear and damped modes, a Campbell diagram and its crossings, where the model has them. */
 static hbvib_status linear(const hbvib_model *model, uint64_t *sum)
 {
-    static double omega[9], shapes[18 * 9], eigenvalues[4], diagram[6];
+    BUFFER double omega[9], shapes[18 * 9], eigenvalues[4], diagram[6];
     static const double speeds[3] = {0, 0.4, 0.8};
     double speed[6], crossing[6];
     int64_t direction[6], found = 0;
@@ -233,7 +238,7 @@ static hbvib_status linear(const hbvib_model *model, uint64_t *sum)
 static hbvib_status low_level(const hbvib_model *model, uint64_t *sum)
 {
     enum { H = 3, N = 3 * (H + 1) };
-    static double x[2 * N], r[2 * N], jac[4 * N * N], d_omega[2 * N];
+    BUFFER double x[2 * N], r[2 * N], jac[4 * N * N], d_omega[2 * N];
     static const int32_t kinds[6] = {HBVIB_JENKINS, HBVIB_FRICTION_2D, HBVIB_FRICTION_3D, HBVIB_UNILATERAL, HBVIB_CUBIC, HBVIB_REGULARISED};
     static const int64_t directions[6] = {1, 2, 3, 1, 1, 1};
     const double amplitude[1] = {0.5};
@@ -266,7 +271,7 @@ static hbvib_status low_level(const hbvib_model *model, uint64_t *sum)
 /* A forced response of a model that was saved and loaded. */
 static hbvib_status saved(const hbvib_model *model, uint64_t *sum)
 {
-    static unsigned char bytes[1 << 16];
+    BUFFER unsigned char bytes[1 << 16];
     hbvib_model *copy = NULL;
     int64_t size = 0;
     hbvib_status status = HBVIB_OK, freed = HBVIB_OK;

@@ -41,3 +41,11 @@ fn a_thousand_cycles_do_not_grow() {
 fn a_hundred_thousand_cycles_do_not_grow() {
     assert!(growth("many_cycles", 100_000) < 1 << 20);
 }
+
+#[test]
+fn calls_at_the_end_of_a_process_have_the_results_of_earlier_ones() {
+    let folder = workshop("late_calls");
+    let program = compile("late_calls", &folder, &["-Wno-unused-function"]);
+    let output = run(&mut Command::new(program));
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "the same at the end\n");
+}

@@ -12,3 +12,4 @@ mod null_pointers;
 mod programs;
 mod random_calls;
 mod stacks;
+mod threads;

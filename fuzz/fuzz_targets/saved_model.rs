@@ -1,0 +1,7 @@
+//! Target of cargo-fuzz.
+
+#![no_main]
+
+libfuzzer_sys::fuzz_target!(|data: &[u8]| {
+    hbvib_fuzz::saved_model(data);
+});
