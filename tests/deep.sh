@@ -4,10 +4,7 @@ set -eu
 cd "$(dirname "$0")/.."
 cargo test --release --tests -- --ignored --test-threads=1
 
-# The library and its programs under tools that watch them, and damaged input without a guide.
-for tool in address thread valgrind; do
-    sh tests/sanitisers.sh "$tool"
-done
+# Damaged input without a guide.
 (cd fuzz && cargo run --release --bin mutate -- "$(date +%j)" 1000000)
 
 # The oscillators of docs/coming-from.md in pyHarm, which brings many packages: in a virtual environment of its own.

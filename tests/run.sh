@@ -61,5 +61,5 @@ cargo test --release --doc -p hbvib
 # The readers of files, a library of their own, and the command.
 cargo test --release -p hbvib-io --lib --tests
 cargo test --release -p hbvib-cli
-# One analysis under valgrind; tests/deep.sh has all, and the sanitisers.
-sh tests/sanitisers.sh valgrind short
+# One analysis under valgrind.
+sh tests/valgrind.sh

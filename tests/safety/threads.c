@@ -1,5 +1,5 @@
-/* Analyses of shared models by several threads, while another one cancels them and tries to free their models: results
- * have the bits of one thread alone, a model in use cannot be freed, and a cancelled call ends soon. Run as:
+/* Analyses of shared models by several threads, while another one cancels calls and tries to change a model in use:
+ * results have the bits of one thread alone, the change is refused, and a cancelled call ends. Run as:
  * threads <threads> <seconds>. Prints the number of analyses. */
 #define BUFFER static __thread
 #include "analyses.h"
@@ -18,6 +18,10 @@ static const analysis SHARED_ANALYSES[SHARED] = {
 };
 
 static hbvib_model *models[SHARED];
+
+/* One that is solved, stopped and changed. */
+static hbvib_model *changed;
+
 static uint64_t reference[SHARED];
 static hbvib_cancel_flag cancel;
 static int over, failures;
@@ -43,7 +47,7 @@ static void stoppable(const hbvib_model *model)
     s.harmonics = 15;
     o.omega_start *= 0.7;
     status = hbvib_forced_response(model, &s, &o, &h, &branch);
-    if (status < 0 && status != HBVIB_E_NO_CONVERGENCE) fail("a response that may be stopped", status);
+    if (status < 0 && status != HBVIB_E_NO_CONVERGENCE && status != HBVIB_E_BUSY) fail("a response that may be stopped", status);
     if (status == HBVIB_STOPPED_BY_CALLER) __atomic_add_fetch(&cancelled, 1, __ATOMIC_RELAXED);
     if (branch != NULL && hbvib_branch_free(branch) != HBVIB_OK) fail("free", HBVIB_E_BUSY);
 }
@@ -57,13 +61,15 @@ static void *work(void *user)
         hbvib_status status;
         hbvib_model *own = NULL;
         if (k / 8192u % 4 == 0) {
-            stoppable(models[i]);
+            stoppable(changed);
             continue;
         }
         status = SHARED_ANALYSES[i].run(models[i], &sum);
         if (status < 0 || sum != reference[i]) fail(SHARED_ANALYSES[i].name, status);
         /* And a model of its own. */
-        if (hbvib_model_clone(models[i], &own) != HBVIB_OK || hbvib_model_free(own) != HBVIB_OK) fail("clone", HBVIB_E_INTERNAL);
+        status = hbvib_model_clone(models[i], &own);
+        if (status != HBVIB_OK) fail("clone", status);
+        if (hbvib_model_free(own) != HBVIB_OK) fail("free", HBVIB_E_INTERNAL);
         __atomic_add_fetch(&done, 1, __ATOMIC_RELAXED);
     }
     return NULL;
@@ -80,13 +86,14 @@ int main(int argc, char **argv)
         reference[i] = 1;
         if (SHARED_ANALYSES[i].build(&models[i]) < 0 || SHARED_ANALYSES[i].run(models[i], &reference[i]) < 0) return 3;
     }
+    if (ring(&changed) < 0) return 3;
     end = time(NULL) + atoi(argv[2]);
     for (i = 0; i < n; i++)
         if (pthread_create(&threads[i], NULL, work, (void *)(uintptr_t)(i + 1)) != 0) abort();
     for (i = 0; time(NULL) < end; i++) {
         if (hbvib_cancel(&cancel, i % 2) != HBVIB_OK) fail("cancel", HBVIB_E_INTERNAL);
-        /* A change of a model that is in use is refused. One that is not in use has no force in harmonic 0. */
-        busy += hbvib_model_add_force(models[i % SHARED], 0, 1, 0, 0) == HBVIB_E_BUSY;
+        /* A change of a model that is in use is refused, and a use while it is changed. */
+        busy += hbvib_model_set_preload(changed, 0, 488.5) == HBVIB_E_BUSY;
         nanosleep(&pause, NULL);
     }
     __atomic_store_n(&over, 1, __ATOMIC_RELAXED);
@@ -94,6 +101,7 @@ int main(int argc, char **argv)
         if (pthread_join(threads[i], NULL) != 0) abort();
     for (i = 0; i < SHARED; i++)
         if (hbvib_model_free(models[i]) != HBVIB_OK) fail("free", HBVIB_E_BUSY);
+    if (hbvib_model_free(changed) != HBVIB_OK) fail("free", HBVIB_E_BUSY);
     printf("%lld analyses, %lld stopped, %d changes refused, %d failures\n", (long long)done, (long long)cancelled, busy, failures);
     return failures > 0 || done == 0 || cancelled == 0 || busy == 0;
 }
