@@ -18,7 +18,7 @@ pub fn within(limit: usize, need: usize) -> Result<()> {
     Err(Error::new(
         Status::OutOfMemory,
         format_args!(
-            "factors and matrices need about {} MB, more than the limit of {limit} bytes; raise memory_limit, or reduce model or harmonics",
+            "factors and matrices need about {} MB, more than memory_limit = {limit} bytes; raise it, or reduce model or harmonics",
             mega(need)
         ),
     )
