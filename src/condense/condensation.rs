@@ -18,6 +18,7 @@ use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffnes
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
+use crate::condense::wave_modes::WaveCache;
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
 use crate::error::{Result, Status, try_push, try_vec};
@@ -28,6 +29,9 @@ use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, Flexibility, SolverOptions};
 use num_complex::Complex64;
+
+/// Degrees of freedom up to which a sweep computes all modes at once.
+const MODES_UP_TO: usize = 32;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;
@@ -110,6 +114,12 @@ impl Condensed {
             }
         }
         condensed.set_length(model, unit * scale, &assembled)?;
+        if sweep.is_range() && !condensed.is_reduced() && condensed.order <= MODES_UP_TO {
+            let mut waves = WaveCache::default();
+            for i in 0..condensed.blocks.len() {
+                condensed.blocks[i].modes = waves.of(model, &condensed, i, interrupt)?;
+            }
+        }
         Ok(condensed)
     }
 

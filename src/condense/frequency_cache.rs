@@ -1,5 +1,5 @@
 //! The flexibility tables of all carried harmonics at a frequency: by factorisation for small structures or a
-//! single frequency, interpolated along a sweep otherwise.
+//! single frequency; along a sweep from modes for small structures, interpolated for others.
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
@@ -8,11 +8,13 @@ use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles;
 use crate::error::{Result, try_push};
 use crate::interrupt::{Interrupt, Phase};
+use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Degrees of freedom above which a sweep interpolates.
 const INTERPOLATE_ABOVE: usize = 32;
 
-/// Relative error of interpolated tables.
+/// Relative error of interpolated tables, and of tables from modes.
 const TOLERANCE: f64 = 1e-11;
 
 /// Tables of all carried harmonics.
@@ -20,8 +22,12 @@ pub struct FrequencyCache {
     workspace: Workspace,
     current: Vec<Table>,
     interpolations: Vec<FrequencyInterpolation>,
-    /// Per harmonic the table from modes, where it is used; without slopes.
+    /// Per harmonic the table from modes, where it is used.
     modal: Vec<Option<ModalTable>>,
+    /// Whether the tables from modes have slopes.
+    modal_slopes: bool,
+    /// Per harmonic, whether its table is made and depends on no frequency.
+    constant: Vec<bool>,
     /// Frequency of the current tables; `true` if they were made pointwise.
     tabulated: Option<(f64, bool)>,
     pointwise: bool,
@@ -42,6 +48,7 @@ impl FrequencyCache {
         let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
         let mut interpolations = Vec::new();
+        let (mut modal, mut constant, mut found) = (Vec::new(), Vec::new(), false);
         let count = condensed.blocks().len();
         for i in 0..count {
             interrupt.part(Phase::Condensation, i, count)?;
@@ -51,12 +58,25 @@ impl FrequencyCache {
                 let interpolation = FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE)?;
                 try_push(&mut interpolations, interpolation, CONTEXT)?;
             }
+            try_push(&mut constant, false, CONTEXT)?;
+            let from_modes = if sweep {
+                of_wave(condensed, i, response, (range, &mut workspace), interrupt)?
+            } else {
+                None
+            };
+            found |= from_modes.is_some();
+            try_push(&mut modal, from_modes, CONTEXT)?;
+        }
+        if !found {
+            modal.clear();
         }
         Ok(Self {
             workspace,
             current: tables,
             interpolations,
-            modal: Vec::new(),
+            modal,
+            modal_slopes: true,
+            constant,
             tabulated: None,
             // Without a sweep no slope is used.
             pointwise: !sweep && condensed.ndof() > INTERPOLATE_ABOVE,
@@ -64,16 +84,21 @@ impl FrequencyCache {
         })
     }
 
+    /// Whether a sweep uses other tables than those by factorisation.
+    fn is_quicker(&self) -> bool {
+        !self.interpolations.is_empty() || !self.modal.is_empty()
+    }
+
     /// Selects tables by factorisation from now on, without slopes if these are expensive.
     pub fn set_pointwise(&mut self, pointwise: bool) {
-        if !self.interpolations.is_empty() {
+        if self.is_quicker() {
             self.pointwise = pointwise;
         }
     }
 
     /// Selects tables with slopes by factorisation from now on.
     pub fn set_factorised(&mut self, factorised: bool) {
-        if self.factorised != factorised && !self.interpolations.is_empty() {
+        if self.factorised != factorised && self.is_quicker() {
             self.factorised = factorised;
             self.tabulated = None;
         }
@@ -82,6 +107,7 @@ impl FrequencyCache {
     /// Makes tables of the harmonics from modes where they are given, without slopes.
     pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
         self.modal = modal;
+        self.modal_slopes = false;
         self.tabulated = None;
     }
 
@@ -108,13 +134,20 @@ impl FrequencyCache {
         self.tabulated = None;
         let workspace = &mut self.workspace;
         for (i, table) in self.current.iter_mut().enumerate() {
+            if self.constant[i] {
+                continue;
+            }
             interrupt.check()?;
-            if let Some(Some(modal)) = self.modal.get_mut(i) {
-                modal.evaluate(omega, table, interrupt)?;
+            let block = &condensed.blocks()[i];
+            let is_constant = block.number == 0 && block.tied.is_none();
+            let exactly = self.modal_slopes && (self.pointwise || self.factorised);
+            if let Some(Some(modal)) = self.modal.get_mut(i).filter(|_| !exactly)
+                && modal.evaluate(omega, self.modal_slopes, table, interrupt)?
+            {
                 continue;
             }
             let done = match self.interpolations.get_mut(i) {
-                Some(interpolation) if !self.pointwise && !self.factorised => {
+                Some(interpolation) if !self.pointwise && !self.factorised && !is_constant => {
                     interpolation.evaluate(omega, table, |w, values| {
                         values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
                         Ok(())
@@ -124,12 +157,48 @@ impl FrequencyCache {
             };
             if !done {
                 // A derived clone_from would allocate at each frequency.
-                let found = workspace.evaluate(condensed, i, omega, !self.pointwise, interrupt)?;
+                let slopes = !self.pointwise || (self.modal_slopes && !self.modal.is_empty());
+                let found = workspace.evaluate(condensed, i, omega, slopes, interrupt)?;
                 table.value.copy_from_slice(&found.value);
                 table.slope.copy_from_slice(&found.slope);
+                self.constant[i] = is_constant;
             }
         }
         self.tabulated = Some((omega, self.pointwise));
         Ok(())
     }
+}
+
+/// The table of the i-th carried harmonic from the modes of its wave, where it has them and they agree with a factorisation
+/// over the range.
+fn of_wave(
+    condensed: &Condensed,
+    i: usize,
+    response: usize,
+    ((start, end), workspace): ((f64, f64), &mut Workspace),
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<ModalTable>> {
+    let Some(modes) = &condensed.blocks()[i].modes else {
+        return Ok(None);
+    };
+    let mut modal = ModalTable::new(condensed, i, response, Arc::clone(modes))?;
+    let mut table = Table::new(condensed.coordinates())?;
+    let outputs = condensed.coordinates() + 1;
+    for omega in [start, 0.5 * (start + end), end] {
+        if !modal.evaluate(omega, true, &mut table, interrupt)? {
+            continue;
+        }
+        let exact = workspace.evaluate(condensed, i, omega, true, interrupt)?;
+        for (a, b) in [(&table.value, &exact.value), (&table.slope, &exact.slope)] {
+            for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
+                let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
+                let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
+                // Written so that a number that is not finite disagrees.
+                if !(off <= TOLERANCE * TOLERANCE * size) {
+                    return Ok(None);
+                }
+            }
+        }
+    }
+    Ok(Some(modal))
 }

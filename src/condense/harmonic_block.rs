@@ -1,6 +1,7 @@
 //! One harmonic of the condensed model: the matrices on one pattern, and the rows of the contacts.
 
 use crate::condense::contact_classes::ContactClasses;
+use crate::condense::wave_modes::WaveModes;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
@@ -10,6 +11,7 @@ use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Matrix of the artificial damping of a nonlinear mode; see [`crate::condense::dynamic_stiffness`].
 #[derive(Clone, Debug)]
@@ -41,6 +43,8 @@ pub struct HarmonicBlock {
     pub mass: Vec<Complex64>,
     /// The artificial damping.
     pub artificial: Artificial,
+    /// Modes of the wave along a sweep of a small structure, where the flexibility is a sum over them.
+    pub modes: Option<Arc<WaveModes>>,
     /// F_h in units of the length scale.
     pub force: Vec<Complex64>,
     /// Amplitudes of the forces that grow with ω², over ω², likewise; `None` without such forces.
@@ -198,6 +202,7 @@ pub(super) fn harmonic_block(
         },
         reference,
         artificial: Artificial::None,
+        modes: None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         rows: over_dofs(&rows)?,
         structural_rows: rows,

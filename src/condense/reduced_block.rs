@@ -80,6 +80,7 @@ pub(super) fn reduced_block(
         damping,
         mass,
         artificial: Artificial::None,
+        modes: None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         unbalance: None,
         tied: None,

@@ -84,6 +84,7 @@ impl HarmonicBlock {
             damping,
             mass,
             artificial: Artificial::None,
+            modes: None,
             force: try_copy(&self.force, CONTEXT)?,
             rows: self.rows.clone(),
             structural_rows: try_copy(&self.structural_rows, CONTEXT)?,

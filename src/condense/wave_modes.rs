@@ -5,7 +5,8 @@
 //! > Z_κ = (1 + c) K_κ − (ν² − iνα) M − c Bᴴ k B,  c = i(νβ + η),  ν = hω,
 //!
 //! where Bᴴ k B is the part of K_κ that belongs to no structure: springs, stuck contacts and κ. Without the last term
-//! Z⁻¹ = Σ φ φᴴ/(1 + c − (ν² − iνα) μ); the term itself is of low rank, see [`crate::condense::modal_table`].
+//! Z⁻¹ = Σ φ φᴴ/(1 + c − (ν² − iνα) μ); the term itself is of low rank, see [`crate::condense::modal_table`]. A complex κ
+//! enters K_κ with its real part; its imaginary part adds to the low rank.
 
 use crate::condense::{Artificial, Condensed, HarmonicBlock};
 use crate::error::{Result, Status, try_extend, try_push};
@@ -17,7 +18,7 @@ use crate::model::reduced_wave::MotionRow;
 use crate::model::spring_stiffness::Wave;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
-use std::rc::Rc;
+use std::sync::Arc;
 
 /// Relative deviation of a damping matrix from αM + βK that is rounding.
 const PROPORTIONAL: f64 = 1e-12;
@@ -28,8 +29,9 @@ const MOST: usize = 600;
 const CONTEXT: &str = "the modes of the structure";
 
 /// The modes of one wave.
+#[derive(Debug)]
 pub struct WaveModes {
-    /// K_κ with its structural damping and M, by which the wave is known again.
+    /// K_κ and M, by which the wave is known again.
     reference: Csc,
     mass: Vec<Complex64>,
     /// μ
@@ -47,7 +49,7 @@ pub struct WaveModes {
 /// The waves met so far; `None` for one whose flexibility is no such sum.
 #[derive(Default)]
 pub struct WaveCache {
-    waves: Vec<Rc<WaveModes>>,
+    waves: Vec<Arc<WaveModes>>,
     /// Whether a wave without such modes was met: there are no others then.
     refused: bool,
 }
@@ -66,8 +68,8 @@ impl WaveCache {
     }
 
     /// The modes of the i-th carried harmonic; `None` where the damping is not proportional, a
-    /// structural matrix is given, the structure rotates or has an unbalance, the reference stiffness is
-    /// complex, the structure can move without it, or has too many degrees of freedom.
+    /// structural matrix is given, the structure rotates or has an unbalance, it can move without the reference
+    /// stiffness, or has too many degrees of freedom.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
@@ -77,27 +79,33 @@ impl WaveCache {
         condensed: &Condensed,
         i: usize,
         interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Rc<WaveModes>>> {
+    ) -> Result<Option<Arc<WaveModes>>> {
         let block = &condensed.blocks()[i];
-        let is_real = (0..condensed.coordinates()).all(|c| condensed.kappa(c, i).im == 0.0);
-        if self.refused || block.number == 0 || !is_real {
+        if self.refused || block.number == 0 {
             return Ok(None);
         }
-        if let Some(known) = self.waves.iter().find(|known| known.is_of(block)) {
-            return Ok(Some(Rc::clone(known)));
+        let reference = real_reference(condensed, i)?;
+        let is_known = |known: &&Arc<WaveModes>| known.is_of(&reference, &block.mass);
+        if let Some(known) = self.waves.iter().find(is_known) {
+            return Ok(Some(Arc::clone(known)));
         }
-        let Some(found) = WaveModes::new(model, condensed, i, interrupt)? else {
+        let Some(found) = WaveModes::new(model, condensed, (i, reference), interrupt)? else {
             self.refused = true;
             return Ok(None);
         };
-        let found = Rc::new(found);
-        try_push(&mut self.waves, Rc::clone(&found), CONTEXT)?;
+        let found = Arc::new(found);
+        try_push(&mut self.waves, Arc::clone(&found), CONTEXT)?;
         Ok(Some(found))
     }
 }
 
 impl WaveModes {
-    fn new(model: &Model, condensed: &Condensed, i: usize, interrupt: &Interrupt<'_>) -> Result<Option<Self>> {
+    fn new(
+        model: &Model,
+        condensed: &Condensed,
+        (i, reference): (usize, Csc),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Self>> {
         let block = &condensed.blocks()[i];
         let n = condensed.ndof();
         let other_terms = model.structure().has_structural_matrix()
@@ -116,7 +124,7 @@ impl WaveModes {
             return Ok(None);
         };
         interrupt.check()?;
-        let pattern = &block.reference;
+        let pattern = &reference;
         let dense = |values: &[Complex64]| {
             let mut a = DMatrix::<Complex64>::zeros(n, n);
             for j in 0..n {
@@ -127,10 +135,7 @@ impl WaveModes {
             a
         };
         // The pencil turned round: the lowest modes, which matter most, are the most accurate.
-        let mut stiffness = dense(&pattern.values);
-        if let Some(structural) = &block.structural {
-            stiffness -= dense(structural) * Complex64::I;
-        }
+        let stiffness = dense(&pattern.values);
         let pairs = match eigen::generalised(&dense(&block.mass), &stiffness, interrupt) {
             Ok(pairs) => pairs,
             Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
@@ -144,7 +149,7 @@ impl WaveModes {
         let mut vectors = Vec::new();
         try_extend(&mut vectors, pairs.vectors.as_slice(), CONTEXT)?;
         Ok(Some(Self {
-            reference: pattern.try_clone()?,
+            reference,
             mass,
             values: pairs.values,
             vectors,
@@ -159,13 +164,33 @@ impl WaveModes {
         self.proportional.1 != 0.0 || self.loss_factor != 0.0
     }
 
-    /// Whether these are the modes of a harmonic.
-    fn is_of(&self, block: &HarmonicBlock) -> bool {
-        self.reference.col_ptr == block.reference.col_ptr
-            && self.reference.row_idx == block.reference.row_idx
-            && self.reference.values == block.reference.values
-            && self.mass == block.mass
+    /// Whether these are the modes of a wave with this K_κ and M.
+    fn is_of(&self, reference: &Csc, mass: &[Complex64]) -> bool {
+        self.reference.col_ptr == reference.col_ptr
+            && self.reference.row_idx == reference.row_idx
+            && self.reference.values == reference.values
+            && self.mass == mass
     }
+}
+
+/// K_κ of the i-th carried harmonic without structural damping, with the real part of κ.
+fn real_reference(condensed: &Condensed, i: usize) -> Result<Csc> {
+    let block = &condensed.blocks()[i];
+    let mut reference = block.reference.try_clone()?;
+    reference.values.copy_from_slice(&block.stiffness);
+    for (c, row) in block.rows.iter().enumerate() {
+        let kappa = condensed.kappa(c, i).re;
+        for &(q, b) in row.terms() {
+            let column = reference.col_ptr[q]..reference.col_ptr[q + 1];
+            for &(p, a) in row.terms() {
+                let found = reference.row_idx[column.clone()].iter().position(|&row| row == p);
+                if let Some(at) = found {
+                    reference.values[column.start + at] += a.conj() * kappa * b;
+                }
+            }
+        }
+    }
+    Ok(reference)
 }
 
 /// α and β of C = αM + βK, the matrices M, K and C on one pattern, by least squares; `None` where C is not of this form.
