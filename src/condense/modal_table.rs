@@ -37,7 +37,7 @@ pub struct ModalTable {
     coordinates: usize,
     /// Rows of contacts, response and springs.
     rows: usize,
-    /// rows × n and n × rows: Φ seen by the outputs, and the inputs seen by Φᴴ.
+    /// Mode after mode, one number a row: Φ seen by the outputs, and the inputs seen by Φᴴ.
     left: Vec<Complex64>,
     right: Vec<Complex64>,
     /// 1/d, and −∂d/d².
@@ -82,10 +82,11 @@ impl ModalTable {
             for (to, (row, _)) in column[outputs..].iter_mut().zip(springs) {
                 *to = row.along(shape);
             }
-            for (r, l) in column.iter().enumerate() {
-                right[r * n + mode] = l.conj();
+            let inputs = &mut right[mode * rows..(mode + 1) * rows];
+            for (to, l) in inputs.iter_mut().zip(column) {
+                *to = l.conj();
             }
-            right[coordinates * n + mode] = crate::linalg::inner(shape, &block.force);
+            inputs[coordinates] = crate::linalg::inner(shape, &block.force);
         }
         let mut stiffness = try_vec(coordinates + springs.len(), 0.0, CONTEXT)?;
         let mut imaginary = try_vec(stiffness.len(), 0.0, CONTEXT)?;
@@ -190,19 +191,30 @@ impl ModalTable {
 
     /// T′, and ∂T′ if `slopes`.
     fn sum(&mut self, slopes: bool) {
-        let (n, rows) = (self.inverse.len(), self.rows);
-        let weigh = |factors: &[Complex64], weighted: &mut [Complex64]| {
-            for (to, from) in weighted.chunks_exact_mut(n).zip(self.right.chunks_exact(n)) {
-                for ((to, from), factor) in to.iter_mut().zip(from).zip(factors) {
+        let rows = self.rows;
+        let parts = [
+            (&self.inverse, &mut self.plain, true),
+            (&self.slopes, &mut self.d_plain, slopes),
+        ];
+        for (factors, out, _) in parts.into_iter().filter(|(_, _, wanted)| *wanted) {
+            if out.len() * factors.len() <= SMALL_PRODUCT {
+                add_modes((&self.left, &self.right, rows), factors, out);
+                continue;
+            }
+            let modes = self.weighted.chunks_exact_mut(rows).zip(self.right.chunks_exact(rows));
+            for ((to, from), factor) in modes.zip(factors) {
+                for (to, from) in to.iter_mut().zip(from) {
                     *to = from * factor;
                 }
             }
-        };
-        weigh(&self.inverse, &mut self.weighted);
-        multiply((&self.left, rows, n), &self.weighted, &mut self.plain);
-        if slopes {
-            weigh(&self.slopes, &mut self.weighted);
-            multiply((&self.left, rows, n), &self.weighted, &mut self.d_plain);
+            matmul(
+                MatMut::from_column_major_slice_mut(out, rows, rows),
+                Accum::Replace,
+                MatRef::from_column_major_slice(&self.left, rows, factors.len()),
+                MatRef::from_row_major_slice(&self.weighted, factors.len(), rows),
+                Complex64::ONE,
+                Par::Seq,
+            );
         }
     }
 
@@ -216,7 +228,7 @@ impl ModalTable {
         coefficient * self.stiffness[b] - Complex64::I * self.imaginary[b]
     }
 
-    /// e X
+    /// X and e X
     fn solve_low_rank(&mut self, c: Complex64, interrupt: &Interrupt<'_>) -> Result<()> {
         let (order, rows) = (self.lu.order(), self.rows);
         for q in 0..order {
@@ -292,28 +304,18 @@ fn check_finite(values: &[Complex64], omega: f64) -> Result<()> {
     )
 }
 
-/// out = A B with `rows` × `n` numbers in A.
-fn multiply((a, rows, n): (&[Complex64], usize, usize), b: &[Complex64], out: &mut [Complex64]) {
-    let columns = out.len() / rows.max(1);
-    if out.len() * n <= SMALL_PRODUCT {
-        out.fill(Complex64::ZERO);
-        for (out, b) in out.chunks_exact_mut(rows).zip(b.chunks_exact(n)) {
-            for (a, b) in a.chunks_exact(rows).zip(b) {
-                for (out, a) in out.iter_mut().zip(a) {
-                    *out += a * b;
-                }
+/// out = Σ left ⊗ factor·right over the modes.
+fn add_modes((left, right, rows): (&[Complex64], &[Complex64], usize), factors: &[Complex64], out: &mut [Complex64]) {
+    out.fill(Complex64::ZERO);
+    let modes = left.chunks_exact(rows).zip(right.chunks_exact(rows)).zip(factors);
+    for ((left, right), factor) in modes {
+        for (out, right) in out.chunks_exact_mut(rows).zip(right) {
+            let weighted = right * factor;
+            for (out, left) in out.iter_mut().zip(left) {
+                *out += left * weighted;
             }
         }
-        return;
     }
-    matmul(
-        MatMut::from_column_major_slice_mut(out, rows, columns),
-        Accum::Replace,
-        MatRef::from_column_major_slice(a, rows, n),
-        MatRef::from_column_major_slice(b, n, columns),
-        Complex64::ONE,
-        Par::Seq,
-    );
 }
 
 #[cfg(test)]

@@ -134,10 +134,7 @@ impl<T: Scalar> Lu<T> {
             for k in 0..j {
                 let factor = column[k];
                 if factor.size() != 0.0 {
-                    let l = &left[k * n + k + 1..(k + 1) * n];
-                    for (c, &l) in column[k + 1..].iter_mut().zip(l) {
-                        *c -= factor * l;
-                    }
+                    subtract(&mut column[k + 1..], factor, &left[k * n + k + 1..(k + 1) * n]);
                 }
             }
             let mut pivot = j;
@@ -206,16 +203,12 @@ impl<T: Scalar> Lu<T> {
         }
         for k in 0..n {
             let x = b[k];
-            for (b, &l) in b[k + 1..].iter_mut().zip(&self.a[k * n + k + 1..(k + 1) * n]) {
-                *b -= x * l;
-            }
+            subtract(&mut b[k + 1..], x, &self.a[k * n + k + 1..(k + 1) * n]);
         }
         for k in (0..n).rev() {
             let x = b[k] / self.a[k * n + k];
             b[k] = x;
-            for (b, &u) in b[..k].iter_mut().zip(&self.a[k * n..k * n + k]) {
-                *b -= x * u;
-            }
+            subtract(&mut b[..k], x, &self.a[k * n..k * n + k]);
         }
     }
 
@@ -267,6 +260,21 @@ impl<T: Scalar> Lu<T> {
             }
         }
         Ok(())
+    }
+}
+
+/// to −= factor·from, four numbers at a time, which needs no preparation for short columns.
+#[inline]
+fn subtract<T: Scalar>(to: &mut [T], factor: T, from: &[T]) {
+    let (to, to_rest) = to.as_chunks_mut::<4>();
+    let (from, from_rest) = from.as_chunks::<4>();
+    for (to, from) in to.iter_mut().zip(from) {
+        for (to, &from) in to.iter_mut().zip(from) {
+            *to -= factor * from;
+        }
+    }
+    for (to, &from) in to_rest.iter_mut().zip(from_rest) {
+        *to -= factor * from;
     }
 }
 

@@ -1,0 +1,123 @@
+//! Rows of structures with many degrees of freedom or contacts.
+
+use crate::calibration::{Unit, cpu_seconds};
+use crate::plate::Plate;
+use crate::{Row, Work};
+use hbvib::{
+    Contact, ContactState, ForcedOptions, Hooks, MatrixKind, MatrixView, Model, Result, SolverOptions, forced_response,
+};
+
+pub const ROWS: &[Row] = &[
+    Row {
+        name: "rod of 40, 10 sliders, H 3, an iteration",
+        unit: Unit::Lu11,
+        run: || iteration(&rod(40, 10)?, 39),
+    },
+    Row {
+        name: "rod of 2,000, 10 sliders, H 3, an iteration",
+        unit: Unit::Lu11,
+        run: || iteration(&rod(2000, 10)?, 1999),
+    },
+    Row {
+        name: "plate of 54, 10 sliders, H 3, an iteration",
+        unit: Unit::Lu11,
+        run: || plate_iteration([3, 2, 1]),
+    },
+    Row {
+        name: "plate of 2,040, 10 sliders, H 3, an iteration",
+        unit: Unit::Lu11,
+        run: || plate_iteration([20, 16, 1]),
+    },
+    Row {
+        name: "plate of 5,130, 20 sliders, H 3, whole response",
+        unit: Unit::Faer(500),
+        run: || {
+            let plate = Plate::new([30, 18, 2]);
+            let model = plate.with_sliders(20, 2e5, 0.05)?;
+            let (branch, _) = about_first_mode(&model, plate.corner(), 20_000)?;
+            Ok(Work::whole(&branch))
+        },
+    },
+    Row {
+        name: "300 sliders on 1,000, H 3, most slipping, a point",
+        unit: Unit::Faer(1000),
+        run: || {
+            let model = rod(1000, 300)?;
+            let (branch, seconds) = about_first_mode(&model, 999, 12)?;
+            let per = (branch.points() as f64, "point");
+            Ok(Work {
+                seconds: Some(seconds),
+                per,
+                ..Work::whole(&branch)
+            })
+        },
+    },
+];
+
+/// A rod of n equal masses, clamped at one end and forced at the other, with sliders to the ground.
+fn rod(n: usize, sliders: usize) -> Result<Model> {
+    let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
+    let spring = 1e6 * n as f64;
+    for i in 0..n {
+        m[i * n + i] = 1.0 / n as f64;
+        k[i * n + i] = if i + 1 == n { spring } else { 2.0 * spring };
+        if i > 0 {
+            k[i * n + i - 1] = -spring;
+            k[(i - 1) * n + i] = -spring;
+        }
+    }
+    let mut model = Model::new(n)?;
+    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &m))?;
+    model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &k))?;
+    model.set_rayleigh(0.0, 1e-6)?;
+    for s in 0..sliders {
+        let dof = (s + 1) * n / sliders - 1;
+        model.add_contact(&Contact::jenkins(
+            dof,
+            None,
+            1e7 / sliders as f64,
+            20.0 / sliders as f64,
+            1.0,
+        ))?;
+    }
+    model.add_force(n - 1, 1, 40.0.into())?;
+    Ok(model)
+}
+
+/// A sweep over a tenth about the first resonance with stuck contacts, and its seconds without the modes.
+fn about_first_mode(model: &Model, response: usize, max_points: usize) -> Result<(hbvib::Branch, f64)> {
+    let omega = model.lowest_modes(0, ContactState::Stuck, 1)?.omega[0];
+    let solver = SolverOptions {
+        harmonics: 3,
+        tolerance: 0.0,
+        response_dof: Some(response),
+        max_points,
+        ..SolverOptions::default()
+    };
+    let range = ForcedOptions {
+        omega_start: 0.9 * omega,
+        omega_stop: 1.1 * omega,
+        ..ForcedOptions::default()
+    };
+    let begin = cpu_seconds();
+    let branch = forced_response(model, &solver, &range, &mut Hooks::default())?;
+    Ok((branch, cpu_seconds() - begin))
+}
+
+/// CPU time of an iteration after the first point.
+fn iteration(model: &Model, response: usize) -> Result<Work> {
+    let (first, before) = about_first_mode(model, response, 1)?;
+    let (branch, all) = about_first_mode(model, response, 20_000)?;
+    let whole = Work::whole(&branch);
+    let iterations = (whole.iterations - Work::whole(&first).iterations) as f64;
+    Ok(Work {
+        seconds: Some(all - before),
+        per: (iterations, "iteration"),
+        ..whole
+    })
+}
+
+fn plate_iteration(elements: [usize; 3]) -> Result<Work> {
+    let plate = Plate::new(elements);
+    iteration(&plate.with_sliders(10, 2e5, 0.05)?, plate.corner())
+}

@@ -1,0 +1,122 @@
+//! Rows of small structures: the ring damper, from the matrices to the branch.
+
+use crate::calibration::{Unit, cpu_seconds};
+use crate::model::{B2, Parameters};
+use crate::{Row, Work};
+use hbvib::{
+    Branch, Error, ForcedOptions, Hooks, ModeChoice, ModeOptions, Result, SolverOptions, Status, forced_response,
+    nonlinear_mode,
+};
+use std::f64::consts::TAU;
+
+pub const ROWS: &[Row] = &[
+    Row {
+        name: "case B, 20 N, H 9, about 200 points",
+        unit: Unit::Lu11,
+        run: || Ok(Work::whole(&case_b(9, 6.5e-2, 20_000)?)),
+    },
+    Row {
+        name: "case B, 20 N, H 9, default steps",
+        unit: Unit::Lu11,
+        run: || Ok(Work::whole(&case_b(9, 0.0, 20_000)?)),
+    },
+    Row {
+        name: "case B, 20 N, H 127, all",
+        unit: Unit::Lu11,
+        run: || Ok(Work::whole(&case_b(127, 0.0, 20_000)?)),
+    },
+    Row {
+        name: "case B, 20 N, H 127, share of the first point",
+        unit: Unit::Lu11,
+        run: first_point,
+    },
+    Row {
+        name: "ring damper, backbone, H 9, about 64 points",
+        unit: Unit::Lu11,
+        run: backbone,
+    },
+    Row {
+        name: "ring damper, 5 N, tolerance 1e-3, 205 to 213 Hz",
+        unit: Unit::Lu11,
+        run: tolerance,
+    },
+];
+
+fn ring_damper(parameters: Parameters) -> Result<hbvib::Model> {
+    parameters
+        .model()
+        .map_err(|e| Error::new(Status::Internal, format_args!("{e}")))
+}
+
+/// Case B: engine order 2, slip limit 5 N, force at the blade tip, over a tenth about the resonance.
+fn case_b(harmonics: usize, step_max: f64, max_points: usize) -> Result<Branch> {
+    let mut parameters = Parameters {
+        force: 20.0,
+        tip_only: true,
+        beta: 2e-6,
+        ..Parameters::default()
+    };
+    // The load of 5 N/0.3 that presses the ring follows from the speed.
+    parameters.rpm *= (5.0 / 0.3 / parameters.normal_load()).sqrt();
+    let solver = SolverOptions {
+        harmonics,
+        tolerance: 0.0,
+        response_dof: Some(B2),
+        step_max,
+        max_points,
+        ..SolverOptions::default()
+    };
+    let range = ForcedOptions {
+        omega_start: 1187.306,
+        omega_stop: 1451.152,
+        ..ForcedOptions::default()
+    };
+    forced_response(&ring_damper(parameters)?, &solver, &range, &mut Hooks::default())
+}
+
+/// The first point as a share of the whole response.
+fn first_point() -> Result<Work> {
+    let begin = cpu_seconds();
+    let first = case_b(127, 0.0, 1)?;
+    let middle = cpu_seconds();
+    case_b(127, 0.0, 20_000)?;
+    let whole = cpu_seconds() - middle;
+    println!("    {:.1} % of the whole", 100.0 * (middle - begin) / whole);
+    Ok(Work {
+        seconds: Some(middle - begin),
+        ..Work::whole(&first)
+    })
+}
+
+fn backbone() -> Result<Work> {
+    let solver = SolverOptions {
+        harmonics: 9,
+        tolerance: 0.0,
+        step_max: 0.14,
+        ..SolverOptions::default()
+    };
+    let options = ModeOptions {
+        choice: ModeChoice::Index(0),
+        log10_start: -7.0,
+        log10_stop: -1.0,
+        ..ModeOptions::default()
+    };
+    let model = ring_damper(Parameters::default())?;
+    let branch = nonlinear_mode(&model, &solver, &options, &mut Hooks::default())?;
+    Ok(Work::whole(&branch))
+}
+
+fn tolerance() -> Result<Work> {
+    let solver = SolverOptions {
+        response_dof: Some(B2),
+        ..SolverOptions::default()
+    };
+    let range = ForcedOptions {
+        omega_start: 205.0 * TAU,
+        omega_stop: 213.0 * TAU,
+        ..ForcedOptions::default()
+    };
+    let model = ring_damper(Parameters::default())?;
+    let branch = forced_response(&model, &solver, &range, &mut Hooks::default())?;
+    Ok(Work::whole(&branch))
+}
