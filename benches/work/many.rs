@@ -106,6 +106,8 @@ fn about_first_mode(model: &Model, response: usize, max_points: usize) -> Result
 
 /// CPU time of an iteration after the first point.
 fn iteration(model: &Model, response: usize) -> Result<Work> {
+    // The first call prepares the structure, which the model keeps.
+    about_first_mode(model, response, 1)?;
     let (first, before) = about_first_mode(model, response, 1)?;
     let (branch, all) = about_first_mode(model, response, 20_000)?;
     let whole = Work::whole(&branch);

@@ -8,11 +8,12 @@ use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
+use crate::analysis::lifted_start::Lifted;
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, ModelCache, Reference};
-use crate::continuation::initial_point::{self, First};
+use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, try_push, try_vec};
@@ -21,6 +22,7 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
+use crate::problem::InitialGuess;
 use crate::results::Branch;
 use num_complex::Complex64;
 
@@ -98,16 +100,24 @@ fn follow(
         let omega = range.omega_start.min(range.omega_stop);
         forced_dof_with_largest_motion(model, &resolution.condensed, omega, interrupt)?
     };
-    let given = match range.guess {
-        Some(guess) => Some(relative_motion(resolution, guess)?),
-        None => None,
-    };
     let settings = Settings {
         start: range.omega_start,
         end: range.omega_stop,
         tolerance: solver.tol_residual,
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
+    };
+    let lifted = if levels.is_automatic() || range.guess.is_some() {
+        None
+    } else {
+        interrupt.phase(Phase::FirstPoint, 0.0)?;
+        let forced = forced_harmonics(model)?;
+        Lifted::new(model, solver, &settings, (&forced, response_dof), interrupt)?
+    };
+    let given = match (range.guess, &lifted) {
+        (Some(guess), _) => Some(relative_motion(resolution, guess)?),
+        (None, Some(lifted)) => Some(lifted.at(&resolution.condensed)?),
+        (None, None) => None,
     };
     let extended = ModelCache::for_estimates()?;
     let models = (&levels, &stuck, &extended);
@@ -126,7 +136,13 @@ fn follow(
     };
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {
-        Ok(First { point, way }) => {
+        Ok(First { mut point, mut way }) => {
+            if let Some(lifted) = &lifted {
+                point.iterations += lifted.iterations;
+                if way == Way::Newton(InitialGuess::Given) {
+                    way = Way::Lifted;
+                }
+            }
             // Round-off may hide the imbalance of a large motion, but not that forces exceed what contacts take.
             if norm(point.unknowns()) > LARGE
                 && let Some(reason) = unbounded_response::reason(model, range.omega_start, interrupt)?

@@ -13,6 +13,7 @@ mod followed;
 mod forced_discretised;
 pub mod forced_response;
 pub mod harmonic_residual;
+mod lifted_start;
 pub mod linear_contacts;
 mod mode_discretised;
 mod mode_equations;

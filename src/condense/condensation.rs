@@ -31,7 +31,7 @@ use crate::options::{DampingForm, Flexibility, SolverOptions};
 use num_complex::Complex64;
 
 /// Degrees of freedom up to which a sweep computes all modes at once.
-const MODES_UP_TO: usize = 32;
+const MODES_UP_TO: usize = 100;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;

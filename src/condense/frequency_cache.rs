@@ -21,11 +21,14 @@ const TOLERANCE: f64 = 1e-11;
 pub struct FrequencyCache {
     workspace: Workspace,
     current: Vec<Table>,
-    interpolations: Vec<FrequencyInterpolation>,
+    /// Per harmonic its interpolation, where it is used.
+    interpolations: Vec<Option<FrequencyInterpolation>>,
     /// Per harmonic the table from modes, where it is used.
     modal: Vec<Option<ModalTable>>,
     /// Whether the tables from modes have slopes.
     modal_slopes: bool,
+    /// Whether a sweep uses other tables than those by factorisation.
+    is_quicker: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
     constant: Vec<bool>,
     /// Frequency of the current tables; `true` if they were made pointwise.
@@ -48,27 +51,26 @@ impl FrequencyCache {
         let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
         let mut interpolations = Vec::new();
-        let (mut modal, mut constant, mut found) = (Vec::new(), Vec::new(), false);
+        let (mut modal, mut constant, mut is_quicker) = (Vec::new(), Vec::new(), false);
         let count = condensed.blocks().len();
         for i in 0..count {
             interrupt.part(Phase::Condensation, i, count)?;
             try_push(&mut tables, Table::new(coordinates)?, CONTEXT)?;
-            if sweep && condensed.ndof() > INTERPOLATE_ABOVE {
-                let resonances = resonance_poles::near(condensed, &mut workspace, i, range, interrupt)?;
-                let interpolation = FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE)?;
-                try_push(&mut interpolations, interpolation, CONTEXT)?;
-            }
             try_push(&mut constant, false, CONTEXT)?;
             let from_modes = if sweep {
                 of_wave(condensed, i, response, (range, &mut workspace), interrupt)?
             } else {
                 None
             };
-            found |= from_modes.is_some();
+            let interpolation = if sweep && from_modes.is_none() && condensed.ndof() > INTERPOLATE_ABOVE {
+                let resonances = resonance_poles::near(condensed, &mut workspace, i, range, interrupt)?;
+                Some(FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE)?)
+            } else {
+                None
+            };
+            is_quicker |= from_modes.is_some() || interpolation.is_some();
             try_push(&mut modal, from_modes, CONTEXT)?;
-        }
-        if !found {
-            modal.clear();
+            try_push(&mut interpolations, interpolation, CONTEXT)?;
         }
         Ok(Self {
             workspace,
@@ -76,6 +78,7 @@ impl FrequencyCache {
             interpolations,
             modal,
             modal_slopes: true,
+            is_quicker,
             constant,
             tabulated: None,
             // Without a sweep no slope is used.
@@ -84,21 +87,16 @@ impl FrequencyCache {
         })
     }
 
-    /// Whether a sweep uses other tables than those by factorisation.
-    fn is_quicker(&self) -> bool {
-        !self.interpolations.is_empty() || !self.modal.is_empty()
-    }
-
     /// Selects tables by factorisation from now on, without slopes if these are expensive.
     pub fn set_pointwise(&mut self, pointwise: bool) {
-        if self.is_quicker() {
+        if self.is_quicker {
             self.pointwise = pointwise;
         }
     }
 
     /// Selects tables with slopes by factorisation from now on.
     pub fn set_factorised(&mut self, factorised: bool) {
-        if self.factorised != factorised && self.is_quicker() {
+        if self.factorised != factorised && self.is_quicker {
             self.factorised = factorised;
             self.tabulated = None;
         }
@@ -114,7 +112,7 @@ impl FrequencyCache {
     /// Whether tables are made from modes.
     #[must_use]
     pub fn has_modes(&self) -> bool {
-        !self.modal.is_empty()
+        !self.modal_slopes
     }
 
     /// The tables made last.
@@ -147,17 +145,16 @@ impl FrequencyCache {
                 continue;
             }
             let done = match self.interpolations.get_mut(i) {
-                Some(interpolation) if !self.pointwise && !self.factorised && !is_constant => {
-                    interpolation.evaluate(omega, table, |w, values| {
+                Some(Some(interpolation)) if !self.pointwise && !self.factorised && !is_constant => interpolation
+                    .evaluate(omega, table, |w, values| {
                         values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
                         Ok(())
-                    })?
-                }
+                    })?,
                 _ => false,
             };
             if !done {
                 // A derived clone_from would allocate at each frequency.
-                let slopes = !self.pointwise || (self.modal_slopes && !self.modal.is_empty());
+                let slopes = !self.pointwise || matches!(self.modal.get(i), Some(Some(_)) if self.modal_slopes);
                 let found = workspace.evaluate(condensed, i, omega, slopes, interrupt)?;
                 table.value.copy_from_slice(&found.value);
                 table.slope.copy_from_slice(&found.slope);

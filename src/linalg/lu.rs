@@ -123,39 +123,38 @@ impl<T: Scalar> Lu<T> {
         if n > BLOCKED_ABOVE {
             return self.factor_blocked(interrupt);
         }
-        for j in 0..n {
-            let (left, right) = self.a.split_at_mut(j * n);
-            let column = &mut right[..n];
-            // Left-looking: update column j with the columns already factored, whose rows include every interchange
-            // so far.
-            for k in 0..j {
-                column.swap(k, self.pivots[k]);
-            }
-            for k in 0..j {
-                let factor = column[k];
-                if factor.size() != 0.0 {
-                    subtract(&mut column[k + 1..], factor, &left[k * n + k + 1..(k + 1) * n]);
-                }
-            }
-            let mut pivot = j;
-            for i in j + 1..n {
+        for k in 0..n {
+            let (left, right) = self.a.split_at_mut((k + 1) * n);
+            let column = &mut left[k * n..];
+            let mut pivot = k;
+            for i in k + 1..n {
                 if column[i].size() > column[pivot].size() {
                     pivot = i;
                 }
             }
             let size = column[pivot].size();
             if size == 0.0 || !size.is_finite() {
-                return singular(n, j, size);
+                return singular(n, k, size);
             }
-            self.pivots[j] = pivot;
-            column.swap(j, pivot);
-            let inverse = <T as nalgebra::ComplexField>::from_real(1.0) / column[j];
-            for c in &mut column[j + 1..] {
+            self.pivots[k] = pivot;
+            let inverse = <T as nalgebra::ComplexField>::from_real(1.0) / column[pivot];
+            column.swap(k, pivot);
+            for c in &mut column[k + 1..] {
                 *c *= inverse;
             }
-            if pivot != j {
-                for k in 0..j {
-                    left.swap(k * n + j, k * n + pivot);
+            let l = &column[k + 1..];
+            for column in right.chunks_exact_mut(n) {
+                column.swap(k, pivot);
+                let factor = column[k];
+                if factor.size() != 0.0 {
+                    for (c, &l) in column[k + 1..].iter_mut().zip(l) {
+                        *c -= factor * l;
+                    }
+                }
+            }
+            if pivot != k {
+                for column in left[..k * n].chunks_exact_mut(n) {
+                    column.swap(k, pivot);
                 }
             }
         }
@@ -203,12 +202,16 @@ impl<T: Scalar> Lu<T> {
         }
         for k in 0..n {
             let x = b[k];
-            subtract(&mut b[k + 1..], x, &self.a[k * n + k + 1..(k + 1) * n]);
+            for (b, &l) in b[k + 1..].iter_mut().zip(&self.a[k * n + k + 1..(k + 1) * n]) {
+                *b -= x * l;
+            }
         }
         for k in (0..n).rev() {
             let x = b[k] / self.a[k * n + k];
             b[k] = x;
-            subtract(&mut b[..k], x, &self.a[k * n..k * n + k]);
+            for (b, &u) in b[..k].iter_mut().zip(&self.a[k * n..k * n + k]) {
+                *b -= x * u;
+            }
         }
     }
 
@@ -260,21 +263,6 @@ impl<T: Scalar> Lu<T> {
             }
         }
         Ok(())
-    }
-}
-
-/// to −= factor·from, four numbers at a time, which needs no preparation for short columns.
-#[inline]
-fn subtract<T: Scalar>(to: &mut [T], factor: T, from: &[T]) {
-    let (to, to_rest) = to.as_chunks_mut::<4>();
-    let (from, from_rest) = from.as_chunks::<4>();
-    for (to, from) in to.iter_mut().zip(from) {
-        for (to, &from) in to.iter_mut().zip(from) {
-            *to -= factor * from;
-        }
-    }
-    for (to, &from) in to_rest.iter_mut().zip(from_rest) {
-        *to -= factor * from;
     }
 }
 

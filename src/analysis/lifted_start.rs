@@ -1,0 +1,94 @@
+//! A guess for the first point with many harmonics: solved with few of them, and lifted.
+//!
+//! Newton's method from small motion fails where contacts slip much, and a homotopy with many harmonics costs most of a
+//! response. With as few harmonics as the forces have it costs little, and its solution, with the other harmonics zero, is a
+//! good guess with twice as many, and so on.
+
+use crate::adaptivity::transfer::transferred;
+use crate::condense::Condensed;
+use crate::continuation::{Settings, initial_point};
+use crate::error::{Result, Status};
+use crate::interrupt::Interrupt;
+use crate::model::Model;
+use crate::options::SolverOptions;
+use crate::problem::harmonic_balance::HarmonicBalance;
+
+/// Highest harmonic up to which the first point is solved at once.
+const AT_ONCE: usize = 12;
+
+/// Degrees of freedom above which another number of harmonics costs more than it saves.
+const LARGE: usize = 1000;
+
+/// Most points of a homotopy with few harmonics.
+const MOST_POINTS: usize = 200;
+
+/// A solution with fewer harmonics.
+pub(super) struct Lifted {
+    condensed: Condensed,
+    v: Vec<f64>,
+    /// Newton iterations of all numbers of harmonics so far.
+    pub iterations: usize,
+}
+
+impl Lifted {
+    /// A solution at the start of `settings` with about half the harmonics of `solver`, and `response` observed; `forced`
+    /// are the harmonics in which forces act. `None` where contacts are linear at the start, few harmonics are
+    /// requested, or nothing was found.
+    ///
+    /// # Errors
+    /// Those of condensing the model; `StoppedByCaller`.
+    pub fn new(
+        model: &Model,
+        solver: &SolverOptions,
+        settings: &Settings,
+        (forced, response): (&[usize], usize),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Self>> {
+        let least = forced.iter().copied().max().unwrap_or(0).max(1);
+        let mut highest = least;
+        let mut found: Option<Self> = None;
+        if solver.harmonics <= AT_ONCE.max(least) || model.ndof() > LARGE {
+            return Ok(None);
+        }
+        while 2 * highest <= solver.harmonics {
+            let options = SolverOptions {
+                harmonics: highest,
+                ..*solver
+            };
+            let condensed = Condensed::new(model, &options, settings.start, interrupt)?;
+            let given = found.as_ref().map(|below| below.at(&condensed)).transpose()?;
+            let lifted = given.is_some();
+            let at = (settings.start, settings.start);
+            let mut problem = HarmonicBalance::new(&condensed, response, at, solver.samples, given, interrupt)?;
+            let first = match initial_point::solve_within(&mut problem, settings, MOST_POINTS, interrupt) {
+                Ok(first) => first,
+                Err(e) if e.recoverable || matches!(e.status, Status::NoConvergence | Status::Singular) => {
+                    return Ok(None);
+                }
+                Err(e) => return Err(e),
+            };
+            if !lifted && problem.forces().all_linear() {
+                return Ok(None);
+            }
+            drop(problem);
+            found = Some(Self {
+                condensed,
+                iterations: found.map_or(0, |below| below.iterations) + first.point.iterations,
+                v: first.point.v,
+            });
+            highest = 2 * highest + least;
+        }
+        Ok(found)
+    }
+
+    /// The packed motion in the harmonics of `to`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn at(&self, to: &Condensed) -> Result<Vec<f64>> {
+        let factor = self.condensed.length() / to.length();
+        let mut motion = transferred(&self.condensed, to, &self.v, 1, factor)?;
+        motion.truncate(to.unknowns());
+        Ok(motion)
+    }
+}
