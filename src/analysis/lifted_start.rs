@@ -6,7 +6,8 @@
 
 use crate::adaptivity::transfer::transferred;
 use crate::condense::Condensed;
-use crate::continuation::{Settings, initial_point};
+use crate::continuation::Settings;
+use crate::continuation::initial_point::{self, Way};
 use crate::error::{Result, Status};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -22,6 +23,9 @@ const LARGE: usize = 1000;
 /// Most points of a homotopy with few harmonics.
 const MOST_POINTS: usize = 200;
 
+/// Newton iterations from small motion up to which all harmonics are solved for at once.
+const EASY: usize = 4;
+
 /// A solution with fewer harmonics.
 pub(super) struct Lifted {
     condensed: Condensed,
@@ -32,7 +36,7 @@ pub(super) struct Lifted {
 
 impl Lifted {
     /// A solution at the start of `settings` with about half the harmonics of `solver`, and `response` observed; `forced`
-    /// are the harmonics in which forces act. `None` where contacts are linear at the start, few harmonics are
+    /// are the harmonics in which forces act. `None` where contacts hardly slip at the start, few harmonics are
     /// requested, or nothing was found.
     ///
     /// # Errors
@@ -67,7 +71,8 @@ impl Lifted {
                 }
                 Err(e) => return Err(e),
             };
-            if !lifted && problem.forces().all_linear() {
+            let is_easy = matches!(first.way, Way::Newton(_)) && first.point.iterations <= EASY;
+            if !lifted && (is_easy || problem.forces().all_linear()) {
                 return Ok(None);
             }
             drop(problem);

@@ -135,7 +135,7 @@ impl ModalTable {
             return Ok(false);
         }
         let (coefficient, d_coefficient) = self.coefficient(omega);
-        if self.rows == 2 && self.lu.order() == 1 {
+        if self.coordinates == 1 && self.rows == 2 && self.lu.order() == 1 {
             self.single(coefficient, d_coefficient, table);
             check_finite(&table.value, omega)?;
             return Ok(true);
