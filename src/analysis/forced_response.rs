@@ -13,7 +13,7 @@ use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
 use crate::condense::{Condensed, ModelCache, Reference};
-use crate::continuation::initial_point::{self, First, Way};
+use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, try_push, try_vec};
@@ -22,7 +22,6 @@ use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
 use crate::options::{ForcedOptions, SolverOptions};
-use crate::problem::InitialGuess;
 use crate::results::Branch;
 use num_complex::Complex64;
 
@@ -110,9 +109,7 @@ fn follow(
     let lifted = if levels.is_automatic() || range.guess.is_some() {
         None
     } else {
-        interrupt.phase(Phase::FirstPoint, 0.0)?;
-        let forced = forced_harmonics(model)?;
-        Lifted::new(model, solver, &settings, (&forced, response_dof), interrupt)?
+        Lifted::new(model, solver, &settings, response_dof, interrupt)?
     };
     let given = match (range.guess, &lifted) {
         (Some(guess), _) => Some(relative_motion(resolution, guess)?),
@@ -138,10 +135,7 @@ fn follow(
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {
         Ok(First { mut point, mut way }) => {
             if let Some(lifted) = &lifted {
-                point.iterations += lifted.iterations;
-                if way == Way::Newton(InitialGuess::Given) {
-                    way = Way::Lifted;
-                }
+                lifted.count(&mut point, &mut way);
             }
             // Round-off may hide the imbalance of a large motion, but not that forces exceed what contacts take.
             if norm(point.unknowns()) > LARGE

@@ -5,13 +5,15 @@
 //! good guess with twice as many, and so on.
 
 use crate::adaptivity::transfer::transferred;
+use crate::analysis::forced_response::forced_harmonics;
 use crate::condense::Condensed;
-use crate::continuation::Settings;
 use crate::continuation::initial_point::{self, Way};
+use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status};
-use crate::interrupt::Interrupt;
+use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::options::SolverOptions;
+use crate::problem::InitialGuess;
 use crate::problem::harmonic_balance::HarmonicBalance;
 
 /// Highest harmonic up to which the first point is solved at once.
@@ -31,13 +33,12 @@ pub(super) struct Lifted {
     condensed: Condensed,
     v: Vec<f64>,
     /// Newton iterations of all numbers of harmonics so far.
-    pub iterations: usize,
+    iterations: usize,
 }
 
 impl Lifted {
-    /// A solution at the start of `settings` with about half the harmonics of `solver`, and `response` observed; `forced`
-    /// are the harmonics in which forces act. `None` where contacts hardly slip at the start, few harmonics are
-    /// requested, or nothing was found.
+    /// A solution at the start of `settings` with about half the harmonics of `solver`, and `response` observed. `None`
+    /// where contacts hardly slip at the start, few harmonics are requested, or nothing was found.
     ///
     /// # Errors
     /// Those of condensing the model; `StoppedByCaller`.
@@ -45,10 +46,11 @@ impl Lifted {
         model: &Model,
         solver: &SolverOptions,
         settings: &Settings,
-        (forced, response): (&[usize], usize),
+        response: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Self>> {
-        let least = forced.iter().copied().max().unwrap_or(0).max(1);
+        interrupt.phase(Phase::FirstPoint, 0.0)?;
+        let least = forced_harmonics(model)?.into_iter().max().unwrap_or(0).max(1);
         let mut highest = least;
         let mut found: Option<Self> = None;
         if solver.harmonics <= AT_ONCE.max(least) || model.ndof() > LARGE {
@@ -84,6 +86,14 @@ impl Lifted {
             highest = 2 * highest + least;
         }
         Ok(found)
+    }
+
+    /// Counts the iterations among those of the first point, and tells the way to it.
+    pub fn count(&self, first: &mut Point, way: &mut Way) {
+        first.iterations += self.iterations;
+        if *way == Way::Newton(InitialGuess::Given) {
+            *way = Way::Lifted;
+        }
     }
 
     /// The packed motion in the harmonics of `to`.

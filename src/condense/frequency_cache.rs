@@ -31,11 +31,20 @@ pub struct FrequencyCache {
     is_quicker: bool,
     /// Per harmonic, whether its table is made and depends on no frequency.
     constant: Vec<bool>,
-    /// Frequency of the current tables; `true` if they were made pointwise.
-    tabulated: Option<(f64, bool)>,
-    pointwise: bool,
-    /// Whether interpolation is not used, and slopes are.
-    factorised: bool,
+    /// Frequency of the current tables, and how they were made.
+    tabulated: Option<(f64, Way)>,
+    way: Way,
+}
+
+/// How tables are made.
+#[derive(Clone, Copy, PartialEq)]
+enum Way {
+    /// From modes or by interpolation, where there are such.
+    Quick,
+    /// By factorisation, without slopes if these are expensive.
+    Pointwise,
+    /// By factorisation, with slopes.
+    Factorised,
 }
 
 impl FrequencyCache {
@@ -82,23 +91,25 @@ impl FrequencyCache {
             constant,
             tabulated: None,
             // Without a sweep no slope is used.
-            pointwise: !sweep && condensed.ndof() > INTERPOLATE_ABOVE,
-            factorised: false,
+            way: if !sweep && condensed.ndof() > INTERPOLATE_ABOVE {
+                Way::Pointwise
+            } else {
+                Way::Quick
+            },
         })
     }
 
     /// Selects tables by factorisation from now on, without slopes if these are expensive.
     pub fn set_pointwise(&mut self, pointwise: bool) {
         if self.is_quicker {
-            self.pointwise = pointwise;
+            self.way = if pointwise { Way::Pointwise } else { Way::Quick };
         }
     }
 
     /// Selects tables with slopes by factorisation from now on.
     pub fn set_factorised(&mut self, factorised: bool) {
-        if self.factorised != factorised && self.is_quicker {
-            self.factorised = factorised;
-            self.tabulated = None;
+        if self.is_quicker {
+            self.way = if factorised { Way::Factorised } else { Way::Quick };
         }
     }
 
@@ -126,7 +137,7 @@ impl FrequencyCache {
     /// # Errors
     /// Those of [`Workspace::evaluate`].
     pub fn tabulate(&mut self, condensed: &Condensed, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
-        if self.tabulated == Some((omega, self.pointwise)) {
+        if self.tabulated == Some((omega, self.way)) {
             return Ok(());
         }
         self.tabulated = None;
@@ -138,30 +149,33 @@ impl FrequencyCache {
             interrupt.check()?;
             let block = &condensed.blocks()[i];
             let is_constant = block.number == 0 && block.tied.is_none();
-            let exactly = self.modal_slopes && (self.pointwise || self.factorised);
+            let is_quick = self.way == Way::Quick;
+            let exactly = self.modal_slopes && !is_quick;
             if let Some(Some(modal)) = self.modal.get_mut(i).filter(|_| !exactly)
                 && modal.evaluate(omega, self.modal_slopes, table, interrupt)?
             {
                 continue;
             }
             let done = match self.interpolations.get_mut(i) {
-                Some(Some(interpolation)) if !self.pointwise && !self.factorised && !is_constant => interpolation
-                    .evaluate(omega, table, |w, values| {
+                Some(Some(interpolation)) if is_quick && !is_constant => {
+                    interpolation.evaluate(omega, table, |w, values| {
                         values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
                         Ok(())
-                    })?,
+                    })?
+                }
                 _ => false,
             };
             if !done {
                 // A derived clone_from would allocate at each frequency.
-                let slopes = !self.pointwise || matches!(self.modal.get(i), Some(Some(_)) if self.modal_slopes);
+                let slopes =
+                    self.way != Way::Pointwise || matches!(self.modal.get(i), Some(Some(_)) if self.modal_slopes);
                 let found = workspace.evaluate(condensed, i, omega, slopes, interrupt)?;
                 table.value.copy_from_slice(&found.value);
                 table.slope.copy_from_slice(&found.slope);
                 self.constant[i] = is_constant;
             }
         }
-        self.tabulated = Some((omega, self.pointwise));
+        self.tabulated = Some((omega, self.way));
         Ok(())
     }
 }
@@ -190,8 +204,7 @@ fn of_wave(
             for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
                 let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
                 let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
-                // Written so that a number that is not finite disagrees.
-                if !(off <= TOLERANCE * TOLERANCE * size) {
+                if off > TOLERANCE * TOLERANCE * size || !off.is_finite() {
                     return Ok(None);
                 }
             }
