@@ -7,8 +7,8 @@ use crate::adaptivity::branch_recorder::Ending;
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::analysis::coarse_start::CoarseStart;
 use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
-use crate::analysis::lifted_start::Lifted;
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
@@ -76,11 +76,12 @@ fn follow(
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
     let sweep = (range.omega_start, range.omega_stop);
-    let levels = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
+    let forced = forced_harmonics(model)?;
+    let levels = HarmonicLevels::new(model, solver, &forced, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::new(model, &options, sweep, interrupt)
     })?;
-    let stuck = HarmonicLevels::new(model, solver, &forced_harmonics(model)?, |harmonics| {
+    let stuck = HarmonicLevels::new(model, solver, &forced, |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         Condensed::with_reference(model, &options, sweep, Some(Reference::Stuck), interrupt)
     })?;
@@ -106,14 +107,14 @@ fn follow(
         max_iterations: solver.max_newton,
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
-    let lifted = if levels.is_automatic() || range.guess.is_some() {
+    let coarse = if levels.is_automatic() || range.guess.is_some() {
         None
     } else {
-        Lifted::new(model, solver, &settings, response_dof, interrupt)?
+        CoarseStart::new(model, solver, &settings, (&forced, response_dof), interrupt)?
     };
-    let given = match (range.guess, &lifted) {
+    let given = match (range.guess, &coarse) {
         (Some(guess), _) => Some(relative_motion(resolution, guess)?),
-        (None, Some(lifted)) => Some(lifted.at(&resolution.condensed)?),
+        (None, Some(coarse)) => Some(coarse.at(&resolution.condensed)?),
         (None, None) => None,
     };
     let extended = ModelCache::for_estimates()?;
@@ -134,8 +135,8 @@ fn follow(
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {
         Ok(First { mut point, mut way }) => {
-            if let Some(lifted) = &lifted {
-                lifted.count(&mut point, &mut way);
+            if let Some(coarse) = &coarse {
+                coarse.count(&mut point, &mut way);
             }
             // Round-off may hide the imbalance of a large motion, but not that forces exceed what contacts take.
             if norm(point.unknowns()) > LARGE
@@ -166,7 +167,7 @@ fn follow(
             Err(e) => ending.status = e.status,
         }
     }
-    if ending.status == Status::Ok && forced_harmonics(model)?.is_empty() {
+    if ending.status == Status::Ok && forced.is_empty() {
         ending.status = Status::StoppedNoForce;
     }
     let mut branch = response.finish(model, solver, &ending, tracer.estimates())?;

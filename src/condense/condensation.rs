@@ -18,7 +18,7 @@ use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffnes
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
-use crate::condense::wave_modes::WaveCache;
+use crate::condense::wave_cache::WaveCache;
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
 use crate::error::{Result, Status, try_push, try_vec};

@@ -25,6 +25,7 @@ pub mod resonance_poles;
 mod sweep;
 mod tied_load;
 mod under_force;
+pub mod wave_cache;
 pub mod wave_modes;
 mod wave_reduction;
 

@@ -358,7 +358,7 @@ fn add_modes((left, right, rows): (&[Complex64], &[Complex64], usize), factors: 
 mod tests {
     use super::*;
     use crate::condense::flexibility::Workspace;
-    use crate::condense::wave_modes::WaveCache;
+    use crate::condense::wave_cache::WaveCache;
     use crate::condense::{Condensed, Reference};
     use crate::contact::Contact;
     use crate::linalg::matrix_view::MatrixView;

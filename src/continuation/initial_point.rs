@@ -35,7 +35,7 @@ pub enum Way {
     /// The branch itself, from another parameter.
     Branch,
     /// Newton's method from a solution with fewer harmonics.
-    Lifted,
+    Transferred,
 }
 
 impl Way {
@@ -49,7 +49,7 @@ impl Way {
             Self::Homotopy => "first point solved by a homotopy from small motion or rest",
             Self::Anchor => "first point solved by a homotopy from an anchor",
             Self::Branch => "first point solved by following the branch",
-            Self::Lifted => "first point solved from one with fewer harmonics",
+            Self::Transferred => "first point solved from one with fewer harmonics",
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The error of a point of a forced response.
 
 use crate::condense::modal_table::ModalTable;
-use crate::condense::wave_modes::WaveCache;
+use crate::condense::wave_cache::WaveCache;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};

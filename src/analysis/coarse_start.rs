@@ -1,11 +1,10 @@
-//! A guess for the first point with many harmonics: solved with few of them, and lifted.
+//! A guess for the first point with many harmonics: solved with few of them, and transferred to more.
 //!
 //! Newton's method from small motion fails where contacts slip much, and a homotopy with many harmonics costs most of a
 //! response. With as few harmonics as the forces have it costs little, and its solution, with the other harmonics zero, is a
 //! good guess with twice as many, and so on.
 
 use crate::adaptivity::transfer::transferred;
-use crate::analysis::forced_response::forced_harmonics;
 use crate::condense::Condensed;
 use crate::continuation::initial_point::{self, Way};
 use crate::continuation::{Point, Settings};
@@ -29,16 +28,17 @@ const MOST_POINTS: usize = 200;
 const EASY: usize = 4;
 
 /// A solution with fewer harmonics.
-pub(super) struct Lifted {
+pub(super) struct CoarseStart {
     condensed: Condensed,
     v: Vec<f64>,
     /// Newton iterations of all numbers of harmonics so far.
     iterations: usize,
 }
 
-impl Lifted {
-    /// A solution at the start of `settings` with about half the harmonics of `solver`, and `response` observed. `None`
-    /// where contacts hardly slip at the start, few harmonics are requested, or nothing was found.
+impl CoarseStart {
+    /// A solution at the start of `settings` with about half the harmonics of `solver`, and `response` observed;
+    /// `forced` are the harmonics in which forces act. `None` where contacts hardly slip at the start, few harmonics are
+    /// requested, or nothing was found.
     ///
     /// # Errors
     /// Those of condensing the model; `StoppedByCaller`.
@@ -46,11 +46,11 @@ impl Lifted {
         model: &Model,
         solver: &SolverOptions,
         settings: &Settings,
-        response: usize,
+        (forced, response): (&[usize], usize),
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Self>> {
         interrupt.phase(Phase::FirstPoint, 0.0)?;
-        let least = forced_harmonics(model)?.into_iter().max().unwrap_or(0).max(1);
+        let least = forced.iter().copied().max().unwrap_or(0).max(1);
         let mut highest = least;
         let mut found: Option<Self> = None;
         if solver.harmonics <= AT_ONCE.max(least) || model.ndof() > LARGE {
@@ -63,7 +63,7 @@ impl Lifted {
             };
             let condensed = Condensed::new(model, &options, settings.start, interrupt)?;
             let given = found.as_ref().map(|below| below.at(&condensed)).transpose()?;
-            let lifted = given.is_some();
+            let is_transferred = given.is_some();
             let at = (settings.start, settings.start);
             let mut problem = HarmonicBalance::new(&condensed, response, at, solver.samples, given, interrupt)?;
             let first = match initial_point::solve_within(&mut problem, settings, MOST_POINTS, interrupt) {
@@ -74,7 +74,7 @@ impl Lifted {
                 Err(e) => return Err(e),
             };
             let is_easy = matches!(first.way, Way::Newton(_)) && first.point.iterations <= EASY;
-            if !lifted && (is_easy || problem.forces().all_linear()) {
+            if !is_transferred && (is_easy || problem.forces().all_linear()) {
                 return Ok(None);
             }
             drop(problem);
@@ -92,7 +92,7 @@ impl Lifted {
     pub fn count(&self, first: &mut Point, way: &mut Way) {
         first.iterations += self.iterations;
         if *way == Way::Newton(InitialGuess::Given) {
-            *way = Way::Lifted;
+            *way = Way::Transferred;
         }
     }
 
