@@ -12,6 +12,7 @@ use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{FloquetOptions, Waves};
 use hbvib::results::Branch;
+use num_complex::Complex64;
 use std::f64::consts::TAU;
 
 /// A parameter of a case of `data/hardcases.json`.
@@ -172,4 +173,79 @@ fn a_stiff_slider_has_the_multipliers_of_its_flow() {
     let model = one_mass(0.02, &Contact::jenkins(0, None, 5.0, 1.0, 0.3), 0.5);
     let found = at("stiff", &model, 1.3, 63);
     assert!((found.radius - 0.538).abs() < 5e-4, "{}", found.radius);
+}
+
+/// A slider that slips by a millionth of its motion forgets its place all the same.
+#[test]
+fn a_slider_at_the_onset_of_slip_is_stable() {
+    let (kt, c, omega) = (parameter("HC05", "kt"), parameter("HC05", "c"), parameter("HC05", "w"));
+    let stuck = Complex64::new(1.0 + kt - omega * omega, c * omega);
+    let limit = kt * (parameter("HC05", "F") / stuck.norm()) * (1.0 - 1e-6);
+    let model = one_mass(c, &Contact::jenkins(0, None, kt, 1.0, limit), parameter("HC05", "F"));
+    let found = at("HC05", &model, omega, 15);
+    println!("{:?} {:?}", found.multipliers, found.grazing);
+    assert!(found.unstable == 0 && found.radius < 1.0);
+}
+
+/// Multipliers do not depend on the unit of forces, from 1e-160 to 1e160.
+#[test]
+fn scaled_cases_have_the_same_multipliers() {
+    let radii = [1.0, 1e-160, 1e-12, 1e6, 1e160].map(|scale| {
+        let slider = Contact::jenkins(0, None, 1.0, 1.0, 0.3 * scale);
+        let model = one_mass(0.02, &slider, 0.2 * scale);
+        at("HC08", &model, parameter("HC08", "w"), 31).radius
+    });
+    let near = |radius: &f64| (radius - radii[0]).abs() < 1e-9;
+    assert!(radii.iter().all(near), "{radii:?}");
+}
+
+/// A structure at rest under a constant force decays like the stuck structure. Where the force of friction has reached its
+/// limit, no motion in time leads back to the point: derivatives differ on its two sides.
+#[test]
+fn a_static_load_is_stable_while_friction_holds_it() {
+    let slider = Contact::jenkins(0, None, 1.0, 1.0, 0.3);
+    let loaded = |force: f64| {
+        let mut model = one_mass(0.02, &slider, 0.0);
+        model.add_force(0, 0, force.into()).unwrap();
+        model
+    };
+    let found = at("HC20", &loaded(0.5), 1.0, 1);
+    assert_eq!((found.unstable, found.neutral), (0, 1));
+    assert!((found.radius - (-0.01 * TAU).exp()).abs() < 1e-11);
+    let model = loaded(1.0);
+    let branch = solve_at(&model, &harmonics(1), 1.0);
+    let e = floquet(&model, &branch, 0, &FloquetOptions::default(), &mut Hooks::default()).unwrap_err();
+    assert_eq!(e.status, Status::NoConvergence);
+}
+
+/// Two uncoupled masses of nearly equal frequency.
+#[test]
+fn uncoupled_masses_have_the_multipliers_of_one_mass() {
+    let slider = |dof| Contact::jenkins(dof, None, 1.0, 1.0, 0.3);
+    let reference = at("HC27", &one_mass(0.02, &slider(0), 0.2), 1.25, 31).radius;
+    let mut repeated = Model::new(2).unwrap();
+    for (kind, a) in [
+        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.0]),
+        (MatrixKind::Stiffness, [1.0, 0.0, 0.0, 1.0 + 1e-10]),
+        (MatrixKind::Damping, [0.02, 0.0, 0.0, 0.02]),
+    ] {
+        repeated.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
+    }
+    repeated.add_contact(&slider(0)).unwrap();
+    repeated.add_force(0, 1, 0.2.into()).unwrap();
+    repeated.add_contact(&slider(1)).unwrap();
+    repeated.add_force(1, 1, 0.2.into()).unwrap();
+    let found = at("HC27", &repeated, 1.25, 31);
+    assert_eq!(ordinary(&found).len(), 4);
+    for mu in ordinary(&found) {
+        assert!((mu.norm() - reference).abs() < 1e-7, "{mu}");
+    }
+}
+
+/// A quasi-static period leaves little of a perturbation; one of 6e8 units of time, as in the case, takes 1e8 steps.
+#[test]
+fn a_slow_motion_forgets_its_perturbations() {
+    let model = sliding("HC32");
+    let found = at("HC32", &model, 0.02, 31);
+    assert!(found.radius < (-0.01 * TAU / 0.02).exp() && found.unstable == 0);
 }

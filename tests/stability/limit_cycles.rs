@@ -106,6 +106,7 @@ fn the_ring_damper_flutters_in_a_wave() {
     };
     let branch = follow(&model, &harmonics(31), &range);
     let cycles = branch.limit_cycles().unwrap();
+    let mut radii = Vec::new();
     for cycle in &cycles {
         for waves in [Waves::Wave, Waves::Wheel] {
             let found = multipliers(&model, &branch, cycle.point, waves);
@@ -115,7 +116,14 @@ fn the_ring_damper_flutters_in_a_wave() {
             );
             assert_eq!(of_class(&found, MultiplierClass::Trivial).len(), 1);
             assert!(found.residual <= 1e-12);
+            // Both repel, whatever the slope: α drives other waves and modes, too.
+            radii.push(found.radius);
+            assert!(found.unstable > 0);
         }
+    }
+    assert!(cycles[0].slope > 0.0 && cycles[1].slope < 0.0);
+    for (radius, expected) in radii.iter().zip([1.0099, 1.0155, 1.0103, 1.0150]) {
+        assert!((radius - expected).abs() < 1e-4, "{radius} {expected}");
     }
     assert_eq!(cycles.len(), 2);
 }
