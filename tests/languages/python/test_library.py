@@ -56,12 +56,13 @@ PREFIXES = dict(
     Quantity="OF_",
     Derivative="DERIVATIVE_",
     Follow="FOLLOW_",
+    AeroForm="AERO_",
 )
 ours = {"HBVIB_GROUND": hbvib.GROUND}
 for title in (
     "Status Storage Scalar Part MatrixKind Block SectorFrame ContactKind ContactState State Tangent Field DampingForm "
     "ModeMultiple SynthesisFlag LogLevel Phase SteadyMethod Flexibility Stability Waves Bifurcation MultiplierClass Grazing "
-    "ParameterKind Scaling Quantity Derivative Follow"
+    "ParameterKind Scaling Quantity Derivative Follow AeroForm"
 ).split():
     for name, value in getattr(hbvib, title).__members__.items():
         ours[f"HBVIB_{PREFIXES.get(title, '')}{name}"] = int(value)
