@@ -20,6 +20,7 @@ pub struct Job {
     pub mode: Option<ModePart>,
     pub verify: Option<VerifyPart>,
     pub campbell: Option<CampbellPart>,
+    pub study: Option<StudyPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
@@ -302,6 +303,57 @@ pub struct CampbellPart {
     pub interference_rpm: Option<f64>,
 }
 
+/// Quantity that is changed: constants of contacts have their own values, the others are factors, 1 in the model.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum ParameterName {
+    Force,
+    Preload,
+    Mu,
+    Kt,
+    Kn,
+    Gap,
+    Mass,
+    Damping,
+    Stiffness,
+}
+
+/// Result that is followed.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FollowName {
+    /// The peak next to near_hz, within a tenth of it.
+    #[default]
+    Peak,
+    /// The amplitude at near_hz.
+    Frequency,
+    /// The fold next to near_hz, within a tenth of it.
+    Fold,
+    /// The largest damping ratio of the nonlinear mode whose linear mode with stuck contacts is next to near_hz.
+    ModeMaxDamping,
+}
+
+/// A result over a parameter of the model.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudyPart {
+    pub parameter: ParameterName,
+    /// Number of the contact, from 0; all contacts that have the constant unless given.
+    pub contact: Option<usize>,
+    pub from: f64,
+    pub to: f64,
+    #[serde(default)]
+    pub follow: FollowName,
+    pub near_hz: f64,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<DofName>,
+    pub csv: Option<PathBuf>,
+    /// SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
+}
+
 /// Points of a branch.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -412,9 +464,9 @@ impl Job {
         let mut job: Self = toml::from_str(&text)
             .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
         path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
-        if job.forced.is_none() && job.mode.is_none() && job.campbell.is_none() {
+        if job.forced.is_none() && job.mode.is_none() && job.campbell.is_none() && job.study.is_none() {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode] or [campbell]",
+                "{}: names no analysis: needs [forced], [mode], [campbell] or [study]",
                 path.display()
             ));
         }

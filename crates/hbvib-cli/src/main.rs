@@ -25,6 +25,7 @@ mod npz;
 mod output;
 mod points;
 mod progress;
+mod study;
 mod verification;
 
 use build::{Built, Outcome};
@@ -137,9 +138,23 @@ fn run(path: &Path) -> Outcome<ExitCode> {
         for path in written {
             print(&format!("wrote {}\n", path.display()))?;
         }
-        if job.forced.is_none() && job.mode.is_none() {
-            return Ok(ExitCode::SUCCESS);
+    }
+    if let Some(part) = &job.study {
+        let cancelled = || stop.load(Ordering::Relaxed);
+        let mut hooks = Hooks {
+            cancelled: Some(&cancelled),
+            ..Hooks::default()
+        };
+        let response_dof = response_dof(part.response_dof.as_ref(), &built).map_err(|e| format!("[study]: {e}"))?;
+        let solver = solver(part.harmonics, part.tolerance, response_dof, false);
+        let (text, written) = study::write(&job, part, (model, &solver), &mut hooks)?;
+        print(&text)?;
+        for path in written {
+            print(&format!("wrote {}\n", path.display()))?;
         }
+    }
+    if job.forced.is_none() && job.mode.is_none() {
+        return Ok(ExitCode::SUCCESS);
     }
     let branch = solve(&job, &built, &stop)?;
     let mut written = output::write(&job, &branch)?;

@@ -1,0 +1,193 @@
+//! Study of a job: a result over a parameter of the model, with its optima.
+
+use crate::build::Outcome;
+use crate::figure::{bounds, draw, scientific};
+use crate::job::{FollowName, Job, ParameterName, StudyPart};
+use hbvib::{
+    Branch, Constant, Follow, Hooks, MatrixKind, Model, Parameter, ParameterRange, SolverOptions, Status,
+    parameter_response,
+};
+use plotters::prelude::{ChartBuilder, Circle, LineSeries};
+use plotters::style::{BLUE, Color, RED};
+use std::f64::consts::TAU;
+use std::fmt::Write;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+impl StudyPart {
+    fn parameter(&self) -> Outcome<Parameter<'static>> {
+        let factor = |which| Ok(Parameter::Factor { which });
+        let constant = match self.parameter {
+            ParameterName::Preload => Constant::Preload,
+            ParameterName::Mu => Constant::Mu,
+            ParameterName::Kt => Constant::Kt,
+            ParameterName::Kn => Constant::Kn,
+            ParameterName::Gap => Constant::Gap,
+            _ if self.contact.is_some() => {
+                return Err("[study]: contact needs a constant of a contact as parameter".into());
+            }
+            ParameterName::Force => return Ok(Parameter::Force),
+            ParameterName::Mass => return factor(MatrixKind::Mass),
+            ParameterName::Damping => return factor(MatrixKind::Damping),
+            ParameterName::Stiffness => return factor(MatrixKind::Stiffness),
+        };
+        Ok(Parameter::Contact {
+            constant,
+            contact: self.contact,
+        })
+    }
+
+    fn follow(&self) -> Follow {
+        let omega = self.near_hz * TAU;
+        match self.follow {
+            FollowName::Peak => Follow::Peak(omega),
+            FollowName::Frequency => Follow::Omega(omega),
+            FollowName::Fold => Follow::Fold(omega),
+            FollowName::ModeMaxDamping => Follow::ModeMaxDamping {
+                omega,
+                log10_range: None,
+            },
+        }
+    }
+
+    /// Name of the result.
+    fn result(&self) -> &'static str {
+        if self.follow == FollowName::ModeMaxDamping {
+            "damping_ratio"
+        } else {
+            "amplitude"
+        }
+    }
+}
+
+/// Computes and writes the study; returns a summary and the files.
+///
+/// # Errors
+/// A sentence.
+pub fn write(
+    job: &Job,
+    part: &StudyPart,
+    (model, solver): (&Model, &SolverOptions),
+    hooks: &mut Hooks<'_>,
+) -> Outcome<(String, Vec<PathBuf>)> {
+    let range = ParameterRange {
+        start: part.from,
+        stop: part.to,
+        at: &[],
+        follow: part.follow(),
+    };
+    let found =
+        parameter_response(model, solver, part.parameter()?, &range, hooks).map_err(|e| format!("[study]: {e}"))?;
+    let rows = rows(&found);
+    let mut written = Vec::new();
+    if let Some(path) = &part.csv {
+        let path = job.path(path);
+        fs::write(&path, table(part, &rows)).map_err(|e| format!("{}: {e}", path.display()))?;
+        written.push(path);
+    }
+    if let Some(path) = &part.figure {
+        let path = job.path(path);
+        figure(&path, part, &rows, &found)?;
+        written.push(path);
+    }
+    Ok((summary(part, &found, rows.len()), written))
+}
+
+/// A point of the curve.
+struct Row {
+    parameter: f64,
+    hz: f64,
+    value: f64,
+    slope: f64,
+    harmonics: f64,
+}
+
+fn rows(found: &Branch) -> Vec<Row> {
+    let (parameter, d_amplitude) = (found.parameter().unwrap_or(&[]), found.d_amplitude().unwrap_or(&[]));
+    let row = |i: usize| {
+        let mode = found.mode_at(i);
+        Row {
+            parameter: parameter[i],
+            hz: found.omega()[i] / TAU,
+            value: mode.map_or(found.amplitude()[i], |at| at.damping_ratio),
+            slope: mode.and_then(|_| found.d_damping_at(i)).unwrap_or(d_amplitude[i]),
+            harmonics: found.harmonics_used()[i],
+        }
+    };
+    (0..parameter.len()).map(row).collect()
+}
+
+fn table(part: &StudyPart, rows: &[Row]) -> String {
+    let mut text = format!("parameter,hz,{},derivative,harmonics\n", part.result());
+    for row in rows {
+        let _ = writeln!(
+            text,
+            "{:.16e},{:.16e},{:.16e},{:.16e},{}",
+            row.parameter, row.hz, row.value, row.slope, row.harmonics
+        );
+    }
+    text
+}
+
+fn summary(part: &StudyPart, found: &Branch, points: usize) -> String {
+    let mut text = format!("{points} points over the parameter\n");
+    if found.status() != Status::Ok {
+        let _ = writeln!(
+            text,
+            "{}: {}",
+            found.status().name().to_string_lossy(),
+            found.status().sentence()
+        );
+    }
+    for o in found.optima() {
+        let kind = if o.is_maximum { "maximum" } else { "minimum" };
+        let _ = writeln!(
+            text,
+            "{kind} of {} {:.6e} at {:.8e}, {:.6} Hz",
+            part.result().replace('_', " "),
+            o.amplitude,
+            o.parameter,
+            o.omega / TAU
+        );
+    }
+    for peak in found.higher_peaks() {
+        let _ = writeln!(
+            text,
+            "at {:.8e} another peak is higher: {:.6e} at {:.6} Hz",
+            peak.parameter,
+            peak.amplitude,
+            peak.omega / TAU
+        );
+    }
+    text
+}
+
+/// The result over the parameter, with a circle at each optimum.
+fn figure(path: &Path, part: &StudyPart, rows: &[Row], found: &Branch) -> Outcome<()> {
+    let y = bounds(rows.iter().map(|r| r.value));
+    draw(path, |area| {
+        let mut chart = ChartBuilder::on(area)
+            .caption(
+                format!("{} over the parameter", part.result().replace('_', " ")),
+                ("sans-serif", 18),
+            )
+            .margin(16)
+            .x_label_area_size(44)
+            .y_label_area_size(90)
+            .build_cartesian_2d(bounds(rows.iter().map(|r| r.parameter)), y.clone())?;
+        chart
+            .configure_mesh()
+            .x_desc(format!("{:?}", part.parameter).to_lowercase())
+            .y_desc(part.result().replace('_', " "))
+            .y_label_formatter(&scientific(&y))
+            .draw()?;
+        chart.draw_series(LineSeries::new(rows.iter().map(|r| (r.parameter, r.value)), &BLUE))?;
+        chart.draw_series(
+            found
+                .optima()
+                .iter()
+                .map(|o| Circle::new((o.parameter, o.amplitude), 4, RED.filled())),
+        )?;
+        Ok(())
+    })
+}
