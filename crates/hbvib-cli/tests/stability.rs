@@ -53,7 +53,7 @@ fn the_motion_between_the_folds_is_unstable_in_every_output() {
     for (i, row) in rows.iter().enumerate() {
         let (radius, count) = (row[4], row[5]);
         assert_eq!(count > 0.0, radius > 1.0, "{row:?}");
-        assert!(!runs_back(i) || count == 1.0, "{row:?}");
+        assert!(!runs_back(i) || (count > 0.5 && count < 1.5), "{row:?}");
         unstable += usize::from(count > 0.0);
         // Elsewhere the motion is stable, with the product of its multipliers that of the damping.
         assert!(count == 0.0 || row[0] * TAU < FOLDS[0] + 1e-6 && row[0] * TAU > FOLDS[1] - 1e-6);
