@@ -4,6 +4,10 @@ set -eu
 cd "$(dirname "$0")/.."
 cargo test --release --tests -- --ignored --test-threads=1
 
+# Windows is not tested, but it compiles.
+rustup target add x86_64-pc-windows-gnu
+cargo check --target x86_64-pc-windows-gnu -p hbvib -p hbvib-c -p hbvib-io -p hbvib-cli
+
 # Damaged input without a guide.
 (cd fuzz && cargo run --release --bin mutate -- "$(date +%j)" 1000000)
 
