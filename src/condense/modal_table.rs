@@ -222,7 +222,7 @@ impl ModalTable {
             *inverse = d.inv();
             *slope = -(d_c - d_inertia * mu) * *inverse * *inverse;
         }
-        self.lu.order() == 0 || least > NEAR_RESONANCE * NEAR_RESONANCE
+        least > NEAR_RESONANCE * NEAR_RESONANCE
     }
 
     /// T′, and ∂T′ if `slopes`.
