@@ -6,6 +6,7 @@
 
 use crate::adaptivity::transfer::transferred;
 use crate::condense::Condensed;
+use crate::contact::Contact;
 use crate::continuation::initial_point::{self, Way};
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status};
@@ -37,8 +38,8 @@ pub(super) struct CoarseStart {
 
 impl CoarseStart {
     /// A solution at the start of `settings` with about half the harmonics of `solver`, and `response` observed;
-    /// `forced` are the harmonics in which forces act. `None` where contacts hardly slip at the start, few harmonics are
-    /// requested, or nothing was found.
+    /// `forced` are the harmonics in which forces act. `None` where contacts hardly slip at the start or have more than
+    /// friction under constant loads, few harmonics are requested, or nothing was found.
     ///
     /// # Errors
     /// Those of condensing the model; `StoppedByCaller`.
@@ -53,7 +54,10 @@ impl CoarseStart {
         let least = forced.iter().copied().max().unwrap_or(0).max(1);
         let mut highest = least;
         let mut found: Option<Self> = None;
-        if solver.harmonics <= AT_ONCE.max(least) || model.ndof() > LARGE {
+        // Springs with several solutions might lead to another one than with all harmonics.
+        let is_friction = |contact: &Contact| contact.may_stick() && contact.normal_direction().is_none();
+        let is_friction = model.contacts().iter().all(is_friction);
+        if solver.harmonics <= AT_ONCE.max(least) || model.ndof() > LARGE || !is_friction {
             return Ok(None);
         }
         while 2 * highest <= solver.harmonics {
