@@ -25,8 +25,8 @@ const LARGE: usize = 1000;
 /// Most points of a homotopy with few harmonics.
 const MOST_POINTS: usize = 200;
 
-/// Newton iterations from small motion up to which all harmonics are solved for at once.
-const EASY: usize = 4;
+/// Share of the period that a contact slips above which Newton's method from small motion mostly fails.
+const MUCH_SLIP: f64 = 0.5;
 
 /// A solution with fewer harmonics.
 pub(super) struct CoarseStart {
@@ -77,8 +77,8 @@ impl CoarseStart {
                 }
                 Err(e) => return Err(e),
             };
-            let is_easy = matches!(first.way, Way::Newton(_)) && first.point.iterations <= EASY;
-            if !is_transferred && (is_easy || problem.forces().all_linear()) {
+            let slips = problem.slip_fractions().iter().any(|&share| share > MUCH_SLIP);
+            if !is_transferred && !slips {
                 return Ok(None);
             }
             drop(problem);
