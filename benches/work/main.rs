@@ -60,6 +60,9 @@ const LEAST: f64 = 0.05;
 const MOST: usize = 400;
 const STRETCHES: usize = 6;
 
+/// Shortest CPU time of a stretch that the clock tells, s.
+const SHORTEST: f64 = 0.02;
+
 /// Attempts to measure a row without disturbance.
 const ATTEMPTS: usize = 8;
 
@@ -96,6 +99,7 @@ fn stretch(row: &Row) -> Result<Stretch> {
 fn measure(row: &Row) -> Result<()> {
     let mut shown = f64::INFINITY;
     let mut told = None;
+    let mut is_short = false;
     for _ in 0..ATTEMPTS {
         let before = unit_seconds(row.unit);
         let mut least = stretch(row)?;
@@ -109,9 +113,10 @@ fn measure(row: &Row) -> Result<()> {
                 least = next;
             }
         }
+        is_short = least.seconds * (least.count as f64) < SHORTEST;
         let after = unit_seconds(row.unit);
         shown = (before / after).max(after / before) - 1.0;
-        if shown <= DRIFT {
+        if shown <= DRIFT && !is_short {
             let unit = 0.5 * (before + after);
             told = Some((
                 least.seconds / least.work.per.0 / unit,
@@ -123,6 +128,10 @@ fn measure(row: &Row) -> Result<()> {
         }
     }
     let Some((ratio, unit, allocations, work)) = told else {
+        if is_short {
+            println!("{:58} dropped: shorter than the clock tells", row.name);
+            return Ok(());
+        }
         println!("{:58} dropped: the unit drifted by {:.0} %", row.name, 100.0 * shown);
         return Ok(());
     };
