@@ -9,7 +9,7 @@ use crate::adaptivity::branch_tracer::BranchTracer;
 use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
 use crate::continuation::Point;
-use crate::continuation::special_points::{Bracket, Locator};
+use crate::continuation::special_points::{Bracket, Locator, SpecialPoint};
 use crate::error::{Result, try_push};
 use crate::results::{BifurcationKind, SpecialKind, Verdict};
 use num_complex::Complex64;
@@ -24,6 +24,10 @@ const ON_CIRCLE: f64 = 1e-10;
 /// Distance ln |μ| from the unit circle above which the multiplier does not pass it, but jumps over it: where slip
 /// sets in, for example.
 const JUMP: f64 = 1e-5;
+
+/// Distance ln |μ| from the unit circle below which a root is interpolated where the motion in time is not found: next to
+/// a branch point it is one of several that differ little.
+const NEAR: f64 = 1e-2;
 
 /// A root between two points.
 struct Passage {
@@ -110,6 +114,37 @@ impl BranchTracer<'_> {
         Ok(())
     }
 
+    /// Records the folds that a branch passed before it came back into its range, located between pairs of neighbours
+    /// with the given resolution, if stability was requested. The last point of the curve is the one where it came back.
+    pub(super) fn record_turns_outside(
+        &mut self,
+        analysis: &mut dyn Traceable,
+        turns: &[(Point, Point)],
+        resolution: usize,
+    ) -> Result<()> {
+        let Some((before, after)) = analysis.take_verdicts() else {
+            return Ok(());
+        };
+        let level = analysis.resolution();
+        let mut count = before.unstable;
+        for (i, (a, b)) in turns.iter().enumerate() {
+            analysis.select(resolution)?;
+            let next = if i + 1 == turns.len() {
+                after.unstable
+            } else {
+                analysis.verdict(b)?.and_then(|verdict| verdict.unstable)
+            };
+            let mut locator = Locator::new(a.unknowns().len(), self.course.settings)?;
+            let fold = locator.locate(analysis.problem(), SpecialPoint::Fold, a, b, self.interrupt)?;
+            if let Some(fold) = fold {
+                let kind = SpecialKind::Bifurcation(BifurcationKind::Fold, [count, next]);
+                self.record_special_as_it_is(analysis, kind, &fold)?;
+            }
+            count = next;
+        }
+        analysis.select(level)
+    }
+
     /// Appends the passages through the unit circle on an arc in its order.
     fn passages(&self, analysis: &mut dyn Traceable, arc: &Arc<'_>, found: &mut Vec<Passage>) -> Result<()> {
         let Some((from, to)) = arc.counts() else {
@@ -139,7 +174,10 @@ impl BranchTracer<'_> {
     /// The place at which the multiplier numbered `order` by falling modulus passes the unit circle.
     fn passage(&self, analysis: &mut dyn Traceable, arc: &Arc<'_>, order: usize) -> Result<Option<Passage>> {
         let value = |verdict: &Verdict| verdict.growth(order, arc.without_positive);
-        let mut bracket = Bracket::new(value(arc.verdicts.0).0, value(arc.verdicts.1).0);
+        let (from, to) = (value(arc.verdicts.0).0, value(arc.verdicts.1).0);
+        let mut bracket = Bracket::new(from, to);
+        let mut in_time = Bracket::new(from, to);
+        let mut ends = [arc.verdicts.0, arc.verdicts.1].map(|v| (value(v), v.in_time));
         let mut locator = Locator::new(arc.ends.0.unknowns().len(), self.course.settings)?;
         let mut best: Option<(f64, Passage)> = None;
         for _ in 0..MAX_EVALUATIONS {
@@ -151,6 +189,20 @@ impl BranchTracer<'_> {
                 break;
             };
             let (growth, multiplier) = value(&verdict);
+            if verdict.in_time {
+                in_time.narrow(at, growth);
+                let end = usize::from((growth > 0.0) == (to > 0.0));
+                ends[end] = ((growth, multiplier), true);
+            } else if ends
+                .iter()
+                .all(|((growth, _), in_time)| *in_time && growth.abs() < NEAR)
+            {
+                let at = in_time.guess();
+                let [low, high] = ends.map(|((growth, multiplier), _)| (growth.abs(), multiplier));
+                let multiplier = if low.0 < high.0 { low.1 } else { high.1 };
+                let point = locator.between(analysis.problem(), arc.ends, at, self.interrupt)?;
+                return Ok(point.map(|point| Passage { at, point, multiplier }));
+            }
             if best.as_ref().is_none_or(|(least, _)| growth.abs() < *least) {
                 best = Some((growth.abs(), Passage { at, point, multiplier }));
             }

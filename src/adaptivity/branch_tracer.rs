@@ -7,7 +7,7 @@ use crate::adaptivity::resonance_grid::LinearGrid;
 use crate::adaptivity::retracing::RecentPoints;
 use crate::continuation::special_points::{Locator, SpecialPoint};
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
-use crate::error::{Result, Status};
+use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -69,7 +69,8 @@ pub(super) enum Stretch {
 
 /// Outcome for a branch that left its range at the start.
 enum Outside {
-    Back(Point),
+    /// It came back, after the folds that lie between these pairs of neighbours.
+    Back(Point, Vec<(Point, Point)>),
     Gone,
 }
 
@@ -236,8 +237,9 @@ impl<'a> BranchTracer<'a> {
         begin: PointAt<'_>,
         hooks: &mut Hooks<'_>,
     ) -> Result<Return> {
-        let back = match self.follow_outside(analysis, exit, begin)? {
-            Outside::Back(back) => back,
+        let resolution = analysis.resolution();
+        let (back, turns) = match self.follow_outside(analysis, exit, begin)? {
+            Outside::Back(back, turns) => (back, turns),
             Outside::Gone => return Ok(Return::Ended(Status::StoppedLeftRange)),
         };
         hooks.log(LogLevel::Info, "the branch left at its start and came back");
@@ -248,6 +250,7 @@ impl<'a> BranchTracer<'a> {
         if some_unless_lost(analysis.record(&back))?.is_none() {
             return Ok(Return::Ended(Status::StoppedStepTooSmall));
         }
+        self.record_turns_outside(analysis, &turns, resolution)?;
         if self.report(analysis, hooks, &back) {
             return Ok(Return::Ended(Status::StoppedByCaller));
         }
@@ -355,13 +358,25 @@ impl<'a> BranchTracer<'a> {
             end: before,
             ..self.course.settings
         };
+        let mut turns = Vec::new();
+        let mut last = exit.try_clone()?;
         let mut continuation = Continuation::new(settings, exit)?;
         for _ in analysis.branch().points()..self.course.max_points {
             match continuation.advance(analysis.problem(), self.interrupt) {
-                Ok(Advance::Accepted { last: false, .. }) => {}
+                Ok(Advance::Accepted { point, last: false }) => {
+                    let before = core::mem::replace(&mut last, point);
+                    if SpecialPoint::Fold.between(&before, &last) {
+                        let turn = (before, last.try_clone()?);
+                        try_push(&mut turns, turn, "the folds outside the range")?;
+                    }
+                }
                 // A closed curve would be followed forever.
                 Ok(Advance::LeftAtStart { point }) if !same(point.unknowns(), begin.unknowns()) => {
-                    return Ok(Outside::Back(point));
+                    if SpecialPoint::Fold.between(&last, &point) {
+                        let turn = (last, point.try_clone()?);
+                        try_push(&mut turns, turn, "the folds outside the range")?;
+                    }
+                    return Ok(Outside::Back(point, turns));
                 }
                 Err(e) if matches!(e.status, Status::Callback | Status::StoppedByCaller) => return Err(e),
                 // A failure outside the range costs no point inside.

@@ -97,6 +97,7 @@ impl<'a> BranchStability<'a> {
                         multipliers,
                         radius: found.stability.radius,
                         unstable: Some(found.stability.unstable),
+                        in_time: refine,
                     });
                 }
                 Err(e)
@@ -124,5 +125,6 @@ fn with_linear_contacts(last: &Verdict, periods: f64) -> Result<Verdict> {
         multipliers,
         radius: last.radius.powf(periods),
         unstable: last.unstable,
+        in_time: last.in_time,
     })
 }

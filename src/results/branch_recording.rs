@@ -52,7 +52,7 @@ pub(crate) enum SpecialKind {
 
 impl SpecialKind {
     pub fn is_fold(self) -> bool {
-        matches!(self, Self::Fold)
+        matches!(self, Self::Fold | Self::Bifurcation(BifurcationKind::Fold, _))
     }
 }
 

@@ -18,7 +18,7 @@ impl Branch {
         for located in &self.bifurcations {
             let mut bifurcation = located.bifurcation;
             match bifurcation.kind {
-                BifurcationKind::Fold => {
+                BifurcationKind::Fold if bifurcation.unstable == [None; 2] => {
                     bifurcation.unstable = self.unstable_around(located.after);
                     if let Some(other) = self.beside(located, BifurcationKind::BranchPoint)
                         && changes_nothing(bifurcation.unstable)
@@ -35,7 +35,7 @@ impl Branch {
                         continue;
                     }
                 }
-                BifurcationKind::PeriodDoubling | BifurcationKind::NeimarkSacker => {}
+                BifurcationKind::Fold | BifurcationKind::PeriodDoubling | BifurcationKind::NeimarkSacker => {}
             }
             try_push(&mut found, bifurcation, "the bifurcations")?;
         }

@@ -21,6 +21,8 @@ pub(crate) struct Verdict {
     pub radius: f64,
     /// Number of them outside the unit circle.
     pub unstable: Option<usize>,
+    /// Whether they are those of the motion in time, not of a truncated one.
+    pub in_time: bool,
 }
 
 impl Verdict {

@@ -78,10 +78,45 @@ fn a_forced_self_excited_oscillator_loses_its_frequency_at_a_located_one() {
 
 /// A symmetric motion becomes unsymmetric where a multiplier passes 1 away from a fold.
 #[test]
-fn a_symmetric_motion_loses_its_symmetry_at_a_branch_point() {
+fn a_symmetric_motion_loses_its_symmetry_at_branch_points() {
     let model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 1.0), 10.0);
-    let found = bifurcations(&model, &of_wave(21), 0.9, 2.0);
-    assert!(found.iter().any(|b| b.kind == BifurcationKind::BranchPoint));
+    let found = bifurcations(&model, &of_wave(21), 0.5, 1.0);
+    let at: Vec<f64> = found
+        .iter()
+        .filter(|b| b.kind == BifurcationKind::BranchPoint)
+        .map(|b| b.omega)
+        .collect();
+    // Next to the first one the motion in time is not found.
+    for (at, expected) in at.iter().zip([0.568_811, 0.759_292, 0.946_956]) {
+        assert!((at - expected).abs() < 2e-6, "{at} {expected}");
+    }
+    assert_eq!(found.len(), 7);
+}
+
+/// A branch that begins between two solutions, leaves its range and comes back passes a fold outside.
+#[test]
+fn a_branch_that_comes_back_into_its_range_tells_the_fold_outside() {
+    let model = one_mass(0.1, &Contact::cubic(0, None, 0.0, 1.0), 10.0);
+    let solver = SolverOptions {
+        stability: Some(Waves::Wave),
+        ..SolverOptions::default()
+    };
+    let found = bifurcations(&model, &solver, 0.9, 1.0);
+    assert_eq!(found.len(), 3);
+    assert!((found[1].omega - 0.856_017).abs() < 1e-5);
+    assert_eq!(found[1].unstable, [Some(1), Some(0)]);
+}
+
+#[test]
+fn numbers_of_unstable_directions_join_along_other_branches() {
+    let stop = |gap| Contact::unilateral(Some(0), None, 10.0, gap);
+    for (contact, damping, force, from, to) in [
+        (stop(1.0), 0.05, 0.2, 0.8, 1.6),
+        (stop(0.1), 0.1, 0.5, 2.0, 1.0),
+        (Contact::cubic(0, None, 0.0, -0.1), 0.05, 0.2, 1.2, 0.6),
+    ] {
+        bifurcations(&one_mass(damping, &contact, force), &of_wave(25), from, to);
+    }
 }
 
 /// Where all contacts stick perturbations decay as those of the linear structure.
