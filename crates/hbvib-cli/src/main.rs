@@ -36,6 +36,7 @@ use hbvib::{
 };
 use job::{DofName, ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use progress::Bar;
+use signal_hook::consts::SIGINT;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::io::Write;
@@ -125,8 +126,7 @@ fn run(path: &Path) -> Outcome<ExitCode> {
     let built = build::built(&job)?;
     let (model, names) = (&built.model, &built.names);
     let stop = Arc::new(AtomicBool::new(false));
-    let handler = Arc::clone(&stop);
-    ctrlc::set_handler(move || handler.store(true, Ordering::Relaxed)).map_err(|e| format!("Ctrl-C: {e}"))?;
+    signal_hook::flag::register(SIGINT, Arc::clone(&stop)).map_err(|e| format!("Ctrl-C: {e}"))?;
     if let Some(part) = &job.campbell {
         let cancelled = || stop.load(Ordering::Relaxed);
         let mut hooks = Hooks {
