@@ -4,6 +4,7 @@ use std::env;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The path of the checkout.
 pub fn root() -> &'static Path {
@@ -71,4 +72,18 @@ pub fn printed(command: &mut Command) -> String {
 pub fn python() -> PathBuf {
     let own = root().join(".venv/bin/python");
     if own.is_file() { own } else { "python3".into() }
+}
+
+/// Does some work for each of many things, on two threads, so that a test of many programs is not the only one at the end.
+pub fn two_at_a_time<T: Sync>(things: &[T], work: impl Fn(&T) + Sync) {
+    let next = AtomicUsize::new(0);
+    std::thread::scope(|scope| {
+        for _ in 0..2 {
+            scope.spawn(|| {
+                while let Some(thing) = things.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    work(thing);
+                }
+            });
+        }
+    });
 }

@@ -43,7 +43,7 @@ fn workshop(language: &str) -> PathBuf {
 fn compiled(compiler: &str, options: &[&str], sources: &[PathBuf], folder: &Path) -> Command {
     let program = sources.last().unwrap().with_extension("program");
     run(Command::new(compiler)
-        .args(["-g", "-Wall", "-Wextra", "-pedantic", "-Werror"])
+        .args(["-Wall", "-Wextra", "-pedantic", "-Werror"])
         .args(options)
         .args(sources)
         .arg(format!("-I{}", root().join("include").display()))

@@ -58,7 +58,7 @@ pub fn without_network(command: &mut Command) -> &mut Command {
 }
 
 /// An installation that was moved.
-fn prefix() -> &'static Path {
+pub fn prefix() -> &'static Path {
     static PREFIX: OnceLock<PathBuf> = OnceLock::new();
     PREFIX.get_or_init(|| {
         let folder = workshop("first");
@@ -72,7 +72,7 @@ fn prefix() -> &'static Path {
     })
 }
 
-fn pkg_config(arguments: &[&str]) -> Vec<String> {
+pub fn pkg_config(arguments: &[&str]) -> Vec<String> {
     let text = printed(
         Command::new("pkg-config")
             .args(arguments)
@@ -90,7 +90,7 @@ fn linked() -> Vec<String> {
 }
 
 /// A program compiled in `folder` from some sources.
-fn compiled(compiler: &str, options: &[&str], sources: &[PathBuf], folder: &Path, name: &str) -> Command {
+pub fn compiled(compiler: &str, options: &[&str], sources: &[PathBuf], folder: &Path, name: &str) -> Command {
     let program = folder.join(name);
     run(Command::new(compiler)
         .args(options)
@@ -102,7 +102,7 @@ fn compiled(compiler: &str, options: &[&str], sources: &[PathBuf], folder: &Path
     Command::new(program)
 }
 
-fn fortran_module() -> PathBuf {
+pub fn fortran_module() -> PathBuf {
     PathBuf::from(&pkg_config(&["--variable=fortran_module"])[0])
 }
 
@@ -386,86 +386,4 @@ fn cmake(folder: &Path) {
         .arg(format!("-DCMAKE_PREFIX_PATH={}", prefix().display()))
         .current_dir(folder));
     run(Command::new("cmake").args(["--build", "build"]).current_dir(folder));
-}
-
-/// Warnings are errors in everything that is compiled for a test.
-const STRICT: [&str; 5] = ["-g", "-Wall", "-Wextra", "-pedantic", "-Werror"];
-
-/// Sources of tests/languages/NAME with an extension.
-fn tests_in(language: &str, extension: &str) -> Vec<PathBuf> {
-    let mut found = files(&root().join("tests/languages").join(language));
-    found.retain(|path| path.extension().is_some_and(|e| e == extension));
-    assert!(!found.is_empty(), "no test in {language}");
-    found
-}
-
-fn stem(path: &Path) -> &str {
-    path.file_stem().and_then(|stem| stem.to_str()).unwrap()
-}
-
-#[test]
-fn cpp_feels_native() {
-    let folder = workshop("cpp_tests");
-    let eigen = printed(Command::new("pkg-config").args(["--cflags-only-I", "eigen3"]))
-        .trim()
-        .replace("-I", "-isystem");
-    let options = [&STRICT[..], &["-Wshadow", "-Wconversion", "-pthread", &eigen]].concat();
-    for source in tests_in("cpp", "cpp") {
-        let newer = [&options[..], &["-std=c++20", "-fsyntax-only"]].concat();
-        run(Command::new("c++")
-            .args(newer)
-            .arg(&source)
-            .args(pkg_config(&["--cflags"])));
-        let options = [&options[..], &["-std=c++17"]].concat();
-        let name = stem(&source).to_owned();
-        run(&mut compiled("c++", &options, &[source], &folder, &name));
-    }
-}
-
-#[test]
-fn fortran_feels_native() {
-    let common = root().join("tests/languages/fortran/common.f90");
-    let options = [
-        &STRICT[..],
-        &["-std=f2018", "-fopenmp", "-ffpe-trap=invalid,zero,overflow"],
-    ]
-    .concat();
-    for name in ["aero", "batch", "misuse", "physics", "saved", "statuses", "threads"] {
-        let folder = workshop(&format!("fortran_tests/{name}"));
-        let source = root().join(format!("tests/languages/fortran/{name}.f90"));
-        let sources = [fortran_module(), common.clone(), source];
-        run(&mut compiled("gfortran", &options, &sources, &folder, name));
-    }
-    // A status that nobody receives ends the program.
-    let folder = workshop("fortran_tests/stops");
-    let source = root().join("tests/languages/fortran/stops.f90");
-    let output = compiled("gfortran", &STRICT, &[fortran_module(), source], &folder, "stops")
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert!(
-        output.status.code() == Some(1) && output.stdout.is_empty() && text.contains("HBVIB_E_INDEX: dof = 3"),
-        "{text}"
-    );
-    // Numbers in single precision are an error of the compiler's, each of them.
-    let folder = workshop("fortran_tests/wrong_kind");
-    let output = Command::new("gfortran")
-        .args(["-std=f2018", "-fsyntax-only"])
-        .args([fortran_module(), root().join("tests/languages/fortran/wrong_kind.f90")])
-        .current_dir(&folder)
-        .output()
-        .unwrap();
-    let text = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(text.matches("Error:").count(), 4, "{text}");
-}
-
-#[test]
-fn python_feels_native() {
-    let folder = workshop("python_tests");
-    for path in tests_in("python", "py") {
-        if !stem(&path).starts_with("test_") {
-            continue;
-        }
-        run(script(&path).current_dir(&folder));
-    }
 }

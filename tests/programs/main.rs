@@ -9,6 +9,7 @@ mod designs;
 mod flutter_example;
 mod languages;
 mod layout;
+mod native;
 mod ring_damper_example;
 mod ring_damper_mode;
 mod wheel;
