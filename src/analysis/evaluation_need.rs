@@ -1,6 +1,6 @@
 //! Memory that evaluations at a given motion need, counted before any of it is requested.
 
-use crate::condense::memory_limit::within;
+use crate::condense::memory_limit::{beyond, mega, within};
 use crate::error::Result;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
@@ -10,13 +10,19 @@ use crate::options::SolverOptions;
 const MOST_OF_A_LAW: usize = 16 << 30;
 
 /// Bytes that suffice for the evaluation of a law: 8 (1 + d) (2 d (H + 1))² for Jacobians, 100 a sample, of which a law that
-/// is always sampled takes at most 128 (H + 1) by itself, and 1 MiB.
+/// is always sampled takes at most 128 (H + 1) by itself, and 1 MiB; in a plane the pieces of the path take 2 MiB (H + 1) at most.
 fn need_of_a_law(harmonics: usize, directions: usize, samples: usize) -> usize {
     let order = (harmonics + 1).saturating_mul(2 * directions);
     let samples = samples.max((harmonics + 1).saturating_mul(128));
     let jacobians = order.saturating_mul(order).saturating_mul(8 * (1 + directions));
+    let pieces = if directions > 1 {
+        (harmonics + 1).saturating_mul(2 << 20)
+    } else {
+        0
+    };
     jacobians
         .saturating_add(samples.saturating_mul(100))
+        .saturating_add(pieces)
         .saturating_add(1 << 20)
 }
 
@@ -42,7 +48,16 @@ fn need_of_a_residual(model: &Model, solver: &SolverOptions) -> Result<usize> {
 
 /// Refuses the evaluation of a law that needs more than 16 GiB.
 pub fn allow_law(harmonics: usize, directions: usize, samples: usize) -> Result<()> {
-    within(MOST_OF_A_LAW, need_of_a_law(harmonics, directions, samples))
+    let need = need_of_a_law(harmonics, directions, samples);
+    if need <= MOST_OF_A_LAW {
+        return Ok(());
+    }
+    Err(beyond(format_args!(
+        "the evaluation of a contact with {harmonics} harmonics and {samples} samples needs about {} MB, more than the {} MB that \
+         an evaluation may take; reduce harmonics or samples",
+        mega(need),
+        mega(MOST_OF_A_LAW)
+    )))
 }
 
 /// Refuses a residual that needs more than the limit of the options, if there is one.

@@ -39,8 +39,8 @@ use num_complex::Complex64;
 ///             or NULL.
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
 /// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 100 bytes for each of the samples or of
-/// 128 (H + 1), whichever are more, and 1 MiB, with or without jac. Above 16 GiB nothing is
-/// requested, and the error is HBVIB_E_OUT_OF_MEMORY.
+/// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
+/// jac. Above 16 GiB nothing is requested, and the error is HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.

@@ -14,15 +14,20 @@ pub fn within(limit: usize, need: usize) -> Result<()> {
     if limit == 0 || need <= limit {
         return Ok(());
     }
-    let mega = |bytes: usize| bytes.div_ceil(1 << 20);
-    Err(Error::new(
-        Status::OutOfMemory,
-        format_args!(
-            "factors and matrices need about {} MB, more than memory_limit = {limit} bytes; raise it, or reduce model or harmonics",
-            mega(need)
-        ),
-    )
-    .beyond_limit())
+    Err(beyond(format_args!(
+        "factors and matrices need about {} MB, more than memory_limit = {limit} bytes; raise it, or reduce model or harmonics",
+        mega(need)
+    )))
+}
+
+/// The error of a need beyond a limit.
+pub fn beyond(sentence: std::fmt::Arguments<'_>) -> Error {
+    Error::new(Status::OutOfMemory, sentence).beyond_limit()
+}
+
+/// Bytes in MB, rounded up.
+pub fn mega(bytes: usize) -> usize {
+    bytes.div_ceil(1 << 20)
 }
 
 /// Refuses a model whose matrices and complex LU factors would exceed the limit.

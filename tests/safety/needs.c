@@ -25,7 +25,7 @@ static void judge(const char *what, int64_t before, hbvib_status status, int64_t
 static int64_t of_a_law(int64_t d, int64_t h, int64_t samples)
 {
     if (samples < 128 * (h + 1)) samples = 128 * (h + 1);
-    return 8 * (1 + d) * 4 * d * d * (h + 1) * (h + 1) + 100 * samples + (1 << 20);
+    return 8 * (1 + d) * 4 * d * d * (h + 1) * (h + 1) + 100 * samples + (1 << 20) + (d > 1 ? (h + 1) << 21 : 0);
 }
 
 static void laws(void)
@@ -100,6 +100,10 @@ static void too_large(void)
     status = hbvib_contact_evaluate(&c, H, 0, 1, x, H + 1, r, H + 1, NULL, 0);
     if (status != HBVIB_E_OUT_OF_MEMORY || memory_peak() - before > 1 << 15) {
         printf("too large: status %d, %lld bytes\n", (int)status, (long long)(memory_peak() - before));
+        failures++;
+    }
+    if (strstr(hbvib_last_error(), "memory_limit") != NULL || strstr(hbvib_last_error(), "harmonics") == NULL) {
+        printf("too large: %s\n", hbvib_last_error());
         failures++;
     }
     memory_disarm();
