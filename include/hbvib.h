@@ -45,10 +45,11 @@
  *             no environment variable, and starts no thread. It runs in the default floating-point
  *             environment (no traps, rounding to nearest, no flush to zero); the environment of the
  *             caller is restored for callbacks and on return.
- *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY, and 128 KiB of stack suffice
- *             for every function. After fork both processes may go on; a handle that a call of
- *             another thread used at that time stays HBVIB_E_BUSY in the child. dlclose frees all
- *             memory of the library but handles that were not freed.
+ *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY. 128 KiB of stack suffice for
+ *             every function, 64 KiB for forced responses and modes of small models. After fork
+ *             both processes may go on; a handle that a call of another thread used at that time
+ *             stays HBVIB_E_BUSY in the child. dlclose frees all memory of the library but handles
+ *             that were not freed.
  *   safety    No panic leaves the library (HBVIB_E_INTERNAL). Callbacks must not throw or longjmp.
  *             NaN in an input, or infinity anywhere but in the preload of a contact, is
  *             HBVIB_E_NOT_FINITE. The library cannot check that arrays are as long as stated and
@@ -3451,8 +3452,8 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
 ///             or NULL.
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
 /// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 100 bytes for each of the samples or of
-/// 128 (H + 1), whichever are more, and 1 MiB, with or without jac. Above 16 GiB nothing is
-/// requested, and the error is HBVIB_E_OUT_OF_MEMORY.
+/// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
+/// jac. Above 16 GiB nothing is requested, and the error is HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),
 /// HBVIB_E_DIMENSION (lengths), HBVIB_E_NOT_FINITE, HBVIB_E_STRUCT_SIZE, HBVIB_E_NULL,
 /// HBVIB_E_OUT_OF_MEMORY. Threads: any.

@@ -1,10 +1,11 @@
 //! Status codes, their names, and the one error type of the crate.
 //!
-//! An error carries its sentence in a fixed buffer, so that reporting a failure, exhausted memory included, never
-//! allocates.
+//! An error is small, as every fallible function has room for one on the stack. Its sentence is on the heap; where there
+//! is no memory for that, the error is one of memory with a fixed sentence.
 
 use crate::shortage;
 use core::fmt;
+use std::borrow::Cow;
 use std::collections::TryReserveError;
 
 /// Outcome of a call. `0` is success; negative values mean that nothing was written, positive values that the work
@@ -220,7 +221,6 @@ impl fmt::Write for Text {
 }
 
 /// A failure: its kind, its place and its remedy.
-#[derive(Clone, Copy)]
 pub struct Error {
     /// The kind of failure: negative, or `StoppedByCaller` on its way to the analysis that ends with it.
     pub status: Status,
@@ -233,16 +233,25 @@ pub struct Error {
     pub recoverable: bool,
     /// Nothing was allocated: the counted size exceeds the limit that the caller has set.
     pub beyond_limit: bool,
-    text: Text,
+    text: Cow<'static, str>,
 }
+
+/// Sentence of an error for whose own there is no memory.
+const NO_MEMORY: &str = "no memory; reduce the size of the problem";
 
 impl Error {
     /// An error with its sentence: `Error::new(Status::Index, format_args!("dof {i} …"))`.
     #[must_use]
+    #[cold]
+    #[inline(never)]
     pub fn new(status: Status, message: fmt::Arguments<'_>) -> Self {
-        let mut text = Text::EMPTY;
-        // Writing into the fixed buffer truncates; it cannot fail.
-        let _ = fmt::Write::write_fmt(&mut text, message);
+        let (status, text) = match message.as_str() {
+            Some(text) => (status, Cow::Borrowed(text)),
+            None => match on_heap(message) {
+                Some(text) => (status, Cow::Owned(text)),
+                None => (Status::OutOfMemory, Cow::Borrowed(NO_MEMORY)),
+            },
+        };
         Self {
             status,
             argument: 0,
@@ -288,9 +297,10 @@ impl Error {
     /// The same error with `place` and a colon in front of its sentence.
     #[must_use]
     pub fn at(self, place: fmt::Arguments<'_>) -> Self {
-        let inner = self.text;
+        let placed = Self::new(self.status, format_args!("{place}: {}", self.text));
         Self {
-            text: Self::new(self.status, format_args!("{place}: {}", inner.as_str())).text,
+            status: placed.status,
+            text: placed.text,
             ..self
         }
     }
@@ -307,8 +317,32 @@ impl Error {
     /// The sentence.
     #[must_use]
     pub fn message(&self) -> &str {
-        self.text.as_str()
+        &self.text
     }
+}
+
+impl Clone for Error {
+    fn clone(&self) -> Self {
+        let (status, text) = match &self.text {
+            Cow::Borrowed(text) => (self.status, Cow::Borrowed(*text)),
+            Cow::Owned(text) => match on_heap(format_args!("{text}")) {
+                Some(text) => (self.status, Cow::Owned(text)),
+                None => (Status::OutOfMemory, Cow::Borrowed(NO_MEMORY)),
+            },
+        };
+        Self { status, text, ..*self }
+    }
+}
+
+/// A sentence on the heap, cut at [`TEXT_CAPACITY`]; `None` without memory for it.
+fn on_heap(message: fmt::Arguments<'_>) -> Option<String> {
+    let mut text = Text::EMPTY;
+    // Writing into the fixed buffer truncates; it cannot fail.
+    let _ = fmt::Write::write_fmt(&mut text, message);
+    let mut owned = String::new();
+    owned.try_reserve_exact(text.len).ok()?;
+    owned.push_str(text.as_str());
+    Some(owned)
 }
 
 impl fmt::Display for Error {
@@ -376,6 +410,16 @@ pub fn try_copy<T: Copy>(values: &[T], what: &str) -> Result<Vec<T>> {
     let mut v = Vec::new();
     try_extend(&mut v, values, what)?;
     Ok(v)
+}
+
+/// A value in a box. A function of its own, so that the parts of a large value take their share of a small stack one after
+/// the other.
+///
+/// # Errors
+/// Those of `make`.
+#[inline(never)]
+pub fn boxed<T>(make: impl FnOnce() -> Result<T>) -> Result<Box<T>> {
+    Ok(Box::new(make()?))
 }
 
 /// Appends `value`, allocating fallibly.

@@ -61,7 +61,7 @@ struct SpecialRecord<'a> {
 
 /// Collects the points of one run.
 pub(crate) struct BranchRecorder<'a> {
-    branch: Branch,
+    branch: Box<Branch>,
     specials: Vec<SpecialRecord<'a>>,
     tolerance: f64,
     /// Whether the error of some point misses the tolerance, and whether round-off stopped some residual above its
@@ -80,7 +80,7 @@ const SHARE: f64 = 0.5;
 
 impl<'a> BranchRecorder<'a> {
     /// An empty branch whose points may miss a tolerance.
-    pub fn new(branch: Branch, tolerance: f64) -> Self {
+    pub fn new(branch: Box<Branch>, tolerance: f64) -> Self {
         Self {
             branch,
             specials: Vec::new(),
@@ -173,7 +173,7 @@ impl<'a> BranchRecorder<'a> {
     }
 
     /// The complete branch, its special points numbered after the curve.
-    pub fn finish(mut self, ending: &Ending, reduction: Reduction, estimates: usize) -> Result<Branch> {
+    pub fn finish(mut self, ending: &Ending, reduction: Reduction, estimates: usize) -> Result<Box<Branch>> {
         for special in &self.specials {
             let record = Record {
                 resolution: special.resolution,
@@ -195,7 +195,7 @@ impl<'a> BranchRecorder<'a> {
         self.branch.set_reduction(reduction);
         self.branch.set_estimates(estimates);
         self.branch
-            .set_ending(ending.status, ending.reason, (self.stalled, self.missed));
+            .set_ending(ending.status, ending.reason.clone(), (self.stalled, self.missed));
         Ok(self.branch)
     }
 }

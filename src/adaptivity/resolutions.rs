@@ -4,7 +4,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::adaptivity::transfer::transferred_point;
 use crate::condense::{Reduction, Resolution};
 use crate::continuation::Point;
-use crate::error::{Result, try_push};
+use crate::error::{Result, boxed, try_push};
 use crate::model::Model;
 use crate::options::SolverOptions;
 
@@ -15,8 +15,8 @@ const MOST_KEPT: usize = 600;
 pub(crate) struct Resolutions<'a, E> {
     pub levels: &'a HarmonicLevels<'a>,
     /// Equations of the current resolution.
-    pub current: E,
-    others: Vec<Option<E>>,
+    pub current: Box<E>,
+    others: Vec<Option<Box<E>>>,
     index: usize,
     /// The resolution with the most harmonics among the points recorded.
     highest: usize,
@@ -27,7 +27,7 @@ impl<'a, E> Resolutions<'a, E> {
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(levels: &'a HarmonicLevels<'a>, index: usize, current: E) -> Result<Self> {
+    pub fn new(levels: &'a HarmonicLevels<'a>, index: usize, current: Box<E>) -> Result<Self> {
         let mut others = Vec::new();
         for _ in 0..levels.count() {
             try_push(&mut others, None, "the resolutions")?;
@@ -54,9 +54,11 @@ impl<'a, E> Resolutions<'a, E> {
         if index == self.index {
             return Ok(());
         }
-        let selected = match self.others[index].take() {
-            Some(kept) => kept,
-            None => make(self.levels.at(index)?)?,
+        let selected = if let Some(kept) = self.others[index].take() {
+            kept
+        } else {
+            let level = self.levels.at(index)?;
+            boxed(|| make(level))?
         };
         let keep = self.levels.at(self.index)?.condensed.unknowns() <= MOST_KEPT;
         let left = core::mem::replace(&mut self.current, selected);

@@ -9,17 +9,11 @@ use crate::aft::piecewise_sampled::Sampled;
 use crate::aft::plane_friction::PlaneFrictionEvaluator;
 use crate::aft::varying_normal_load::VaryingNormalLoadEvaluator;
 use crate::contact::law::{Form, Law};
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, boxed, fail, try_push};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 
-/// A part in a box. A function of its own, so that parts take their share of a small stack one after the other.
-#[inline(never)]
-fn boxed<T>(make: impl FnOnce() -> Result<T>) -> Result<Box<T>> {
-    Ok(Box::new(make()?))
-}
-
-/// Adds a part, likewise.
+/// Adds a part. A function of its own, so that parts take their share of a small stack one after the other.
 #[inline(never)]
 fn added<T>(parts: &mut Vec<T>, make: impl FnOnce() -> Result<T>) -> Result<()> {
     try_push(parts, make()?, "the contact laws")

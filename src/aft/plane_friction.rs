@@ -25,7 +25,7 @@ use crate::contact::contact_state::State;
 use crate::contact::law::PlaneFriction;
 use crate::contact::plane_path::{PlaneForce, PlanePath, PlanePiece, Repetition};
 use crate::contact::radau::STAGES;
-use crate::error::{Result, try_vec};
+use crate::error::{Result, boxed, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;
@@ -34,14 +34,14 @@ const CONTEXT: &str = "friction in a plane";
 
 /// Tables and memory of the evaluation for one harmonic set.
 pub struct PlaneFrictionEvaluator {
-    path: PlanePath,
+    path: Box<PlanePath>,
     normal: Option<Normal>,
     transform: Vec<Complex64>,
     /// Spectra of the stiffness in stick, and of both components of the direction in slip.
     spectra: [Vec<Complex64>; 3],
     toeplitz: Toeplitz,
     g: Vec<f64>,
-    sensitivity: PlaneSensitivity,
+    sensitivity: Box<PlaneSensitivity>,
 }
 
 impl PlaneFrictionEvaluator {
@@ -53,13 +53,13 @@ impl PlaneFrictionEvaluator {
         let spectrum = || try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, CONTEXT);
         let has_normal = law.normal().is_some();
         Ok(Self {
-            path: PlanePath::new(set, !has_normal)?,
+            path: boxed(|| PlanePath::new(set, !has_normal))?,
             normal: law.normal().map(|_| Normal::new(set)).transpose()?,
             transform: spectrum()?,
             spectra: [spectrum()?, spectrum()?, spectrum()?],
             toeplitz: Toeplitz::new(set)?,
             g: try_vec(set.packed_len(), 0.0, CONTEXT)?,
-            sensitivity: PlaneSensitivity::new(set, law.directions())?,
+            sensitivity: boxed(|| PlaneSensitivity::new(set, law.directions()))?,
         })
     }
 

@@ -9,7 +9,7 @@ use crate::results::Branch;
 use crate::sensitivity::{Parameter, design};
 
 /// The highest maximum of the amplitude of a design within the range.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct DesignPeak {
     /// Amplitude; NaN without a maximum.
     pub amplitude: f64,
@@ -50,7 +50,7 @@ impl DesignPeak {
         let mut found = Self {
             status: branch.status(),
             points: branch.points(),
-            reason: branch.reason().copied(),
+            reason: branch.reason().cloned(),
             ..Self::not_solved()
         };
         for peak in branch.peaks() {

@@ -12,7 +12,7 @@ use crate::condense::{ModelCache, Reference, reduced_resonances};
 use crate::continuation::corrector::Corrector;
 use crate::continuation::resolve::{resolve, solve_linear};
 use crate::continuation::{Point, Settings};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, boxed, try_vec};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
@@ -99,7 +99,7 @@ const FACTORISE_UP_TO: usize = 1000;
 /// one, and a damping that bounds the response of the stuck structure.
 struct LinearResponse<'a> {
     levels: &'a HarmonicLevels<'a>,
-    equations: Option<(usize, Equations<'a>)>,
+    equations: Option<(usize, Box<Equations<'a>>)>,
     /// Frequency of the point solved last.
     solved: Option<f64>,
     /// Whether interpolation is not accurate enough.
@@ -127,9 +127,11 @@ impl<'a> LinearResponse<'a> {
             return Ok(None);
         }
         let stored = self.equations.take().filter(|(at, _)| *at == index);
-        let equations = match stored {
-            Some((_, equations)) => equations,
-            None => make(self.levels.at(index)?)?,
+        let equations = if let Some((_, equations)) = stored {
+            equations
+        } else {
+            let level = self.levels.at(index)?;
+            boxed(|| make(level))?
         };
         let (_, equations) = self.equations.insert((index, equations));
         Ok(Some(equations))
@@ -144,7 +146,7 @@ pub(super) struct ForcedDiscretised<'a> {
     resolutions: Resolutions<'a, Equations<'a>>,
     linear_response: LinearResponse<'a>,
     recorder: BranchRecorder<'a>,
-    estimator: Option<ForcedEstimator<'a>>,
+    estimator: Option<Box<ForcedEstimator<'a>>>,
     /// Whether the current problem may have been evaluated at another point than the current one.
     stale: bool,
     /// Error of the point estimated last, until it is recorded.
@@ -174,12 +176,12 @@ impl<'a> ForcedDiscretised<'a> {
         let resolution = levels.at(level)?;
         let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
         let reduction = resolution.condensed.reduction(model, solver, interrupt)?;
-        let mut branch = Branch::new(resolution, reduction, reported, response)?;
+        let mut branch = boxed(|| Branch::new(resolution, reduction, reported, response))?;
         if solver.stability.is_some() {
             branch.tell_stability();
         }
         let estimates = solver.estimate_error || levels.is_automatic();
-        let equations = Equations::new(resolution, &settings, response, guess, interrupt)?;
+        let equations = boxed(|| Equations::new(resolution, &settings, response, guess, interrupt))?;
         Ok(Self {
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
@@ -187,7 +189,9 @@ impl<'a> ForcedDiscretised<'a> {
             model,
             settings,
             interrupt,
-            estimator: estimates.then(|| ForcedEstimator::new(model, solver, response, extended, interrupt)),
+            estimator: estimates
+                .then(|| boxed(|| Ok(ForcedEstimator::new(model, solver, response, extended, interrupt))))
+                .transpose()?,
             stale: false,
             estimated: None,
             last_error: f64::NAN,
@@ -207,7 +211,13 @@ impl<'a> ForcedDiscretised<'a> {
     }
 
     /// The complete branch.
-    pub fn finish(self, model: &Model, solver: &SolverOptions, ending: &Ending, estimates: usize) -> Result<Branch> {
+    pub fn finish(
+        self: Box<Self>,
+        model: &Model,
+        solver: &SolverOptions,
+        ending: &Ending,
+        estimates: usize,
+    ) -> Result<Box<Branch>> {
         let reduction = self
             .resolutions
             .reduction(model, solver, self.recorder.branch().reduction())?;
@@ -217,7 +227,7 @@ impl<'a> ForcedDiscretised<'a> {
     /// Evaluates the problem at a point, unless it was evaluated there last.
     fn refresh(&mut self, point: &Point) -> Result<()> {
         if self.stale {
-            let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+            let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
             corrector.evaluate(problem, &point.v)?;
             self.stale = false;
         }
@@ -234,7 +244,7 @@ impl<'a> ForcedDiscretised<'a> {
             problem,
             response,
             ..
-        } = &mut self.resolutions.current;
+        } = &mut *self.resolutions.current;
         let condensed = &resolution.condensed;
         problem.response(point.unknowns(), response);
         let solved = Solved {
@@ -294,7 +304,7 @@ impl Discretised for ForcedDiscretised<'_> {
     }
 
     fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
-        let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let found = resolve(problem, corrector, &self.settings, near, keep_parameter, interrupt)?;
         self.stale = found.is_none();
         Ok(found)
@@ -347,7 +357,7 @@ impl Discretised for ForcedDiscretised<'_> {
             Equations::new(resolution, &self.settings, response, None, self.interrupt)
         });
         let settings = &self.settings;
-        let current = &mut self.resolutions.current;
+        let current = &mut *self.resolutions.current;
         self.stale = true;
         let Some(own) = own? else {
             let found = current.linear_at(settings, (near, parameter), factorised, interrupt)?;
@@ -408,7 +418,7 @@ impl Recorder for ForcedDiscretised<'_> {
     /// have been interpolated. At a fold the solution at a fixed frequency is not isolated.
     fn sharpen(&mut self, kind: SpecialKind, point: &mut Point) -> Result<()> {
         self.stale = false;
-        let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         let mut found = None;
         let accurate = self.linear_response.solved == Some(point.parameter());
         if !kind.is_fold() && !accurate {

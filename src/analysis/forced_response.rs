@@ -16,7 +16,7 @@ use crate::condense::{Condensed, ModelCache, Reference};
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
-use crate::error::{Error, Result, Status, try_push, try_vec};
+use crate::error::{Error, Result, Status, boxed, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -50,7 +50,7 @@ pub fn forced_response(
     let outcome = with_samples(solver, |solver| follow(model, solver, range, hooks, &interrupt, trace));
     match outcome {
         Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver),
-        outcome => outcome,
+        outcome => outcome.map(|branch| *branch),
     }
 }
 
@@ -120,7 +120,7 @@ fn follow(
     let extended = ModelCache::for_estimates()?;
     let models = (&levels, &stuck, &extended);
     let mut response =
-        ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt)?;
+        boxed(|| ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt))?;
     let held = response.branch().reduction().held_by_contacts;
     let course = Course {
         settings,
@@ -154,7 +154,7 @@ fn follow(
             return Err(with_reason(e, at, held, interrupt));
         }
     };
-    if let Some(factor) = required(solver, &response) {
+    if let Some(factor) = required(solver, &*response) {
         return Ok(Err(factor));
     }
     let mut ending = Ending::of(outcome, response.branch())?;
@@ -181,6 +181,7 @@ fn follow(
 
 /// The first point, with the current harmonics or, if that fails and a tolerance selects them, with the fewest, and
 /// with those of the options.
+#[inline(never)]
 fn first_point(
     response: &mut ForcedDiscretised<'_>,
     settings: &Settings,
@@ -218,6 +219,7 @@ pub(super) fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
 
 /// The error with its reason, as far as it is known: no bounded solution exists, or, with preloaded contacts, the
 /// static solution or the load path from it was not found.
+#[inline(never)]
 fn with_reason(
     e: Error,
     (model, omega, condensed): (&Model, f64, &Condensed),
@@ -245,6 +247,7 @@ fn with_reason(
 
 /// The forced degree of freedom with the largest fundamental at `omega`, with every contact at its reference
 /// stiffness.
+#[inline(never)]
 fn forced_dof_with_largest_motion(
     model: &Model,
     condensed: &Condensed,

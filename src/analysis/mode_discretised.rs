@@ -10,7 +10,7 @@ use crate::analysis::mode_equations::{Equations, LinearStart};
 use crate::analysis::mode_onset::OnsetSearch;
 use crate::continuation::resolve::resolve;
 use crate::continuation::{Point, Settings};
-use crate::error::{Result, try_copy};
+use crate::error::{Result, boxed, try_copy};
 use crate::error_estimate::mode_error::{ModeEstimator, NO_DAMPING};
 use crate::error_estimate::{Estimate, Solved};
 use crate::interrupt::Interrupt;
@@ -28,7 +28,7 @@ pub(super) struct ModeDiscretised<'a> {
     settings: Settings,
     resolutions: Resolutions<'a, Equations<'a>>,
     recorder: BranchRecorder<'a>,
-    estimator: Option<ModeEstimator<'a>>,
+    estimator: Option<Box<ModeEstimator<'a>>>,
     /// Errors of the point estimated last, until it is recorded.
     estimated: Option<(f64, f64)>,
     /// Errors of the point estimated last.
@@ -58,10 +58,11 @@ impl<'a> ModeDiscretised<'a> {
         solver: &SolverOptions,
         settings: Settings,
         (levels, level): (&'a HarmonicLevels<'a>, usize),
-        branch: Branch,
-        estimator: Option<ModeEstimator<'a>>,
+        branch: Box<Branch>,
+        estimator: Option<Box<ModeEstimator<'a>>>,
     ) -> Result<Self> {
-        let equations = Equations::new(levels.at(level)?, &start, &settings)?;
+        let resolution = levels.at(level)?;
+        let equations = boxed(|| Equations::new(resolution, &start, &settings))?;
         Ok(Self {
             onsets: OnsetSearch::new(equations.problem.onset()?),
             resolutions: Resolutions::new(levels, level, equations)?,
@@ -94,12 +95,12 @@ impl<'a> ModeDiscretised<'a> {
 
     /// The complete branch.
     pub fn finish(
-        mut self,
+        mut self: Box<Self>,
         model: &Model,
         solver: &SolverOptions,
         ending: &Ending,
         estimates: usize,
-    ) -> Result<Branch> {
+    ) -> Result<Box<Branch>> {
         if let Some(data) = self.recorder.branch_mut().mode_data_mut() {
             [data.info.slip_from, data.info.lift_off_from] = self.onsets.found();
         }
@@ -159,7 +160,7 @@ impl<'a> ModeDiscretised<'a> {
     fn measure(&mut self, point: &Point, is_fold: bool) -> Result<Numbers> {
         let mode = self.resolutions.current.measure(point, self.start.linear, &self.before);
         let omega = Epmc::frequency_and_damping(self.start.linear, point.unknowns()).0;
-        let equations = &mut self.resolutions.current;
+        let equations = &mut *self.resolutions.current;
         let amplitude = equations.response[equations.resolution.condensed.set().fundamental()];
         let sampling_error = equations.problem.sampling_error(&equations.motion, omega)?;
         let errors = match self.estimated.take() {
@@ -234,7 +235,7 @@ impl Discretised for ModeDiscretised<'_> {
     }
 
     fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>> {
-        let Equations { problem, corrector, .. } = &mut self.resolutions.current;
+        let Equations { problem, corrector, .. } = &mut *self.resolutions.current;
         resolve(problem, corrector, &self.settings, near, keep_parameter, interrupt)
     }
 

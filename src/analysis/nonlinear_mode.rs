@@ -13,12 +13,13 @@ use crate::condense::Condensed;
 use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
-use crate::error::{Result, Status, fail};
+use crate::error::{Result, Status, boxed, fail, try_copy};
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
+use crate::model::mode_selection::SelectedMode;
 use crate::model::repeated_modes::Multiple;
 use crate::model::spring::along;
 use crate::options::{Amplitude, ModeOptions, SolverOptions};
@@ -103,7 +104,7 @@ pub fn nonlinear_mode(
     let interrupt = hooks.interrupt();
     match with_samples(solver, |solver| on_wave(model, solver, range, hooks, &interrupt)) {
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
-        outcome => outcome,
+        outcome => outcome.map(|branch| *branch),
     }
 }
 
@@ -139,6 +140,76 @@ fn stopped(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>) -> Re
     Ok(branch)
 }
 
+/// The linear mode from which the nonlinear one starts, and how it was selected.
+struct Start {
+    linear: LinearMode,
+    gauge: Gauge,
+    chosen: SelectedMode,
+}
+
+impl Start {
+    /// The mode that the options select, about the static state.
+    fn new(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, interrupt: &Interrupt<'_>) -> Result<Self> {
+        let rest = static_state(model, solver, interrupt)?;
+        let contacts = if rest.is_loaded() {
+            ContactState::AboutStatic(&rest.tangents)
+        } else {
+            ContactState::Stuck
+        };
+        let chosen = model.select_mode_with(range.choice, contacts, interrupt)?;
+        let damped = model.damped_mode_with(&chosen, contacts, range.damping_form, interrupt)?;
+        let mut linear = LinearMode {
+            omega: damped.omega,
+            damping: damped.damping,
+            shape: damped.shape,
+            rest,
+        };
+        let gauge = gauge(model, range, &mut linear)?;
+        Ok(Self { linear, gauge, chosen })
+    }
+
+    /// Refuses a mode that moves no contact.
+    fn check_motion(&self, condensed: &Condensed) -> Result<()> {
+        let i = condensed.set().fundamental();
+        let shape = &self.linear.shape;
+        let moved = condensed.blocks()[i].rows.iter().map(|row| row.along(shape).norm());
+        let motion = moved.fold(0.0, f64::max);
+        let largest = shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
+        if condensed.coordinates() == 0 || motion <= NODE * largest {
+            return fail!(
+                Argument,
+                "mode {} (angular frequency {}) moves no contact that can slip: largest relative motion {motion} of {largest}; it is linear",
+                self.chosen.index,
+                self.chosen.omega
+            );
+        }
+        Ok(())
+    }
+
+    /// The data of the mode. Like all parts of a run it is a function of its own, so that they take their share of a small
+    /// stack one after the other.
+    #[inline(never)]
+    fn data(&self, model: &Model, range: &ModeOptions<'_>, linear_up_to: f64) -> Result<ModeData> {
+        const CONTEXT: &str = "the nonlinear mode";
+        let info = ModeInfo {
+            index: self.chosen.index,
+            omega: self.chosen.omega,
+            multiplicity: self.chosen.multiplicity,
+            multiple: self.chosen.multiple,
+            reference_dof: model.structure().degrees().origin(self.gauge.reference_dof),
+            engine_order: model.structure().engine_order(),
+            amplitude: range.amplitude,
+            linear_up_to,
+            slip_from: f64::INFINITY,
+            lift_off_from: f64::INFINITY,
+            stuck: try_copy(&self.chosen.stuck, CONTEXT)?,
+            free: try_copy(&self.chosen.free, CONTEXT)?,
+        };
+        let ends = (range.log10_start, range.log10_stop);
+        Ok(ModeData::new(info, self.linear.clone(), self.gauge.clone(), ends))
+    }
+}
+
 /// The mode on the wave of the model's engine order, or the factor by which more samples are required.
 fn on_wave(
     model: &Model,
@@ -148,21 +219,8 @@ fn on_wave(
     interrupt: &Interrupt<'_>,
 ) -> Result<Sampled> {
     interrupt.phase(Phase::Setup, 0.0)?;
-    let rest = static_state(model, solver, interrupt)?;
-    let contacts = if rest.is_loaded() {
-        ContactState::AboutStatic(&rest.tangents)
-    } else {
-        ContactState::Stuck
-    };
-    let chosen = model.select_mode_with(range.choice, contacts, interrupt)?;
-    let damped = model.damped_mode_with(&chosen, contacts, range.damping_form, interrupt)?;
-    let mut linear = LinearMode {
-        omega: damped.omega,
-        damping: damped.damping,
-        shape: damped.shape,
-        rest,
-    };
-    let gauge = gauge(model, range, &mut linear)?;
+    let start = boxed(|| Start::new(model, solver, range, interrupt))?;
+    let (linear, gauge) = (&start.linear, &start.gauge);
     let levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         let form = (range.damping_form, linear.rest.is_loaded());
@@ -170,35 +228,21 @@ fn on_wave(
     })?;
     let level = levels.first(solver.harmonics);
     let resolution = levels.at(level)?;
-    let condensed = &resolution.condensed;
-    let i = condensed.set().fundamental();
-    let moved = condensed.blocks()[i]
-        .rows
-        .iter()
-        .map(|row| row.along(&linear.shape).norm());
-    let motion = moved.fold(0.0, f64::max);
-    let largest = linear.shape.iter().fold(0.0_f64, |m, z| m.max(z.norm()));
-    if condensed.coordinates() == 0 || motion <= NODE * largest {
-        return fail!(
-            Argument,
-            "mode {} (angular frequency {}) moves no contact that can slip: largest relative motion {motion} of {largest}; it is linear",
-            chosen.index,
-            chosen.omega
-        );
-    }
+    start.check_motion(&resolution.condensed)?;
     let reference_dof = model.structure().degrees().origin(gauge.reference_dof);
     let response = solver.response_dof.unwrap_or(reference_dof);
     let reported = if levels.is_automatic() { 0 } else { solver.harmonics };
-    let branch = Branch::new(
-        resolution,
-        condensed.reduction(model, solver, interrupt)?,
-        reported,
-        response,
-    )?;
-    let start = (&linear, &gauge);
+    let branch = boxed(|| {
+        let reduction = resolution.condensed.reduction(model, solver, interrupt)?;
+        Branch::new(resolution, reduction, reported, response)
+    })?;
     let estimates = solver.estimate_error || levels.is_automatic();
-    let estimator =
-        estimates.then(|| ModeEstimator::new(model, solver, range.damping_form, start, response, interrupt));
+    let make = || {
+        let start = (linear, gauge);
+        let form = range.damping_form;
+        Ok(ModeEstimator::new(model, solver, form, start, response, interrupt))
+    };
+    let estimator = estimates.then(|| boxed(make)).transpose()?;
     let settings = Settings {
         start: range.log10_start,
         end: range.log10_stop,
@@ -207,36 +251,18 @@ fn on_wave(
         steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
     };
     let begin = LinearStart {
-        linear: &linear,
-        gauge: &gauge,
+        linear,
+        gauge,
         interrupt,
     };
-    let mut mode = ModeDiscretised::new(begin, solver, settings, (&levels, level), branch, estimator)?;
+    let mut mode = boxed(|| ModeDiscretised::new(begin, solver, settings, (&levels, level), branch, estimator))?;
     let (linear_up_to, nearly) = mode.linear_up_to(range.log10_start)?;
-    mode.set_mode(ModeData::new(
-        ModeInfo {
-            index: chosen.index,
-            omega: chosen.omega,
-            multiplicity: chosen.multiplicity,
-            multiple: chosen.multiple,
-            reference_dof,
-            engine_order: model.structure().engine_order(),
-            amplitude: range.amplitude,
-            linear_up_to,
-            slip_from: f64::INFINITY,
-            lift_off_from: f64::INFINITY,
-            stuck: chosen.stuck,
-            free: chosen.free,
-        },
-        linear.clone(),
-        gauge.clone(),
-        (range.log10_start, range.log10_stop),
-    ));
+    mode.set_mode(start.data(model, range, linear_up_to)?);
     let onset = Onset { linear_up_to, nearly };
     let (course, settings) = course(solver, range, settings, onset);
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, interrupt);
-    if let Some(factor) = required(solver, &mode) {
+    if let Some(factor) = required(solver, &*mode) {
         return Ok(Err(factor));
     }
     let ending = Ending::of(outcome, mode.branch())?;

@@ -7,7 +7,7 @@ use crate::options::{MAX_REFINEMENT, SolverOptions};
 use crate::results::Branch;
 
 /// The outcome of a run: the branch, or for a run that ended early the factor by which more samples are required.
-pub(super) type Sampled = core::result::Result<Branch, usize>;
+pub(super) type Sampled = core::result::Result<Box<Branch>, usize>;
 
 /// Whether a run may begin again with more samples: with samples of the laws' own, and a tolerance to meet.
 pub(super) fn may_refine(solver: &SolverOptions) -> bool {
@@ -26,7 +26,7 @@ pub(super) fn required(solver: &SolverOptions, recorder: &dyn Recorder) -> Optio
 pub(super) fn with_samples(
     solver: &SolverOptions,
     mut run: impl FnMut(&SolverOptions) -> Result<Sampled>,
-) -> Result<Branch> {
+) -> Result<Box<Branch>> {
     let mut options = *solver;
     loop {
         match run(&options)? {

@@ -13,6 +13,7 @@ const UNBOUNDED: f64 = 1e12;
 
 /// Reason why the response on a branch has no bound: its highest point is an undamped resonance. `length` is the size
 /// of the linear motion at the start of the range.
+#[inline(never)]
 pub(super) fn in_branch(branch: &Branch, length: f64) -> Option<Error> {
     let peaks = branch.peaks();
     let highest = peaks.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude))?;
@@ -34,6 +35,7 @@ pub(super) fn in_branch(branch: &Branch, length: f64) -> Option<Error> {
 ///
 /// # Errors
 /// `StoppedByCaller`.
+#[inline(never)]
 pub(super) fn reason(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<Option<Error>> {
     let resonance = match model.overload(omega, interrupt) {
         Err(e) if e.status == Status::StoppedByCaller => return Err(e),

@@ -269,8 +269,11 @@ pub unsafe extern "C" fn hbvib_batch_status(batch: *const hbvib_batch, design: i
     call(|| {
         let batch = read::<Batch>(batch, 1)?;
         let design = index(design, batch.peaks().len(), 2, "design")?;
-        let DesignPeak { status, reason, .. } = batch.peaks()[design];
-        Ok(Outcome { status, reason })
+        let peak = &batch.peaks()[design];
+        Ok(Outcome {
+            status: peak.status,
+            reason: peak.reason.clone(),
+        })
     })
 }
 

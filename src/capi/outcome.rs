@@ -19,7 +19,7 @@ impl From<&Branch> for Outcome {
     fn from(branch: &Branch) -> Self {
         Self {
             status: branch.status(),
-            reason: branch.reason().copied(),
+            reason: branch.reason().cloned(),
         }
     }
 }

@@ -123,7 +123,7 @@ impl Corrector {
     /// The failure of the last correction, if a law could not evaluate its force at some motion.
     #[must_use]
     pub fn failure(&self) -> Option<Error> {
-        self.failure
+        self.failure.clone()
     }
 
     /// Corrects `v` = (u, p) within the plane through it whose normal is `row` (in scaled unknowns); a row (0, …, 0,
@@ -210,7 +210,7 @@ impl Corrector {
             return Ok(false);
         }
         let outcome = problem.evaluate(&v[..n], v[n], &mut self.at);
-        self.failure = outcome.err().filter(|e| e.recoverable);
+        self.failure = outcome.as_ref().err().filter(|e| e.recoverable).cloned();
         tolerate(outcome)
     }
 
@@ -327,7 +327,7 @@ impl Corrector {
             let finite = self.trial.iter().all(|x| x.is_finite());
             let evaluated = if finite {
                 let outcome = problem.evaluate(&self.trial[..n], self.trial[n], &mut self.at);
-                self.failure = outcome.err().filter(|e| e.recoverable);
+                self.failure = outcome.as_ref().err().filter(|e| e.recoverable).cloned();
                 tolerate(outcome)?
             } else {
                 false

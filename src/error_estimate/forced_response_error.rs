@@ -3,7 +3,7 @@
 use crate::condense::modal_table::ModalTable;
 use crate::condense::wave_cache::WaveCache;
 use crate::condense::{Condensed, ModelCache, Resolution};
-use crate::error::{Result, try_copy, try_push, try_vec};
+use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
 use crate::error_estimate::estimate::{
@@ -55,7 +55,7 @@ pub struct ForcedEstimator<'a> {
     models: &'a ModelCache,
     interrupt: &'a Interrupt<'a>,
     /// The problems extended last, with their slots in the cache.
-    extended: Vec<(usize, ExtendedSystem<HarmonicBalance<'a>>)>,
+    extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
     ratio: Option<Ratio>,
     /// Modes of the waves, and the flexibility tables made so far.
     waves: WaveCache,
@@ -111,6 +111,7 @@ impl<'a> ForcedEstimator<'a> {
     }
 
     /// The harmonics to which a point is extended; `None` where the work does not suffice.
+    #[inline(never)]
     fn extent(&mut self, solved: &Solved<'_>, work: &Work) -> Result<Option<Extent>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
@@ -165,6 +166,7 @@ impl<'a> ForcedEstimator<'a> {
     ///
     /// The ratio of the whole change to that of the first extension changes little along a branch: it serves some of the
     /// following estimates with the same harmonics, which then take one extension each.
+    #[inline(never)]
     fn extend_by_doubling(&mut self, solved: &Solved<'_>, extent: Extent, mut work: Work) -> Result<Option<Estimate>> {
         let mut highest = extent.least;
         let mut series = Doubling::new(solved.response);
@@ -302,15 +304,9 @@ impl<'a> ForcedEstimator<'a> {
             system
         } else {
             let range = (omega, omega);
-            let problem = HarmonicBalance::new(
-                condensed,
-                self.response,
-                range,
-                resolution.samples,
-                None,
-                self.interrupt,
-            )?;
-            ExtendedSystem::iterative(problem, omega, factored, (sizes, work))?
+            let (response, samples, interrupt) = (self.response, resolution.samples, self.interrupt);
+            let problem = boxed(|| HarmonicBalance::new(condensed, response, range, samples, None, interrupt))?;
+            boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
         if by_modes && !system.problem.has_modes() {
             system.problem.set_modes(self.modal_tables(condensed)?);
@@ -333,7 +329,7 @@ impl<'a> ForcedEstimator<'a> {
 
     /// Forgets the oldest of the extended problems that do not fit into the memory of an estimate beside that of a slot.
     fn forget_beside(&mut self, slot: usize, of_slot: f64, work: &Work) {
-        let bytes = |(kept, system): &(usize, ExtendedSystem<HarmonicBalance<'a>>)| {
+        let bytes = |(kept, system): &(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)| {
             if *kept == slot { 0.0 } else { system.bytes() }
         };
         while !work.fits(of_slot + self.extended.iter().map(bytes).sum::<f64>())

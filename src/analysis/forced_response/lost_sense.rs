@@ -177,7 +177,7 @@ fn misled(at: usize, found_then: usize, (from, to): (f64, f64)) -> (Branch, bool
             tracer.trace(&mut misled, first, hooks)
         },
     );
-    (branch.unwrap().unwrap(), corrected)
+    (*branch.unwrap().unwrap(), corrected)
 }
 
 #[test]

@@ -4,7 +4,7 @@
 //! The factors of a direct solution cost as the cube of the columns, those of an iterative one little more than its
 //! block of the strongly coupled unknowns.
 
-use crate::error::Result;
+use crate::error::{Result, boxed};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::dense::DenseSystem;
 use crate::linalg::linear_system::krylov::KrylovSystem;
@@ -28,8 +28,8 @@ const PATIENCE: usize = 16;
 /// A bordered system that is solved directly or by iteration.
 pub struct AutomaticSystem {
     n: usize,
-    dense: Option<DenseSystem>,
-    krylov: Option<KrylovSystem>,
+    dense: Option<Box<DenseSystem>>,
+    krylov: Option<Box<KrylovSystem>>,
     /// Whether the matrix taken over last is solved by iteration.
     iterates: bool,
     /// Backend that holds factors, if one does: the iterative one where `true`.
@@ -45,7 +45,7 @@ impl AutomaticSystem {
     /// `OutOfMemory`.
     pub fn new(n: usize) -> Result<Self> {
         let dense = if n <= DIRECT_UP_TO {
-            Some(DenseSystem::new(n)?)
+            Some(boxed(|| DenseSystem::new(n))?)
         } else {
             None
         };
@@ -86,13 +86,13 @@ impl AutomaticSystem {
         if self.iterates
             && let Some(krylov) = &mut self.krylov
         {
-            return Ok(krylov);
+            return Ok(&mut **krylov);
         }
         if self.dense.is_none() {
-            self.dense = Some(DenseSystem::new(self.n)?);
+            self.dense = Some(boxed(|| DenseSystem::new(self.n))?);
         }
         match &mut self.dense {
-            Some(dense) => Ok(dense),
+            Some(dense) => Ok(&mut **dense),
             None => crate::error::fail!(Internal, "no linear system was made"),
         }
     }
@@ -104,7 +104,9 @@ impl LinearSystem for AutomaticSystem {
         self.direct = self.direct.saturating_sub(1);
         self.iterates = lengths.is_some();
         if let (Some((group, part)), None) = (lengths, &self.krylov) {
-            self.krylov = Some(KrylovSystem::new(self.n, (group, part, group), MOST_PRODUCTS)?);
+            self.krylov = Some(boxed(|| {
+                KrylovSystem::new(self.n, (group, part, group), MOST_PRODUCTS)
+            })?);
         }
         self.backend()?.update(jacobian, border, interrupt)
     }
