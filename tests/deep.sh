@@ -4,6 +4,11 @@ set -eu
 cd "$(dirname "$0")/.."
 cargo test --release --tests -- --ignored --test-threads=1
 
+# Programs in C and C++ under tools that watch memory, leaks and races.
+for tool in address thread valgrind; do
+    sh tests/sanitisers.sh $tool
+done
+
 # Windows is not tested, but it compiles.
 rustup target add x86_64-pc-windows-gnu
 cargo check --target x86_64-pc-windows-gnu -p hbvib -p hbvib-c -p hbvib-io -p hbvib-cli

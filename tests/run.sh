@@ -62,4 +62,4 @@ cargo test --release --doc -p hbvib
 cargo test --release -p hbvib-io --lib --tests
 cargo test --release -p hbvib-cli
 # One analysis under valgrind.
-sh tests/valgrind.sh
+sh tests/sanitisers.sh valgrind short

@@ -1,5 +1,6 @@
 /* A fault on purpose, which a tool that watches the library must see. Run as: planted_fault address, where the library
- * writes beyond an array that is shorter than stated; or planted_fault race, with a plain store to a cancel flag. */
+ * writes beyond an array that is shorter than stated; planted_fault leak, where memory is lost; or planted_fault race,
+ * with a plain store to a cancel flag. */
 #include "analyses.h"
 
 #include <pthread.h>
@@ -31,6 +32,11 @@ int main(int argc, char **argv)
         if (pthread_create(&thread, NULL, solve, NULL) != 0) return 2;
         cancel = 1;
         if (pthread_join(thread, NULL) != 0) return 2;
+    } else if (strcmp(argv[1], "leak") == 0) {
+        char *volatile lost = malloc(100);
+        lost[0] = 1;
+        lost = NULL;
+        return hbvib_model_free(model) != HBVIB_OK;
     } else {
         hbvib_solver_options s = options(0);
         hbvib_forced_options o = range(model);
