@@ -5,3 +5,4 @@ mod language;
 mod layering;
 mod python;
 mod rust_interface;
+mod supply;
