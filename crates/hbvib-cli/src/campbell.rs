@@ -1,8 +1,10 @@
 //! Campbell and interference (SAFE) diagrams of a job: natural frequencies over speed, and over nodal diameter.
 
 use crate::build::Outcome;
+use crate::counted::counted;
 use crate::figure::{bounds, draw};
 use crate::job::{CampbellPart, Job, StateName};
+use crate::output::place;
 use hbvib::{Campbell, Hooks, LinearContacts, Model, Speed, campbell, damped_modes};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};
 use plotters::style::{BLACK, Color, Palette, Palette99, RED};
@@ -46,12 +48,12 @@ pub fn write(job: &Job, part: &CampbellPart, model: &Model, hooks: &mut Hooks<'_
     .map_err(|e| said(&e))?;
     let mut written = Vec::new();
     if let Some(path) = &part.csv {
-        let path = job.path(path);
+        let path = place(job, path)?;
         fs::write(&path, table(&found)).map_err(|e| format!("{}: {e}", path.display()))?;
         written.push(path);
     }
     if let Some(path) = &part.figure {
-        let path = job.path(path);
+        let path = place(job, path)?;
         figure(&path, &found, &part.engine_orders)?;
         written.push(path);
     }
@@ -68,7 +70,7 @@ pub fn write(job: &Job, part: &CampbellPart, model: &Model, hooks: &mut Hooks<'_
             let modes = damped_modes(&rotating, diameter, state, count, hooks).map_err(|e| said(&e))?;
             points.extend((0..modes.count()).map(|k| (diameter as f64, modes.omega(k) / TAU)));
         }
-        let path = job.path(path);
+        let path = place(job, path)?;
         interference(&path, &points, sectors, rpm)?;
         written.push(path);
     }
@@ -76,7 +78,7 @@ pub fn write(job: &Job, part: &CampbellPart, model: &Model, hooks: &mut Hooks<'_
 }
 
 fn summary(found: &Campbell) -> String {
-    let mut text = format!("{} crossings of engine orders and modes\n", found.crossings.len());
+    let mut text = counted(found.crossings.len(), "crossing of engine orders and modes") + "\n";
     for c in &found.crossings {
         let sense = match c.direction {
             1 => ", forward",

@@ -37,11 +37,23 @@ impl<'a> Files<'a> {
     /// A sentence that names the file.
     pub fn write(&mut self, path: Option<&Path>, write: &dyn Fn(&Path) -> Outcome<()>) -> Outcome<()> {
         let Some(path) = path else { return Ok(()) };
-        let path = self.job.path(path);
+        let path = place(self.job, path)?;
         write(&path).map_err(|e| format!("{}: cannot be written: {e}", path.display()))?;
         self.written.push(path);
         Ok(())
     }
+}
+
+/// The path of a file that the job names, relative to its folder. Folders that are not there are made.
+///
+/// # Errors
+/// A sentence that names the folder.
+pub fn place(job: &Job, path: &Path) -> Outcome<PathBuf> {
+    let path = job.path(path);
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder).map_err(|e| format!("{}: cannot be made: {e}", folder.display()))?;
+    }
+    Ok(path)
 }
 
 /// Writes all files of a job.

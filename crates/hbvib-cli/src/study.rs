@@ -1,8 +1,10 @@
 //! Study of a job: a result over a parameter of the model, with its optima.
 
 use crate::build::Outcome;
+use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
 use crate::job::{FollowName, Job, ParameterName, StudyPart};
+use crate::output::place;
 use hbvib::{
     Branch, Constant, Follow, Hooks, MatrixKind, Model, Parameter, ParameterRange, SolverOptions, Status,
     parameter_response,
@@ -81,12 +83,12 @@ pub fn write(
     let rows = rows(&found);
     let mut written = Vec::new();
     if let Some(path) = &part.csv {
-        let path = job.path(path);
+        let path = place(job, path)?;
         fs::write(&path, table(part, &rows)).map_err(|e| format!("{}: {e}", path.display()))?;
         written.push(path);
     }
     if let Some(path) = &part.figure {
-        let path = job.path(path);
+        let path = place(job, path)?;
         figure(&path, part, &rows, &found)?;
         written.push(path);
     }
@@ -130,7 +132,7 @@ fn table(part: &StudyPart, rows: &[Row]) -> String {
 }
 
 fn summary(part: &StudyPart, found: &Branch, points: usize) -> String {
-    let mut text = format!("{points} points over the parameter\n");
+    let mut text = counted(points, "point over the parameter") + "\n";
     if found.status() != Status::Ok {
         let _ = writeln!(
             text,

@@ -1,7 +1,9 @@
 //! Comparison of points of a forced response with integration in time.
 
 use crate::build::Outcome;
+use crate::counted::counted;
 use crate::job::{Job, MethodName, VerifyPart};
+use crate::output::place;
 use crate::points::chosen;
 use hbvib::{Branch, Hooks, Model, Special, Status, SteadyMethod, Verification, VerifyOptions, verify};
 use std::f64::consts::TAU;
@@ -57,14 +59,14 @@ pub fn summary(all: &[Compared]) -> String {
     for (point, found) in all {
         let _ = writeln!(
             text,
-            "verify {:>14.6} Hz {:>14.6e} {}: response {:.2e}, motion {:.2e}, largest displacement {:.2e} off; {} periods{}",
+            "verify {:>14.6} Hz {:>14.6e} {}: response {:.2e}, motion {:.2e}, largest displacement {:.2e} off; {}{}",
             point.omega / TAU,
             point.amplitude,
             if found.same { "same" } else { "another solution" },
             found.response_error,
             found.distance,
             found.peak_error,
-            found.periods,
+            counted(found.periods, "period"),
             if found.marched { ", marched" } else { "" }
         );
     }
@@ -79,7 +81,7 @@ pub fn write(job: &Job, part: &VerifyPart, all: &[Compared]) -> Outcome<String> 
     let Some(path) = &part.csv else {
         return Ok(String::new());
     };
-    let path = job.path(path);
+    let path = place(job, path)?;
     let mut text = String::from(
         "frequency_hz,amplitude,same,response_error,motion_error,above,distance,peak,peak_error,residual,periods,events,\
          marched\n",

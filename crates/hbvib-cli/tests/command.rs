@@ -110,6 +110,20 @@ fn the_ring_damper_has_the_peaks_of_the_library() {
     read_by_numpy(folder, branch.points(), branch.harmonics() + 1);
 }
 
+#[test]
+fn folders_of_outputs_are_made() {
+    let path = job("new_folders", |text| {
+        text.replace("tolerance = 1e-6", "harmonics = 1")
+            .replace("response.", "new/folder/response.")
+    });
+    let output = hbvib("run", &path);
+    assert!(output.status.success(), "{}", printed(&output.stderr));
+    for extension in ["csv", "npz", "svg"] {
+        let file = path.with_file_name("new/folder/response.").with_extension(extension);
+        assert!(file.is_file(), "{}", file.display());
+    }
+}
+
 /// The archive as numpy sees it.
 fn read_by_numpy(folder: &Path, points: usize, rows: usize) {
     let program = "print(*f['harmonics'].shape, abs(abs(f['harmonics'][:, 1, 0]) / f['amplitude'] - 1).max() < 1e-12, \
