@@ -1406,8 +1406,8 @@ typedef struct {
   /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
   int64_t max_harmonics;
   /// 0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a
-  /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact in
-  /// both cases; HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number
+  /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D, HBVIB_FRICTION_3D and
+  /// polynomials are exact in both cases; HBVIB_REGULARISED is always sampled, with 0 by a number
   /// that follows from H, and from the tolerance: a run that has too few samples begins again,
   /// progress included, with more.
   int64_t samples;
@@ -3439,9 +3439,8 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact in both cases;
-///             HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number that
-///             follows from H.
+///             least 2H + 1. HBVIB_CUBIC, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D are exact in both
+///             cases; HBVIB_REGULARISED is always sampled, with 0 by a number that follows from H.
 /// omega       angular frequency, >= 0; has an effect on laws that depend on velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.
@@ -3475,9 +3474,8 @@ hbvib_status hbvib_contact_evaluate(const hbvib_contact *c,
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact in both cases;
-///             HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number that
-///             follows from H.
+///             least 2H + 1. HBVIB_CUBIC, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D are exact in both
+///             cases; HBVIB_REGULARISED is always sampled, with 0 by a number that follows from H.
 /// omega       angular frequency, >= 0; has an effect on laws that depend on velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.

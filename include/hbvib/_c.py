@@ -13,341 +13,670 @@ __all__ = ["Status", "Storage", "Scalar", "Part", "MatrixKind", "GROUND", "Block
 
 
 class Status(enum.IntEnum):
-    """Values of hbvib_status."""
-    OK = 0  #: Done.
-    STOPPED_BY_CALLER = 1  #: The progress hook or the cancel flag asked to stop.
-    STOPPED_STEP_TOO_SMALL = 2  #: The step fell below step_min.
-    STOPPED_MAX_POINTS = 3  #: max_points was reached.
-    #: Some points need more harmonics for the tolerance than max_harmonics or the memory allows, or their error is
-    #: unknown; HBVIB_ERROR_ESTIMATE shows which.
+    """Values of hbvib_status.
+
+    OK   Done.
+    STOPPED_BY_CALLER   The progress hook or the cancel flag asked to stop.
+    STOPPED_STEP_TOO_SMALL   The step fell below step_min.
+    STOPPED_MAX_POINTS   max_points was reached.
+    STOPPED_MAX_HARMONICS   Some points need more harmonics for the tolerance than max_harmonics or the memory allows,
+        or their error is unknown; Field.ERROR_ESTIMATE shows which.
+    STOPPED_STALLED   Round-off kept the residual above tol_residual.
+    STOPPED_LEFT_RANGE   The branch turned back, left the range where it began and did not come back.
+    STOPPED_CALLBACK   A force callback failed; hbvib_last_error has the code that it returned.
+    STOPPED_UNBOUNDED   An undamped resonance lies in the range, where the response has no bound; the amplitude there is
+        what round-off makes of it.
+    STOPPED_NO_FORCE   No force acts on the model: its response is zero, or the static motion under preloads.
+    STOPPED_NO_PEAK   Batches only: the amplitude has no maximum within the range.
+    STOPPED_PEAK_VANISHED   Parameter responses only: the followed peak, or maximum of damping, met a minimum and
+        vanished.
+    E_NULL   A required pointer is NULL.
+    E_ARGUMENT   A value lies outside its range.
+    E_DIMENSION   A count or length does not fit.
+    E_NOT_FINITE   A number is NaN or infinite.
+    E_NOT_HERMITIAN   A matrix that was declared symmetric or Hermitian is not.
+    E_SINGULAR   A linear system has no unique solution.
+    E_NO_CONVERGENCE   An iteration did not converge.
+    E_STRUCT_SIZE   A struct was not filled by its _init function, or comes from another version.
+    E_CALLBACK   A callback failed or returned numbers that are not finite.
+    E_UNSUPPORTED   The requested combination is not provided.
+    E_OUT_OF_MEMORY   Memory could not be allocated.
+    E_NO_BOUNDED_SOLUTION   The problem has no bounded periodic solution.
+    E_HANDLE   A handle was not returned by this library, was freed, or is of another type.
+    E_BUSY   A running call uses the object.
+    E_INDEX   An index lies outside its range.
+    E_NOT_POSITIVE_DEFINITE   A matrix that must be positive definite is not.
+    E_INTERNAL   A defect of the library itself.
+
+    >>> import hbvib
+    >>> hbvib.Status(0)
+    <Status.OK: 0>
+    """
+    OK = 0
+    STOPPED_BY_CALLER = 1
+    STOPPED_STEP_TOO_SMALL = 2
+    STOPPED_MAX_POINTS = 3
     STOPPED_MAX_HARMONICS = 4
-    STOPPED_STALLED = 5  #: Round-off kept the residual above tol_residual.
-    STOPPED_LEFT_RANGE = 6  #: The branch turned back, left the range where it began and did not come back.
-    STOPPED_CALLBACK = 7  #: A force callback failed; hbvib_last_error has the code that it returned.
-    #: An undamped resonance lies in the range, where the response has no bound; the amplitude there is what round-off
-    #: makes of it.
+    STOPPED_STALLED = 5
+    STOPPED_LEFT_RANGE = 6
+    STOPPED_CALLBACK = 7
     STOPPED_UNBOUNDED = 8
-    STOPPED_NO_FORCE = 9  #: No force acts on the model: its response is zero, or the static motion under preloads.
-    STOPPED_NO_PEAK = 10  #: Batches only: the amplitude has no maximum within the range.
-    #: Parameter responses only: the followed peak, or maximum of damping, met a minimum and vanished.
+    STOPPED_NO_FORCE = 9
+    STOPPED_NO_PEAK = 10
     STOPPED_PEAK_VANISHED = 11
-    E_NULL = -1  #: A required pointer is NULL.
-    E_ARGUMENT = -2  #: A value lies outside its range.
-    E_DIMENSION = -3  #: A count or length does not fit.
-    E_NOT_FINITE = -4  #: A number is NaN or infinite.
-    E_NOT_HERMITIAN = -5  #: A matrix that was declared symmetric or Hermitian is not.
-    E_SINGULAR = -6  #: A linear system has no unique solution.
-    E_NO_CONVERGENCE = -7  #: An iteration did not converge.
-    E_STRUCT_SIZE = -8  #: A struct was not filled by its _init function, or comes from another version.
-    E_CALLBACK = -9  #: A callback failed or returned numbers that are not finite.
-    E_UNSUPPORTED = -10  #: The requested combination is not provided.
-    E_OUT_OF_MEMORY = -11  #: Memory could not be allocated.
-    E_NO_BOUNDED_SOLUTION = -12  #: The problem has no bounded periodic solution.
-    E_HANDLE = -13  #: A handle was not returned by this library, was freed, or is of another type.
-    E_BUSY = -14  #: A running call uses the object.
-    E_INDEX = -15  #: An index lies outside its range.
-    E_NOT_POSITIVE_DEFINITE = -16  #: A matrix that must be positive definite is not.
-    E_INTERNAL = -99  #: A defect of the library itself.
+    E_NULL = -1
+    E_ARGUMENT = -2
+    E_DIMENSION = -3
+    E_NOT_FINITE = -4
+    E_NOT_HERMITIAN = -5
+    E_SINGULAR = -6
+    E_NO_CONVERGENCE = -7
+    E_STRUCT_SIZE = -8
+    E_CALLBACK = -9
+    E_UNSUPPORTED = -10
+    E_OUT_OF_MEMORY = -11
+    E_NO_BOUNDED_SOLUTION = -12
+    E_HANDLE = -13
+    E_BUSY = -14
+    E_INDEX = -15
+    E_NOT_POSITIVE_DEFINITE = -16
+    E_INTERNAL = -99
 
 
 class Storage(enum.IntEnum):
-    """Layouts of a matrix view."""
-    COL_MAJOR = 0  #: Dense, column after column (Fortran, MATLAB).
-    ROW_MAJOR = 1  #: Dense, row after row (C, numpy).
-    CSC = 2  #: Compressed sparse columns; duplicates are summed.
+    """Layouts of a matrix view.
+
+    COL_MAJOR   Dense, column after column (Fortran, MATLAB).
+    ROW_MAJOR   Dense, row after row (C, numpy).
+    CSC   Compressed sparse columns; duplicates are summed.
+
+    >>> import hbvib
+    >>> hbvib.Storage(0)
+    <Storage.COL_MAJOR: 0>
+    """
+    COL_MAJOR = 0
+    ROW_MAJOR = 1
+    CSC = 2
 
 
 class Scalar(enum.IntEnum):
-    """Kinds of numbers in a view."""
-    REAL = 0  #: One double each.
-    COMPLEX = 1  #: Two doubles each, (re, im).
+    """Kinds of numbers in a view.
+
+    REAL   One double each.
+    COMPLEX   Two doubles each, (re, im).
+
+    >>> import hbvib
+    >>> hbvib.Scalar(0)
+    <Scalar.REAL: 0>
+    """
+    REAL = 0
+    COMPLEX = 1
 
 
 class Part(enum.IntEnum):
-    """The part of a matrix that is given, and the symmetry that the caller promises."""
-    FULL = 0  #: All of a symmetric or Hermitian matrix; the symmetry is checked.
-    LOWER = 1  #: The lower triangle of a symmetric or Hermitian matrix; the upper one is not read.
-    UPPER = 2  #: The upper triangle of a symmetric or Hermitian matrix; the lower one is not read.
-    GENERAL = 3  #: All of any matrix.
-    SYMMETRIC = 4  #: All of a matrix with A = A^T, real or complex; the symmetry is checked.
-    SYMMETRIC_LOWER = 5  #: The lower triangle of a matrix with A = A^T, real or complex; the upper one is not read.
-    SYMMETRIC_UPPER = 6  #: The upper triangle of a matrix with A = A^T, real or complex; the lower one is not read.
+    """The part of a matrix that is given, and the symmetry that the caller promises.
+
+    FULL   All of a symmetric or Hermitian matrix; the symmetry is checked.
+    LOWER   The lower triangle of a symmetric or Hermitian matrix; the upper one is not read.
+    UPPER   The upper triangle of a symmetric or Hermitian matrix; the lower one is not read.
+    GENERAL   All of any matrix.
+    SYMMETRIC   All of a matrix with A = A^T, real or complex; the symmetry is checked.
+    SYMMETRIC_LOWER   The lower triangle of a matrix with A = A^T, real or complex; the upper one is not read.
+    SYMMETRIC_UPPER   The upper triangle of a matrix with A = A^T, real or complex; the lower one is not read.
+
+    >>> import hbvib
+    >>> hbvib.Part(0)
+    <Part.FULL: 0>
+    """
+    FULL = 0
+    LOWER = 1
+    UPPER = 2
+    GENERAL = 3
+    SYMMETRIC = 4
+    SYMMETRIC_LOWER = 5
+    SYMMETRIC_UPPER = 6
 
 
 class MatrixKind(enum.IntEnum):
-    """The matrices of a structure."""
-    MASS = 0  #: M
-    DAMPING = 1  #: C
-    STIFFNESS = 2  #: K
-    STRUCTURAL = 3  #: D of the structural damping iD in harmonics above 0; positive dissipates.
-    GYROSCOPIC = 4  #: G of the gyroscopic forces Omega G x', skew-symmetric: G = -G^T.
-    STIFFNESS_SPEED2 = 5  #: K1 of the stiffness K + Omega^2 K1 at speed; that of softening is negative.
+    """The matrices of a structure.
+
+    MASS   M
+    DAMPING   C
+    STIFFNESS   K
+    STRUCTURAL   D of the structural damping iD in harmonics above 0; positive dissipates.
+    GYROSCOPIC   G of the gyroscopic forces Omega G x', skew-symmetric: G = -G^T.
+    STIFFNESS_SPEED2   K1 of the stiffness K + Omega^2 K1 at speed; that of softening is negative.
+
+    >>> import hbvib
+    >>> hbvib.MatrixKind(0)
+    <MatrixKind.MASS: 0>
+    """
+    MASS = 0
+    DAMPING = 1
+    STIFFNESS = 2
+    STRUCTURAL = 3
+    GYROSCOPIC = 4
+    STIFFNESS_SPEED2 = 5
 
 
 GROUND = -1  #: The ground, which does not move.
 
 
 class Block(enum.IntEnum):
-    """Blocks of a matrix, by the sectors of their columns."""
-    OWN = 0  #: Rows and columns of the same sector: all of a plain structure.
-    NEXT = 1  #: Columns of the next sector.
-    PREVIOUS = 2  #: Columns of the previous sector, where it was given: else the transpose of HBVIB_BLOCK_NEXT.
+    """Blocks of a matrix, by the sectors of their columns.
+
+    OWN   Rows and columns of the same sector: all of a plain structure.
+    NEXT   Columns of the next sector.
+    PREVIOUS   Columns of the previous sector, where it was given: else the transpose of Block.NEXT.
+
+    >>> import hbvib
+    >>> hbvib.Block(0)
+    <Block.OWN: 0>
+    """
+    OWN = 0
+    NEXT = 1
+    PREVIOUS = 2
 
 
 class AeroForm(enum.IntEnum):
-    """Motion that aerodynamic forces follow."""
-    DISPLACEMENT = 0  #: Displacements: coefficients are forces per displacement.
-    VELOCITY = 1  #: Velocities: coefficients are forces per velocity.
+    """Motion that aerodynamic forces follow.
+
+    DISPLACEMENT   Displacements: coefficients are forces per displacement.
+    VELOCITY   Velocities: coefficients are forces per velocity.
+
+    >>> import hbvib
+    >>> hbvib.AeroForm(0)
+    <AeroForm.DISPLACEMENT: 0>
+    """
+    DISPLACEMENT = 0
+    VELOCITY = 1
 
 
 class SectorFrame(enum.IntEnum):
-    """Frame of the degrees of freedom of a sector with faces."""
-    CARTESIAN = 0  #: x, y and z of each node, and rotations about them: the axes of both faces are equal.
-    CYLINDRICAL = 1  #: Any frame that turns with the sector, as radius, circumference and axis at each node.
+    """Frame of the degrees of freedom of a sector with faces.
+
+    CARTESIAN   x, y and z of each node, and rotations about them: the axes of both faces are equal.
+    CYLINDRICAL   Any frame that turns with the sector, as radius, circumference and axis at each node.
+
+    >>> import hbvib
+    >>> hbvib.SectorFrame(0)
+    <SectorFrame.CARTESIAN: 0>
+    """
+    CARTESIAN = 0
+    CYLINDRICAL = 1
 
 
 class ContactKind(enum.IntEnum):
-    """Contact laws."""
-    #: Elastic Coulomb friction with constant normal load in one direction: a spring kt in series with a slider of limit
-    #: mu * preload.
+    """Contact laws.
+
+    JENKINS   Elastic Coulomb friction with constant normal load in one direction: a spring kt in series with a slider
+        of limit mu * preload.
+    FRICTION_2D   Elastic Coulomb friction in one tangential direction, t1, under the normal load N = max(preload + kn *
+        (closing - gap), 0), closing = x_b - x_a along n: a spring kt in series with a slider of limit mu * N.
+    FRICTION_3D   The same in the plane of t1 and t2, where slip follows the direction of the force.
+    UNILATERAL   Spring along the normal that opens: it pushes the sides apart with N = max(preload + kn * (closing -
+        gap), 0), where closing = x_b - x_a along n.
+    CUBIC   Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
+    REGULARISED   Smoothed Coulomb friction in one direction: f = mu * preload * tanh(y' / velocity).
+    TABLE   Read back only (hbvib_model_contact): a spring by hbvib_model_add_table.
+    POLYNOMIAL   Read back only: springs and dampers by hbvib_model_add_spring_damper, _add_polynomial or
+        _add_stiffness_tensors.
+    CALLER_LAW   Read back only: a force of the caller, by hbvib_model_add_user_force.
+
+    >>> import hbvib
+    >>> hbvib.ContactKind(1)
+    <ContactKind.JENKINS: 1>
+    """
     JENKINS = 1
-    #: Elastic Coulomb friction in one tangential direction, t1, under the normal load N = max(preload + kn * (closing -
-    #: gap), 0), closing = x_b - x_a along n: a spring kt in series with a slider of limit mu * N.
     FRICTION_2D = 2
-    FRICTION_3D = 3  #: The same in the plane of t1 and t2, where slip follows the direction of the force.
-    #: Spring along the normal that opens: it pushes the sides apart with N = max(preload + kn * (closing - gap), 0),
-    #: where closing = x_b - x_a along n.
+    FRICTION_3D = 3
     UNILATERAL = 4
-    CUBIC = 5  #: Spring with a cubic term in one direction: f = kt * y + cubic * y^3.
-    REGULARISED = 6  #: Smoothed Coulomb friction in one direction: f = mu * preload * tanh(y' / velocity).
-    TABLE = 7  #: Read back only (hbvib_model_contact): a spring by hbvib_model_add_table.
-    #: Read back only: springs and dampers by hbvib_model_add_spring_damper, _add_polynomial or _add_stiffness_tensors.
+    CUBIC = 5
+    REGULARISED = 6
+    TABLE = 7
     POLYNOMIAL = 8
-    CALLER_LAW = 9  #: Read back only: a force of the caller, by hbvib_model_add_user_force.
+    CALLER_LAW = 9
 
 
 class Tangent(enum.IntEnum):
-    """Derivatives that a force callback writes."""
-    DF_DU = 0  #: df_du
-    DF_DV = 1  #: df_dv
-    DF_DZ = 2  #: df_dz
-    DZ_DZ = 3  #: dz_dz
-    DZ_DU_BEFORE = 4  #: dz_du_before
-    DZ_DU = 5  #: dz_du
-    DZ_DV_BEFORE = 6  #: dz_dv_before
-    DZ_DV = 7  #: dz_dv
-    DZ_DOMEGA = 8  #: dz_domega
+    """Derivatives that a force callback writes.
+
+    DF_DU   df_du
+    DF_DV   df_dv
+    DF_DZ   df_dz
+    DZ_DZ   dz_dz
+    DZ_DU_BEFORE   dz_du_before
+    DZ_DU   dz_du
+    DZ_DV_BEFORE   dz_dv_before
+    DZ_DV   dz_dv
+    DZ_DOMEGA   dz_domega
+
+    >>> import hbvib
+    >>> hbvib.Tangent(0)
+    <Tangent.DF_DU: 0>
+    """
+    DF_DU = 0
+    DF_DV = 1
+    DF_DZ = 2
+    DZ_DZ = 3
+    DZ_DU_BEFORE = 4
+    DZ_DU = 5
+    DZ_DV_BEFORE = 6
+    DZ_DV = 7
+    DZ_DOMEGA = 8
 
 
 class Flexibility(enum.IntEnum):
-    """Ways to the flexibility of the structure at its contacts."""
-    AUTOMATIC = 0  #: A basis for large structures where it holds, factors otherwise.
-    #: Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that is needed.
+    """Ways to the flexibility of the structure at its contacts.
+
+    AUTOMATIC   A basis for large structures where it holds, factors otherwise.
+    DIRECT   Complex LU factors of the dynamic stiffness of all degrees of freedom, at each frequency that is needed.
+    KRYLOV   A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is kept with the
+        model until its matrices change; hbvib_branch_reduction has its certificate.
+
+    >>> import hbvib
+    >>> hbvib.Flexibility(0)
+    <Flexibility.AUTOMATIC: 0>
+    """
+    AUTOMATIC = 0
     DIRECT = 1
-    #: A basis of few motions per nodal diameter, from one real or Hermitian factorisation, which is kept with the model
-    #: until its matrices change; hbvib_branch_reduction has its certificate.
     KRYLOV = 2
 
 
 class Stability(enum.IntEnum):
-    """Stability along the curve of a forced response."""
-    NONE = 0  #: None is computed.
-    WAVE = 1  #: Perturbations of the block that contains the wave itself, as HBVIB_WAVES_WAVE.
-    WHEEL = 2  #: All perturbations of the wheel, as HBVIB_WAVES_WHEEL.
+    """Stability along the curve of a forced response.
+
+    NONE   None is computed.
+    WAVE   Perturbations of the block that contains the wave itself, as Waves.WAVE.
+    WHEEL   All perturbations of the wheel, as Waves.WHEEL.
+
+    >>> import hbvib
+    >>> hbvib.Stability(0)
+    <Stability.NONE: 0>
+    """
+    NONE = 0
+    WAVE = 1
+    WHEEL = 2
 
 
 class LogLevel(enum.IntEnum):
-    """Levels of log lines."""
-    NONE = 0  #: No line at all.
-    WARN = 1  #: Warnings.
-    INFO = 2  #: Steps of the method.
-    DEBUG = 3  #: Detail for debugging.
+    """Levels of log lines.
+
+    NONE   No line at all.
+    WARN   Warnings.
+    INFO   Steps of the method.
+    DEBUG   Detail for debugging.
+
+    >>> import hbvib
+    >>> hbvib.LogLevel(0)
+    <LogLevel.NONE: 0>
+    """
+    NONE = 0
+    WARN = 1
+    INFO = 2
+    DEBUG = 3
 
 
 class Phase(enum.IntEnum):
-    """Phases of a running call."""
-    SETUP = 0  #: Checks of the model and its assembly.
-    MODES = 1  #: Natural frequencies and mode shapes.
-    CONDENSATION = 2  #: Condensation onto the contacts and tables of their flexibility.
-    FIRST_POINT = 3  #: Search for the first point of a branch.
-    CONTINUATION = 4  #: Points of a branch, one after the other.
-    ESTIMATE = 5  #: Error estimate of a point.
-    TIME_INTEGRATION = 6  #: Integration in time; the share is that of a lapse.
-    RESULTS = 7  #: Harmonics, energies and other results of solved motions.
-    FACTORISATION = 8  #: One factorisation of a sparse matrix, which cannot be stopped, begins.
+    """Phases of a running call.
+
+    SETUP   Checks of the model and its assembly.
+    MODES   Natural frequencies and mode shapes.
+    CONDENSATION   Condensation onto the contacts and tables of their flexibility.
+    FIRST_POINT   Search for the first point of a branch.
+    CONTINUATION   Points of a branch, one after the other.
+    ESTIMATE   Error estimate of a point.
+    TIME_INTEGRATION   Integration in time; the share is that of a lapse.
+    RESULTS   Harmonics, energies and other results of solved motions.
+    FACTORISATION   One factorisation of a sparse matrix, which cannot be stopped, begins.
+
+    >>> import hbvib
+    >>> hbvib.Phase(0)
+    <Phase.SETUP: 0>
+    """
+    SETUP = 0
+    MODES = 1
+    CONDENSATION = 2
+    FIRST_POINT = 3
+    CONTINUATION = 4
+    ESTIMATE = 5
+    TIME_INTEGRATION = 6
+    RESULTS = 7
+    FACTORISATION = 8
 
 
 class Field(enum.IntEnum):
-    """Results that a branch holds for each point of the curve."""
-    OMEGA = 0  #: Angular frequency.
-    AMPLITUDE = 1  #: Peak amplitude of the fundamental of the response degree of freedom.
-    DAMPING_RATIO = 2  #: Nonlinear modes only: damping ratio D.
-    #: Nonlinear modes only: T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the mean kinetic energy.
+    """Results that a branch holds for each point of the curve.
+
+    OMEGA   Angular frequency.
+    AMPLITUDE   Peak amplitude of the fundamental of the response degree of freedom.
+    DAMPING_RATIO   Nonlinear modes only: damping ratio D.
+    ENERGY   Nonlinear modes only: T, sum over h > 0 of (h omega)^2 X_h^H M_h X_h / 2, which is twice the mean kinetic
+        energy.
+    DISSIPATION   Nonlinear modes only: work of friction per cycle.
+    RESIDUAL   Relative residual.
+    NEWTON_ITERATIONS   Newton iterations.
+    ERROR_ESTIMATE   Estimated relative error of the complex fundamental of the response degree of freedom (in a
+        nonlinear mode: of the frequency) by the harmonics left out.
+    HARMONICS_USED   Highest harmonic number carried.
+    SLIP_FRACTION   Share of the period that each contact slips: points x contacts.
+    LOG10_AMPLITUDE   Nonlinear modes only: log10 of the amplitude, the parameter.
+    MODAL_AMPLITUDE   Nonlinear modes only: modal amplitude sqrt(X_1^H M X_1).
+    STRUCTURAL_LOSS   Nonlinear modes only: work of the structure's damping per cycle.
+    MODAL_ASSURANCE   Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1 of the
+        point before; 1 for the first.
+    SAMPLING_ERROR   Aliasing check of laws that are sampled: relative change of their force harmonics with half the
+        samples (twice as many where half are too few).
+    DAMPING_ERROR_ESTIMATE   Nonlinear modes only: estimated absolute error of the damping ratio, NaN as
+        Field.ERROR_ESTIMATE.
+    FLOQUET_RADIUS   Forced responses with the solver option `stability` only: largest modulus of the ordinary Floquet
+        multipliers of the motion.
+    UNSTABLE_DIRECTIONS   The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
+    PARAMETER_VALUE   Parameter responses only: value of the parameter.
+    D_AMPLITUDE   Parameter responses only: total derivative of the amplitude by the parameter, NaN where there is none,
+        and in those of a mode.
+    D_DAMPING   Parameter responses of the largest damping ratio of a mode only: total derivative of that ratio by the
+        parameter.
+
+    >>> import hbvib
+    >>> hbvib.Field(0)
+    <Field.OMEGA: 0>
+    """
+    OMEGA = 0
+    AMPLITUDE = 1
+    DAMPING_RATIO = 2
     ENERGY = 3
-    DISSIPATION = 4  #: Nonlinear modes only: work of friction per cycle.
-    RESIDUAL = 5  #: Relative residual.
-    NEWTON_ITERATIONS = 6  #: Newton iterations.
-    #: Estimated relative error of the complex fundamental of the response degree of freedom (in a nonlinear mode: of
-    #: the frequency) by the harmonics left out.
+    DISSIPATION = 4
+    RESIDUAL = 5
+    NEWTON_ITERATIONS = 6
     ERROR_ESTIMATE = 7
-    HARMONICS_USED = 8  #: Highest harmonic number carried.
-    SLIP_FRACTION = 9  #: Share of the period that each contact slips: points x contacts.
-    LOG10_AMPLITUDE = 10  #: Nonlinear modes only: log10 of the amplitude, the parameter.
-    MODAL_AMPLITUDE = 11  #: Nonlinear modes only: modal amplitude sqrt(X_1^H M X_1).
-    STRUCTURAL_LOSS = 12  #: Nonlinear modes only: work of the structure's damping per cycle.
-    #: Nonlinear modes only: |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1 of the point before; 1
-    #: for the first.
+    HARMONICS_USED = 8
+    SLIP_FRACTION = 9
+    LOG10_AMPLITUDE = 10
+    MODAL_AMPLITUDE = 11
+    STRUCTURAL_LOSS = 12
     MODAL_ASSURANCE = 13
-    #: Aliasing check of laws that are sampled: relative change of their force harmonics with half the samples (twice as
-    #: many where half are too few).
     SAMPLING_ERROR = 14
-    #: Nonlinear modes only: estimated absolute error of the damping ratio, NaN as HBVIB_ERROR_ESTIMATE.
     DAMPING_ERROR_ESTIMATE = 15
-    #: Forced responses with the solver option `stability` only: largest modulus of the ordinary Floquet multipliers of
-    #: the motion.
     FLOQUET_RADIUS = 16
-    #: The same: number of ordinary multipliers outside the unit circle; 0 for a stable motion.
     UNSTABLE_DIRECTIONS = 17
-    PARAMETER_VALUE = 18  #: Parameter responses only: value of the parameter.
-    #: Parameter responses only: total derivative of the amplitude by the parameter, NaN where there is none, and in
-    #: those of a mode.
+    PARAMETER_VALUE = 18
     D_AMPLITUDE = 19
-    #: Parameter responses of the largest damping ratio of a mode only: total derivative of that ratio by the parameter.
     D_DAMPING = 20
 
 
 class State(enum.IntEnum):
-    """State of a contact at one time."""
-    STICK = 0  #: It sticks, or presses.
-    SLIP = 1  #: It slips: the force is at the slip limit.
-    OPEN = 2  #: It is open, without force.
+    """State of a contact at one time.
+
+    STICK   It sticks, or presses.
+    SLIP   It slips: the force is at the slip limit.
+    OPEN   It is open, without force.
+
+    >>> import hbvib
+    >>> hbvib.State(0)
+    <State.STICK: 0>
+    """
+    STICK = 0
+    SLIP = 1
+    OPEN = 2
 
 
 class ContactState(enum.IntEnum):
-    """State of the contacts in a linear analysis."""
-    FREE = 0  #: Without force.
-    #: Linear springs, as at small motion: kt of contacts that stick and kn of contacts that press at rest, the slopes
-    #: of tables and polynomials; HBVIB_REGULARISED has none.
+    """State of the contacts in a linear analysis.
+
+    FREE   Without force.
+    STUCK   Linear springs, as at small motion: kt of contacts that stick and kn of contacts that press at rest, the
+        slopes of tables and polynomials; ContactKind.REGULARISED has none.
+    STATIC   Linear springs of their tangent stiffness at the static state under constant forces and preload; as stuck
+        where nothing loads the model.
+
+    >>> import hbvib
+    >>> hbvib.ContactState(0)
+    <ContactState.FREE: 0>
+    """
+    FREE = 0
     STUCK = 1
-    #: Linear springs of their tangent stiffness at the static state under constant forces and preload; as stuck where
-    #: nothing loads the model.
     STATIC = 2
 
 
 class DampingForm(enum.IntEnum):
-    """Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio."""
-    MASS = 0  #: The term -2 D omega M x'.
-    #: The term -zeta K x', D = zeta omega / 2, K the structure's own stiffness without springs and contacts.
+    """Artificial damping that makes the motion of a damped structure periodic; D is its damping ratio.
+
+    MASS   The term -2 D omega M x'.
+    STIFFNESS   The term -zeta K x', D = zeta omega / 2, K the structure's own stiffness without springs and contacts.
+
+    >>> import hbvib
+    >>> hbvib.DampingForm(0)
+    <DampingForm.MASS: 0>
+    """
+    MASS = 0
     STIFFNESS = 1
 
 
 class ModeMultiple(enum.IntEnum):
-    """How the linear mode was chosen among those of one frequency."""
-    SINGLE = 0  #: The frequency is simple: there was nothing to choose.
-    #: Two real modes make a travelling wave (phi_1 + i phi_2) / sqrt(2), or the wave in the opposite direction.
+    """How the linear mode was chosen among those of one frequency.
+
+    SINGLE   The frequency is simple: there was nothing to choose.
+    TRAVELLING_WAVE   Two real modes make a travelling wave (phi_1 + i phi_2) / sqrt(2), or the wave in the opposite
+        direction.
+    PROJECTED   The mass-weighted projection of the given shape.
+    FIRST   The first mode found; another machine may find another one.
+
+    >>> import hbvib
+    >>> hbvib.ModeMultiple(0)
+    <ModeMultiple.SINGLE: 0>
+    """
+    SINGLE = 0
     TRAVELLING_WAVE = 1
-    PROJECTED = 2  #: The mass-weighted projection of the given shape.
-    FIRST = 3  #: The first mode found; another machine may find another one.
+    PROJECTED = 2
+    FIRST = 3
 
 
 class SynthesisFlag(enum.IntFlag):
-    """Reasons to doubt a synthesised resonance: bits of a sum."""
-    VALID = 0  #: No reason for doubt was found, and the computed resonance has the same amplitude within 1 %.
-    ANOTHER_MODE = 1  #: Another mode lies within the half-power bandwidth, or shares the frequency of the linear mode.
-    #: Higher harmonics hold more than 1 % of the kinetic energy, or the point lies where the amplitude falls along the
-    #: branch, beyond a fold.
+    """Reasons to doubt a synthesised resonance: bits of a sum.
+
+    VALID   No reason for doubt was found, and the computed resonance has the same amplitude within 1 %.
+    ANOTHER_MODE   Another mode lies within the half-power bandwidth, or shares the frequency of the linear mode.
+    INTERNAL_RESONANCE   Higher harmonics hold more than 1 % of the kinetic energy, or the point lies where the
+        amplitude falls along the branch, beyond a fold.
+    FALLING   The amplitude falls as the force rises: a detached response begins here.
+    INACCURATE   The amplitude differs by 1 % or more from that of the computed resonance next to it, or no such
+        resonance was found.
+
+    >>> import hbvib
+    >>> hbvib.SynthesisFlag(0)
+    <SynthesisFlag.VALID: 0>
+    """
+    VALID = 0
+    ANOTHER_MODE = 1
     INTERNAL_RESONANCE = 2
-    FALLING = 4  #: The amplitude falls as the force rises: a detached response begins here.
-    #: The amplitude differs by 1 % or more from that of the computed resonance next to it, or no such resonance was
-    #: found.
+    FALLING = 4
     INACCURATE = 8
 
 
 class SteadyMethod(enum.IntEnum):
-    """Ways of finding a steady state in time."""
-    SHOOTING = 0  #: Newton's method on the map over a period, with marching where it fails.
-    MARCHING = 1  #: Period after period until the motion repeats.
+    """Ways of finding a steady state in time.
+
+    SHOOTING   Newton's method on the map over a period, with marching where it fails.
+    MARCHING   Period after period until the motion repeats.
+
+    >>> import hbvib
+    >>> hbvib.SteadyMethod(0)
+    <SteadyMethod.SHOOTING: 0>
+    """
+    SHOOTING = 0
+    MARCHING = 1
 
 
 class Waves(enum.IntEnum):
-    """Perturbations whose multipliers are computed."""
-    WAVE = 0  #: The block of perturbations that contains the wave itself.
-    WHEEL = 1  #: All perturbations of the wheel.
+    """Perturbations whose multipliers are computed.
+
+    WAVE   The block of perturbations that contains the wave itself.
+    WHEEL   All perturbations of the wheel.
+
+    >>> import hbvib
+    >>> hbvib.Waves(0)
+    <Waves.WAVE: 0>
+    """
+    WAVE = 0
+    WHEEL = 1
 
 
 class MultiplierClass(enum.IntEnum):
-    """Reasons of multipliers."""
-    ORDINARY = 0  #: Decides about stability.
-    MEMORY = 1  #: Zero: a slider that slips forgets its place.
-    NEUTRAL_STUCK = 2  #: One: the slider of a contact that always sticks stays where it is put.
-    NEUTRAL_RIGID = 3  #: One: a rigid motion takes all sliders along.
-    TRIVIAL = 4  #: One: a motion that no force drives may begin at any time.
+    """Reasons of multipliers.
+
+    ORDINARY   Decides about stability.
+    MEMORY   Zero: a slider that slips forgets its place.
+    NEUTRAL_STUCK   One: the slider of a contact that always sticks stays where it is put.
+    NEUTRAL_RIGID   One: a rigid motion takes all sliders along.
+    TRIVIAL   One: a motion that no force drives may begin at any time.
+
+    >>> import hbvib
+    >>> hbvib.MultiplierClass(0)
+    <MultiplierClass.ORDINARY: 0>
+    """
+    ORDINARY = 0
+    MEMORY = 1
+    NEUTRAL_STUCK = 2
+    NEUTRAL_RIGID = 3
+    TRIVIAL = 4
 
 
 class Grazing(enum.IntEnum):
-    """Events that a motion touches without passing them."""
-    NONE = 0  #: None.
-    SLIP_LIMIT = 1  #: The force of friction touches its limit.
-    LANDING = 2  #: The contact closes without normal speed.
+    """Events that a motion touches without passing them.
+
+    NONE   None.
+    SLIP_LIMIT   The force of friction touches its limit.
+    LANDING   The contact closes without normal speed.
+
+    >>> import hbvib
+    >>> hbvib.Grazing(0)
+    <Grazing.NONE: 0>
+    """
+    NONE = 0
+    SLIP_LIMIT = 1
+    LANDING = 2
 
 
 class Bifurcation(enum.IntEnum):
-    """Kinds of bifurcations."""
-    FOLD = 0  #: The branch turns in frequency; a multiplier passes 1.
-    PERIOD_DOUBLING = 1  #: A multiplier passes -1: a motion of twice the period branches off.
-    #: A pair of conjugate multipliers passes the unit circle: a motion with a second frequency branches off.
+    """Kinds of bifurcations.
+
+    FOLD   The branch turns in frequency; a multiplier passes 1.
+    PERIOD_DOUBLING   A multiplier passes -1: a motion of twice the period branches off.
+    NEIMARK_SACKER   A pair of conjugate multipliers passes the unit circle: a motion with a second frequency branches
+        off.
+    BRANCH_POINT   A multiplier passes 1 where the branch does not turn: another motion of the same period branches off.
+
+    >>> import hbvib
+    >>> hbvib.Bifurcation(0)
+    <Bifurcation.FOLD: 0>
+    """
+    FOLD = 0
+    PERIOD_DOUBLING = 1
     NEIMARK_SACKER = 2
-    #: A multiplier passes 1 where the branch does not turn: another motion of the same period branches off.
     BRANCH_POINT = 3
 
 
 class ParameterKind(enum.IntEnum):
-    """Kinds of parameters."""
-    FORCE = 0  #: A factor on all forces, 1 at present.
-    PRELOAD = 1  #: Normal load of a contact at rest.
-    MU = 2  #: Friction coefficient of a contact.
-    KT = 3  #: Stiffness kt of a contact.
-    KN = 4  #: Normal stiffness of a contact.
-    GAP = 5  #: Gap of a contact.
-    MASS = 6  #: The mass matrix.
-    DAMPING = 7  #: The damping matrix.
-    STIFFNESS = 8  #: The stiffness matrix of the structure, without springs and contacts.
-    SPEED = 9  #: The fixed speed of rotation Omega.
+    """Kinds of parameters.
+
+    FORCE   A factor on all forces, 1 at present.
+    PRELOAD   Normal load of a contact at rest.
+    MU   Friction coefficient of a contact.
+    KT   Stiffness kt of a contact.
+    KN   Normal stiffness of a contact.
+    GAP   Gap of a contact.
+    MASS   The mass matrix.
+    DAMPING   The damping matrix.
+    STIFFNESS   The stiffness matrix of the structure, without springs and contacts.
+    SPEED   The fixed speed of rotation Omega.
+
+    >>> import hbvib
+    >>> hbvib.ParameterKind(0)
+    <ParameterKind.FORCE: 0>
+    """
+    FORCE = 0
+    PRELOAD = 1
+    MU = 2
+    KT = 3
+    KN = 4
+    GAP = 5
+    MASS = 6
+    DAMPING = 7
+    STIFFNESS = 8
+    SPEED = 9
 
 
 class Scaling(enum.IntEnum):
-    """How a parameter changes a matrix."""
-    #: The coefficient, 0 at present, of a direction that is added to the matrix; in a cyclic model to the block of the
-    #: sector itself.
+    """How a parameter changes a matrix.
+
+    ADDITIVE   The coefficient, 0 at present, of a direction that is added to the matrix; in a cyclic model to the block
+        of the sector itself.
+    FACTOR   A factor, 1 at present, on the whole matrix with its couplings.
+
+    >>> import hbvib
+    >>> hbvib.Scaling(0)
+    <Scaling.ADDITIVE: 0>
+    """
     ADDITIVE = 0
-    FACTOR = 1  #: A factor, 1 at present, on the whole matrix with its couplings.
+    FACTOR = 1
 
 
 class Quantity(enum.IntEnum):
-    """Results that may be differentiated."""
-    AMPLITUDE = 0  #: Amplitude of a forced response at a fixed frequency.
-    PEAK_AMPLITUDE = 1  #: Amplitude of a peak, which moves with the parameter.
-    PEAK_OMEGA = 2  #: Angular frequency of a peak.
-    MODE_OMEGA = 3  #: Angular frequency of a nonlinear mode at a fixed amplitude.
-    #: Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of the largest damping
-    #: ratio.
+    """Results that may be differentiated.
+
+    AMPLITUDE   Amplitude of a forced response at a fixed frequency.
+    PEAK_AMPLITUDE   Amplitude of a peak, which moves with the parameter.
+    PEAK_OMEGA   Angular frequency of a peak.
+    MODE_OMEGA   Angular frequency of a nonlinear mode at a fixed amplitude.
+    MODE_DAMPING   Damping ratio of a nonlinear mode at a fixed amplitude; at its maximum also the derivative of the
+        largest damping ratio.
+
+    >>> import hbvib
+    >>> hbvib.Quantity(0)
+    <Quantity.AMPLITUDE: 0>
+    """
+    AMPLITUDE = 0
+    PEAK_AMPLITUDE = 1
+    PEAK_OMEGA = 2
+    MODE_OMEGA = 3
     MODE_DAMPING = 4
 
 
 class Derivative(enum.IntEnum):
-    """Reasons of derivatives."""
-    EXISTS = 0  #: The derivative exists.
-    ONSET_OF_SLIP = 1  #: NaN: a contact is at the onset of slip, where the derivatives on the two sides differ.
-    ONE_SIDED = 2  #: NaN: the constant is 0 and may not fall, so that a derivative exists on one side only.
-    FOLD = 3  #: NaN: the point is a fold, where the result changes infinitely fast.
+    """Reasons of derivatives.
+
+    EXISTS   The derivative exists.
+    ONSET_OF_SLIP   NaN: a contact is at the onset of slip, where the derivatives on the two sides differ.
+    ONE_SIDED   NaN: the constant is 0 and may not fall, so that a derivative exists on one side only.
+    FOLD   NaN: the point is a fold, where the result changes infinitely fast.
+
+    >>> import hbvib
+    >>> hbvib.Derivative(0)
+    <Derivative.EXISTS: 0>
+    """
+    EXISTS = 0
+    ONSET_OF_SLIP = 1
+    ONE_SIDED = 2
+    FOLD = 3
 
 
 class Follow(enum.IntEnum):
-    """Result that a parameter response follows."""
-    OMEGA = 0  #: The response at a fixed frequency.
-    PEAK = 1  #: A peak of the response.
-    FOLD = 2  #: A fold of the response over the frequency.
-    MODE_MAX_DAMPING = 3  #: The largest damping ratio along a nonlinear mode.
+    """Result that a parameter response follows.
+
+    OMEGA   The response at a fixed frequency.
+    PEAK   A peak of the response.
+    FOLD   A fold of the response over the frequency.
+    MODE_MAX_DAMPING   The largest damping ratio along a nonlinear mode.
+
+    >>> import hbvib
+    >>> hbvib.Follow(0)
+    <Follow.OMEGA: 0>
+    """
+    OMEGA = 0
+    PEAK = 1
+    FOLD = 2
+    MODE_MAX_DAMPING = 3
 
 _VERSION = (0, 1)  # of the library that this module was written for
 

@@ -3,12 +3,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple, Optional
 
-from ._c import ContactKind, Status
+from ._c import Status
+from ._model_parts import AeroEntries, Contact, Forces, Springs
 from ._types import TimeInfo, VerificationInfo
 
 if TYPE_CHECKING:
-    from typing import Any
-
     import numpy as np
     from numpy.typing import NDArray
 
@@ -26,7 +25,17 @@ __all__ = [
 
 class Progress(NamedTuple):
     """State of a solve at an accepted point, as a progress callback gets it. `parameter` is the angular
-    frequency, in a nonlinear mode log10 of the amplitude; `fraction_done` runs from 0 to 1."""
+    frequency, in a nonlinear mode log10 of the amplitude; `fraction_done` runs from 0 to 1.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> def shown(now: hbvib.Progress) -> bool:
+    ...     return now.parameter > 1.2  # True stops the solve
+    >>> len(model.forced_response((0.8, 1.6), progress=shown)) < len(model.forced_response((0.8, 1.6)))
+    True
+    """
     point: int
     parameter: float
     amplitude: float
@@ -36,55 +45,28 @@ class Progress(NamedTuple):
     fraction_done: float
 
 
-class Contact(NamedTuple):
-    """A contact of a model, read back.
-
-    kind            ContactKind; TABLE, POLYNOMIAL and CALLER_LAW have no constants.
-    a, b            degrees of freedom of the sides along t1, t2 and n, or GROUND.
-    sector_offset   side b lies in sector s + sector_offset.
-    constants       kt, kn, mu, preload, gap, cubic, velocity, normal and tangent, those that are not zero.
-    per_speed2      the normal load is preload + per_speed2 Omega^2 at the speed of rotation Omega."""
-    kind: ContactKind
-    a: tuple[int, int, int]
-    b: tuple[int, int, int]
-    sector_offset: int
-    constants: dict[str, Any]
-    per_speed2: float
-
-
-class Forces(NamedTuple):
-    """Forces of a model: degree of freedom, harmonic, complex peak value; over omega^2 where `unbalance` is True."""
-    dof: IntArray
-    harmonic: IntArray
-    force: ComplexArray
-    unbalance: NDArray[np.bool_]
-
-
-class AeroEntries(NamedTuple):
-    """Aerodynamic forces of a model: degrees of freedom of force and motion, sector of the motion, complex coefficient."""
-    dof_force: IntArray
-    dof_motion: IntArray
-    offset: IntArray
-    coefficient: ComplexArray
-
-
-class Springs(NamedTuple):
-    """Linear springs of a model: sides a and b (GROUND is -1), sector_offset, stiffness."""
-    a: IntArray
-    b: IntArray
-    sector_offset: IntArray
-    stiffness: FloatArray
-
-
 class Modes(NamedTuple):
-    """Undamped natural modes: omega (count), ascending, in rad per time unit; shapes (count, ndof), phi^H M phi = 1."""
+    """Undamped natural modes: omega (count), ascending, in rad per time unit; shapes (count, ndof), phi^H M phi = 1.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> model.linear_modes(1).omega
+    array([1.])
+    """
     omega: FloatArray
     shapes: ComplexArray
 
 
 class DampedModes(NamedTuple):
     """Damped natural modes by rising frequency: eigenvalue, its imaginary part omega, damping_ratio (negative: the motion
-    grows), shape (count, ndof) with phi^H M phi = 1, direction of whirl (1 forward, -1 backward, 0 undefined)."""
+    grows), shape (count, ndof) with phi^H M phi = 1, direction of whirl (1 forward, -1 backward, 0 undefined).
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> modes = model.damped_modes(1)
+    >>> print("%.3f" % modes.damping_ratio[0])
+    0.050
+    """
     eigenvalue: ComplexArray
     omega: FloatArray
     damping_ratio: FloatArray
@@ -93,7 +75,15 @@ class DampedModes(NamedTuple):
 
 
 class Crossings(NamedTuple):
-    """Crossings of natural frequencies with engine orders: omega = engine_order * speed."""
+    """Crossings of natural frequencies with engine orders: omega = engine_order * speed.
+
+    >>> import hbvib
+    >>> rotor = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=[[1, 0], [0, 1]])
+    >>> rotor.set_matrix("gyroscopic", [[0, 0.2], [-0.2, 0]])
+    >>> diagram = rotor.campbell([0.0, 0.5, 1.0, 1.5], 2)
+    >>> (diagram.crossings.omega / diagram.crossings.speed).round(6).tolist()  # engine order 1
+    [1.0, 1.0]
+    """
     engine_order: IntArray
     speed: FloatArray
     omega: FloatArray
@@ -101,7 +91,15 @@ class Crossings(NamedTuple):
 
 
 class Campbell(NamedTuple):
-    """A Campbell diagram: omega, damping_ratio and direction (speeds, count), NaN where fewer motions oscillate."""
+    """A Campbell diagram: omega, damping_ratio and direction (speeds, count), NaN where fewer motions oscillate.
+
+    >>> import hbvib
+    >>> rotor = hbvib.Model(mass=[[1, 0], [0, 1]], stiffness=[[1, 0], [0, 1]])
+    >>> rotor.set_matrix("gyroscopic", [[0, 0.2], [-0.2, 0]])
+    >>> diagram = rotor.campbell([0.0, 0.5, 1.0, 1.5], 2)
+    >>> diagram.omega.shape  # speeds, modes
+    (4, 2)
+    """
     speeds: FloatArray
     omega: FloatArray
     damping_ratio: FloatArray
@@ -110,21 +108,48 @@ class Campbell(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Special points of a branch: angular frequency, peak amplitude, number of the point for other methods."""
+    """Special points of a branch: angular frequency, peak amplitude, number of the point for other methods.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> peaks = branch.peaks()
+    >>> len(peaks.omega) == len(peaks.amplitude) == len(peaks.point) == 1
+    True
+    """
     omega: FloatArray
     amplitude: FloatArray
     point: IntArray
 
 
 class Wanted(NamedTuple):
-    """Solutions at one requested frequency (in a mode: amplitude): peak amplitude, number of the point."""
+    """Solutions at one requested frequency (in a mode: amplitude): peak amplitude, number of the point.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6), at=[1.0])
+    >>> branch.at(0).amplitude.shape
+    (1,)
+    """
     amplitude: FloatArray
     point: IntArray
 
 
 class Bifurcations(NamedTuple):
     """Points of a forced response where a multiplier passes the unit circle, with their kinds, and the numbers of unstable
-    directions before and after them along the branch, -1 where unknown."""
+    directions before and after them along the branch, -1 where unknown.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.9, 1.3), stability="wave")
+    >>> len(branch.bifurcations().omega)  # a linear motion is stable
+    0
+    """
     omega: FloatArray
     amplitude: FloatArray
     kind: StringArray
@@ -134,7 +159,15 @@ class Bifurcations(NamedTuple):
 
 
 class LimitCycles(NamedTuple):
-    """Points of a nonlinear mode with damping ratio zero; slope is that of the damping ratio by log10_amplitude."""
+    """Points of a nonlinear mode with damping ratio zero; slope is that of the damping ratio by log10_amplitude.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, stiffness=1, damping=-0.02)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> cycles = model.nonlinear_mode((-2, 1)).limit_cycles()
+    >>> len(cycles.omega) == len(cycles.slope)
+    True
+    """
     omega: FloatArray
     log10_amplitude: FloatArray
     slope: FloatArray
@@ -142,21 +175,51 @@ class LimitCycles(NamedTuple):
 
 
 class Loop(NamedTuple):
-    """Hysteresis loop of a contact over one period: relative motion, force, and State of each time."""
+    """Hysteresis loop of a contact over one period: relative motion, force, and State of each time.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> loop = branch.loop(branch.peaks().point[0], contact)
+    >>> print("%.3f" % abs(loop.force).max())  # mu * preload
+    0.300
+    """
     motion: FloatArray
     force: FloatArray
     state: NDArray[np.int32]
 
 
 class Synthesis(NamedTuple):
-    """A response synthesised from a nonlinear mode; response is the complex fundamental of the response degree of freedom."""
+    """A response synthesised from a nonlinear mode; response is the complex fundamental of the response degree of freedom.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> mode = model.nonlinear_mode((-2, 1))
+    >>> found = mode.synthesis(model, model_damping=1)
+    >>> found.omega.shape == found.response.shape
+    True
+    """
     omega: FloatArray
     response: ComplexArray
     modal_amplitude: FloatArray
 
 
 class SynthesisPeaks(NamedTuple):
-    """Resonances of a synthesised response; flags are sums of SynthesisFlag."""
+    """Resonances of a synthesised response; flags are sums of SynthesisFlag.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> mode = model.nonlinear_mode((-2, 1))
+    >>> peaks = mode.synthesis_peaks(model, model_damping=1)
+    >>> peaks.flags.tolist()  # no SynthesisFlag: the resonance is that of the response
+    [0]
+    """
     omega: FloatArray
     amplitude: FloatArray
     log10_amplitude: FloatArray
@@ -167,20 +230,43 @@ class SynthesisPeaks(NamedTuple):
 
 
 class Residual(NamedTuple):
-    """Residual of harmonic balance, and the derivatives that were requested."""
+    """Residual of harmonic balance, and the derivatives that were requested.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> model.add_force(0, 0.2)
+    >>> found = model.forced_residual(1.0, [[0], [2]])
+    >>> found.residual.shape
+    (2, 1)
+    """
     residual: ComplexArray
     jacobian: Optional[FloatArray]
     d_omega: Optional[ComplexArray]
 
 
 class ContactForce(NamedTuple):
-    """Harmonics of the force of a contact law, and their derivative where it was requested."""
+    """Harmonics of the force of a contact law, and their derivative where it was requested.
+
+    >>> import hbvib
+    >>> found = hbvib.evaluate_contact("cubic", [0, 1], kt=1, cubic=0.5, jacobian=True)
+    >>> found.force.shape == (2,), found.jacobian is not None
+    (True, True)
+    """
     force: ComplexArray
     jacobian: Optional[FloatArray]
 
 
 class TimeResponse(NamedTuple):
-    """A periodic response in time: harmonics (H + 1, ndof), samples (samples, ndof), TimeInfo, Status."""
+    """A periodic response in time: harmonics (H + 1, ndof), samples (samples, ndof), TimeInfo, Status.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> found = model.time_response(1.0)
+    >>> found.harmonics.shape, found.status
+    ((10, 1), <Status.OK: 0>)
+    """
     harmonics: ComplexArray
     samples: FloatArray
     info: TimeInfo
@@ -188,7 +274,17 @@ class TimeResponse(NamedTuple):
 
 
 class Verification(NamedTuple):
-    """A point compared with integration in time: harmonics in time (H + 1, ndof), relative errors (H + 1)."""
+    """A point compared with integration in time: harmonics in time (H + 1, ndof), relative errors (H + 1).
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> found = model.verify(branch, branch.peaks().point[0])
+    >>> found.info.same_solution
+    True
+    """
     harmonics: ComplexArray
     errors: FloatArray
     info: VerificationInfo
@@ -196,7 +292,15 @@ class Verification(NamedTuple):
 
 
 class Optima(NamedTuple):
-    """Optima of a parameter response: value of the parameter, amplitude or damping ratio, kind, point number."""
+    """Optima of a parameter response: value of the parameter, amplitude or damping ratio, kind, point number.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> model.add_force(0, 0.2)
+    >>> found = model.parameter_response(hbvib.Parameter("force"), (1, 3), omega=1.0, follow="peak")
+    >>> found.optima().kind.tolist()  # the peak only rises
+    []
+    """
     parameter: FloatArray
     value: FloatArray
     kind: StringArray
@@ -204,7 +308,15 @@ class Optima(NamedTuple):
 
 
 class HigherPeaks(NamedTuple):
-    """Peaks higher than a followed one: value of the parameter, omega, amplitude, point number of the followed one."""
+    """Peaks higher than a followed one: value of the parameter, omega, amplitude, point number of the followed one.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> model.add_force(0, 0.2)
+    >>> found = model.parameter_response(hbvib.Parameter("force"), (1, 3), omega=1.0, follow="peak")
+    >>> len(found.higher_peaks().parameter)
+    0
+    """
     parameter: FloatArray
     omega: FloatArray
     amplitude: FloatArray
@@ -215,7 +327,17 @@ class Floquet(NamedTuple):
     """Stability of a motion: multipliers of one period by falling modulus, their classes ("ordinary", "memory",
     "neutral_stuck", "neutral_rigid", "trivial"), the largest modulus of the ordinary ones, and how many of them lie
     outside the unit circle. `neutral` of the others are 1 by construction. `orbit_change` is the distance that shooting
-    moved the point, `omega` the angular frequency of the motion. `reason` tells why the radius is NaN, or is empty."""
+    moved the point, `omega` the angular frequency of the motion. `reason` tells why the radius is NaN, or is empty.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> found = model.floquet(branch, branch.peaks().point[0])
+    >>> found.radius < 1, found.unstable
+    (True, 0)
+    """
     multipliers: ComplexArray
     classes: StringArray
     radius: float

@@ -87,8 +87,17 @@ def load(path: Any) -> SavedBranch:
 class SavedBranch(Branch):
     """A branch from a file or a pickle: fields, special points, harmonics, energies and slip fractions to the last bit.
 
-    Loops, summaries of contacts and syntheses are computed from the solution itself: UnsupportedError. To have them, solve
-    again, from `harmonics(point)` as guess= where that helps."""
+    Loops, summaries of contacts and syntheses are computed from the solution itself: UnsupportedError, as harmonics where they
+    were not saved. To have them, solve again, from `harmonics(point)` as guess= where that helps.
+
+    >>> import hbvib, pickle
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.2))
+    >>> saved = pickle.loads(pickle.dumps(branch))
+    >>> type(saved).__name__, bool((saved.amplitude == branch.amplitude).all())
+    ('SavedBranch', True)
+    """
 
     def __init__(self, arrays: dict[str, np.ndarray]) -> None:
         about = json.loads(str(arrays["about"]))
@@ -104,16 +113,44 @@ class SavedBranch(Branch):
 
     @property
     def handle(self) -> NoReturn:
-        """There is none: UnsupportedError."""
+        """There is none: UnsupportedError.
+
+        >>> import hbvib, pickle
+        >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+        >>> model.add_force(0, 0.2)
+        >>> saved = pickle.loads(pickle.dumps(model.forced_response((0.8, 1.2))))
+        >>> try:
+        ...     saved.handle
+        ... except hbvib.UnsupportedError as error:
+        ...     print(error)
+        a branch from a file has no solution in memory: solve again for this
+        """
         raise UnsupportedError("a branch from a file has no solution in memory: solve again for this", Status.E_UNSUPPORTED)
 
     @property
     def is_freed(self) -> bool:
-        """False."""
+        """False: there is nothing to free.
+
+        >>> import hbvib, pickle
+        >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+        >>> model.add_force(0, 0.2)
+        >>> saved = pickle.loads(pickle.dumps(model.forced_response((0.8, 1.2))))
+        >>> saved.is_freed
+        False
+        """
         return False
 
     def free(self) -> None:
-        """Does nothing: the memory is that of arrays."""
+        """Does nothing: the memory is that of arrays.
+
+        >>> import hbvib, pickle
+        >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+        >>> model.add_force(0, 0.2)
+        >>> saved = pickle.loads(pickle.dumps(model.forced_response((0.8, 1.2))))
+        >>> saved.free()
+        >>> len(saved.omega) == len(saved)
+        True
+        """
 
     def __len__(self) -> int:
         """Number of points on the curve."""
@@ -121,21 +158,17 @@ class SavedBranch(Branch):
 
     @property
     def stored(self) -> int:
-        """Number of all stored points."""
         return int(self._about["stored"])
 
     @property
     def status(self) -> Status:
-        """Status of the solve."""
         return Status(self._about["status"])
 
     @property
     def is_mode(self) -> bool:
-        """Whether the branch is a nonlinear mode."""
         return bool(self._about["is_mode"])
 
     def field(self, field: Any) -> np.ndarray:
-        """A field, by Field or name: (points), slip_fraction (points, contacts)."""
         name = (field if isinstance(field, str) else Field(field).name).lower()
         if "field/" + name not in self._arrays:
             Field[name.upper()]
@@ -144,12 +177,10 @@ class SavedBranch(Branch):
 
     @property
     def reduction(self) -> Reduction:
-        """Size of the problem that was solved."""
         return Reduction(**self._about["reduction"])
 
     @property
     def mode_info(self) -> ModeInfo:
-        """Where a nonlinear mode started."""
         if not self.is_mode:
             raise UnsupportedError("a forced response has no mode_info", Status.E_UNSUPPORTED)
         values = dict(self._about["mode_info"])
@@ -165,26 +196,21 @@ class SavedBranch(Branch):
         return row
 
     def mode_point(self, point: int) -> ModePoint:
-        """Numbers of a point of a nonlinear mode."""
         return ModePoint(*self._row("mode_point", point).tolist())
 
     def energy(self, point: int, **_: Any) -> Energy:
-        """Energies and losses of a point."""
         return Energy(*self._row("energy", point).tolist())
 
     def slip(self, point: int) -> FloatArray:
-        """Shares of the period that each contact slips at any stored point, (contacts)."""
         return self._row("slip", point)
 
     def harmonics(self, point: int, first_dof: int = 0, n_dof: Optional[int] = None, **_: Any) -> ComplexArray:
-        """Harmonics 0 .. H at a point, (H + 1, n_dof) complex. UnsupportedError where they were not saved."""
         row = self._row("harmonics", point)
         if not 0 <= first_dof < row.shape[1] or not 0 < (n_dof or 1) <= row.shape[1] - first_dof:
             raise OutOfRangeError(f"first_dof = {first_dof}, n_dof = {n_dof}, but there are {row.shape[1]}", Status.E_INDEX)
         return row[:, first_dof:][:, :n_dof].copy()
 
     def time_history(self, point: int, dof: int, n: int = 256, **_: Any) -> FloatArray:
-        """Motion of a degree of freedom over one period at a point, n equidistant times."""
         x = self.harmonics(point, dof, 1)[:, 0]
         phase = 2j * np.pi / n * (np.outer(np.arange(n), np.arange(len(x))) % n)
         return np.asarray((np.exp(phase) @ x).real)
@@ -193,25 +219,20 @@ class SavedBranch(Branch):
         return kind(*(self._arrays[f"{name}/{key}"].copy() for key in kind._fields))  # type: ignore[attr-defined]
 
     def peaks(self) -> Points:
-        """As Branch.peaks."""
         return self._list(Points, "peaks")
 
     def folds(self) -> Points:
-        """As Branch.folds."""
         return self._list(Points, "folds")
 
     def bifurcations(self) -> Bifurcations:
-        """As Branch.bifurcations."""
         return self._list(Bifurcations, "bifurcations")
 
     def limit_cycles(self) -> LimitCycles:
-        """As Branch.limit_cycles."""
         if not self.is_mode:
             raise UnsupportedError("a forced response has no limit cycles", Status.E_UNSUPPORTED)
         return self._list(LimitCycles, "limit_cycles")
 
     def at(self, wanted: int) -> Wanted:
-        """As Branch.at."""
         if not 0 <= wanted < self._about["at"]:
             raise OutOfRangeError(f"wanted = {wanted}, but {self._about['at']} were requested", Status.E_INDEX, 2)
         return self._list(Wanted, f"at/{wanted}")

@@ -58,7 +58,7 @@ def _with_options(struct: str, options: type) -> Callable[[_Function], _Function
                 for name, kind in options.__annotations__.items()]
         function.__signature__ = signature.replace(parameters=known + more)  # type: ignore[attr-defined]
         if function.__doc__ and options.__doc__:
-            listed = options.__doc__.partition("\n\n")[2].strip("\n").replace("\n", "\n    ")
+            listed = options.__doc__.partition("\n\n")[2].partition("\n\n")[0].strip("\n").replace("\n", "\n    ")
             function.__doc__ = function.__doc__.replace("{options}", listed.strip())
         return function
 

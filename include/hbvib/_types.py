@@ -22,9 +22,9 @@ class SolverOptions(TypedDict, total=False):
     max_harmonics   Cap on H with a tolerance, at least the highest harmonic that is forced. Points that need more are
         stored, and the status is Status.STOPPED_MAX_HARMONICS. Default: 511.
     samples   0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a tolerance at
-        least 8H are taken. ContactKind.CUBIC, ContactKind.FRICTION_2D and polynomials are exact in both cases;
-        ContactKind.FRICTION_3D and ContactKind.REGULARISED are always sampled, with 0 by a number that follows from H,
-        and from the tolerance: a run that has too few samples begins again, progress included, with more. Default: 0.
+        least 8H are taken. ContactKind.CUBIC, ContactKind.FRICTION_2D, ContactKind.FRICTION_3D and polynomials are
+        exact in both cases; ContactKind.REGULARISED is always sampled, with 0 by a number that follows from H, and from
+        the tolerance: a run that has too few samples begins again, progress included, with more. Default: 0.
     step   First arc-length step in scaled unknowns; 0 = automatic. Default: 0.0.
     step_min   Smallest step; 0 = automatic. Default: 0.0.
     step_max   Largest step; 0 = automatic. Default: 0.0.
@@ -46,6 +46,14 @@ class SolverOptions(TypedDict, total=False):
     stability   Perturbations whose Floquet multipliers are computed at each point of the curve of a forced response, a
         value of enum Stability: for Field.FLOQUET_RADIUS, Field.UNSTABLE_DIRECTIONS and hbvib_branch_bifurcations. A
         nonlinear mode refuses any but Stability.NONE, the default. Default: 0.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> options: hbvib.SolverOptions = dict(harmonics=5, tolerance=0)
+    >>> model.forced_response((0.8, 1.6), **options).harmonics(0).shape
+    (6, 1)
     """
     num_threads: int
     tolerance: float
@@ -72,6 +80,14 @@ class TimeOptions(TypedDict, total=False):
     tolerance   Largest change over a period, relative to the largest displacement and velocity, of a steady state; also
         the local error of a step where a law is smooth (ContactKind.CUBIC). Default: 1e-11.
     max_periods   Cap on the periods that are integrated. Default: 10000.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> options: hbvib.TimeOptions = dict(max_periods=100)
+    >>> model.time_response(1.0, **options).info.periods < 100
+    True
     """
     tolerance: float
     max_periods: int
@@ -84,6 +100,16 @@ class VerifyOptions(TypedDict, total=False):
     max_periods   Cap on the periods that are integrated. Default: 10000.
     same_within   Largest distance from the motion in time, relative to that motion, at which the point counts as the
         same solution. Default: 0.1.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> peak = branch.peaks().point[0]
+    >>> options: hbvib.VerifyOptions = dict(max_periods=100)
+    >>> model.verify(branch, peak, **options).info.same_solution
+    True
     """
     tolerance: float
     max_periods: int
@@ -95,6 +121,16 @@ class FloquetOptions(TypedDict, total=False):
 
     tolerance   As in hbvib_time_options. Default: 1e-11.
     max_periods   Cap on the periods that shooting integrates. Default: 10000.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> peak = branch.peaks().point[0]
+    >>> options: hbvib.FloquetOptions = dict(tolerance=1e-9)
+    >>> model.floquet(branch, peak, **options).unstable
+    0
     """
     tolerance: float
     max_periods: int
@@ -106,6 +142,15 @@ class SynthesisOptions(TypedDict, total=False):
     model_damping   1: add the damping of the model's C, for a mode that was computed without it; 0: do not. Default: 0.
     force_factor   Factor on all forces of the model, > 0. Default: 1.0.
     damping_ratio   Damping ratio that is added to the mode's, between -1 and 1. Default: 0.0.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> mode = model.nonlinear_mode((-2, 1))
+    >>> options: hbvib.SynthesisOptions = dict(model_damping=1)
+    >>> len(mode.synthesis_peaks(model, **options).omega)
+    1
     """
     model_damping: int
     force_factor: float
@@ -134,6 +179,12 @@ class ContactConstants(TypedDict, total=False):
         the degrees of freedom lie along t1, t2 and n themselves. Default: (0.0, 0.0, 0.0).
     tangent   Direction t1, orthogonal to `normal`, of any length; t2 is n x t1. Zero: any in the plane, for
         ContactKind.FRICTION_3D and ContactKind.UNILATERAL alone. Default: (0.0, 0.0, 0.0).
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> constants: hbvib.ContactConstants = dict(kt=1, mu=0.3, preload=1)
+    >>> model.add_contact("jenkins", 0, **constants)
+    0
     """
     sector_offset: int
     kt: float
@@ -162,6 +213,15 @@ class Energy(NamedTuple):
     structural_loss   Work per cycle and sector that damping, and stiffness without symmetry, take from the motion.
     friction_loss   Work per cycle and sector of the contacts that may slip. In a forced response both losses together
         are the work of the forces.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> peak = branch.peaks().point[0]
+    >>> branch.energy(peak).friction_loss > 0
+    True
     """
     twice_mean_kinetic: float
     kinetic_mean: float
@@ -193,6 +253,15 @@ class ContactSummary(NamedTuple):
     directions   Number of directions of the contact, in the order t1, t2, n of those in which it acts.
     all_min   Smallest relative motions, direction by direction, of up to three; 0 beyond `directions`.
     all_max   Largest relative motions likewise.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> peak = branch.peaks().point[0]
+    >>> branch.summary(peak, contact).slip_share > 0
+    True
     """
     work: float
     slip_share: float
@@ -222,6 +291,14 @@ class ModePoint(NamedTuple):
         damping_ratio by the balance of work, which checks both.
     assurance   |X_1^H M Y_1|^2 / (X_1^H M X_1 Y_1^H M Y_1) with the fundamental Y_1 of the point before; 1 for the
         first.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> mode = model.nonlinear_mode((-2, 1))
+    >>> mode.mode_point(0).damping_ratio > 0
+    True
     """
     log10_amplitude: float
     omega: float
@@ -251,6 +328,14 @@ class ModeInfo(NamedTuple):
         Minus infinity: one slips at the first point already, and it is not known from which amplitude on, or at every
         amplitude.
     lift_off_from   The same for the first contact that presses at rest and lifts off.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> mode = model.nonlinear_mode((-2, 1))
+    >>> print("%.4f" % mode.mode_info.omega)  # the slider sticks
+    1.4142
     """
     multiple: ModeMultiple
     mode_index: int
@@ -286,6 +371,14 @@ class Reduction(NamedTuple):
     certificate   Estimated relative error of the motion of the structure on its basis, under unit forces at the
         contacts, the excitation and the response over the frequencies of the call, the largest of all points; 0 without
         a basis.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> branch.reduction.contacts
+    1
     """
     sectors: int
     degrees_of_freedom: int
@@ -315,6 +408,15 @@ class JacobianGap(NamedTuple):
     column   Column of the entry; for Tangent.DF_DZ the state that was changed before the step.
     given   Derivative that the callback wrote; for Tangent.DF_DZ the change of force that follows from it.
     difference   Difference quotient of the callback's own f and z.
+
+    >>> import hbvib
+    >>> def damper(call: hbvib.ForceCall) -> None:
+    ...     call.f[:] = 0.1 * call.v
+    ...     call.df_dv[:, 0, 0] = 0.1
+    >>> model = hbvib.Model(mass=1, stiffness=1)
+    >>> number = model.add_user_force([0], damper, uses_velocity=True, is_odd=True)
+    >>> model.check_jacobian(number, omega=1, amplitude=0.3).gap < 1e-6
+    True
     """
     tangent: Tangent
     gap: float
@@ -334,6 +436,13 @@ class TimeInfo(NamedTuple):
     periods   Number of periods that were integrated.
     events   Number of changes between stick, slip, open and closed, or between the lines of a table, in one period, all
         contacts of the model (of one sector) together.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> model.time_response(1.0).info.residual < 1e-9
+    True
     """
     period: float
     residual: float
@@ -361,6 +470,15 @@ class VerificationInfo(NamedTuple):
         the size of the errors of the integration.
     periods   Number of periods that were integrated.
     events   Number of changes of the contacts in one period, as in hbvib_time_info.
+
+    >>> import hbvib
+    >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
+    >>> contact = model.add_contact("jenkins", 0, kt=1, mu=0.3, preload=1)
+    >>> model.add_force(0, 0.2)
+    >>> branch = model.forced_response((0.8, 1.6))
+    >>> peak = branch.peaks().point[0]
+    >>> model.verify(branch, peak).info.response_error < 1e-3
+    True
     """
     same_solution: bool
     marched: bool

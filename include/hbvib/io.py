@@ -9,22 +9,50 @@ from __future__ import annotations
 import ctypes
 import os
 import sys
-from collections import namedtuple
-from typing import Any
+from typing import Any, NamedTuple, Optional
 
 import numpy as np
 
 __all__ = ["Matrices", "ReadError", "read"]
 
-#: Contents of a file: sparse matrices or None, and dofs, an array (n, 2) of node and direction, or None.
-Matrices = namedtuple("Matrices", "stiffness mass damping dofs")
-
 _HERE = os.path.dirname(os.path.abspath(__file__))
 _FOLDERS = ("", "../../target/release", "../../target/debug", "../../../lib", "../../lib")
 
 
+class Matrices(NamedTuple):
+    """Contents of a file: sparse matrices or None, and dofs, an array (n, 2) of node and direction, or None.
+
+    >>> import hbvib, hbvib.io
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "k.mtx")
+    >>> with open(path, "w") as file:
+    ...     print("%%MatrixMarket matrix coordinate real symmetric\\n1 1 1\\n1 1 2", file=file)
+    ...
+    >>> found = hbvib.io.read(path)
+    >>> found.stiffness.shape, found.mass is None
+    ((1, 1), True)
+    """
+    stiffness: Any
+    mass: Any
+    damping: Any
+    dofs: Optional[np.ndarray]
+
+
 class ReadError(ValueError):
-    """A file that is not understood; the sentence names file, line and reason."""
+    """A file that is not understood; the sentence names file, line and reason.
+
+    >>> import hbvib, hbvib.io
+    >>> import os, tempfile
+    >>> path = os.path.join(tempfile.mkdtemp(), "k.mtx")
+    >>> with open(path, "w") as file:
+    ...     print("%%MatrixMarket matrix coordinate real symmetric\\n1 1 1\\n1 2 2", file=file)
+    ...
+    >>> try:
+    ...     hbvib.io.read(path)
+    ... except hbvib.io.ReadError as error:
+    ...     print("k.mtx" in str(error), "line 3" in str(error) or str(error))
+    True True
+    """
 
 
 class _Matrix(ctypes.Structure):

@@ -26,9 +26,8 @@ use num_complex::Complex64;
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact in both cases;
-///             HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number that
-///             follows from H.
+///             least 2H + 1. HBVIB_CUBIC, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D are exact in both
+///             cases; HBVIB_REGULARISED is always sampled, with 0 by a number that follows from H.
 /// omega       angular frequency, >= 0; has an effect on laws that depend on velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.
@@ -81,9 +80,8 @@ pub unsafe extern "C" fn hbvib_contact_evaluate(
 /// c           the law and its constants.
 /// harmonics   highest harmonic number H, 0 .. 100000.
 /// samples     0: events are located exactly where the law has them; else samples per period, at
-///             least 2H + 1. HBVIB_CUBIC and HBVIB_FRICTION_2D are exact in both cases;
-///             HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number that
-///             follows from H.
+///             least 2H + 1. HBVIB_CUBIC, HBVIB_FRICTION_2D and HBVIB_FRICTION_3D are exact in both
+///             cases; HBVIB_REGULARISED is always sampled, with 0 by a number that follows from H.
 /// omega       angular frequency, >= 0; has an effect on laws that depend on velocities.
 /// motion      d (H + 1) complex numbers, Y_0 .. Y_H of one motion after the other; the imaginary
 ///             part of Y_0 has no effect.

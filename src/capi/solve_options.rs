@@ -54,8 +54,8 @@ pub struct hbvib_solver_options {
     /// more are stored, and the status is HBVIB_STOPPED_MAX_HARMONICS.
     pub max_harmonics: i64,
     /// 0: events of contacts are located exactly. Else samples per period, at least 2H + 1; with a
-    /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D and polynomials are exact in
-    /// both cases; HBVIB_FRICTION_3D and HBVIB_REGULARISED are always sampled, with 0 by a number
+    /// tolerance at least 8H are taken. HBVIB_CUBIC, HBVIB_FRICTION_2D, HBVIB_FRICTION_3D and
+    /// polynomials are exact in both cases; HBVIB_REGULARISED is always sampled, with 0 by a number
     /// that follows from H, and from the tolerance: a run that has too few samples begins again,
     /// progress included, with more.
     pub samples: i64,

@@ -22,6 +22,7 @@ mod layout;
 mod library;
 mod lists;
 mod python;
+mod python_examples;
 mod python_types;
 mod regions;
 mod rust_api;

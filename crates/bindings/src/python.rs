@@ -9,7 +9,7 @@ const COLUMNS: usize = 120;
 pub fn module(all: &Declarations) -> Result<String> {
     let mut text = public_names(all);
     for e in &all.enums {
-        text += &enumeration(e);
+        text += &enumeration(all, e);
     }
     let [major, minor, _] = all.version;
     writeln!(
@@ -102,7 +102,7 @@ pub fn short(name: &str) -> &str {
 }
 
 /// A class; a constant if there is only one member.
-fn enumeration(e: &Enum) -> String {
+fn enumeration(all: &Declarations, e: &Enum) -> String {
     let mut text = String::new();
     if let [(name, value, doc)] = &e.members[..] {
         let name = name.trim_start_matches("HBVIB_");
@@ -113,30 +113,31 @@ fn enumeration(e: &Enum) -> String {
     let base = if name.ends_with("_flag") { "IntFlag" } else { "IntEnum" };
     write!(
         text,
-        "\n\nclass {}(enum.{base}):\n    \"\"\"{}\"\"\"\n",
+        "\n\nclass {}(enum.{base}):\n    \"\"\"{}\n\n{}    \"\"\"\n",
         class_name(name),
-        sentence(&e.doc)
+        sentence(&e.doc),
+        members(all, e)
     )
     .unwrap();
     let prefix = common_prefix(e);
-    for (name, value, doc) in &e.members {
-        let line = format!("    {} = {value}", &name[prefix..]);
-        let note = if doc.is_empty() {
-            String::new()
-        } else {
-            format!("  #: {}", sentence(doc))
-        };
-        if line.len() + note.len() <= COLUMNS {
-            text += &line;
-            text += &note;
-            text.push('\n');
-        } else {
-            text += &wrapped(&format!("    #: {}", sentence(doc)), "    #: ");
-            text += &line;
-            text.push('\n');
-        }
+    for (name, value, _) in &e.members {
+        writeln!(text, "    {} = {value}", &name[prefix..]).unwrap();
     }
     text
+}
+
+/// Members of an enumeration with their meaning, and how a number becomes one, as `help` shows them.
+fn members(all: &Declarations, e: &Enum) -> String {
+    let prefix = common_prefix(e);
+    let mut text = String::new();
+    for (name, _, doc) in &e.members {
+        let line = format!("    {}   {}", &name[prefix..], in_python(all, sentence(doc)));
+        text += &wrapped(line.trim_end(), "        ");
+    }
+    let (name, value, _) = &e.members[0];
+    let (class, member) = (class_name(short(&e.name)), &name[prefix..]);
+    let example = format!("    >>> import hbvib\n    >>> hbvib.{class}({value})\n    <{class}.{member}: {value}>\n");
+    format!("{text}\n{example}")
 }
 
 /// The class of hbvib_status_code is Status, that of hbvib_log_level LogLevel.
@@ -226,6 +227,36 @@ fn stub(all: &Declarations, f: &Function) -> Result<String> {
     Ok(wrapped(&line, "            ").replace('\0', " "))
 }
 
+/// A description in which constants have their names in Python: HBVIB_JENKINS is ContactKind.JENKINS.
+pub fn in_python(all: &Declarations, doc: &str) -> String {
+    let mut text = String::new();
+    let mut word = String::new();
+    for c in doc.chars().chain(['\n']) {
+        if c.is_ascii_alphanumeric() || c == '_' {
+            word.push(c);
+            continue;
+        }
+        text += &renamed(all, &word).unwrap_or_else(|| word.clone());
+        word.clear();
+        text.push(c);
+    }
+    text.trim_end().replace('\\', "\\\\")
+}
+
+fn renamed(all: &Declarations, word: &str) -> Option<String> {
+    if let Some(e) = all.enums.iter().find(|e| e.name == *word) {
+        return Some(class_name(short(&e.name)));
+    }
+    let e = all
+        .enums
+        .iter()
+        .find(|e| e.members.iter().any(|(name, ..)| name == word))?;
+    if let [(name, ..)] = &e.members[..] {
+        return Some(name.trim_start_matches("HBVIB_").to_owned());
+    }
+    Some(format!("{}.{}", class_name(short(&e.name)), &word[common_prefix(e)..]))
+}
+
 /// A line, broken at spaces; continuation lines begin with `indent`.
 pub fn wrapped(line: &str, indent: &str) -> String {
     let mut text = String::new();
@@ -263,8 +294,9 @@ mod tests {
     fn enumerations_lose_the_prefix_that_their_members_share() {
         let text = module(&Declarations::parse(HEADER).unwrap()).unwrap();
         for part in [
-            "class State(enum.IntEnum):\n    \"\"\"States.\"\"\"\n    STICK = 0  #: It sticks.\n    SLIP = 1",
-            "class Status(enum.IntEnum):\n    \"\"\"Outcomes.\"\"\"\n    OK = 0\n    E_NULL = -1",
+            "class State(enum.IntEnum):\n    \"\"\"States.\n\n    STICK   It sticks.\n    SLIP\n\n    >>> import hbvib\n    \
+             >>> hbvib.State(0)\n    <State.STICK: 0>\n    \"\"\"\n    STICK = 0\n    SLIP = 1",
+            "    \"\"\"\n    OK = 0\n    E_NULL = -1",
             "class SomeFlag(enum.IntFlag):",
             "\nGROUND = -1  #: Below.\n",
         ] {
@@ -292,6 +324,17 @@ mod tests {
         assert!(
             text.lines().count() == 3 && text.lines().all(|line| line.len() <= COLUMNS),
             "{text}"
+        );
+    }
+
+    #[test]
+    fn constants_have_their_names_in_python() {
+        let header = "/// States.\ntypedef enum {\n  /// It sticks.\n  HBVIB_STATE_STICK = 0,\n  /// It slips.\n  \
+                      HBVIB_STATE_SLIP = 1,\n} hbvib_state;\n";
+        let all = Declarations::parse(header).unwrap();
+        assert_eq!(
+            in_python(&all, "As HBVIB_STATE_SLIP, of hbvib_state."),
+            "As State.SLIP, of State."
         );
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::declarations::{Base, Declarations, Result, Struct, Variable};
 use crate::layout::{Defaults, Layout};
-use crate::python::{class_name, common_prefix, short, wrapped};
+use crate::python::{class_name, in_python, short, wrapped};
+use crate::python_examples::example;
 use std::fmt::Write as _;
 
 /// Structs of options, and the fields that the methods of the module have as arguments of their own.
@@ -117,8 +118,9 @@ fn options(all: &Declarations, s: &Struct, hidden: &[&str], defaults: &Defaults)
         writeln!(fields, "    {}: {}", field.name, kind(all, s, field)?).unwrap();
     }
     Ok(format!(
-        "\n\nclass {class}(TypedDict, total=False):\n    \"\"\"{}\n\n{docs}    \"\"\"\n{fields}",
-        in_python(all, &first_sentence(&s.doc))
+        "\n\nclass {class}(TypedDict, total=False):\n    \"\"\"{}\n\n{docs}\n{}    \"\"\"\n{fields}",
+        in_python(all, &first_sentence(&s.doc)),
+        example(&class)?
     ))
 }
 
@@ -134,8 +136,9 @@ fn results(all: &Declarations, s: &Struct, class: &str) -> Result<String> {
         writeln!(fields, "    {}: {}", field.name, kind(all, s, field)?).unwrap();
     }
     Ok(format!(
-        "\n\nclass {class}(NamedTuple):\n    \"\"\"{}\n\n{docs}    \"\"\"\n{fields}",
-        in_python(all, &first_sentence(&s.doc))
+        "\n\nclass {class}(NamedTuple):\n    \"\"\"{}\n\n{docs}\n{}    \"\"\"\n{fields}",
+        in_python(all, &first_sentence(&s.doc)),
+        example(class)?
     ))
 }
 
@@ -168,50 +171,4 @@ fn kind(all: &Declarations, s: &Struct, field: &Variable) -> Result<String> {
         None => base.to_owned(),
         Some(n) => format!("Tuple[{}]", vec![base; n].join(", ")),
     })
-}
-
-/// A description in which constants have their names in Python: HBVIB_JENKINS is ContactKind.JENKINS.
-fn in_python(all: &Declarations, doc: &str) -> String {
-    let mut text = String::new();
-    let mut word = String::new();
-    for c in doc.chars().chain(['\n']) {
-        if c.is_ascii_alphanumeric() || c == '_' {
-            word.push(c);
-            continue;
-        }
-        text += &renamed(all, &word).unwrap_or_else(|| word.clone());
-        word.clear();
-        text.push(c);
-    }
-    text.trim_end().replace('\\', "\\\\")
-}
-
-fn renamed(all: &Declarations, word: &str) -> Option<String> {
-    if let Some(e) = all.enums.iter().find(|e| e.name == *word) {
-        return Some(class_name(short(&e.name)));
-    }
-    let e = all
-        .enums
-        .iter()
-        .find(|e| e.members.iter().any(|(name, ..)| name == word))?;
-    if let [(name, ..)] = &e.members[..] {
-        return Some(name.trim_start_matches("HBVIB_").to_owned());
-    }
-    Some(format!("{}.{}", class_name(short(&e.name)), &word[common_prefix(e)..]))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn constants_have_their_names_in_python() {
-        let header = "/// States.\ntypedef enum {\n  /// It sticks.\n  HBVIB_STATE_STICK = 0,\n  /// It slips.\n  \
-                      HBVIB_STATE_SLIP = 1,\n} hbvib_state;\n";
-        let all = Declarations::parse(header).unwrap();
-        assert_eq!(
-            in_python(&all, "As HBVIB_STATE_SLIP, of hbvib_state."),
-            "As State.SLIP, of State."
-        );
-    }
 }

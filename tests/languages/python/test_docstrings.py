@@ -22,8 +22,6 @@ check("a name is listed once", len(hbvib.__all__) == len(set(hbvib.__all__)))
 
 runner = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE)
 finder = doctest.DocTestFinder(recurse=False)
-with_example = ("Model", "Branch", "Batch", "Parameter", "Sensitivities", "CancelFlag", "ForceCall", "evaluate_contact", "load",
-                "get_include")
 
 
 def explained(name, value, needs_example):
@@ -38,16 +36,19 @@ def explained(name, value, needs_example):
 
 
 explained("the module", hbvib, True)
-for name in hbvib.__all__:
-    value = getattr(hbvib, name)
+explained("hbvib.io", hbvib.io, False)
+public = [(name, getattr(hbvib, name)) for name in hbvib.__all__] + [("io." + name, getattr(hbvib.io, name)) for name in hbvib.io.__all__]
+for title, value in public:
     if inspect.isfunction(value) or inspect.isclass(value):
-        explained(name, value, name in with_example)
-for kind in (hbvib.Model, hbvib.Branch, hbvib.Batch, hbvib.CancelFlag):
-    for name, value in {name: value for base in reversed(kind.__mro__[:-1]) for name, value in vars(base).items()}.items():
-        value = value.__func__ if isinstance(value, (classmethod, staticmethod)) else value
-        is_field = name == "mode_energy" or name.upper() in hbvib.Field.__members__
-        if not name.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
-            explained(f"{kind.__name__}.{name}", value, not is_field)
+        explained(title, value, True)
+    for base in reversed(value.__mro__[:-1]) if inspect.isclass(value) else ():
+        own = vars(base) if base.__module__.startswith("hbvib") else {}
+        for name, member in own.items():
+            member = member.__func__ if isinstance(member, (classmethod, staticmethod)) else member
+            if not name.startswith("_") and (inspect.isfunction(member) or isinstance(member, property)):
+                # As a user finds it: an explanation may be that of the class above.
+                is_field = name == "mode_energy" or name.upper() in hbvib.Field.__members__
+                explained(f"{title}.{name}", getattr(value, name), not is_field)
 check("every example gives what it says", runner.failures == 0, runner.failures)
 check("all examples ran", runner.tries > 250, runner.tries)
 
