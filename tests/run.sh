@@ -29,6 +29,8 @@ need binutils readelf --version
 need make make --version
 need cmake cmake --version
 need pkg-config pkg-config --version
+need openmpi-bin mpirun --version
+need libopenmpi-dev mpicc --version
 need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
 need bsdutils script --version
@@ -54,7 +56,7 @@ fi
 
 # The libraries first: the programs link against them; and the examples, which tests run.
 cargo build --release --lib --examples
-cargo build --release --lib -p hbvib-io
+cargo build --release --lib --bins -p hbvib-io -p hbvib-cli
 cargo test --release --lib --tests
 # Examples in the documentation of the Rust interface.
 cargo test --release --doc -p hbvib

@@ -15,7 +15,7 @@ import hbvib
 ROOT = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../.."))
 with open(os.path.join(ROOT, "docs/coming-from.md"), encoding="utf-8") as file:
     PAGE = file.read()
-(PROGRAM,) = re.findall(r"(?ms)^```text\n(import numpy.*?)^```", PAGE)
+(PROGRAM,) = re.findall(r"(?ms)^```pyharm\n(import numpy.*?)^```", PAGE)
 (JENKINS,) = re.findall(r"`(\{\"type\": \"Jenkins\".*?\})`", PAGE)
 
 

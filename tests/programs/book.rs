@@ -22,8 +22,14 @@ use std::sync::OnceLock;
 /// Languages of which every block is a complete program.
 const PROGRAMS: [&str; 5] = ["c", "cpp", "fortran", "python", "rust"];
 
-/// Languages of blocks that are not run.
-const OTHERS: [&str; 4] = ["text", "sh", "cmake", "toml"];
+/// Languages of blocks that `book_sessions` runs or compares; tests/peers/pyharm.py runs the program of pyHarm.
+const OTHERS: [&str; 7] = ["sh", "cmake", "toml", "output", "pycon", "inp", "pyharm"];
+
+/// Longest formula or drawing in lines.
+const FORMULA_LINES: usize = 3;
+
+/// Longest line of prose.
+const PROSE_WIDTH: usize = 140;
 
 /// Longest README.
 const README_LINES: usize = 120;
@@ -104,7 +110,7 @@ fn prepared(fence: &Fence, number: usize, folder: &Path) -> Command {
 }
 
 /// Frequencies, amplitudes and resonance of the mass with a friction contact, the first program of every language.
-fn first_response() -> &'static [f64] {
+pub fn first_response() -> &'static [f64] {
     static NUMBERS: OnceLock<Vec<f64>> = OnceLock::new();
     NUMBERS.get_or_init(|| {
         let mut model = Model::new(1).unwrap();
@@ -202,18 +208,44 @@ fn the_readme_has_a_program_and_is_short() {
     assert!(fences(&text).iter().any(|f| PROGRAMS.contains(&f.language.as_str())));
 }
 
+/// A block is a program, a command or an output, and a test runs it; or else a formula or a drawing, which has a sign that no
+/// program has.
 #[test]
-fn every_block_names_its_language() {
+fn every_block_is_run_or_a_formula() {
     for page in pages() {
         for fence in fences(&read(&page)) {
-            let known = PROGRAMS.iter().chain(&OTHERS).any(|name| *name == fence.language);
+            let place = format!("{}:{}", page.display(), fence.line);
+            let run = PROGRAMS.iter().chain(&OTHERS).any(|name| *name == fence.language);
             assert!(
-                known,
-                "{}:{}: a block of '{}', needs one of {PROGRAMS:?}, which are run, or {OTHERS:?}",
-                page.display(),
-                fence.line,
+                run || fence.language == "text",
+                "{place}: a block of '{}', needs one of {PROGRAMS:?} or {OTHERS:?}, which are run, or text",
                 fence.language
             );
+            let formula = fence.text.lines().count() <= FORMULA_LINES && !fence.text.is_ascii();
+            assert!(
+                run || formula,
+                "{place}: text is for formulas, {OTHERS:?} for what programs read and print"
+            );
+        }
+    }
+}
+
+/// Lines of prose end before they are hard to read in an editor; code has a fence, which tests find.
+#[test]
+fn prose_is_wrapped_and_code_has_a_fence() {
+    let mut all = pages();
+    all.push(PathBuf::from("CHANGELOG.md"));
+    for page in all {
+        let text = read(&page);
+        let (mut fenced, mut before) = (false, "");
+        for (i, line) in text.lines().enumerate() {
+            fenced ^= line.starts_with("```");
+            let (place, length) = (format!("{}:{}", page.display(), i + 1), line.chars().count());
+            let long = !fenced && !line.starts_with('|') && length > PROSE_WIDTH;
+            assert!(!long, "{place} has {length} characters, needs at most {PROSE_WIDTH}");
+            let indented = !fenced && before.trim().is_empty() && line.starts_with("    ");
+            assert!(!indented, "{place}: code without a fence, which no test runs");
+            before = line;
         }
     }
 }

@@ -10,7 +10,7 @@ use std::path::Path;
 use std::process::Command;
 
 /// The saved ring damper under 5 N.
-fn saved_model(folder: &Path) {
+pub fn saved_model(folder: &Path) {
     let program = "import sys; sys.path.insert(0, sys.argv[1]); from ring_damper import ring_damper; \
                    ring_damper(5).save('model.hbvib')";
     run(script(Path::new("-c"))

@@ -4,6 +4,7 @@
 mod common;
 
 mod book;
+mod book_sessions;
 mod c_abi;
 mod designs;
 mod flutter_example;

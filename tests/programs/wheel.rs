@@ -51,12 +51,24 @@ const READER: &str = "import doctest, hbvib; failed, tried = doctest.testmod(hbv
 fn the_wheel_brings_its_library() {
     let folder = workshop("wheel");
     // The build backend is that of the Python of the tests; pip's own folder for it would be filled from the network.
-    run(without_network(&mut Command::new(python()))
-        .args(["-m", "pip", "install", "--quiet", "--disable-pip-version-check"])
-        .args(["--no-deps", "--no-build-isolation", "--no-index"])
+    let pip = |verb: &str| {
+        let mut command = Command::new(python());
+        without_network(&mut command)
+            .args(["-m", "pip", verb, "--quiet", "--disable-pip-version-check"])
+            .args(["--no-deps", "--no-index"])
+            .current_dir(&folder);
+        command
+    };
+    run(pip("wheel").arg("--no-build-isolation").arg(root()));
+    let wheel = files(&folder).pop().unwrap();
+    assert!(
+        wheel.to_str().unwrap().contains(&format!("hbvib-{VERSION}-py3-none-")),
+        "{}",
+        wheel.display()
+    );
+    run(pip("install")
         .args(["--root-user-action=ignore", "--target", "site"])
-        .arg(root())
-        .current_dir(&folder));
+        .arg(wheel));
     let installed = folder.join("site/hbvib");
     for file in [
         "libhbvib.so",
