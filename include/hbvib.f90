@@ -328,17 +328,19 @@ module hbvib
 
    !> Options of hbvib_floquet.
    type, bind(c) :: hbvib_floquet_options
-      integer(c_int32_t) :: struct_size = 32, waves = 0, refine = 1, reserved = 0
+      integer(c_int32_t) :: struct_size = 32, waves = 0, refine = 1, modes = -1
       real(c_double) :: tolerance = 1e-11_c_double
       integer(c_int64_t) :: max_periods = 10000
    end type hbvib_floquet_options
 
    !> Numbers of the stability of a point.
    type, bind(c) :: hbvib_floquet_info
-      integer(c_int32_t) :: struct_size = 72, grazing = 0
+      integer(c_int32_t) :: struct_size = 88, grazing = 0
       real(c_double) :: omega = 0, radius = 0
       integer(c_int64_t) :: count = 0, unstable = 0, neutral = 0, grazing_contact = -1
       real(c_double) :: orbit_change = 0, residual = 0
+      integer(c_int64_t) :: modes = 0
+      real(c_double) :: modes_change = 0
    end type hbvib_floquet_info
 
    !> A parameter of a model.

@@ -2915,8 +2915,10 @@ typedef struct {
   int32_t waves;
   /// 1: move the point to the periodic motion in time by shooting first; 0: take it as it is.
   int32_t refine;
-  /// Must be 0.
-  int32_t reserved;
+  /// Modes of each nodal diameter, with contacts stuck, on which a large structure is computed, and
+  /// with half as many once more; 0: on all degrees of freedom; -1: on all unless that counts more
+  /// than 1e11 operations, then on as many modes as agreement needs.
+  int32_t modes;
   /// As in hbvib_time_options.
   double tolerance;
   /// Cap on the periods that shooting integrates.
@@ -2924,7 +2926,7 @@ typedef struct {
 } hbvib_floquet_options;
 
 /// Fills the options of Floquet multipliers with their defaults: those of the wave, refine = 1,
-/// tolerance = 1e-11.
+/// tolerance = 1e-11, modes = -1.
 ///
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
@@ -2956,6 +2958,10 @@ typedef struct {
   /// Largest change over a period of the motion in time, relative to its largest displacement and
   /// velocity; NaN with refine = 0.
   double residual;
+  /// Modes of each nodal diameter on which the motion was computed; 0: on all degrees of freedom.
+  int64_t modes;
+  /// Change of the radius from half as many modes.
+  double modes_change;
 } hbvib_floquet_info;
 
 /// Fills the numbers of a stability with zeros, grazing_contact with -1.
@@ -2972,7 +2978,9 @@ hbvib_status hbvib_floquet_info_init(hbvib_floquet_info *i, size_t size_of_i);
 /// motion, not of its harmonics. The motion is unstable where an ordinary multiplier lies outside
 /// the unit circle. A cyclic model has one block of perturbations that contains the wave itself,
 /// and others: HBVIB_WAVES_WHEEL computes all of them. A point of a nonlinear mode must be a limit
-/// cycle, damping ratio zero, and its motion is one without forces.
+/// cycle, damping ratio zero, and its motion is one without forces. A large structure is computed
+/// on the degrees of freedom of its contacts and on modes; numbers of modes whose verdicts differ
+/// are HBVIB_E_NO_CONVERGENCE.
 ///
 /// model            the model of which the branch is a result.
 /// point            number of a point of the curve, or of a peak, fold or requested solution.

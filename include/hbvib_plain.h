@@ -574,7 +574,7 @@ struct hbvib_floquet_options {
   uint32_t struct_size;
   int32_t waves;
   int32_t refine;
-  int32_t reserved;
+  int32_t modes;
   double tolerance;
   int64_t max_periods;
 };
@@ -589,6 +589,8 @@ struct hbvib_floquet_info {
   int64_t grazing_contact;
   double orbit_change;
   double residual;
+  int64_t modes;
+  double modes_change;
 };
 struct hbvib_parameter {
   uint32_t struct_size;

@@ -120,7 +120,7 @@ pub use analysis::campbell::{Campbell, Crossing, campbell};
 pub use analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use analysis::damped_modes::{DampedModes, damped_modes};
 pub use analysis::design_peak::DesignPeak;
-pub use analysis::floquet::{Floquet, floquet};
+pub use analysis::floquet::floquet;
 pub use analysis::forced_response::forced_response;
 pub use analysis::harmonic_residual::{
     ResidualArrays, contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,
@@ -149,8 +149,8 @@ pub use error::{Error, Result, Status};
 pub use error_estimate::{Corrected, Estimate};
 pub use results::mode_branch::{ModeField, ModeInfo, ModePoint};
 pub use results::{
-    Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, HigherPeak, LimitCycle, Multiplier,
-    MultiplierClass, Optimum, Special, Stretch,
+    Bifurcation, BifurcationKind, Branch, ContactLoop, ContactSummary, Energy, Floquet, HigherPeak, LimitCycle,
+    Multiplier, MultiplierClass, Optimum, Special, Stretch,
 };
 pub use time_integration::TimeResponse;
 

@@ -726,9 +726,9 @@ time_info: uint32 struct_size; int32 reserved; double period residual; int64 per
 verify_options: uint32 struct_size; int32 method; double tolerance; int64 max_periods; double same_within
 verification: uint32 struct_size; int32 same_solution marched reserved; int64 harmonic; double response[2]
     response_error motion_error above distance peak peak_error residual; int64 periods events
-floquet_options: uint32 struct_size; int32 waves refine reserved; double tolerance; int64 max_periods
+floquet_options: uint32 struct_size; int32 waves refine modes; double tolerance; int64 max_periods
 floquet_info: uint32 struct_size; int32 grazing; double omega radius; int64 count unstable neutral grazing_contact;
-    double orbit_change residual
+    double orbit_change residual; int64 modes; double modes_change
 parameter: uint32 struct_size; int32 kind; int64 contact; pointer direction; int32 scaling reserved
 parameter_options: uint32 struct_size; int32 follow; pointer parameter; double start stop omega; pointer at; int64
     at_len; double log10_start log10_stop

@@ -328,6 +328,8 @@ class Floquet(NamedTuple):
     "neutral_stuck", "neutral_rigid", "trivial"), the largest modulus of the ordinary ones, and how many of them lie
     outside the unit circle. `neutral` of the others are 1 by construction. `orbit_change` is the distance that shooting
     moved the point, `omega` the angular frequency of the motion. `reason` tells why the radius is NaN, or is empty.
+    A large structure is computed on `modes` modes of each nodal diameter, not on all degrees of freedom (0);
+    `modes_change` is the change of the radius from half as many.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)
@@ -347,4 +349,6 @@ class Floquet(NamedTuple):
     omega: float
     residual: float
     reason: str
+    modes: int
+    modes_change: float
     status: Status

@@ -119,6 +119,9 @@ class VerifyOptions(TypedDict, total=False):
 class FloquetOptions(TypedDict, total=False):
     """Options of hbvib_floquet.
 
+    modes   Modes of each nodal diameter, with contacts stuck, on which a large structure is computed, and with half as
+        many once more; 0: on all degrees of freedom; -1: on all unless that counts more than 1e11 operations, then on
+        as many modes as agreement needs. Default: -1.
     tolerance   As in hbvib_time_options. Default: 1e-11.
     max_periods   Cap on the periods that shooting integrates. Default: 10000.
 
@@ -132,6 +135,7 @@ class FloquetOptions(TypedDict, total=False):
     >>> model.floquet(branch, peak, **options).unstable
     0
     """
+    modes: int
     tolerance: float
     max_periods: int
 

@@ -1,6 +1,7 @@
 //! Stability of the points of a forced response while it is followed.
 
-use crate::analysis::floquet::{Motion, floquet_of};
+use crate::analysis::floquet_on_modes::{KeptModes, floquet_of};
+use crate::analysis::perturbed_motion::Motion;
 use crate::condense::Resolution;
 use crate::continuation::Point;
 use crate::error::try_push;
@@ -20,6 +21,8 @@ const FAR: f64 = 0.2;
 pub(super) struct BranchStability<'a> {
     model: &'a Model,
     options: FloquetOptions,
+    /// Modes of a large structure.
+    modes: KeptModes,
     interrupt: &'a Interrupt<'a>,
     /// The points of the curve recorded last, the last one at the end.
     last: [Option<Verdict>; 2],
@@ -32,13 +35,18 @@ pub(super) struct BranchStability<'a> {
 impl<'a> BranchStability<'a> {
     /// No point yet. Models that cannot be integrated in time are refused.
     pub fn new(model: &'a Model, waves: Waves, omega: f64, interrupt: &'a Interrupt<'a>) -> Result<Self> {
-        System::new(model, omega, interrupt)?;
+        let options = FloquetOptions {
+            waves,
+            ..FloquetOptions::default()
+        };
+        let mut modes = KeptModes::default();
+        if modes.on_all_degrees(model, omega, &options)? {
+            System::new(model, omega, interrupt)?;
+        }
         Ok(Self {
             model,
-            options: FloquetOptions {
-                waves,
-                ..FloquetOptions::default()
-            },
+            options,
+            modes,
             interrupt,
             last: [None, None],
             linear: None,
@@ -71,7 +79,7 @@ impl<'a> BranchStability<'a> {
 
     /// Stability of the motion of a solved point. The multipliers are those of the motion in time that shooting finds
     /// near it; of the path of the point itself where it finds none, as near a fold.
-    pub fn at(&self, resolution: &Resolution, point: &Point) -> Result<Verdict> {
+    pub fn at(&mut self, resolution: &Resolution, point: &Point) -> Result<Verdict> {
         let highest = resolution.condensed.set().numbers().last().copied().unwrap_or(0);
         let solution = (point.unknowns(), point.parameter(), 0.0);
         let harmonics = Recovery::of(resolution, solution, self.interrupt)?.all(highest)?;
@@ -83,7 +91,13 @@ impl<'a> BranchStability<'a> {
         };
         for refine in [true, false] {
             let options = FloquetOptions { refine, ..self.options };
-            let found = floquet_of(self.model, &motion, &options, &mut Hooks::default(), self.interrupt);
+            let found = floquet_of(
+                self.model,
+                &motion,
+                &options,
+                (&mut Hooks::default(), &mut self.modes),
+                self.interrupt,
+            );
             match found {
                 Ok(found) if found.shift > FAR => {}
                 Ok(found) if found.stability.radius.is_nan() => return Ok(Verdict::unknown()),

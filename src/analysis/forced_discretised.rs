@@ -381,7 +381,7 @@ impl Discretised for ForcedDiscretised<'_> {
     fn verdict(&mut self, point: &Point) -> Result<Option<Verdict>> {
         self.stale = true;
         let resolution = self.resolutions.current.resolution;
-        self.stability.as_ref().map(|s| s.at(resolution, point)).transpose()
+        self.stability.as_mut().map(|s| s.at(resolution, point)).transpose()
     }
 
     fn linear_share(&mut self, point: &Point) -> Result<f64> {

@@ -10,6 +10,7 @@ mod damping_maximum;
 pub mod design_peak;
 mod evaluation_need;
 pub mod floquet;
+mod floquet_on_modes;
 mod followed;
 mod forced_discretised;
 pub mod forced_response;
@@ -22,6 +23,7 @@ pub mod nonlinear_mode;
 mod parameter_curve;
 pub mod parameter_range;
 pub mod parameter_response;
+mod perturbed_motion;
 pub mod point_error;
 mod residual_numbering;
 mod sampling;
@@ -36,7 +38,7 @@ pub mod verify;
 pub use crate::analysis::batch::{Batch, batch};
 pub use crate::analysis::check_jacobian::{JacobianGap, Tangent, check_jacobian};
 pub use crate::analysis::design_peak::DesignPeak;
-pub use crate::analysis::floquet::{Floquet, floquet};
+pub use crate::analysis::floquet::floquet;
 pub use crate::analysis::forced_response::forced_response;
 pub use crate::analysis::harmonic_residual::{
     contact_evaluate, contact_evaluate_with, forced_residual, forced_residual_with,

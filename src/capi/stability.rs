@@ -10,7 +10,7 @@ use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::stored_point::StoredPoint;
 use super::version_and_errors::hbvib_status;
-use super::versioned_struct::{VersionedStruct, check_out, check_reserved, fill_out, init, load};
+use super::versioned_struct::{VersionedStruct, check_out, fill_out, init, load};
 use crate::analysis;
 use crate::contact::time_piece::Grazing;
 use crate::error::{Result, fail};
@@ -63,8 +63,10 @@ pub struct hbvib_floquet_options {
     pub waves: i32,
     /// 1: move the point to the periodic motion in time by shooting first; 0: take it as it is.
     pub refine: i32,
-    /// Must be 0.
-    pub reserved: i32,
+    /// Modes of each nodal diameter, with contacts stuck, on which a large structure is computed, and
+    /// with half as many once more; 0: on all degrees of freedom; -1: on all unless that counts more
+    /// than 1e11 operations, then on as many modes as agreement needs.
+    pub modes: i32,
     /// As in hbvib_time_options.
     pub tolerance: f64,
     /// Cap on the periods that shooting integrates.
@@ -81,7 +83,7 @@ unsafe impl VersionedStruct for hbvib_floquet_options {
             struct_size: 0,
             waves: hbvib_waves::HBVIB_WAVES_WAVE as i32,
             refine: i32::from(defaults.refine),
-            reserved: 0,
+            modes: -1,
             tolerance: defaults.tolerance,
             max_periods: defaults.max_periods as i64,
         }
@@ -89,7 +91,7 @@ unsafe impl VersionedStruct for hbvib_floquet_options {
 }
 
 /// Fills the options of Floquet multipliers with their defaults: those of the wave, refine = 1,
-/// tolerance = 1e-11.
+/// tolerance = 1e-11, modes = -1.
 ///
 /// o          the struct; untouched on error.
 /// size_of_o  sizeof of it.
@@ -125,6 +127,10 @@ pub struct hbvib_floquet_info {
     /// Largest change over a period of the motion in time, relative to its largest displacement and
     /// velocity; NaN with refine = 0.
     pub residual: f64,
+    /// Modes of each nodal diameter on which the motion was computed; 0: on all degrees of freedom.
+    pub modes: i64,
+    /// Change of the radius from half as many modes.
+    pub modes_change: f64,
 }
 
 unsafe impl VersionedStruct for hbvib_floquet_info {
@@ -143,6 +149,8 @@ unsafe impl VersionedStruct for hbvib_floquet_info {
             grazing_contact: -1,
             orbit_change: 0.0,
             residual: 0.0,
+            modes: 0,
+            modes_change: 0.0,
         }
     }
 }
@@ -163,7 +171,9 @@ pub unsafe extern "C" fn hbvib_floquet_info_init(i: *mut hbvib_floquet_info, siz
 /// motion, not of its harmonics. The motion is unstable where an ordinary multiplier lies outside
 /// the unit circle. A cyclic model has one block of perturbations that contains the wave itself,
 /// and others: HBVIB_WAVES_WHEEL computes all of them. A point of a nonlinear mode must be a limit
-/// cycle, damping ratio zero, and its motion is one without forces.
+/// cycle, damping ratio zero, and its motion is one without forces. A large structure is computed
+/// on the degrees of freedom of its contacts and on modes; numbers of modes whose verdicts differ
+/// are HBVIB_E_NO_CONVERGENCE.
 ///
 /// model            the model of which the branch is a result.
 /// point            number of a point of the curve, or of a peak, fold or requested solution.
@@ -249,6 +259,8 @@ pub unsafe extern "C" fn hbvib_floquet(
                 grazing_contact: contact,
                 orbit_change: found.orbit_change,
                 residual: found.residual,
+                modes: found.modes as i64,
+                modes_change: found.modes_change,
                 ..hbvib_floquet_info::defaults()
             };
             unsafe { fill_out(out, value) };
@@ -283,7 +295,6 @@ unsafe fn floquet_options(p: *const hbvib_floquet_options) -> Result<FloquetOpti
         return Ok(FloquetOptions::default());
     }
     let o = unsafe { load(p, 4) }?;
-    check_reserved(o.reserved, 4, "hbvib_floquet_options")?;
     let chosen = || -> Result<FloquetOptions> {
         let options = FloquetOptions {
             waves: waves(o.waves)?,
@@ -294,6 +305,13 @@ unsafe fn floquet_options(p: *const hbvib_floquet_options) -> Result<FloquetOpti
             },
             tolerance: o.tolerance,
             max_periods: number(o.max_periods, "max_periods")?,
+            modes: match o.modes {
+                -1 => None,
+                modes => match usize::try_from(modes) {
+                    Ok(modes) => Some(modes),
+                    Err(_) => return fail!(Argument, "modes = {modes}, needs -1, 0 or a number of modes"),
+                },
+            },
         };
         options.check()?;
         Ok(options)

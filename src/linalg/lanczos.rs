@@ -69,7 +69,7 @@ pub fn lowest(k: &Csc, m: &Csc, count: usize, interrupt: &Interrupt<'_>) -> Resu
 const DENSE_UP_TO: usize = 200;
 
 /// Factors of K + σM.
-enum Inverse {
+pub enum Inverse {
     /// Definite, in half the memory and less.
     Definite(Definite),
     /// Small, or indefinite as with springs of negative stiffness.
@@ -77,7 +77,11 @@ enum Inverse {
 }
 
 impl Inverse {
-    fn new(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Self> {
+    /// Factors K + σM.
+    ///
+    /// # Errors
+    /// `Singular`, `OutOfMemory`; `StoppedByCaller`.
+    pub fn new(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Self> {
         if k.rows > DENSE_UP_TO
             && let Some(definite) = Definite::new(k, (shift, m), interrupt)?
         {
@@ -93,7 +97,11 @@ impl Inverse {
         Ok(Self::General(factor))
     }
 
-    fn solve(&mut self, b: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
+    /// Solves (K + σM) x = b in place.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn solve(&mut self, b: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
         match self {
             Self::Definite(factor) => factor.solve(b, interrupt),
             Self::General(factor) => factor.solve(b, false, interrupt),

@@ -125,6 +125,49 @@ impl DegreeMap {
         Self::new(marked(fixed, dofs)?, faces)
     }
 
+    /// The map onto `order` other independent degrees of freedom, the first of which are the given old ones; the images of
+    /// the others are empty.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(super) fn retaining(&self, held: &[usize], order: usize) -> Result<Self> {
+        let mut start = try_vec(1, 0, CONTEXT)?;
+        let mut terms = Vec::new();
+        let mut next = try_vec(self.given, false, CONTEXT)?;
+        for (dof, next) in next.iter_mut().enumerate() {
+            let (sector, image) = self.image(dof);
+            *next = sector != 0;
+            for (number, coefficient) in image {
+                if let Ok(new) = held.binary_search(&number) {
+                    try_push(&mut terms, (new, coefficient), CONTEXT)?;
+                }
+            }
+            try_push(&mut start, terms.len(), CONTEXT)?;
+        }
+        let mut origin = try_vec(order, 0, CONTEXT)?;
+        for (origin, &number) in origin.iter_mut().zip(held) {
+            *origin = self.origin(number);
+        }
+        let (fixed, faces) = match self.images.as_deref() {
+            None => (try_vec(self.given, false, CONTEXT)?, None),
+            Some(images) => (
+                try_copy(&images.fixed, CONTEXT)?,
+                images.faces.as_ref().map(Faces::try_clone).transpose()?,
+            ),
+        };
+        Ok(Self {
+            given: self.given,
+            images: Some(Arc::new(Images {
+                start,
+                terms,
+                next,
+                origin,
+                fixed,
+                faces,
+            })),
+        })
+    }
+
     /// Degrees of freedom as the caller numbers them.
     #[must_use]
     pub fn given(&self) -> usize {

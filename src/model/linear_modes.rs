@@ -223,6 +223,11 @@ impl Model {
 }
 
 impl Pencil {
+    /// Leaves gyroscopic forces out.
+    pub fn leave_out_gyroscopic(&mut self) {
+        self.gyroscopic = None;
+    }
+
     /// Whether a request for `count` modes is answered by dense algebra, which finds all.
     pub fn finds_all(&self, count: usize) -> bool {
         let n = self.mass.rows;

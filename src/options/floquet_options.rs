@@ -16,6 +16,10 @@ pub struct FloquetOptions {
     pub tolerance: f64,
     /// Largest number of periods integrated by shooting.
     pub max_periods: usize,
+    /// Modes of each nodal diameter, with contacts stuck, on which a large structure is computed, and with half as many
+    /// once more. `Some(0)`: on all degrees of freedom. `None`: on all unless that counts more than 1e11 operations, a
+    /// few minutes of one core; then on as many modes as are needed for agreement.
+    pub modes: Option<usize>,
 }
 
 impl Default for FloquetOptions {
@@ -25,6 +29,7 @@ impl Default for FloquetOptions {
             refine: true,
             tolerance: 1e-11,
             max_periods: 10_000,
+            modes: None,
         }
     }
 }

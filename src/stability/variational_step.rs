@@ -23,6 +23,9 @@ const MOST_TERMS: usize = 200;
 /// Largest ratio of a term to the result: so many digits are lost.
 const LARGEST_TERM: f64 = 100.0;
 
+/// Size of a term from which on the next ones may overflow.
+const OVERFLOW: f64 = 1e200;
+
 /// Parts of an interval, beyond which the structure is too stiff.
 const MOST_PARTS: usize = 1 << 20;
 
@@ -142,6 +145,10 @@ impl VariationalStep {
                         pull(row, force, new);
                     }
                 }
+            }
+            // A part that is too long overflows.
+            if !new.iter().all(|a| a.norm() < OVERFLOW) {
+                return Ok(false);
             }
             ring.accelerate(new, interrupt)?;
             let scale = h * h / ((k + 1) * (k + 2)) as f64;

@@ -24,8 +24,8 @@ const MOST_AT_ONCE: usize = 50;
 /// Share of a step within which events count as simultaneous.
 const SIMULTANEOUS: f64 = 1e-13;
 
-/// Speed of a slider that begins to move, or of a landing, relative to the largest velocity, below which the event is
-/// touched rather than passed.
+/// Speed of a slider that begins to move, relative to its stretch times ω, or of a landing, relative to the largest
+/// velocity, below which the event is touched rather than passed.
 const GRAZING_SPEED: f64 = 3e-6;
 
 /// Displacements, velocities and the stretches of the sliders' springs.
@@ -340,6 +340,8 @@ impl EventLoop {
             };
             let before = self.modes[i];
             let at = e.instant(&state.x, &state.v);
+            // A contact may move far less than the structure.
+            let speed = largest_speed.min(system.omega * state.e[i].abs());
             (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
             self.moved[i] |= self.modes[i].moves_slider();
             if let Some(s) = sensitivity.as_deref_mut() {
@@ -348,7 +350,7 @@ impl EventLoop {
             if let Some(variation) = variation.as_deref_mut() {
                 couple_variation(e, i, (before, self.modes[i]), state, variation)?;
                 let after = self.modes[i];
-                if let Some(grazing) = touched(e, (before, after), at.rate, largest_speed) {
+                if let Some(grazing) = touched(e, (before, after), at.rate, (speed, largest_speed)) {
                     variation.graze(i, grazing);
                 }
             }
@@ -438,16 +440,16 @@ impl EventLoop {
     }
 }
 
-/// The event that is touched at a change of mode, if any.
-fn touched(e: &Element, (before, after): (Mode, Mode), rate: [f64; 2], largest_speed: f64) -> Option<Grazing> {
+/// The event that is touched at a change of mode, if any. `speeds`: of a slip and of a landing, against which slow ones are
+/// measured.
+fn touched(e: &Element, (before, after): (Mode, Mode), rate: [f64; 2], speeds: (f64, f64)) -> Option<Grazing> {
     let slider = e.slider()?;
-    let slow = GRAZING_SPEED * largest_speed;
     match (before, after) {
         (Mode::Stick, Mode::Slip(_)) => {
             let speed = rate[0] + slider.follows(after, after, rate) * rate[1];
-            (speed.abs() <= slow).then_some(Grazing::SlipLimit)
+            (speed.abs() <= GRAZING_SPEED * speeds.0).then_some(Grazing::SlipLimit)
         }
-        (Mode::Open, Mode::Stick) => (rate[1].abs() <= slow).then_some(Grazing::Landing),
+        (Mode::Open, Mode::Stick) => (rate[1].abs() <= GRAZING_SPEED * speeds.1).then_some(Grazing::Landing),
         _ => None,
     }
 }

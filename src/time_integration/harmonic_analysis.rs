@@ -127,6 +127,11 @@ impl HarmonicAnalysis {
         self.finish_all(system, model).map(|(harmonics, _)| harmonics)
     }
 
+    /// The harmonics of the independent degrees of freedom of sector 0, harmonic by harmonic.
+    pub fn of_independent(self, system: &System<'_>) -> Result<Vec<Complex64>> {
+        self.finish(system).map(|(harmonics, _)| harmonics)
+    }
+
     /// The same with the samples, time by time.
     pub fn finish_all(self, system: &System<'_>, model: &Model) -> Result<(Vec<Complex64>, Vec<f64>)> {
         let given = model.ndof();

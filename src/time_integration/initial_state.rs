@@ -16,13 +16,19 @@ const CONTEXT: &str = "the start of the motion in time";
 
 /// The state at time 0 of a periodic motion; each slider has its place after two periods of the motion from rest.
 pub(crate) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex64]) -> Result<State> {
-    let mut state = State::rest(system)?;
     let (given, ndof) = (model.ndof(), system.ndof);
     let count = harmonics.len() / given;
     let mut sector = try_vec(count.saturating_mul(ndof), Complex64::ZERO, CONTEXT)?;
     for (x, all) in sector.chunks_exact_mut(ndof).zip(harmonics.chunks_exact(given)) {
         system.degrees.restrict(all, x);
     }
+    state_of_sector(model, system, &sector)
+}
+
+/// The same from the harmonics of the independent degrees of freedom of a sector.
+pub(crate) fn state_of_sector(model: &Model, system: &System<'_>, sector: &[Complex64]) -> Result<State> {
+    let mut state = State::rest(system)?;
+    let ndof = system.ndof;
     for (h, own) in sector.chunks_exact(ndof).enumerate() {
         for s in 0..system.sectors {
             let phase = model.structure().phase(h, s as i64);
@@ -33,7 +39,7 @@ pub(crate) fn state_of(model: &Model, system: &System<'_>, harmonics: &[Complex6
             }
         }
     }
-    place_sliders(model, system, &sector, &mut state)?;
+    place_sliders(model, system, sector, &mut state)?;
     Ok(state)
 }
 

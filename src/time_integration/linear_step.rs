@@ -19,6 +19,9 @@ const NEGLIGIBLE: f64 = 1e-18;
 /// Rounds of shortening a step whose largest terms shrink with it.
 const ROUNDS: usize = 100;
 
+/// Size of a term from which on the next ones may overflow.
+const OVERFLOW: f64 = 1e200;
+
 /// Share of the largest term at which the series of a sensitivity is cut off.
 const CUT: f64 = 1e-17;
 
@@ -125,7 +128,12 @@ impl Taylor {
             };
             e.push(-1.0, force, f);
         }
-        system.accelerate(f)?;
+        // A step that is too long overflows, and is shortened.
+        if f.iter().all(|f| f.abs() < OVERFLOW) {
+            system.accelerate(f)?;
+        } else {
+            f.fill(f64::NAN);
+        }
         let scale = h * h / ((k + 1) * (k + 2)) as f64;
         for (new, f) in new.iter_mut().zip(f.iter()) {
             *new = scale * f;

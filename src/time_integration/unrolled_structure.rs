@@ -170,6 +170,25 @@ impl<'s> System<'s> {
         Ok(())
     }
 
+    /// Adds forces of a harmonic on all degrees of freedom of this sector; the others lag with the wave.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn add_forces(&mut self, structure: &Structure, harmonic: usize, force: &[Complex64]) -> Result<()> {
+        for s in 0..self.sectors {
+            let phase = structure.phase(harmonic, s as i64);
+            for (dof, &value) in force.iter().enumerate().filter(|(_, f)| **f != Complex64::ZERO) {
+                let load = Load {
+                    dof: s * self.ndof + dof,
+                    harmonic,
+                    value: value * phase,
+                };
+                try_push(&mut self.loads, load, CONTEXT)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Operations of one product with the matrices, for the checks of the interrupt.
     pub fn operations(&self) -> u64 {
         let entries = self.stiffness.values.len() + self.damping.values.len() + self.inertia.values.len();
@@ -257,13 +276,7 @@ fn with_springs(stiffness: &Csc, springs: &[Spring]) -> Result<Csc> {
 
 impl Mass {
     fn new(m: &Csc, ndof: usize, interrupt: &Interrupt<'_>) -> Result<Self> {
-        if let Some(i) = (0..m.cols).find(|&i| m.get(i, i).re <= 0.0) {
-            return fail!(
-                Unsupported,
-                "degree of freedom {} has no mass: its motion in time has no differential equation; give it mass or remove it",
-                i % ndof
-            );
-        }
+        refuse_massless(m, ndof)?;
         if (0..m.cols).all(|j| m.column(j).all(|(i, v)| i == j || v.re == 0.0)) {
             let mut inverse = try_vec(m.cols, 0.0, CONTEXT)?;
             for (i, d) in inverse.iter_mut().enumerate() {
@@ -288,9 +301,27 @@ impl Mass {
     }
 }
 
+/// Refuses degrees of freedom without mass, `ndof` to a sector.
+///
+/// # Errors
+/// `Unsupported`.
+pub(crate) fn refuse_massless(m: &Csc, ndof: usize) -> Result<()> {
+    match (0..m.cols).find(|&i| m.get(i, i).re <= 0.0) {
+        Some(i) => fail!(
+            Unsupported,
+            "degree of freedom {} has no mass: its motion in time has no differential equation; give it mass or remove it",
+            i % ndof
+        ),
+        None => Ok(()),
+    }
+}
+
 /// Structural damping defines no motion in time: its force follows the future of the motion, too (Crandall 1970,
 /// doi:10.1016/0022-460X(70)90105-5).
-fn refuse_structural_damping(structure: &Structure, omega: f64) -> Result<()> {
+///
+/// # Errors
+/// `Unsupported`.
+pub(crate) fn refuse_structural_damping(structure: &Structure, omega: f64) -> Result<()> {
     const REASON: &str = "structural damping has no causal law in time, only harmonics, and is not integrated";
     let eta = structure.loss_factor();
     if structure.has_structural_matrix() {

@@ -57,8 +57,8 @@ fn in_rust() -> String {
         hbvib_time_info { struct_size, reserved, period, residual, periods, events }
         hbvib_verify_options { struct_size, method, tolerance, max_periods, same_within }
         hbvib_verification { struct_size, same_solution, marched, reserved, harmonic, response, response_error, motion_error, above, distance, peak, peak_error, residual, periods, events }
-        hbvib_floquet_options { struct_size, waves, refine, reserved, tolerance, max_periods }
-        hbvib_floquet_info { struct_size, grazing, omega, radius, count, unstable, neutral, grazing_contact, orbit_change, residual }
+        hbvib_floquet_options { struct_size, waves, refine, modes, tolerance, max_periods }
+        hbvib_floquet_info { struct_size, grazing, omega, radius, count, unstable, neutral, grazing_contact, orbit_change, residual, modes, modes_change }
         hbvib_parameter { struct_size, kind, contact, direction, scaling, reserved }
         hbvib_parameter_options { struct_size, follow, parameter, start, stop, omega, at, at_len, log10_start, log10_stop }
         hbvib_batch_options { struct_size, threads, omega_start, omega_stop, keep, reserved }

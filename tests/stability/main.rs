@@ -11,6 +11,7 @@ mod floquet_references;
 mod floquet_wheel;
 mod hard_cases_in_time;
 mod limit_cycles;
+mod on_modes;
 
 use hbvib::analysis::floquet;
 use hbvib::hooks::Hooks;

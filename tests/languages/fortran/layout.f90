@@ -424,7 +424,7 @@ contains
       call field('struct_size', c_loc(s), c_loc(s%struct_size), c_sizeof(s%struct_size))
       call field('waves', c_loc(s), c_loc(s%waves), c_sizeof(s%waves))
       call field('refine', c_loc(s), c_loc(s%refine), c_sizeof(s%refine))
-      call field('reserved', c_loc(s), c_loc(s%reserved), c_sizeof(s%reserved))
+      call field('modes', c_loc(s), c_loc(s%modes), c_sizeof(s%modes))
       call field('tolerance', c_loc(s), c_loc(s%tolerance), c_sizeof(s%tolerance))
       call field('max_periods', c_loc(s), c_loc(s%max_periods), c_sizeof(s%max_periods))
    end subroutine floquet_options
@@ -442,6 +442,8 @@ contains
       call field('grazing_contact', c_loc(s), c_loc(s%grazing_contact), c_sizeof(s%grazing_contact))
       call field('orbit_change', c_loc(s), c_loc(s%orbit_change), c_sizeof(s%orbit_change))
       call field('residual', c_loc(s), c_loc(s%residual), c_sizeof(s%residual))
+      call field('modes', c_loc(s), c_loc(s%modes), c_sizeof(s%modes))
+      call field('modes_change', c_loc(s), c_loc(s%modes_change), c_sizeof(s%modes_change))
    end subroutine floquet_info
 
    subroutine parameter()

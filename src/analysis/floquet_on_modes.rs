@@ -1,0 +1,269 @@
+//! Choice between the whole structure and modes of it, and the comparison of two numbers of modes.
+
+use crate::analysis::perturbed_motion::{Found, Motion, Subject, perturbed};
+use crate::error::{Result, Status, fail, try_push};
+use crate::hooks::{Hooks, LogLevel};
+use crate::interrupt::Interrupt;
+use crate::model::Model;
+use crate::model::linear_modes::ContactState;
+use crate::model::on_modes::{OnModes, ShapesOfWaves, degrees_of_contacts};
+use crate::model::speed::Speed;
+use crate::model::structure::{MatrixKind, Structure};
+use crate::model::wave::Wave;
+use crate::options::{FloquetOptions, Waves};
+use crate::results::Floquet;
+use crate::stability::{Extent, fastest_motion};
+use crate::time_integration::{refuse_massless, refuse_structural_damping};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+/// Operations up to which the whole structure is carried, a few minutes of one core.
+const ON_ALL: f64 = 1e11;
+
+/// Smallest number of modes of a nodal diameter at which a search begins.
+const FIRST: usize = 4;
+
+/// Largest number of times that the modes are doubled for agreement.
+const DOUBLINGS: usize = 4;
+
+/// Frequency below which modes belong to the first ones, relative to that of the highest force.
+const CUTOFF: f64 = 5.0;
+
+/// Difference of the radius, as a share of its distance from the unit circle, up to which two numbers of modes agree.
+const AGREEMENT: f64 = 0.01;
+
+/// The same where the radius is next to 1.
+const LEAST: f64 = 1e-7;
+
+/// Shapes and small models that points of one branch share.
+#[derive(Default)]
+pub(super) struct KeptModes {
+    shapes: Option<Arc<ShapesOfWaves>>,
+    small: Vec<(usize, OnModes)>,
+    /// Modes at which the last two numbers agreed.
+    last: Option<usize>,
+    /// Whether the whole structure is carried.
+    on_all: Option<bool>,
+}
+
+impl KeptModes {
+    /// Whether the motion is computed on all degrees of freedom, by the operations counted.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `Argument` for a nodal diameter that was not given.
+    pub fn on_all_degrees(&mut self, model: &Model, omega: f64, options: &FloquetOptions) -> Result<bool> {
+        if let Some(modes) = options.modes {
+            return Ok(modes == 0);
+        }
+        if let Some(on_all) = self.on_all {
+            return Ok(on_all);
+        }
+        let on_all = is_small(&*model.at_frequency(omega)?, omega, options.waves)?;
+        self.on_all = Some(on_all);
+        Ok(on_all)
+    }
+
+    /// The model on a number of modes, or on all that there are.
+    fn on(&mut self, model: &Model, modes: usize, waves: Waves, interrupt: &Interrupt<'_>) -> Result<&OnModes> {
+        let enough = self
+            .shapes
+            .as_ref()
+            .is_some_and(|s| s.modes() >= modes || s.is_complete());
+        let shapes = match &self.shapes {
+            Some(shapes) if enough => Arc::clone(shapes),
+            _ => {
+                self.small.clear();
+                let step = match waves {
+                    Waves::Wave => model.structure().sectors() / model.structure().repeating_sectors(),
+                    Waves::Wheel => 1,
+                };
+                Arc::new(ShapesOfWaves::new(model, step, modes, interrupt)?)
+            }
+        };
+        self.shapes = Some(Arc::clone(&shapes));
+        let modes = modes.min(shapes.modes());
+        let known = self.small.iter().position(|(count, _)| *count == modes);
+        let at = known.unwrap_or(self.small.len());
+        if known.is_none() {
+            let small = OnModes::new(model, &shapes, modes, interrupt)?;
+            try_push(&mut self.small, (modes, small), "the models on modes")?;
+        }
+        Ok(&self.small[at].1)
+    }
+}
+
+/// The multipliers of a motion; `StoppedByCaller` is an error.
+pub(super) fn floquet_of(
+    model: &Model,
+    motion: &Motion<'_>,
+    options: &FloquetOptions,
+    (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
+    interrupt: &Interrupt<'_>,
+) -> Result<Found> {
+    if kept.on_all_degrees(model, motion.omega, options)? {
+        return perturbed(&Subject { model, on_modes: None }, motion, options, hooks, interrupt);
+    }
+    let at_speed = &*model.at_frequency(motion.omega)?;
+    refuse(at_speed, motion.omega)?;
+    if matches!(model.speed(), Speed::PerOmega(_)) {
+        // The modes change with the frequency.
+        (kept.shapes, kept.small) = (None, Vec::new());
+    }
+    let mut modes = match (options.modes, kept.last) {
+        (Some(modes), _) => modes.div_ceil(2),
+        (None, Some(last)) => last.div_ceil(2),
+        (None, None) => first_number(at_speed, motion.omega, kept, options.waves, interrupt)?,
+    };
+    let mut few: Option<(Found, usize)> = None;
+    for _ in 0..=DOUBLINGS {
+        let next = on_a_number(at_speed, motion, (options, modes), (hooks, kept), interrupt);
+        let (mut many, more) = match next {
+            // A motion on too few modes may be far from the point.
+            Err(e) if e.status == Status::NoConvergence && few.is_none() && options.modes.is_none() => {
+                modes *= 2;
+                continue;
+            }
+            next => next?,
+        };
+        if let Some((few, used)) = &few {
+            many.stability.modes_change = (many.stability.radius - few.stability.radius).abs();
+            // Where no more modes exist nothing is left out.
+            if agree(&few.stability, &many.stability) || more == *used {
+                kept.last = Some(modes);
+                return Ok(many);
+            }
+            if options.modes.is_some() {
+                return fail!(
+                    NoConvergence,
+                    "the radius is {:.6} on {used} modes of each nodal diameter and {:.6} on {more}; use more of them, or all degrees of freedom (modes = 0)",
+                    few.stability.radius,
+                    many.stability.radius
+                );
+            }
+        }
+        few = Some((many, more));
+        modes *= 2;
+    }
+    fail!(
+        NoConvergence,
+        "the radius has not converged on {} modes of each nodal diameter; use all degrees of freedom (modes = 0)",
+        few.map_or(0, |(_, used)| used)
+    )
+}
+
+/// The multipliers on a number of modes, or on all that there are, and their number.
+fn on_a_number(
+    model: &Model,
+    motion: &Motion<'_>,
+    (options, modes): (&FloquetOptions, usize),
+    (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
+    interrupt: &Interrupt<'_>,
+) -> Result<(Found, usize)> {
+    let on_modes = kept.on(model, modes, options.waves, interrupt)?;
+    let subject = Subject {
+        model,
+        on_modes: Some(on_modes),
+    };
+    let mut found = perturbed(&subject, motion, options, hooks, interrupt)?;
+    found.stability.modes = on_modes.modes();
+    hooks.log(
+        LogLevel::Info,
+        &format!(
+            "on {} modes of each nodal diameter the radius is {:.6}",
+            found.stability.modes, found.stability.radius
+        ),
+    );
+    let modes = found.stability.modes;
+    Ok((found, modes))
+}
+
+/// Whether two numbers of modes have the same verdict.
+fn agree(few: &Floquet, many: &Floquet) -> bool {
+    if few.grazing.is_some() || many.grazing.is_some() {
+        return few.grazing.is_some() == many.grazing.is_some();
+    }
+    let allowed = LEAST.max(AGREEMENT * (1.0 - many.radius).abs());
+    few.unstable == many.unstable && many.modes_change <= allowed
+}
+
+/// The modes below a multiple of the frequency of the highest force.
+fn first_number(
+    model: &Model,
+    omega: f64,
+    kept: &mut KeptModes,
+    waves: Waves,
+    interrupt: &Interrupt<'_>,
+) -> Result<usize> {
+    let highest = model
+        .excitation()
+        .forces()
+        .iter()
+        .map(|f| f.harmonic)
+        .max()
+        .unwrap_or(1);
+    let cutoff = CUTOFF * omega * highest.max(1) as f64;
+    let mut modes = FIRST;
+    loop {
+        kept.on(model, 2 * modes, waves, interrupt)?;
+        let Some(shapes) = &kept.shapes else { return Ok(modes) };
+        let below = shapes.modes_below(cutoff);
+        if below < 2 * modes || shapes.is_complete() {
+            return Ok(modes.max(below.min(2 * modes)));
+        }
+        modes *= 2;
+    }
+}
+
+/// Refuses what integration in time refuses, without its equations.
+fn refuse(model: &Model, omega: f64) -> Result<()> {
+    let structure = model.structure();
+    refuse_structural_damping(structure, omega)?;
+    let highest = structure.sectors() / 2;
+    for diameter in [0, highest] {
+        let wave = Wave::Diameter(diameter);
+        refuse_massless(&structure.of_wave(MatrixKind::Mass, wave)?, structure.ndof())?;
+        let is_own_mirror = (2 * diameter).is_multiple_of(structure.sectors());
+        for which in [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness] {
+            let is_real = || -> Result<bool> { Ok(structure.of_wave(which, wave)?.is_real()) };
+            if is_own_mirror && !is_real()? {
+                structure.unrolled(which)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Whether the operations on the whole structure are few, or fewer than those on modes.
+fn is_small(model: &Model, omega: f64, waves: Waves) -> Result<bool> {
+    let structure = model.structure();
+    let sectors = structure.repeating_sectors() as f64;
+    let own = Wave::Harmonic(1);
+    let stiffness = model.stiffness_at_small_motion(own, ContactState::Stuck)?;
+    let mass = structure.of_wave(MatrixKind::Mass, own)?;
+    let damping = structure.of_wave(MatrixKind::Damping, own)?;
+    let whole = Extent {
+        order: structure.ndof() as f64 * sectors,
+        sliders: model.contacts().len() as f64 * sectors,
+        entries: sectors * (stiffness.values.len() + mass.values.len() + damping.values.len()) as f64,
+        fastest: fastest_motion(&stiffness, &mass) * TAU / omega / sectors,
+        blocks: match waves {
+            Waves::Wave => 1.0,
+            Waves::Wheel => blocks_of_wheel(structure),
+        },
+    };
+    if whole.operations() <= ON_ALL {
+        return Ok(true);
+    }
+    let order = (degrees_of_contacts(model)?.len() + 2 * FIRST) as f64 * sectors;
+    let least = Extent {
+        order,
+        entries: 3.0 * order * order,
+        ..whole
+    };
+    Ok(order >= whole.order || whole.operations() <= least.operations())
+}
+
+/// Blocks of the wheel with even ones and odd ones, one of each pair of conjugate ones.
+fn blocks_of_wheel(structure: &Structure) -> f64 {
+    (structure.sectors() / structure.repeating_sectors() / 2 + 1) as f64
+}

@@ -1,0 +1,52 @@
+//! Counted operations of the multipliers of a motion, from which it follows whether a structure is too large to be
+//! carried as a whole.
+
+use crate::linalg::sparse::Csc;
+
+/// Operations of the eigenvalues of a complex matrix of order 1 (Golub & Van Loan, Matrix Computations, 2013, §7.5: 25 n³
+/// complex ones).
+const OF_EIGENVALUES: f64 = 100.0;
+
+/// Terms of the series of a step.
+const TERMS: f64 = 24.0;
+
+/// Rate of the fastest motion times the length of a step.
+const STEP: f64 = 2.0;
+
+/// Columns that are carried: those of shooting and those of the perturbations.
+const TWICE: f64 = 2.0;
+
+/// A structure as the operations of its perturbations depend on it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Extent {
+    /// Degrees of freedom of a block of perturbations.
+    pub order: f64,
+    pub sliders: f64,
+    /// Entries of its matrices.
+    pub entries: f64,
+    /// Largest natural frequency times the time over which perturbations are carried.
+    pub fastest: f64,
+    /// Number of blocks.
+    pub blocks: f64,
+}
+
+impl Extent {
+    /// Operations of their multipliers.
+    pub fn operations(&self) -> f64 {
+        let states = 2.0 * self.order + self.sliders;
+        let steps = 1.0 + self.fastest / STEP;
+        let carried = TWICE * TERMS * 2.0 * self.entries * states * steps;
+        self.blocks * (carried + OF_EIGENVALUES * states.powi(3))
+    }
+}
+
+/// Bound of the largest natural angular frequency: the largest sum of a row of the stiffness over the mass on the
+/// diagonal.
+pub(crate) fn fastest_motion(stiffness: &Csc, mass: &Csc) -> f64 {
+    let square = (0..stiffness.cols).fold(0.0_f64, |most, j| {
+        let sum: f64 = stiffness.column(j).map(|(_, v)| v.norm()).sum();
+        let mass = mass.get(j, j).re;
+        if mass > 0.0 { most.max(sum / mass) } else { most }
+    });
+    square.sqrt()
+}

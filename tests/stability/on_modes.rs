@@ -1,0 +1,227 @@
+//! Multipliers on modes of a structure are those on all its degrees of freedom, within the change from half as many modes.
+
+use crate::common::{harmonics, solve_at};
+use hbvib::analysis::floquet;
+use hbvib::contact::{Contact, ContactKind};
+use hbvib::error::Error;
+use hbvib::hooks::Hooks;
+use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::model::Model;
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{FloquetOptions, SolverOptions, Waves};
+use hbvib::results::Branch;
+use hbvib::{Floquet, Polynomial, Table};
+use std::time::Instant;
+
+fn try_on(model: &Model, branch: &Branch, modes: Option<usize>, waves: Waves) -> Result<Floquet, Error> {
+    let options = FloquetOptions {
+        waves,
+        modes,
+        ..FloquetOptions::default()
+    };
+    floquet(model, branch, 0, &options, &mut Hooks::default())
+}
+
+fn on(model: &Model, branch: &Branch, modes: Option<usize>, waves: Waves) -> Floquet {
+    try_on(model, branch, modes, waves).unwrap()
+}
+
+/// Mass and stiffness of a bar of lumps that becomes thinner towards its end, held at one end.
+fn bar(n: usize) -> (Vec<f64>, Vec<f64>) {
+    let (mut mass, mut stiffness) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        let thickness = 1.0 - 0.6 * i as f64 / n as f64;
+        mass[i * n + i] = thickness * thickness / n as f64;
+        let k = 3.0 * thickness * n as f64;
+        stiffness[i * n + i] += k;
+        if i > 0 {
+            stiffness[(i - 1) * n + i - 1] += k;
+            stiffness[(i - 1) * n + i] -= k;
+            stiffness[i * n + i - 1] -= k;
+        }
+    }
+    (mass, stiffness)
+}
+
+fn held_bar(n: usize, contacts: &[Contact], force: f64) -> Model {
+    let (mass, stiffness) = bar(n);
+    let mut model = Model::new(n).unwrap();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
+        .unwrap();
+    model.set_rayleigh(0.1, 0.02).unwrap();
+    for contact in contacts {
+        model.add_contact(contact).unwrap();
+    }
+    // Not where a contact acts.
+    model.add_force(n - 4, 1, force.into()).unwrap();
+    model.add_force(n / 3, 3, (0.2 * force).into()).unwrap();
+    model
+}
+
+/// One case of every law that integration in time takes.
+fn laws(n: usize) -> Vec<(&'static str, Vec<Contact>)> {
+    let (tip, inner) = (n - 1, n / 2);
+    let table = Table::new(&[-1.0, -0.1, 0.1, 1.0], &[-1.5, -0.05, 0.05, 1.5]).unwrap();
+    let damper = Polynomial::scalar(&[0.1, 0.0, 0.5], &[0.05, 0.0, 0.1]).unwrap();
+    vec![
+        ("friction", vec![Contact::jenkins(tip, None, 1.0, 0.5, 0.4)]),
+        (
+            "two sliders",
+            vec![
+                Contact::jenkins(tip, None, 1.0, 0.5, 0.4),
+                Contact::jenkins(inner, Some(n / 3), 3.0, 0.5, 0.1),
+            ],
+        ),
+        ("stop", vec![Contact::unilateral(Some(tip), None, 1.0, 0.05)]),
+        (
+            "varying load",
+            vec![Contact::friction_2d(
+                [Some(tip), Some(inner)],
+                [None; 2],
+                (1.0, 1.0),
+                0.5,
+                0.8,
+            )],
+        ),
+        ("cubic", vec![Contact::cubic(tip, None, 0.3, 0.4)]),
+        ("smooth friction", vec![Contact::regularised(tip, None, 0.5, 0.3, 0.3)]),
+        ("table", vec![Contact::between(tip, None, ContactKind::Table(table))]),
+        (
+            "polynomial",
+            vec![Contact::between(tip, None, ContactKind::Polynomial(damper))],
+        ),
+        ("stuck", vec![Contact::jenkins(tip, None, 1.0, 0.5, 100.0)]),
+    ]
+}
+
+#[test]
+fn every_law_has_the_multipliers_of_all_degrees_of_freedom() {
+    compare(16, 8);
+}
+
+#[test]
+#[ignore = "shooting of 96 states for each law"]
+fn every_law_has_the_multipliers_of_a_finer_bar() {
+    compare(48, 12);
+}
+
+fn compare(n: usize, modes: usize) {
+    for (name, contacts) in laws(n) {
+        let model = held_bar(n, &contacts, 0.4);
+        let branch = solve_at(&model, &harmonics(25), 3.0);
+        let begin = Instant::now();
+        let all = on(&model, &branch, Some(0), Waves::Wave);
+        let whole = begin.elapsed();
+        let begin = Instant::now();
+        let few = on(&model, &branch, Some(modes), Waves::Wave);
+        let gap = (few.radius - all.radius).abs();
+        println!(
+            "{name}: {:.9}, {gap:.1e} off, {:.1e} told, {whole:.1?} and {:.1?}",
+            all.radius,
+            few.modes_change,
+            begin.elapsed()
+        );
+        assert_eq!((all.modes, few.modes), (0, modes));
+        assert_eq!((all.unstable, all.neutral), (few.unstable, few.neutral));
+        assert!(
+            gap < 1e-3 * (1.0 - all.radius).abs() && gap <= few.modes_change.max(1e-9),
+            "{name}: {gap:.1e}"
+        );
+    }
+}
+
+/// With all modes nothing is left out.
+#[test]
+fn sectors_have_the_multipliers_of_all_degrees_of_freedom() {
+    let n = 12;
+    let (mass, stiffness) = bar(n);
+    for (engine_order, waves) in [
+        (2, Waves::Wave),
+        (2, Waves::Wheel),
+        (-3, Waves::Wave),
+        (3, Waves::Wheel),
+    ] {
+        let mut next = vec![0.0; n * n];
+        (next[1], next[n]) = (-0.3, -0.1);
+        let mut model = Model::cyclic(n, 8).unwrap();
+        model
+            .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
+            .unwrap();
+        model
+            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
+            .unwrap();
+        model
+            .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(n, &next))
+            .unwrap();
+        model.set_rayleigh(0.05, 0.005).unwrap();
+        model.set_wave(engine_order);
+        let contact = Contact {
+            sector_offset: 1,
+            ..Contact::jenkins(n - 1, Some(n - 2), 2.0, 0.5, 0.2)
+        };
+        model.add_contact(&contact).unwrap();
+        model.add_force(n - 3, 1, 0.3.into()).unwrap();
+        let branch = solve_at(&model, &harmonics(21), 2.9);
+        let all = on(&model, &branch, Some(0), waves);
+        for (modes, bound) in [(6, 1e-2), (100, 1e-8)] {
+            let few = on(&model, &branch, Some(modes), waves);
+            let gap = (few.radius - all.radius).abs();
+            println!(
+                "{engine_order} {waves:?}: {:.9}, {gap:.1e} off on {} modes, {:.1e} told",
+                all.radius, few.modes, few.modes_change
+            );
+            assert!(gap <= few.modes_change.max(1e-11), "{gap:.1e}");
+            assert_eq!((all.unstable, all.neutral), (few.unstable, few.neutral));
+            assert!((few.orbit_change - all.orbit_change).abs() < bound);
+        }
+    }
+}
+
+/// A free body that friction alone holds keeps its neutral multiplier.
+#[test]
+fn a_rigid_motion_stays_neutral_on_modes() {
+    let n = 24;
+    let (mass, mut stiffness) = bar(n);
+    stiffness[0] -= 3.0 * n as f64;
+    let mut model = Model::new(n).unwrap();
+    model
+        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
+        .unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
+        .unwrap();
+    model.set_rayleigh(0.0, 0.02).unwrap();
+    model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 0.2)).unwrap();
+    model.add_force(n - 1, 1, 0.4.into()).unwrap();
+    let branch = solve_at(&model, &harmonics(25), 2.0);
+    for modes in [Some(0), Some(12)] {
+        let found = on(&model, &branch, modes, Waves::Wave);
+        println!("{modes:?}: {} with {} neutral", found.radius, found.neutral);
+        assert_eq!((found.neutral, found.unstable), (1, 0));
+    }
+}
+
+/// A bar of many degrees of freedom is computed on modes unasked, along a branch too.
+#[test]
+fn a_large_structure_is_computed_on_modes() {
+    let contacts = [Contact::jenkins(299, None, 1.0, 0.5, 0.4)];
+    let model = held_bar(300, &contacts, 0.4);
+    let solver = SolverOptions {
+        stability: Some(Waves::Wave),
+        ..harmonics(9)
+    };
+    let begin = Instant::now();
+    let branch = solve_at(&model, &solver, 3.0);
+    println!("{} points, {:.1?}", branch.points(), begin.elapsed());
+    let found = on(&model, &branch, None, Waves::Wave);
+    println!(
+        "{} on {} modes, {:.1e} told",
+        found.radius, found.modes, found.modes_change
+    );
+    assert!(found.modes > 0 && found.modes < 50);
+    assert!((found.radius - branch.floquet_radius()[0]).abs() < 1e-9);
+}
