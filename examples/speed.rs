@@ -10,6 +10,8 @@ use std::error::Error;
 use std::f64::consts::TAU;
 use std::time::Instant;
 
+#[path = "support/cpu_time.rs"]
+mod cpu_time;
 #[path = "speed/designs.rs"]
 mod designs;
 #[path = "speed/iteration.rs"]

@@ -10,6 +10,8 @@
 mod brick;
 mod calibration;
 mod counting;
+#[path = "../../examples/support/cpu_time.rs"]
+mod cpu_time;
 mod many;
 #[path = "../../examples/ring_damper/model.rs"]
 #[allow(dead_code, reason = "only the model is used here")]
@@ -18,7 +20,8 @@ mod model;
 mod plate;
 mod small;
 
-use calibration::{Unit, cpu_seconds, unit_seconds};
+use calibration::Unit;
+use cpu_time::cpu_seconds;
 use hbvib::{Branch, Result};
 use std::process::ExitCode;
 
@@ -54,14 +57,11 @@ impl Work {
 /// Largest relative difference of the units before and after a row.
 const DRIFT: f64 = 0.1;
 
-/// Shortest CPU time of a stretch of repetitions, s, as the system tells it in steps of some milliseconds; most repetitions
-/// in a stretch, and stretches of quick rows, of which the quickest counts.
+/// Shortest CPU time of a stretch of repetitions, s; most repetitions in a stretch, and stretches of quick rows, of which the
+/// quickest counts.
 const LEAST: f64 = 0.05;
 const MOST: usize = 400;
 const STRETCHES: usize = 6;
-
-/// Shortest CPU time of a stretch that the clock tells, s.
-const SHORTEST: f64 = 0.02;
 
 /// Attempts to measure a row without disturbance.
 const ATTEMPTS: usize = 8;
@@ -75,7 +75,7 @@ struct Stretch {
     work: Work,
 }
 
-/// Repeats a row until the clock tells its time well.
+/// Repeats a row until the stretch is long enough.
 fn stretch(row: &Row) -> Result<Stretch> {
     let (begin, allocations) = (cpu_seconds(), counting::count());
     let (mut own, mut count) = (0.0, 0);
@@ -99,9 +99,8 @@ fn stretch(row: &Row) -> Result<Stretch> {
 fn measure(row: &Row) -> Result<()> {
     let mut shown = f64::INFINITY;
     let mut told = None;
-    let mut is_short = false;
     for _ in 0..ATTEMPTS {
-        let before = unit_seconds(row.unit);
+        let before = row.unit.seconds();
         let mut least = stretch(row)?;
         for _ in 1..if least.seconds * least.count as f64 > 1.0 {
             1
@@ -113,10 +112,9 @@ fn measure(row: &Row) -> Result<()> {
                 least = next;
             }
         }
-        is_short = least.seconds * (least.count as f64) < SHORTEST;
-        let after = unit_seconds(row.unit);
+        let after = row.unit.seconds();
         shown = (before / after).max(after / before) - 1.0;
-        if shown <= DRIFT && !is_short {
+        if shown <= DRIFT {
             let unit = 0.5 * (before + after);
             told = Some((
                 least.seconds / least.work.per.0 / unit,
@@ -128,10 +126,6 @@ fn measure(row: &Row) -> Result<()> {
         }
     }
     let Some((ratio, unit, allocations, work)) = told else {
-        if is_short {
-            println!("{:58} dropped: shorter than the clock tells", row.name);
-            return Ok(());
-        }
         println!("{:58} dropped: the unit drifted by {:.0} %", row.name, 100.0 * shown);
         return Ok(());
     };

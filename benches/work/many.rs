@@ -1,6 +1,7 @@
 //! Rows of structures with many degrees of freedom or contacts.
 
-use crate::calibration::{Unit, cpu_seconds};
+use crate::calibration::Unit;
+use crate::cpu_time::cpu_seconds;
 use crate::plate::Plate;
 use crate::{Row, Work};
 use hbvib::{

@@ -1,6 +1,6 @@
 //! Rows of small structures: the ring damper, from the matrices to the branch.
 
-use crate::calibration::{Unit, cpu_seconds};
+use crate::calibration::Unit;
 use crate::model::{B2, Parameters};
 use crate::{Row, Work};
 use hbvib::{
@@ -26,9 +26,9 @@ pub const ROWS: &[Row] = &[
         run: || Ok(Work::whole(&case_b(127, 0.0, 20_000)?)),
     },
     Row {
-        name: "case B, 20 N, H 127, share of the first point",
+        name: "case B, 20 N, H 127, first point",
         unit: Unit::Lu11,
-        run: first_point,
+        run: || Ok(Work::whole(&case_b(127, 0.0, 1)?)),
     },
     Row {
         name: "ring damper, backbone, H 9, about 64 points",
@@ -72,20 +72,6 @@ fn case_b(harmonics: usize, step_max: f64, max_points: usize) -> Result<Branch> 
         ..ForcedOptions::default()
     };
     forced_response(&ring_damper(parameters)?, &solver, &range, &mut Hooks::default())
-}
-
-/// The first point as a share of the whole response.
-fn first_point() -> Result<Work> {
-    let begin = cpu_seconds();
-    let first = case_b(127, 0.0, 1)?;
-    let middle = cpu_seconds();
-    case_b(127, 0.0, 20_000)?;
-    let whole = cpu_seconds() - middle;
-    println!("    {:.1} % of the whole", 100.0 * (middle - begin) / whole);
-    Ok(Work {
-        seconds: Some(middle - begin),
-        ..Work::whole(&first)
-    })
 }
 
 fn backbone() -> Result<Work> {

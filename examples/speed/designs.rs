@@ -1,41 +1,16 @@
 //! Cost of a design of the ring damper in a batch, as a multiple of one LU factorisation of order 11 with a solution.
 
+use crate::cpu_time::{cpu_seconds, lu11_seconds};
 use crate::model;
 use hbvib::{BatchOptions, Constant, Hooks, MatrixKind, MatrixView, Parameter, SolverOptions, Status, batch};
-use nalgebra::{SMatrix, SVector};
 use std::error::Error;
 use std::f64::consts::TAU;
-use std::hint::black_box;
-use std::time::Instant;
 
 /// Designs of one run.
 const DESIGNS: usize = 300;
 
 /// Runs; the quickest counts, and the quickest factorisation beside it.
 const REPEATS: usize = 5;
-
-/// Processor time of this thread so far, s, which others on the machine do not lengthen; the clock where the system does not
-/// tell it.
-fn processor(start: Instant) -> f64 {
-    let told = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let nanoseconds = told
-        .as_deref()
-        .and_then(|text| text.split_whitespace().next()?.parse::<f64>().ok());
-    nanoseconds.map_or_else(|| start.elapsed().as_secs_f64(), |ns| ns * 1e-9)
-}
-
-/// Time of one factorisation and solution, s.
-fn lu11(start: Instant) -> f64 {
-    // The system tells processor time in steps of some milliseconds.
-    const COUNT: usize = 200_000;
-    let a = SMatrix::<f64, 11, 11>::from_fn(|i, j| if i == j { 5.0 } else { 1.0 / (1 + i * 3 + j) as f64 });
-    let b = SVector::<f64, 11>::from_element(1.0);
-    let begin = processor(start);
-    for _ in 0..COUNT {
-        black_box(black_box(a).lu().solve(black_box(&b)));
-    }
-    (processor(start) - begin) / COUNT as f64
-}
 
 /// Stiffness 2e7 .. 1e8 N/m, slip limit 0.02 .. 50 N and ring mass 5 .. 52 g at random, always the same.
 fn values() -> Vec<f64> {
@@ -82,13 +57,12 @@ pub fn run() -> Result<(), Box<dyn Error>> {
         ..BatchOptions::default()
     };
     let values = values();
-    let start = Instant::now();
     let mut least = (f64::INFINITY, f64::INFINITY);
     for _ in 0..REPEATS {
-        let unit = lu11(start);
-        let begin = processor(start);
+        let unit = lu11_seconds();
+        let begin = cpu_seconds();
         let found = batch(&model, &solver, &options, (&parameters, &values), &mut Hooks::default())?;
-        let time = (processor(start) - begin) / DESIGNS as f64;
+        let time = (cpu_seconds() - begin) / DESIGNS as f64;
         least = (least.0.min(unit), least.1.min(time));
         let failed = found.peaks().iter().filter(|peak| peak.status != Status::Ok).count();
         let points: usize = found.peaks().iter().map(|peak| peak.points).sum();
