@@ -24,7 +24,7 @@ use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use crate::problem::{Homotopy, InitialGuess, Problem, Residual};
 use crate::results::mode_branch::ModePoint;
 use crate::results::{Branch, ParameterData, Record, Special, SpecialKind};
-use crate::sensitivity::tracked::{Tracked, by_differences, observed};
+use crate::sensitivity::tracked::{Tracked, Unknowns, by_differences};
 use crate::sensitivity::{ModePointAdjoint, ModeQuantity, Parameter, TotalDerivative, design};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -33,9 +33,6 @@ const CONTEXT: &str = "the parameter response";
 
 /// Change of log₁₀ of the amplitude that has the same weight as a change of the motions by their size.
 const AMPLITUDE_UNIT: f64 = 0.1;
-
-/// Step of the differences by the parameter, over its range.
-const PARAMETER_STEP: f64 = 1e-5;
 
 /// Step of the differences along the mode, in log₁₀ of the amplitude.
 const MODE_STEP: f64 = 1e-4;
@@ -46,7 +43,6 @@ pub(super) struct TrackedDamping<'a> {
     parameter: Parameter<'a>,
     solver: SolverOptions,
     response_dof: usize,
-    range: (f64, f64),
     /// The linear mode at the first value, whose frequency, damping and shape give the units at all values.
     linear: &'a LinearMode,
     gauge: &'a Gauge,
@@ -54,14 +50,12 @@ pub(super) struct TrackedDamping<'a> {
     log10_amplitude: f64,
     /// Unit of lengths of the unknowns.
     length: f64,
-    start: Vec<f64>,
+    unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
-    matrix: Vec<f64>,
     /// Damping ratio at the point evaluated last, its derivative by the parameter, and its second one along the mode.
     damping: f64,
     d_damping: f64,
     curvature: f64,
-    is_reciprocal: bool,
 }
 
 /// A model at a value of the parameter, condensed about its static state.
@@ -97,34 +91,21 @@ impl<'a> TrackedDamping<'a> {
             *u /= amplitude;
         }
         Epmc::set_frequency_and_damping(linear, (omega, point.damping_ratio), &mut start[..n - 1]);
-        let mut found = Self {
+        Ok(Self {
             model,
             parameter,
             solver: *solver,
             response_dof,
-            range,
             linear,
             gauge,
             log10_amplitude: point.log10_amplitude,
             length,
-            start,
+            unknowns: Unknowns::new(start, range)?,
             interrupt,
-            matrix: Vec::new(),
             damping: 0.0,
             d_damping: 0.0,
             curvature: f64::NAN,
-            is_reciprocal: false,
-        };
-        found.resize(n)?;
-        Ok(found)
-    }
-
-    fn resize(&mut self, n: usize) -> Result<()> {
-        let Some(size) = n.checked_mul(n) else {
-            return fail!(OutOfMemory, "the Jacobian of {n} unknowns cannot be stored");
-        };
-        self.matrix = try_vec(size, 0.0, CONTEXT)?;
-        Ok(())
+        })
     }
 
     /// log₁₀ of the amplitude that belongs to unknowns.
@@ -221,17 +202,17 @@ impl<'a> TrackedDamping<'a> {
         }
         let row = maximum_row(&mut problem, (&own, log10), &tangent, &lambda)?;
         self.curvature = dot(&row[..x], &tangent) + row[x];
-        self.matrix.fill(0.0);
+        self.unknowns.matrix.fill(0.0);
         // Motions are in another unit than those of the condensed model.
         let of = |i: usize| if i < m { unit } else { 1.0 };
         for k in 0..x {
-            let column = &mut self.matrix[k * n..(k + 1) * n];
+            let column = &mut self.unknowns.matrix[k * n..(k + 1) * n];
             for (i, (to, from)) in column.iter_mut().zip(&jacobian[k * x..(k + 1) * x]).enumerate() {
                 *to = from * of(k) / of(i);
             }
             column[x] = AMPLITUDE_UNIT * row[k] * of(k);
         }
-        let last = &mut self.matrix[x * n..];
+        let last = &mut self.unknowns.matrix[x * n..];
         for (i, (to, from)) in last.iter_mut().zip(&here.d_parameter).enumerate() {
             *to = AMPLITUDE_UNIT * from / of(i);
         }
@@ -307,15 +288,14 @@ impl Tracked for TrackedDamping<'_> {
     }
 
     fn motions(&self) -> usize {
-        self.start.len() - 3
+        self.unknowns.len() - 3
     }
 
     fn select(&mut self, _from: &HarmonicSet, to: &Resolution, highest: usize) -> Result<()> {
         let n = to.condensed.unknowns() + 3;
-        self.start = try_vec(n, 0.0, CONTEXT)?;
         self.solver.harmonics = highest;
         self.solver.samples = self.solver.samples.max(to.samples);
-        self.resize(n)
+        self.unknowns.resize(n)
     }
 
     fn estimate(&mut self, point: &Point) -> Result<Option<(f64, Estimate)>> {
@@ -420,7 +400,7 @@ impl Tracked for TrackedDamping<'_> {
     }
 
     fn set_reciprocal(&mut self, is_reciprocal: bool) {
-        self.is_reciprocal = is_reciprocal;
+        self.unknowns.is_reciprocal = is_reciprocal;
     }
 
     fn exists(&mut self, point: &Point) -> Result<bool> {
@@ -432,20 +412,20 @@ impl Tracked for TrackedDamping<'_> {
 
 impl Jacobian for TrackedDamping<'_> {
     fn size(&self) -> usize {
-        self.start.len()
+        self.unknowns.len()
     }
 
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
-        active.fill(true);
-        matrix.copy_from_slice(&self.matrix);
+        self.unknowns.fill(matrix, active);
         Ok(())
     }
 }
 
 impl Problem for TrackedDamping<'_> {
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        let step = PARAMETER_STEP * (self.range.1 - self.range.0).abs();
-        by_differences(out, (p, step), |p, values| self.equations(u, p, false, values))?;
+        by_differences(out, (p, self.unknowns.step), |p, values| {
+            self.equations(u, p, false, values)
+        })?;
         out.scale = self.equations(u, p, true, &mut out.values)?;
         out.rounding = 0.0;
         Ok(())
@@ -454,15 +434,11 @@ impl Problem for TrackedDamping<'_> {
     /// The damping ratio, which in its maximum changes with the parameter alone.
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
         let change = self.d_damping * direction[u.len()];
-        observed((self.damping, change), self.is_reciprocal)
+        self.unknowns.observe(self.damping, change)
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
-        if kind != InitialGuess::Given {
-            return Ok(false);
-        }
-        u.copy_from_slice(&self.start);
-        Ok(true)
+        Ok(self.unknowns.initial_guess(kind, u))
     }
 
     fn homotopy(&mut self, _p: f64, _u: &[f64]) -> Result<Option<Homotopy<'_>>> {

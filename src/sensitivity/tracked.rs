@@ -2,12 +2,17 @@
 
 use crate::condense::Resolution;
 use crate::continuation::Point;
-use crate::error::{Result, try_vec};
+use crate::error::{Result, fail, try_vec};
 use crate::error_estimate::{Corrected, Estimate};
 use crate::fourier::HarmonicSet;
-use crate::problem::{Problem, Residual};
+use crate::problem::{InitialGuess, Problem, Residual};
 use crate::results::{Branch, ParameterData, Special, SpecialKind};
 use num_complex::Complex64;
+
+const CONTEXT: &str = "the parameter response";
+
+/// Step of the differences by the parameter, over its range.
+const PARAMETER_STEP: f64 = 1e-5;
 
 /// A result over a parameter. Motions come first among its unknowns, in one unit of length for all harmonics and all values
 /// of the parameter.
@@ -56,8 +61,8 @@ pub(crate) fn by_differences(
     mut equations: impl FnMut(f64, &mut [f64]) -> Result<f64>,
 ) -> Result<()> {
     let n = out.values.len();
-    let mut below = try_vec(n, 0.0, "the parameter response")?;
-    let mut above = try_vec(n, 0.0, "the parameter response")?;
+    let mut below = try_vec(n, 0.0, CONTEXT)?;
+    let mut above = try_vec(n, 0.0, CONTEXT)?;
     let (mut low, mut high) = (p - step, p + step);
     if equations(low, &mut below).is_err() {
         low = p;
@@ -73,10 +78,73 @@ pub(crate) fn by_differences(
     Ok(())
 }
 
-/// A result and its change, or those of its reciprocal.
-pub(crate) fn observed((value, change): (f64, f64), is_reciprocal: bool) -> (Complex64, Complex64) {
-    if is_reciprocal {
-        return ((1.0 / value).into(), (-change / (value * value)).into());
+/// Unknowns over a parameter: their values at the start, and the Jacobian of the equations evaluated last.
+pub(crate) struct Unknowns {
+    pub start: Vec<f64>,
+    pub matrix: Vec<f64>,
+    /// Step of the differences by the parameter.
+    pub step: f64,
+    /// Whether the reciprocal of the result is observed.
+    pub is_reciprocal: bool,
+}
+
+impl Unknowns {
+    /// Those that begin with `start`, over a range of the parameter.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(start: Vec<f64>, range: (f64, f64)) -> Result<Self> {
+        Ok(Self {
+            matrix: square(start.len())?,
+            start,
+            step: PARAMETER_STEP * (range.1 - range.0).abs(),
+            is_reciprocal: false,
+        })
     }
-    (value.into(), change.into())
+
+    /// Changes their number; the values at the start are 0 then.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn resize(&mut self, n: usize) -> Result<()> {
+        self.start = try_vec(n, 0.0, CONTEXT)?;
+        self.matrix = square(n)?;
+        Ok(())
+    }
+
+    /// Their number.
+    pub fn len(&self) -> usize {
+        self.start.len()
+    }
+
+    /// Copies the Jacobian, in which all unknowns take part.
+    pub fn fill(&self, matrix: &mut [f64], active: &mut [bool]) {
+        active.fill(true);
+        matrix.copy_from_slice(&self.matrix);
+    }
+
+    /// A result and its change, or those of its reciprocal.
+    pub fn observe(&self, value: f64, change: f64) -> (Complex64, Complex64) {
+        if self.is_reciprocal {
+            return ((1.0 / value).into(), (-change / (value * value)).into());
+        }
+        (value.into(), change.into())
+    }
+
+    /// Writes the values at the start; `false` where another guess is asked for.
+    pub fn initial_guess(&self, kind: InitialGuess, u: &mut [f64]) -> bool {
+        let is_given = kind == InitialGuess::Given;
+        if is_given {
+            u.copy_from_slice(&self.start);
+        }
+        is_given
+    }
+}
+
+/// Memory of a square matrix.
+fn square(n: usize) -> Result<Vec<f64>> {
+    match n.checked_mul(n) {
+        Some(size) => try_vec(size, 0.0, CONTEXT),
+        None => fail!(OutOfMemory, "the Jacobian of {n} unknowns cannot be stored"),
+    }
 }

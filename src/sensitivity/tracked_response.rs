@@ -28,15 +28,12 @@ use crate::sensitivity::fold_point::{Borders, fold_gradient};
 use crate::sensitivity::forced_point::ForcedPoint;
 use crate::sensitivity::parameter::Parameter;
 use crate::sensitivity::total_derivative::TotalDerivative;
-use crate::sensitivity::tracked::{Tracked, by_differences, observed};
+use crate::sensitivity::tracked::{Tracked, Unknowns, by_differences};
 use num_complex::Complex64;
 use std::sync::Arc;
 
 /// Change of ln ω that has the same weight as a change of the motions by their size.
 const OMEGA_UNIT: f64 = 0.05;
-
-/// Step of the differences by the parameter, over its range.
-const PARAMETER_STEP: f64 = 1e-5;
 
 /// Step of the differences along the branch over ω, over the width of the peak.
 const BRANCH_STEP: f64 = 1e-4;
@@ -61,15 +58,13 @@ pub(crate) struct TrackedResponse<'a> {
     parameter: Parameter<'a>,
     solver: SolverOptions,
     response_dof: usize,
-    range: (f64, f64),
     /// Frequency at a fixed one, or that of the first peak or fold.
     omega: f64,
     kind: ResponsePoint,
     /// Unit of lengths of the unknowns.
     length: f64,
-    start: Vec<f64>,
+    unknowns: Unknowns,
     interrupt: &'a Interrupt<'a>,
-    matrix: Vec<f64>,
     /// Borders of the condition of a fold, from the first evaluation on.
     borders: Option<Borders>,
     /// Amplitude at the point evaluated last, its total derivative by the parameter, and its change with all unknowns and
@@ -79,8 +74,6 @@ pub(crate) struct TrackedResponse<'a> {
     gradient: Vec<f64>,
     /// d²A/dω² of a peak.
     curvature: f64,
-    /// Whether the reciprocal of the amplitude is observed.
-    is_reciprocal: bool,
 }
 
 /// A model at a value of the parameter, condensed.
@@ -113,19 +106,16 @@ impl<'a> TrackedResponse<'a> {
             parameter,
             solver: *solver,
             response_dof,
-            range,
             omega,
             kind,
             length,
-            start,
+            unknowns: Unknowns::new(start, range)?,
             interrupt,
-            matrix: square(n)?,
             borders: None,
             amplitude: 0.0,
             d_amplitude: 0.0,
             gradient: try_vec(n + 1, 0.0, CONTEXT)?,
             curvature: f64::NAN,
-            is_reciprocal: false,
         })
     }
 
@@ -271,7 +261,7 @@ impl<'a> TrackedResponse<'a> {
         self.gradient[n] = self.by_parameter(models, p, &partial)?;
         // The adjoint of motions, frequency and condition together.
         let mut system = Lu::new(n, 1)?;
-        system.matrix().copy_from_slice(&self.matrix);
+        system.matrix().copy_from_slice(&self.unknowns.matrix);
         self.d_amplitude = f64::NAN;
         if system.factor(self.interrupt).is_ok() {
             let mut lambda = try_copy(&self.gradient[..n], CONTEXT)?;
@@ -290,9 +280,10 @@ impl<'a> TrackedResponse<'a> {
 
     /// Writes Newton's matrix of the motions.
     fn fill_motions(&mut self, jacobian: &[f64]) {
-        let (m, n) = (self.motions(), self.start.len());
-        self.matrix.fill(0.0);
+        let (m, n) = (self.motions(), self.unknowns.len());
+        self.unknowns.matrix.fill(0.0);
         for (column, from) in self
+            .unknowns
             .matrix
             .chunks_exact_mut(n.max(1))
             .zip(jacobian.chunks_exact(m.max(1)))
@@ -303,15 +294,15 @@ impl<'a> TrackedResponse<'a> {
 
     /// Writes the column of the frequency, and the row of its condition times a factor.
     fn fill_frequency(&mut self, (column, row): (&[f64], &[f64]), omega: f64, unit: f64, factor: f64) {
-        let (m, n) = (self.motions(), self.start.len());
-        for (x, r) in self.matrix[m * n..m * n + m].iter_mut().zip(column) {
+        let (m, n) = (self.motions(), self.unknowns.len());
+        for (x, r) in self.unknowns.matrix[m * n..m * n + m].iter_mut().zip(column) {
             *x = OMEGA_UNIT * omega * r / unit;
         }
         for (k, x) in row[..m].iter().enumerate() {
             // The unknowns are in another unit than those of the condensed model.
-            self.matrix[k * n + m] = x * unit * factor;
+            self.unknowns.matrix[k * n + m] = x * unit * factor;
         }
-        self.matrix[m * n + m] = row[m] * OMEGA_UNIT * omega * factor;
+        self.unknowns.matrix[m * n + m] = row[m] * OMEGA_UNIT * omega * factor;
     }
 
     /// The derivative of the result of an adjoint motion by the parameter.
@@ -330,7 +321,7 @@ impl Tracked for TrackedResponse<'_> {
     }
 
     fn motions(&self) -> usize {
-        self.start.len() - usize::from(self.is_free())
+        self.unknowns.len() - usize::from(self.is_free())
     }
 
     fn select(&mut self, from: &HarmonicSet, to: &Resolution, highest: usize) -> Result<()> {
@@ -339,8 +330,7 @@ impl Tracked for TrackedResponse<'_> {
         if let Some(borders) = &mut self.borders {
             borders.transfer(from, to.condensed.set(), motions)?;
         }
-        self.start = try_vec(n, 0.0, CONTEXT)?;
-        self.matrix = square(n)?;
+        self.unknowns.resize(n)?;
         self.gradient = try_vec(n + 1, 0.0, CONTEXT)?;
         self.solver.harmonics = highest;
         self.solver.samples = self.solver.samples.max(to.samples);
@@ -427,7 +417,7 @@ impl Tracked for TrackedResponse<'_> {
     }
 
     fn set_reciprocal(&mut self, is_reciprocal: bool) {
-        self.is_reciprocal = is_reciprocal;
+        self.unknowns.is_reciprocal = is_reciprocal;
     }
 
     fn exists(&mut self, point: &Point) -> Result<bool> {
@@ -437,14 +427,6 @@ impl Tracked for TrackedResponse<'_> {
         let mut values = try_vec(point.unknowns().len(), 0.0, CONTEXT)?;
         self.equations(point.unknowns(), point.parameter(), true, &mut values)?;
         Ok(self.curvature <= 0.0)
-    }
-}
-
-/// Memory of a square matrix.
-fn square(n: usize) -> Result<Vec<f64>> {
-    match n.checked_mul(n) {
-        Some(size) => try_vec(size, 0.0, CONTEXT),
-        None => fail!(OutOfMemory, "the Jacobian of {n} unknowns cannot be stored"),
     }
 }
 
@@ -474,20 +456,20 @@ fn peak_row(point: &mut ForcedPoint<'_>, u: &[f64], omega: f64, adjoint: &Adjoin
 
 impl Jacobian for TrackedResponse<'_> {
     fn size(&self) -> usize {
-        self.start.len()
+        self.unknowns.len()
     }
 
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
-        active.fill(true);
-        matrix.copy_from_slice(&self.matrix);
+        self.unknowns.fill(matrix, active);
         Ok(())
     }
 }
 
 impl Problem for TrackedResponse<'_> {
     fn evaluate(&mut self, u: &[f64], p: f64, out: &mut Residual) -> Result<()> {
-        let step = PARAMETER_STEP * (self.range.1 - self.range.0).abs();
-        by_differences(out, (p, step), |p, values| self.equations(u, p, false, values))?;
+        by_differences(out, (p, self.unknowns.step), |p, values| {
+            self.equations(u, p, false, values)
+        })?;
         out.scale = self.equations(u, p, true, &mut out.values)?;
         out.rounding = 0.0;
         Ok(())
@@ -497,15 +479,11 @@ impl Problem for TrackedResponse<'_> {
     fn observe(&self, u: &[f64], direction: &[f64]) -> (Complex64, Complex64) {
         let mut change = dot(&self.gradient[..u.len()], &direction[..u.len()]);
         change += self.gradient[u.len()] * direction[u.len()];
-        observed((self.amplitude, change), self.is_reciprocal)
+        self.unknowns.observe(self.amplitude, change)
     }
 
     fn initial_guess(&mut self, kind: InitialGuess, _p: f64, u: &mut [f64]) -> Result<bool> {
-        if kind != InitialGuess::Given {
-            return Ok(false);
-        }
-        u.copy_from_slice(&self.start);
-        Ok(true)
+        Ok(self.unknowns.initial_guess(kind, u))
     }
 
     fn homotopy(&mut self, _p: f64, _u: &[f64]) -> Result<Option<Homotopy<'_>>> {
