@@ -12,6 +12,7 @@ use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::unbounded_response;
 use crate::condense::flexibility::Workspace;
+use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference};
 use crate::continuation::initial_point::{self, First};
 use crate::continuation::step_control::StepControl;
@@ -77,14 +78,14 @@ fn follow(
     interrupt.phase(Phase::Setup, 0.0)?;
     let sweep = (range.omega_start, range.omega_stop);
     let forced = forced_harmonics(model)?;
-    let levels = HarmonicLevels::new(model, solver, &forced, |harmonics| {
+    let waves = SharedWaves::default();
+    let condensed = |harmonics, reference| {
         let options = SolverOptions { harmonics, ..*solver };
-        Condensed::new(model, &options, sweep, interrupt)
-    })?;
-    let stuck = HarmonicLevels::new(model, solver, &forced, |harmonics| {
-        let options = SolverOptions { harmonics, ..*solver };
-        Condensed::with_reference(model, &options, sweep, Some(Reference::Stuck), interrupt)
-    })?;
+        condensed(model, &options, sweep, reference, &waves, interrupt)
+    };
+    let levels = HarmonicLevels::new(model, solver, &forced, |harmonics| condensed(harmonics, None))?;
+    let stuck = Some(Reference::Stuck);
+    let stuck = HarmonicLevels::new(model, solver, &forced, |harmonics| condensed(harmonics, stuck))?;
     // With few harmonics the first point is found quickly; its error tells how many it requires. A guess has its own.
     let level = if levels.is_automatic() && range.guess.is_none() {
         0
@@ -215,6 +216,22 @@ pub(super) fn forced_harmonics(model: &Model) -> Result<Vec<usize>> {
         try_push(&mut forced, force.harmonic, "the forces")?;
     }
     Ok(forced)
+}
+
+/// A model condensed for a sweep, with the modes of its waves where it has some.
+fn condensed(
+    model: &Model,
+    options: &SolverOptions,
+    sweep: (f64, f64),
+    reference: Option<Reference>,
+    waves: &SharedWaves,
+    interrupt: &Interrupt<'_>,
+) -> Result<Condensed> {
+    let condensed = Condensed::with_reference(model, options, sweep, reference, interrupt)?;
+    if sweep.0.to_bits() == sweep.1.to_bits() {
+        return Ok(condensed);
+    }
+    waves.attach(model, condensed, interrupt)
 }
 
 /// The error with its reason, as far as it is known: no bounded solution exists, or, with preloaded contacts, the

@@ -10,6 +10,7 @@ use crate::analysis::mode_equations::LinearStart;
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
 use crate::analysis::static_solution::static_state;
 use crate::condense::Condensed;
+use crate::condense::wave_cache::SharedWaves;
 use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
@@ -221,10 +222,12 @@ fn on_wave(
     interrupt.phase(Phase::Setup, 0.0)?;
     let start = boxed(|| Start::new(model, solver, range, interrupt))?;
     let (linear, gauge) = (&start.linear, &start.gauge);
+    let waves = SharedWaves::default();
     let levels = HarmonicLevels::new(model, solver, &[1], |harmonics| {
         let options = SolverOptions { harmonics, ..*solver };
         let form = (range.damping_form, linear.rest.is_loaded());
-        Ok(Condensed::for_mode(model, &options, form, &linear.shape, interrupt)?.0)
+        let (condensed, _) = Condensed::for_mode(model, &options, form, &linear.shape, interrupt)?;
+        waves.attach(model, condensed, interrupt)
     })?;
     let level = levels.first(solver.harmonics);
     let resolution = levels.at(level)?;

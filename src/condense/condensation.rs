@@ -114,15 +114,23 @@ impl Condensed {
             }
         }
         condensed.set_length(model, unit * scale, &assembled)?;
-        // The small motion of a near-rigid contact is lost in the rounding of modes.
-        let is_rigid = (0..condensed.coordinates()).any(|c| condensed.is_near_rigid(c));
-        if sweep.is_range() && !condensed.is_reduced() && condensed.order <= MODES_UP_TO && !is_rigid {
-            let mut waves = WaveCache::default();
-            for i in 0..condensed.blocks.len() {
-                condensed.blocks[i].modes = waves.of(model, &condensed, i, interrupt)?;
-            }
-        }
         Ok(condensed)
+    }
+
+    /// Attaches the modes of its waves to a small model, whose flexibility is then a sum over them along a branch.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn attach_modes(&mut self, model: &Model, waves: &mut WaveCache, interrupt: &Interrupt<'_>) -> Result<()> {
+        // The small motion of a near-rigid contact is lost in the rounding of modes.
+        let is_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
+        if self.is_reduced() || self.order > MODES_UP_TO || is_rigid {
+            return Ok(());
+        }
+        for i in 0..self.blocks.len() {
+            self.blocks[i].modes = waves.of(model, self, i, interrupt)?;
+        }
+        Ok(())
     }
 
     /// Condenses a model for its static state under constant forces and preload. The unit of lengths is near the

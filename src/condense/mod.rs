@@ -10,8 +10,10 @@ pub mod frequency_cache;
 pub mod frequency_interpolation;
 pub mod harmonic_block;
 mod krylov_wave;
+mod low_rank;
 pub(crate) mod memory_limit;
 pub mod modal_flexibility;
+mod modal_motion;
 pub mod modal_table;
 mod model_cache;
 pub mod near_rigid_motion;
@@ -37,3 +39,6 @@ pub use reduction::Reduction;
 pub use resolution::Resolution;
 pub use sweep::Sweep;
 pub use tied_load::{LoadedLaw, TiedLoad};
+
+#[cfg(test)]
+mod test_chains;

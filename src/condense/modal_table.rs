@@ -1,22 +1,14 @@
 //! Flexibility table of one harmonic from the modes of its wave.
 //!
 //! With L and R the rows and columns of outputs and inputs in the modes and d the denominators of
-//! [`crate::condense::wave_modes`], the table without the low-rank term is T′ = L d⁻¹ R. With
-//! Z_κ = (1 + c) K_κ − (ν² − iνα) M − Bᴴ e B and e = ck − i Im κ
-//!
-//! > T = T′ + T′_B e X,  X = (1 − G′ e)⁻¹ T′ᴮ,
-//!
-//! where T′_B are the columns and T′ᴮ the rows of B, and G′ is where they cross (Woodbury's identity; X are the rows of
-//! B in T itself). By the frequency
-//!
-//! > ∂T = ∂T′ + ∂T′_B e X + T′_B (∂e X + e ∂X),  ∂X = (1 − G′ e)⁻¹ (∂T′ᴮ + (∂G′ e + G′ ∂e) X).
+//! [`crate::condense::wave_modes`], the table is T′ = L d⁻¹ R, and the low-rank term of [`crate::condense::low_rank`].
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
+use crate::condense::low_rank::{Frequency, LowRank, Plain};
 use crate::condense::wave_modes::WaveModes;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
-use crate::linalg::lu::Lu;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
@@ -45,17 +37,10 @@ pub struct ModalTable {
     slopes: Vec<Complex64>,
     /// R times one of them.
     weighted: Vec<Complex64>,
-    /// Stiffness of B: of the coordinates, then of the springs; and Im κ, 0 for springs.
-    stiffness: Vec<f64>,
-    imaginary: Vec<f64>,
     /// T′ and ∂T′, rows × rows.
     plain: Vec<Complex64>,
     d_plain: Vec<Complex64>,
-    lu: Lu<Complex64>,
-    /// X, e X and ∂(e X), one column for each contact and for the excitation.
-    inner: Vec<Complex64>,
-    force: Vec<Complex64>,
-    d_force: Vec<Complex64>,
+    low_rank: LowRank,
 }
 
 impl ModalTable {
@@ -88,20 +73,7 @@ impl ModalTable {
             }
             inputs[coordinates] = crate::linalg::inner(shape, &block.force);
         }
-        let mut stiffness = try_vec(coordinates + springs.len(), 0.0, CONTEXT)?;
-        let mut imaginary = try_vec(stiffness.len(), 0.0, CONTEXT)?;
-        for (c, (k, im)) in stiffness.iter_mut().zip(&mut imaginary).take(coordinates).enumerate() {
-            let kappa = condensed.kappa(c, i);
-            (*k, *im) = (kappa.re, kappa.im);
-        }
-        for (k, (_, spring)) in stiffness[coordinates..].iter_mut().zip(springs) {
-            *k = *spring;
-        }
-        let low_rank = if damped || imaginary.iter().any(|&im| im != 0.0) {
-            stiffness.len()
-        } else {
-            0
-        };
+        let low_rank = LowRank::new(condensed, i, springs, damped)?;
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
         Ok(Self {
             number: block.number as f64,
@@ -114,12 +86,7 @@ impl ModalTable {
             weighted: zeros(rows * n)?,
             plain: zeros(rows * rows)?,
             d_plain: zeros(rows * rows)?,
-            lu: Lu::new(low_rank, outputs)?,
-            inner: zeros(low_rank * outputs)?,
-            force: zeros(low_rank * outputs)?,
-            d_force: zeros(low_rank * outputs)?,
-            stiffness,
-            imaginary,
+            low_rank,
             modes,
         })
     }
@@ -134,40 +101,37 @@ impl ModalTable {
         if !self.denominators(omega) {
             return Ok(false);
         }
-        let (coefficient, d_coefficient) = self.coefficient(omega);
-        if self.coordinates == 1 && self.rows == 2 && self.lu.order() == 1 {
-            self.single(coefficient, d_coefficient, table);
+        let at = self.frequency(omega);
+        if self.coordinates == 1 && self.rows == 2 && self.low_rank.order() == 1 {
+            self.single(at, table);
             check_finite(&table.value, omega)?;
             return Ok(true);
         }
         self.sum(slopes);
-        if self.lu.order() > 0 {
-            self.solve_low_rank(coefficient, interrupt)?;
-            if slopes {
-                self.differentiate_low_rank(coefficient, d_coefficient, interrupt)?;
-            }
-        }
         let of = |plain: &[Complex64], to: &mut [Complex64]| {
             for (to, from) in to.chunks_exact_mut(outputs).zip(plain.chunks_exact(self.rows)) {
                 to.copy_from_slice(&from[..outputs]);
             }
         };
         of(&self.plain, &mut table.value);
-        self.add_columns(&self.plain, &self.force, &mut table.value);
         if slopes {
             of(&self.d_plain, &mut table.slope);
-            self.add_columns(&self.d_plain, &self.force, &mut table.slope);
-            self.add_columns(&self.plain, &self.d_force, &mut table.slope);
         } else {
             table.slope.fill(Complex64::ZERO);
         }
+        let plain = Plain {
+            value: &self.plain,
+            slope: &self.d_plain,
+            rows: self.rows,
+        };
+        self.low_rank.add(&plain, at, slopes, table, interrupt)?;
         check_finite(&table.value, omega)?;
         Ok(true)
     }
 
     /// The table of a single relative motion without springs, the same formulas written out: this is the inner loop of every
     /// response with one contact.
-    fn single(&self, c: Complex64, d_c: Complex64, table: &mut Table) {
+    fn single(&self, at: Frequency, table: &mut Table) {
         // Columns: contact, excitation. Rows: contact, response.
         let mut t = [[Complex64::ZERO; 2]; 2];
         let mut d_t = t;
@@ -182,7 +146,7 @@ impl ModalTable {
                 }
             }
         }
-        let (e, d_e) = (self.low_rank(0, c), d_c * self.stiffness[0]);
+        let (e, d_e) = (self.low_rank.entry(0, at), self.low_rank.d_entry(0, at));
         let pivot = (1.0 - t[0][0] * e).inv();
         let d_product = d_t[0][0] * e + t[0][0] * d_e;
         for k in 0..2 {
@@ -197,20 +161,20 @@ impl ModalTable {
     }
 
     /// c and ∂c/∂ω.
-    fn coefficient(&self, omega: f64) -> (Complex64, Complex64) {
+    fn frequency(&self, omega: f64) -> Frequency {
         let beta = self.modes.proportional.1;
         let (nu, by_omega) = (self.number * omega, self.number);
-        (
-            Complex64::new(0.0, nu * beta + self.modes.loss_factor),
-            Complex64::new(0.0, by_omega * beta),
-        )
+        Frequency {
+            c: Complex64::new(0.0, nu * beta + self.modes.loss_factor),
+            d_c: Complex64::new(0.0, by_omega * beta),
+        }
     }
 
     /// 1/d and its derivative; `false` where a denominator is small.
     fn denominators(&mut self, omega: f64) -> bool {
         let alpha = self.modes.proportional.0;
         let nu = self.number * omega;
-        let (c, d_c) = self.coefficient(omega);
+        let Frequency { c, d_c } = self.frequency(omega);
         let inertia = Complex64::new(nu * nu, -nu * alpha);
         let d_inertia = self.number * Complex64::new(2.0 * nu, -alpha);
         let mut least = f64::INFINITY;
@@ -253,81 +217,6 @@ impl ModalTable {
             );
         }
     }
-
-    /// Row of B number b in T′: the response lies between contacts and springs.
-    fn row_of(&self, b: usize) -> usize {
-        if b < self.coordinates { b } else { b + 1 }
-    }
-
-    /// e of row b of B.
-    fn low_rank(&self, b: usize, coefficient: Complex64) -> Complex64 {
-        coefficient * self.stiffness[b] - Complex64::I * self.imaginary[b]
-    }
-
-    /// X and e X
-    fn solve_low_rank(&mut self, c: Complex64, interrupt: &Interrupt<'_>) -> Result<()> {
-        let (order, rows) = (self.lu.order(), self.rows);
-        for q in 0..order {
-            let (e, from) = (self.low_rank(q, c), self.row_of(q) * rows);
-            for p in 0..order {
-                let entry = -e * self.plain[from + self.row_of(p)];
-                self.lu.matrix()[q * order + p] = if p == q { entry + 1.0 } else { entry };
-            }
-        }
-        self.lu.factor(interrupt)?;
-        for (k, from) in self.plain.chunks_exact(rows).take(self.coordinates + 1).enumerate() {
-            for p in 0..order {
-                self.inner[k * order + p] = from[self.row_of(p)];
-            }
-        }
-        self.lu.solve_columns(&mut self.inner, false, interrupt)?;
-        for k in 0..=self.coordinates {
-            for p in 0..order {
-                self.force[k * order + p] = self.low_rank(p, c) * self.inner[k * order + p];
-            }
-        }
-        Ok(())
-    }
-
-    /// ∂(e X), after [`Self::solve_low_rank`].
-    fn differentiate_low_rank(&mut self, c: Complex64, d_c: Complex64, interrupt: &Interrupt<'_>) -> Result<()> {
-        let (order, rows) = (self.lu.order(), self.rows);
-        for k in 0..=self.coordinates {
-            for p in 0..order {
-                let mut sum = self.d_plain[k * rows + self.row_of(p)];
-                for q in 0..order {
-                    let at = self.row_of(q) * rows + self.row_of(p);
-                    let d_e_x = d_c * self.stiffness[q] * self.inner[k * order + q];
-                    sum += self.d_plain[at] * self.force[k * order + q] + self.plain[at] * d_e_x;
-                }
-                self.d_force[k * order + p] = sum;
-            }
-        }
-        self.lu.solve_columns(&mut self.d_force, false, interrupt)?;
-        for k in 0..=self.coordinates {
-            for p in 0..order {
-                let x = self.inner[k * order + p];
-                let d_x = self.d_force[k * order + p];
-                self.d_force[k * order + p] = self.low_rank(p, c) * d_x + d_c * self.stiffness[p] * x;
-            }
-        }
-        Ok(())
-    }
-
-    /// table += T′_B X, without the column of the excitation in T′_B.
-    fn add_columns(&self, plain: &[Complex64], x: &[Complex64], table: &mut [Complex64]) {
-        let (order, outputs) = (self.lu.order(), self.coordinates + 1);
-        if order == 0 {
-            return;
-        }
-        for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
-            for (q, x) in x.iter().enumerate() {
-                for (to, from) in to.iter_mut().zip(&plain[self.row_of(q) * self.rows..]) {
-                    *to += from * x;
-                }
-            }
-        }
-    }
 }
 
 fn check_finite(values: &[Complex64], omega: f64) -> Result<()> {
@@ -358,76 +247,14 @@ fn add_modes((left, right, rows): (&[Complex64], &[Complex64], usize), factors: 
 mod tests {
     use super::*;
     use crate::condense::flexibility::Workspace;
+    use crate::condense::test_chains::{DAMPED, N, chain, structure};
     use crate::condense::wave_cache::WaveCache;
     use crate::condense::{Condensed, Reference};
     use crate::contact::Contact;
     use crate::linalg::matrix_view::MatrixView;
     use crate::model::Model;
-    use crate::model::spring::Spring;
     use crate::model::structure::MatrixKind;
     use crate::options::SolverOptions;
-
-    const N: usize = 9;
-
-    /// A chain with uneven masses and springs, on a wheel where `sectors` is more than 1, without contacts.
-    fn structure(sectors: usize, (alpha, beta): (f64, f64)) -> Model {
-        let mut model = if sectors > 1 {
-            let mut wheel = Model::cyclic(N, sectors).unwrap();
-            wheel.set_wave(2);
-            wheel
-        } else {
-            Model::new(N).unwrap()
-        };
-        let (mut m, mut k) = (vec![0.0; N * N], vec![0.0; N * N]);
-        for i in 0..N {
-            m[i * N + i] = 1.0 + 0.3 * (i as f64).sin();
-            k[i * N + i] += 0.2 + 0.1 * (2.0 * i as f64).cos();
-            if i > 0 {
-                let spring = 40.0 + 7.0 * (3.0 * i as f64).sin();
-                k[i * N + i] += spring;
-                k[(i - 1) * N + i - 1] += spring;
-                k[i * N + i - 1] -= spring;
-                k[(i - 1) * N + i] -= spring;
-            }
-        }
-        model.set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &m)).unwrap();
-        model
-            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &k))
-            .unwrap();
-        if sectors > 1 {
-            let mut to_next = vec![0.0; N * N];
-            (to_next[3], to_next[5 * N + 4]) = (-0.11, -0.07);
-            model
-                .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(N, &to_next))
-                .unwrap();
-        }
-        model.set_rayleigh(alpha, beta).unwrap();
-        model.add_force(8, 1, Complex64::new(0.7, -0.2)).unwrap();
-        model
-    }
-
-    /// The same with sliders, a stuck contact and a spring.
-    fn chain(sectors: usize, damping: (f64, f64)) -> Model {
-        let mut model = structure(sectors, damping);
-        model.add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0)).unwrap();
-        model.add_contact(&Contact::jenkins(6, None, 25.0, 0.3, 1.0)).unwrap();
-        let mut across = Contact::jenkins(2, Some(7), 4.0, 0.3, 1.0);
-        across.sector_offset = i64::from(sectors > 1);
-        model.add_contact(&across).unwrap();
-        // One that never slips is a spring.
-        model
-            .add_contact(&Contact::jenkins(0, Some(8), 12.0, 0.3, f64::INFINITY))
-            .unwrap();
-        model
-            .add_spring(&Spring {
-                dof_a: Some(3),
-                dof_b: Some(5),
-                sector_offset: i64::from(sectors > 1),
-                stiffness: 15.0,
-            })
-            .unwrap();
-        model
-    }
 
     fn condensed(model: &Model, reference: Reference) -> Condensed {
         let options = SolverOptions {
@@ -436,16 +263,6 @@ mod tests {
         };
         Condensed::with_reference(model, &options, 1.3, Some(reference), &Interrupt::none()).unwrap()
     }
-
-    /// Damping αM + βK and loss factor.
-    const DAMPED: [((f64, f64), f64); 6] = [
-        ((0.0, 1e-3), 0.0),
-        ((0.02, 0.0), 0.0),
-        ((0.03, 4e-2), 0.0),
-        ((0.0, 1e-6), 0.0),
-        ((0.0, 0.0), 0.03),
-        ((0.03, 4e-2), 0.2),
-    ];
 
     #[test]
     fn tables_from_modes_are_those_by_factorisation() {

@@ -1,7 +1,7 @@
 //! Computes the modes of waves, each once; see [`crate::condense::wave_modes`].
 
 use crate::condense::wave_modes::{WaveModes, proportional};
-use crate::condense::{Artificial, Condensed, HarmonicBlock};
+use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, try_extend, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
@@ -11,6 +11,7 @@ use crate::model::reduced_wave::MotionRow;
 use crate::model::spring_stiffness::Wave;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
+use std::cell::Cell;
 use std::sync::Arc;
 
 /// Degrees of freedom up to which all modes are computed.
@@ -24,6 +25,23 @@ pub struct WaveCache {
     waves: Vec<Arc<WaveModes>>,
     /// Whether a wave without such modes was met: there are no others then.
     refused: bool,
+}
+
+/// The waves of one model, for condensed models with different harmonics.
+#[derive(Default)]
+pub struct SharedWaves(Cell<WaveCache>);
+
+impl SharedWaves {
+    /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn attach(&self, model: &Model, mut condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Condensed> {
+        let mut waves = self.0.take();
+        condensed.attach_modes(model, &mut waves, interrupt)?;
+        self.0.set(waves);
+        Ok(condensed)
+    }
 }
 
 impl WaveCache {
@@ -83,8 +101,7 @@ fn modes_of(
     let other_terms = model.structure().has_structural_matrix()
         || model.structure().has_aero()
         || model.structure().is_rotating()
-        || block.unbalance.is_some()
-        || !matches!(block.artificial, Artificial::None);
+        || block.unbalance.is_some();
     if n > MOST || other_terms {
         return Ok(None);
     }

@@ -87,9 +87,9 @@ pub struct Epmc<'a> {
     x: Vec<Complex64>,
     weighted: Vec<Complex64>,
     w: Vec<Complex64>,
-    /// One number per coordinate, for a column of the Jacobian.
-    sum: Vec<Complex64>,
-    /// G of one harmonic after the other, column-major.
+    /// A packed signal, for a column of the Jacobian.
+    change: Vec<f64>,
+    /// G, harmonic after harmonic for each coordinate, force after force.
     flexibility: Vec<Complex64>,
     /// Columns of the Jacobian that belong to the unknowns of ω and D, and the parts of its last two rows that belong
     /// to contact forces: amplitude and phase per force.
@@ -127,7 +127,7 @@ impl<'a> Epmc<'a> {
             x: try_vec(n.saturating_mul(condensed.blocks().len()), Complex64::ZERO, CONTEXT)?,
             weighted: try_vec(n, Complex64::ZERO, CONTEXT)?,
             w: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
-            sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
+            change: try_vec(condensed.set().packed_len(), 0.0, CONTEXT)?,
             flexibility: try_vec(
                 condensed
                     .coordinates()
@@ -338,7 +338,7 @@ impl<'a> Epmc<'a> {
         out.d_parameter.fill(0.0);
         self.by_omega.fill(0.0);
         self.by_damping.fill(0.0);
-        let dofs = self.condensed.ndof();
+        let (dofs, harmonics) = (self.condensed.ndof(), self.condensed.blocks().len());
         let (mut largest, mut rounding) = (0.0_f64, 0.0_f64);
         for (i, block) in self.condensed.blocks().iter().enumerate() {
             let mean = block.number == 0;
@@ -352,28 +352,23 @@ impl<'a> Epmc<'a> {
                 .solve(self.condensed, i, (omega, damping), &self.w, interrupt)?;
             self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.modal.x());
             largest = self.modal.x().iter().fold(largest, |m, z| m.max(z.norm()));
-            for (r, row) in block.rows.iter().enumerate() {
-                let position = r * m + at;
-                put(&mut out.values, position, mean, -row.along(self.modal.x()));
-                for (column, rate, dx) in [
-                    (&mut self.by_omega, rates.0, self.modal.by_omega()),
-                    (&mut self.by_damping, rates.1, self.modal.by_damping()),
-                ] {
-                    put(column, position, mean, -rate * row.along(dx));
-                }
-                for c in 0..coordinates {
-                    let g = row.along(self.modal.column(c));
-                    let lost = self.forces.rounding(c);
+            for row in 0..coordinates {
+                let position = row * m + at;
+                let [x, by_omega, by_damping] = self.modal.relative(row);
+                put(&mut out.values, position, mean, -x);
+                put(&mut self.by_omega, position, mean, -rates.0 * by_omega);
+                put(&mut self.by_damping, position, mean, -rates.1 * by_damping);
+            }
+            for c in 0..coordinates {
+                let lost = self.forces.rounding(c);
+                let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
+                let by_omega = rates.0 * self.forces.by_omega(c, i);
+                for (row, &g) in self.modal.relative_column(c).iter().enumerate() {
+                    let position = row * m + at;
                     rounding += lost * lost * g.norm_sqr();
-                    self.flexibility[(i * coordinates + c) * coordinates + r] = g;
-                    let d_scale = self.forces.d_ln_scale(c, i) * by_parameter;
+                    self.flexibility[(c * coordinates + row) * harmonics + i] = g;
                     put(&mut out.d_parameter, position, mean, g * d_scale);
-                    put(
-                        &mut self.by_omega,
-                        position,
-                        mean,
-                        rates.0 * g * self.forces.by_omega(c, i),
-                    );
+                    put(&mut self.by_omega, position, mean, g * by_omega);
                 }
             }
             if block.number == 1 {
@@ -395,22 +390,15 @@ impl Jacobian for Epmc<'_> {
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()> {
         let n = active.len();
         let set = self.condensed.set();
-        let (m, coordinates) = (set.packed_len(), self.condensed.coordinates());
+        let m = set.packed_len();
         active.fill(true);
-        matrix.fill(0.0);
-        for k in 0..n - 2 {
-            matrix[k * n + k] = 1.0;
-        }
-        let square = coordinates * coordinates;
-        for i in 0..self.condensed.blocks().len() {
-            let flexibility = &self.flexibility[i * square..(i + 1) * square];
-            for (k, column) in matrix.chunks_exact_mut(n).take(n - 2).enumerate() {
-                self.forces.interrupt().check()?;
-                let flexibility = (|_| flexibility, coordinates);
-                let column = &mut column[..n - 2];
-                self.forces
-                    .couple(i..i + 1, (k / m, k % m), flexibility, &mut self.sum, column);
-            }
+        for (k, column) in matrix.chunks_exact_mut(n).take(n - 2).enumerate() {
+            self.forces.interrupt().check()?;
+            column.fill(0.0);
+            column[k] = 1.0;
+            let motions = &mut column[..n - 2];
+            self.forces
+                .couple_all((k / m, k % m), &self.flexibility, &mut self.change, motions);
         }
         let fundamental = set.fundamental();
         for (c, rows) in self.gauge_rows.iter().enumerate() {

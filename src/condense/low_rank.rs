@@ -1,0 +1,219 @@
+//! Low-rank term of a flexibility table from modes: damping of contacts and springs that the modes leave out.
+//!
+//! With T′ the table of the modes, B the relative motions of contacts and springs,
+//! Z_κ = (1 + c) K_κ − (ν² − iνα) M − Bᴴ e B and e = ck − i Im κ
+//!
+//! > T = T′ + T′_B e X,  X = (1 − G′ e)⁻¹ T′ᴮ,
+//!
+//! where T′_B are the columns and T′ᴮ the rows of B, and G′ is where they cross (Woodbury's identity; X are the rows of
+//! B in T itself). By the frequency
+//!
+//! > ∂T = ∂T′ + ∂T′_B e X + T′_B (∂e X + e ∂X),  ∂X = (1 − G′ e)⁻¹ (∂T′ᴮ + (∂G′ e + G′ ∂e) X).
+
+use crate::condense::Condensed;
+use crate::condense::flexibility::Table;
+use crate::error::{Result, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::lu::Lu;
+use crate::model::reduced_wave::MotionRow;
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the flexibility from modes";
+
+/// c and ∂c/∂ω.
+#[derive(Clone, Copy)]
+pub struct Frequency {
+    pub c: Complex64,
+    pub d_c: Complex64,
+}
+
+/// T′ and ∂T′, rows × rows: contacts, response, springs.
+pub struct Plain<'a> {
+    pub value: &'a [Complex64],
+    pub slope: &'a [Complex64],
+    pub rows: usize,
+}
+
+/// Stiffness of B for one harmonic: of the coordinates, then of the springs; and Im κ, 0 for springs.
+pub struct Coefficients {
+    stiffness: Vec<f64>,
+    imaginary: Vec<f64>,
+}
+
+impl Coefficients {
+    /// Those of the i-th carried harmonic.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, i: usize, springs: &[(MotionRow, f64)]) -> Result<Self> {
+        let coordinates = condensed.coordinates();
+        let mut stiffness = try_vec(coordinates + springs.len(), 0.0, CONTEXT)?;
+        let mut imaginary = try_vec(stiffness.len(), 0.0, CONTEXT)?;
+        for (c, (k, im)) in stiffness.iter_mut().zip(&mut imaginary).take(coordinates).enumerate() {
+            let kappa = condensed.kappa(c, i);
+            (*k, *im) = (kappa.re, kappa.im);
+        }
+        for (k, (_, spring)) in stiffness[coordinates..].iter_mut().zip(springs) {
+            *k = *spring;
+        }
+        Ok(Self { stiffness, imaginary })
+    }
+
+    /// Rows of B.
+    pub fn len(&self) -> usize {
+        self.stiffness.len()
+    }
+
+    /// e of row b of B at c.
+    pub fn entry(&self, b: usize, c: Complex64) -> Complex64 {
+        c * self.stiffness[b] - Complex64::I * self.imaginary[b]
+    }
+
+    /// ∂e of row b of B at ∂c.
+    pub fn d_entry(&self, b: usize, d_c: Complex64) -> Complex64 {
+        d_c * self.stiffness[b]
+    }
+}
+
+/// Work space of the term for one harmonic.
+pub struct LowRank {
+    coordinates: usize,
+    coefficients: Coefficients,
+    lu: Lu<Complex64>,
+    /// X, e X and ∂(e X), one column for each contact and for the excitation.
+    inner: Vec<Complex64>,
+    force: Vec<Complex64>,
+    d_force: Vec<Complex64>,
+}
+
+impl LowRank {
+    /// The term of the i-th carried harmonic; of order 0 without damping by stiffness (`damped`) and without imaginary κ.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(condensed: &Condensed, i: usize, springs: &[(MotionRow, f64)], damped: bool) -> Result<Self> {
+        let coordinates = condensed.coordinates();
+        let coefficients = Coefficients::new(condensed, i, springs)?;
+        let order = if damped || coefficients.imaginary.iter().any(|&im| im != 0.0) {
+            coefficients.len()
+        } else {
+            0
+        };
+        let columns = || try_vec(order * (coordinates + 1), Complex64::ZERO, CONTEXT);
+        Ok(Self {
+            coordinates,
+            lu: Lu::new(order, coordinates + 1)?,
+            inner: columns()?,
+            force: columns()?,
+            d_force: columns()?,
+            coefficients,
+        })
+    }
+
+    /// Rows of B.
+    pub fn order(&self) -> usize {
+        self.lu.order()
+    }
+
+    /// e of row b of B.
+    pub fn entry(&self, b: usize, at: Frequency) -> Complex64 {
+        self.coefficients.entry(b, at.c)
+    }
+
+    /// ∂e/∂ω of row b of B.
+    pub fn d_entry(&self, b: usize, at: Frequency) -> Complex64 {
+        self.coefficients.d_entry(b, at.d_c)
+    }
+
+    /// Adds the term to a table that holds T′, and to its slope if `slopes`.
+    ///
+    /// # Errors
+    /// `Singular` where 1 − G′ e is; `StoppedByCaller`.
+    pub fn add(
+        &mut self,
+        plain: &Plain<'_>,
+        at: Frequency,
+        slopes: bool,
+        table: &mut Table,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        if self.order() == 0 {
+            return Ok(());
+        }
+        self.solve(plain, at, interrupt)?;
+        self.add_columns(plain.value, plain.rows, &self.force, &mut table.value);
+        if slopes {
+            self.differentiate(plain, at, interrupt)?;
+            self.add_columns(plain.slope, plain.rows, &self.force, &mut table.slope);
+            self.add_columns(plain.value, plain.rows, &self.d_force, &mut table.slope);
+        }
+        Ok(())
+    }
+
+    /// Row of B number b in T′: the response lies between contacts and springs.
+    fn row_of(&self, b: usize) -> usize {
+        if b < self.coordinates { b } else { b + 1 }
+    }
+
+    /// X and e X
+    fn solve(&mut self, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
+        let (order, rows) = (self.order(), plain.rows);
+        for q in 0..order {
+            let (e, from) = (self.entry(q, at), self.row_of(q) * rows);
+            for p in 0..order {
+                let entry = -e * plain.value[from + self.row_of(p)];
+                self.lu.matrix()[q * order + p] = if p == q { entry + 1.0 } else { entry };
+            }
+        }
+        self.lu.factor(interrupt)?;
+        for (k, from) in plain.value.chunks_exact(rows).take(self.coordinates + 1).enumerate() {
+            for p in 0..order {
+                self.inner[k * order + p] = from[self.row_of(p)];
+            }
+        }
+        self.lu.solve_columns(&mut self.inner, false, interrupt)?;
+        for k in 0..=self.coordinates {
+            for p in 0..order {
+                self.force[k * order + p] = self.entry(p, at) * self.inner[k * order + p];
+            }
+        }
+        Ok(())
+    }
+
+    /// ∂(e X), after [`Self::solve`].
+    fn differentiate(&mut self, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
+        let (order, rows) = (self.order(), plain.rows);
+        for k in 0..=self.coordinates {
+            for p in 0..order {
+                let mut sum = plain.slope[k * rows + self.row_of(p)];
+                for q in 0..order {
+                    let entry = self.row_of(q) * rows + self.row_of(p);
+                    let d_e_x = self.d_entry(q, at) * self.inner[k * order + q];
+                    sum += plain.slope[entry] * self.force[k * order + q] + plain.value[entry] * d_e_x;
+                }
+                self.d_force[k * order + p] = sum;
+            }
+        }
+        self.lu.solve_columns(&mut self.d_force, false, interrupt)?;
+        for k in 0..=self.coordinates {
+            for p in 0..order {
+                let x = self.inner[k * order + p];
+                let d_x = self.d_force[k * order + p];
+                self.d_force[k * order + p] = self.entry(p, at) * d_x + self.d_entry(p, at) * x;
+            }
+        }
+        Ok(())
+    }
+
+    /// table += T′_B X, without the column of the excitation in T′_B.
+    fn add_columns(&self, plain: &[Complex64], rows: usize, x: &[Complex64], table: &mut [Complex64]) {
+        let (order, outputs) = (self.order(), self.coordinates + 1);
+        for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
+            for (q, x) in x.iter().enumerate() {
+                for (to, from) in to.iter_mut().zip(&plain[self.row_of(q) * rows..]) {
+                    *to += from * x;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,81 @@
+//! Structures for the tests of what follows from modes.
+
+use crate::contact::Contact;
+use crate::linalg::matrix_view::MatrixView;
+use crate::model::Model;
+use crate::model::spring::Spring;
+use crate::model::structure::MatrixKind;
+use num_complex::Complex64;
+
+/// Degrees of freedom.
+pub const N: usize = 9;
+
+/// A chain with uneven masses and springs, on a wheel where `sectors` is more than 1, without contacts.
+pub fn structure(sectors: usize, (alpha, beta): (f64, f64)) -> Model {
+    let mut model = if sectors > 1 {
+        let mut wheel = Model::cyclic(N, sectors).unwrap();
+        wheel.set_wave(2);
+        wheel
+    } else {
+        Model::new(N).unwrap()
+    };
+    let (mut m, mut k) = (vec![0.0; N * N], vec![0.0; N * N]);
+    for i in 0..N {
+        m[i * N + i] = 1.0 + 0.3 * (i as f64).sin();
+        k[i * N + i] += 0.2 + 0.1 * (2.0 * i as f64).cos();
+        if i > 0 {
+            let spring = 40.0 + 7.0 * (3.0 * i as f64).sin();
+            k[i * N + i] += spring;
+            k[(i - 1) * N + i - 1] += spring;
+            k[i * N + i - 1] -= spring;
+            k[(i - 1) * N + i] -= spring;
+        }
+    }
+    model.set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &m)).unwrap();
+    model
+        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(N, &k))
+        .unwrap();
+    if sectors > 1 {
+        let mut to_next = vec![0.0; N * N];
+        (to_next[3], to_next[5 * N + 4]) = (-0.11, -0.07);
+        model
+            .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(N, &to_next))
+            .unwrap();
+    }
+    model.set_rayleigh(alpha, beta).unwrap();
+    model.add_force(8, 1, Complex64::new(0.7, -0.2)).unwrap();
+    model
+}
+
+/// The same with sliders, a stuck contact and a spring.
+pub fn chain(sectors: usize, damping: (f64, f64)) -> Model {
+    let mut model = structure(sectors, damping);
+    model.add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0)).unwrap();
+    model.add_contact(&Contact::jenkins(6, None, 25.0, 0.3, 1.0)).unwrap();
+    let mut across = Contact::jenkins(2, Some(7), 4.0, 0.3, 1.0);
+    across.sector_offset = i64::from(sectors > 1);
+    model.add_contact(&across).unwrap();
+    // One that never slips is a spring.
+    model
+        .add_contact(&Contact::jenkins(0, Some(8), 12.0, 0.3, f64::INFINITY))
+        .unwrap();
+    model
+        .add_spring(&Spring {
+            dof_a: Some(3),
+            dof_b: Some(5),
+            sector_offset: i64::from(sectors > 1),
+            stiffness: 15.0,
+        })
+        .unwrap();
+    model
+}
+
+/// Damping αM + βK and loss factor.
+pub const DAMPED: [((f64, f64), f64); 6] = [
+    ((0.0, 1e-3), 0.0),
+    ((0.02, 0.0), 0.0),
+    ((0.03, 4e-2), 0.0),
+    ((0.0, 1e-6), 0.0),
+    ((0.0, 0.0), 0.03),
+    ((0.03, 4e-2), 0.2),
+];
