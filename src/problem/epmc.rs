@@ -24,6 +24,7 @@ use crate::model::spring::{Row, along};
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};
+use crate::problem::residual_scale::{MEAN_SHARE, Squares};
 use crate::problem::static_state::StaticState;
 use num_complex::Complex64;
 use std::f64::consts::LN_10;
@@ -351,7 +352,8 @@ impl<'a> Epmc<'a> {
             self.modal
                 .solve(self.condensed, i, (omega, damping), &self.w, interrupt)?;
             self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.modal.x());
-            largest = self.modal.x().iter().fold(largest, |m, z| m.max(z.norm()));
+            let share = if mean { MEAN_SHARE } else { 1.0 };
+            largest = self.modal.x().iter().fold(largest, |m, z| m.max(share * z.norm()));
             for row in 0..coordinates {
                 let position = row * m + at;
                 let [x, by_omega, by_damping] = self.modal.relative(row);
@@ -376,7 +378,8 @@ impl<'a> Epmc<'a> {
             }
         }
         // Each coordinate adds its round-off.
-        out.scale = 1.0 + norm(motion) + OF_MOTION * largest * (coordinates as f64).sqrt();
+        out.scale =
+            1.0 + Squares::of(set, motion).size(Squares::default()) + OF_MOTION * largest * (coordinates as f64).sqrt();
         out.rounding = rounding.sqrt();
         Ok(())
     }

@@ -11,10 +11,10 @@ use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::lu::Lu;
-use crate::linalg::norm;
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};
+use crate::problem::residual_scale::Squares;
 use crate::problem::static_force::static_force;
 use num_complex::Complex64;
 
@@ -132,7 +132,7 @@ impl<'a> HarmonicBalance<'a> {
         let outputs = coordinates + 1;
         out.values.copy_from_slice(u);
         out.d_parameter.fill(0.0);
-        let (mut linear, mut rounding) = (0.0_f64, 0.0_f64);
+        let (mut linear, mut rounding) = (Squares::default(), 0.0_f64);
         for (i, table) in self.tables.current().iter().enumerate() {
             interrupt.check()?;
             let at = set.offset(i);
@@ -140,7 +140,8 @@ impl<'a> HarmonicBalance<'a> {
             for row in 0..coordinates {
                 let r = row * m + at;
                 let y_lin = table.value[coordinates * outputs + row];
-                linear += y_lin.norm_sqr();
+                let part = if mean { &mut linear.mean } else { &mut linear.vibration };
+                *part += y_lin.norm_sqr();
                 match path {
                     None => {
                         put(&mut out.values, r, mean, -y_lin);
@@ -176,7 +177,7 @@ impl<'a> HarmonicBalance<'a> {
                 }
             }
         }
-        out.scale = norm(u) + linear.sqrt();
+        out.scale = Squares::of(set, u).size(linear);
         out.rounding = rounding.sqrt();
         Ok(())
     }

@@ -11,6 +11,7 @@ pub mod harmonic_balance;
 pub mod homotopy;
 pub mod newton_products;
 mod parametric_problem;
+mod residual_scale;
 pub mod static_force;
 pub mod static_state;
 

@@ -9,6 +9,7 @@ use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
+use hbvib::model::spring::Spring;
 use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
 use hbvib::results::Branch;
 use hbvib::results::mode_branch::ModeField;
@@ -40,6 +41,64 @@ fn pressed(force: f64) -> (Model, usize) {
     let tip = sector.size.tip();
     model.add_force(tip, 1, Complex64::from(force)).unwrap();
     (model, tip)
+}
+
+/// The same with soft springs that hold the ring. With contacts that slip or open in each period, the travelling wave
+/// drives a ring that friction alone holds, and no motion is periodic.
+fn held(force: f64) -> (Model, usize) {
+    let (mut model, tip) = pressed(force);
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
+    for pair in &Sector::read(&folder, Size::Reduced).unwrap().pairs {
+        for friction in &pair.friction {
+            let spring = Spring {
+                dof_a: friction.dof_b[0],
+                dof_b: None,
+                sector_offset: 0,
+                stiffness: 1e3,
+            };
+            model.add_spring(&spring).unwrap();
+        }
+    }
+    (model, tip)
+}
+
+#[test]
+#[ignore = "a minute of processor time; run by tests/deep.sh"]
+fn pressed_contacts_of_a_sector_with_a_held_ring_are_followed_over_four_decades() {
+    let (model, tip) = held(2.0);
+    let solver = SolverOptions {
+        response_dof: Some(tip),
+        ..harmonics(1)
+    };
+    let range = ModeOptions {
+        choice: ModeChoice::Near(530.0 * TAU),
+        log10_start: -7.0,
+        log10_stop: -3.0,
+        ..ModeOptions::default()
+    };
+    let begin = (Instant::now(), processor_time(Instant::now()));
+    let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
+    let time = processor_time(begin.0).saturating_sub(begin.1).as_secs_f64();
+    println!(
+        "{} points in {time:.1} s of processor time, {:?}",
+        branch.points(),
+        branch.status()
+    );
+    assert_eq!(branch.status(), Status::Ok);
+    let damping = branch.mode_field(ModeField::DampingRatio).unwrap();
+    let largest = damping.iter().fold(0.0_f64, |m, d| m.max(*d));
+    for (point, d) in damping.iter().enumerate() {
+        let at = branch.mode_at(point).unwrap();
+        println!(
+            "{:.3} {:.4} Hz D {d:.4e}",
+            at.log10_amplitude,
+            branch.omega()[point] / TAU
+        );
+        let check = at.energy_damping_ratio();
+        assert!((check - d).abs() < 1e-5 * largest, "point {point}: {check} {d}");
+    }
+    // Far above the contact forces the ring slides freely: the damping of the structure is left.
+    assert!(*damping.last().unwrap() < 0.4 * largest);
 }
 
 fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {

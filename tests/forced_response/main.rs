@@ -12,6 +12,7 @@ mod duffing_folds;
 mod folds;
 mod full_wheel;
 mod many_contacts;
+mod mean_friction;
 mod preload;
 mod reduced_structures;
 mod reference_point;
