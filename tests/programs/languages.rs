@@ -211,6 +211,19 @@ fn the_installed_library_shows_only_its_functions_and_needs_only_libc() {
         assert!(known.iter().any(|name| line.contains(name)), "{line}");
     }
     assert!(!text.contains("RPATH") && !text.contains("RUNPATH"), "{text}");
+
+    // The pages tell its size.
+    let size = fs::metadata(&library).unwrap().len() as f64 / 1e6;
+    for (page, words) in [("README.md", "it has "), ("docs/linking.md", "stripped library is ")] {
+        let page = fs::read_to_string(root().join(page)).unwrap();
+        let after = page
+            .split(words)
+            .find_map(|rest| rest.split_once(" MB")?.0.parse::<f64>().ok());
+        assert!(
+            after.is_some_and(|told| (told - size).abs() < 1.0),
+            "{after:?} MB in the text, {size} MB"
+        );
+    }
 }
 
 #[test]
