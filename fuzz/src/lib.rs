@@ -151,10 +151,19 @@ pub fn job(data: &[u8]) -> bool {
     accepted || mesh
 }
 
-/// Files of matrices, of the format that the first byte selects.
+/// Files of matrices, of the format that the first byte selects; the three files of CalculiX are separated by zeros.
 pub fn element_files(data: &[u8]) -> bool {
     let (&format, content) = data.split_first().unwrap_or((&0, data));
-    let name = ["a.mtx", "a.op4", "a.rsa", "K_STIF1.mtx", "a.mtx.gz"][usize::from(format % 5)];
+    if format % 6 == 5 {
+        let mut parts = content.splitn(3, |&byte| byte == 0);
+        let paths = ["a.dof", "a.sti", "a.mas"].map(|name| file(name, parts.next().unwrap_or_default()));
+        let accepted = hbvib_io::read(&paths[1]).is_ok();
+        for path in paths {
+            let _ = fs::remove_file(path);
+        }
+        return accepted;
+    }
+    let name = ["a.mtx", "a.op4", "a.rsa", "K_STIF1.mtx", "a.mtx.gz"][usize::from(format % 6)];
     let path = file(name, content);
     let accepted = hbvib_io::read(&path).is_ok();
     let _ = fs::remove_file(path);

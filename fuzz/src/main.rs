@@ -160,6 +160,9 @@ fn targets() -> Vec<Target> {
             element_files.push(bytes);
         }
     }
+    let of_job =
+        ["dof", "sti", "mas"].map(|extension| fs::read(data.join(format!("sector.{extension}"))).expect("a file"));
+    element_files.push([&[5], &of_job.join(&0)[..]].concat());
     let mut jobs = files(Path::new("../examples/jobs"), &[".toml", ".inp"]);
     jobs.extend(files(data, &[".inp"]));
     let matrices = (0..40_u8)

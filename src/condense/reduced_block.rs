@@ -13,9 +13,6 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the reduced structure";
 
-/// Coordinates beyond the basis, so that all harmonics have the same number, have this stiffness and no mass.
-const UNUSED: f64 = 1.0;
-
 /// The block of harmonic `number` on a basis, see [`super::harmonic_block::harmonic_block`], with `order` coordinates.
 pub(super) fn reduced_block(
     model: &Model,
@@ -43,8 +40,8 @@ pub(super) fn reduced_block(
     let mut mass = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     let mut damping = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     for j in 0..n {
-        let stiffness = if j < basis { view.pencil().stiffness(j) } else { UNUSED };
-        full.values[j * n + j] = stiffness.into();
+        // Coordinates beyond the basis, so that all harmonics have the same number, have a stiffness of 1 and no mass.
+        full.values[j * n + j] = view.pencil().stiffness(j).into();
         if j < basis {
             mass[j * n + j] = view.pencil().values[j].into();
             for i in 0..basis {

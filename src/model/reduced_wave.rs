@@ -126,10 +126,10 @@ impl ReducedPencil {
         self.values.len()
     }
 
-    /// Stiffness of a coordinate, without springs.
+    /// Stiffness of a coordinate, without springs; that of one beyond the basis is 1, and it has no mass.
     #[must_use]
     pub fn stiffness(&self, k: usize) -> f64 {
-        1.0 - self.shift * self.values[k]
+        self.values.get(k).map_or(1.0, |value| 1.0 - self.shift * value)
     }
 }
 

@@ -133,6 +133,29 @@ static hbvib_status forced_on_basis(const hbvib_model *model, uint64_t *sum)
     return respond(model, s, sum);
 }
 
+/* A response to a tolerance on a basis, whose first amplitude is that without a basis. */
+static hbvib_status on_basis_to_tolerance(const hbvib_model *model, uint64_t *sum)
+{
+    double amplitude[2] = {0, 0};
+    hbvib_forced_options o = range(model);
+    hbvib_status status = HBVIB_OK;
+    int i;
+    for (i = 0; i < 2 && status >= 0; i++) {
+        hbvib_solver_options s = options(1e-2);
+        hbvib_branch *branch = NULL;
+        hbvib_view view;
+        s.flexibility = i == 0 ? HBVIB_FLEXIBILITY_DIRECT : HBVIB_FLEXIBILITY_KRYLOV;
+        memset(&view, 0, sizeof view);
+        STEP(hbvib_view_init(&view, sizeof view));
+        STEP(hbvib_forced_response(model, &s, &o, NULL, &branch));
+        STEP(hbvib_branch_field(branch, HBVIB_AMPLITUDE, &view));
+        if (status >= 0) amplitude[i] = view.data[0];
+        status = of_branch(status, branch, hbvib_model_dofs(model), sum);
+    }
+    if (status >= 0 && fabs(amplitude[1] / amplitude[0] - 1) > 1e-6) return HBVIB_E_INTERNAL;
+    return status;
+}
+
 /* A nonlinear mode, and the response synthesised from it. */
 static hbvib_status follow(const hbvib_model *model, hbvib_solver_options s, uint64_t *sum)
 {
@@ -297,6 +320,7 @@ static const analysis ANALYSES[] = {
     {"wheel in time", small_ring, in_time},
     {"chain, directly", chain, forced_directly},
     {"chain, basis", chain, forced_on_basis},
+    {"sector, basis to a tolerance", faces, on_basis_to_tolerance},
     {"friction in one direction", friction_2d, forced},
     {"friction in a plane", friction_3d, forced},
     {"unilateral", unilateral, forced},
