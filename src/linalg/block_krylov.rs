@@ -10,6 +10,7 @@
 
 use crate::error::{Error, Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::COPIED_UP_TO;
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::{Entry, Triangle};
@@ -286,6 +287,14 @@ fn adjoint_product<T: Entry>(v: &[T], x: &[T], n: usize, out: &mut [T]) {
     if rows == 0 || columns == 0 {
         return;
     }
+    if rows * columns * n <= COPIED_UP_TO {
+        for (out, x) in out.chunks_exact_mut(rows).zip(x.chunks_exact(n)) {
+            for (out, v) in out.iter_mut().zip(v.chunks_exact(n)) {
+                *out = conjugate_sum(v, x);
+            }
+        }
+        return;
+    }
     matmul(
         MatMut::from_column_major_slice_mut(out, rows, columns),
         Accum::Replace,
@@ -303,11 +312,16 @@ fn norms<T: Entry>(block: &[T], weighted: &[T], n: usize) -> Vec<f64> {
 }
 
 fn dot<T: Entry>(u: &[T], w: &[T]) -> Complex64 {
+    conjugate_sum(u, w).complex()
+}
+
+/// uᴴ w
+fn conjugate_sum<T: Entry>(u: &[T], w: &[T]) -> T {
     let mut sum = T::NONE;
     for (&u, &w) in u.iter().zip(w) {
         sum.add_conjugate_product(u, w);
     }
-    sum.complex()
+    sum
 }
 
 /// Orthonormalises columns among themselves, the largest first, and moves those that are kept to the front. Returns

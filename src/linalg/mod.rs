@@ -19,6 +19,6 @@ pub mod triangle;
 mod vectors;
 
 pub use vectors::{
-    add_outer_products, add_outer_products_to, add_product, dot, first_product, inner, norm, power_of_two,
-    transposed_products,
+    COPIED_UP_TO, add_outer_products, add_outer_products_to, add_product, dot, first_product, inner, norm,
+    power_of_two, transposed_products,
 };

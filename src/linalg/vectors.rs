@@ -52,6 +52,10 @@ pub fn power_of_two(x: f64) -> f64 {
 /// Order up to which plain loops multiply as fast as vector instructions chosen at run time.
 const LOOPS_UP_TO: usize = 32;
 
+/// Multiplications up to which a product with the transpose of a matrix is one of plain loops. faer copies the matrix then, and
+/// takes 128 KiB of stack for the copy.
+pub const COPIED_UP_TO: usize = 16 * 16 * 16;
+
 /// A product of matrices so large that the memory for packing them, which a thread keeps, is there afterwards.
 ///
 /// # Errors
@@ -132,6 +136,14 @@ pub fn add_outer_products(
 /// outⱼ = Aᵀ bⱼ for rows bⱼ and outⱼ, with `columns` columns of A that are as long as a row bⱼ.
 pub fn transposed_products(a: &[f64], columns: usize, b: &[f64], out: &mut [f64]) {
     let (length, count) = (a.len() / columns.max(1), out.len() / columns.max(1));
+    if columns * length * count <= COPIED_UP_TO {
+        for (out, b) in out.chunks_exact_mut(columns.max(1)).zip(b.chunks_exact(length.max(1))) {
+            for (out, a) in out.iter_mut().zip(a.chunks_exact(length.max(1))) {
+                *out = dot(a, b);
+            }
+        }
+        return;
+    }
     matmul(
         MatMut::from_column_major_slice_mut(out, columns, count),
         Accum::Replace,
