@@ -77,7 +77,7 @@ static clock_t longest;
 
 /* Bytes that a call on these models, of at most 100 degrees of freedom, may take at one time: the limit of memory in the
  * options, and 100 MB of an error estimate with four times the memory of its point. */
-enum { MOST_BYTES = 192 << 20 };
+enum { MOST_BYTES = 512 << 20 };
 static int64_t allowed = MOST_BYTES;
 
 static const char *slowest = "";
