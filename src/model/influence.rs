@@ -2,8 +2,8 @@
 //!
 //! On the right-hand side f_s = Σ_k c_k x_{s+k}, or the same with the velocities. In the wave in which sector s + 1 lags
 //! by 2πd/N they are f = A(d) x with A(d) = Σ_k c_k e^{−2πikd/N}, per velocity iωh A(d) x in harmonic h, which belongs to
-//! d = h·EO mod N (Crawley 1988, AGARD-AG-298, chapter 19; Hanamura, Tanaka & Yamaguchi 1980,
-//! doi:10.1299/jsme1958.23.880).
+//! d = h·EO mod N (Crawley & Hall, Optimization and mechanisms of mistuning in cascades, Journal of Engineering for Gas
+//! Turbines and Power 107, 1985, 418 to 426; Choi, Gottfried & Fleeter, doi:10.2514/1.38636).
 
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
