@@ -1,7 +1,7 @@
 //! Flexibility table of one harmonic from the modes of its wave.
 //!
 //! With L and R the rows and columns of outputs and inputs in the modes and d the denominators of
-//! [`crate::condense::wave_modes`], the table is T′ = L d⁻¹ R, and the low-rank term of [`crate::condense::low_rank`].
+//! [`crate::condense::wave_modes`], the table is T′ = L d⁻¹ R, and the low-rank term of `condense::low_rank`.
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
