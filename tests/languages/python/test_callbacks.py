@@ -287,6 +287,8 @@ close("a slider with a state is a Jenkins contact up to its samples", ours.ampli
 close("and the library's own with as many samples", ours.amplitude, theirs.amplitude, 1e-5)
 
 # Ctrl-C. The signal is sent when the solve has come to a known state, so that no claim depends on the machine's speed.
+# A program that a shell starts in the background inherits that the signal is ignored.
+signal.signal(signal.SIGINT, signal.default_int_handler)
 handler = signal.getsignal(signal.SIGINT)
 
 
