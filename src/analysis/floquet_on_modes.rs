@@ -114,10 +114,10 @@ pub(super) fn floquet_of(
         (None, Some(last)) => last.div_ceil(2),
         (None, None) => first_number(at_speed, motion.omega, kept, options.waves, interrupt)?,
     };
-    let mut few: Option<(Found, usize)> = None;
+    let mut few: Option<Found> = None;
     for _ in 0..=DOUBLINGS {
         let next = on_a_number(at_speed, motion, (options, modes), (hooks, kept), interrupt);
-        let (mut many, more) = match next {
+        let mut many = match next {
             // A motion on too few modes may be far from the point.
             Err(e) if e.status == Status::NoConvergence && few.is_none() && options.modes.is_none() => {
                 modes *= 2;
@@ -125,10 +125,11 @@ pub(super) fn floquet_of(
             }
             next => next?,
         };
-        if let Some((few, used)) = &few {
+        if let Some(few) = &few {
+            let (used, more) = (few.stability.modes, many.stability.modes);
             many.stability.modes_change = (many.stability.radius - few.stability.radius).abs();
             // Where no more modes exist nothing is left out.
-            if agree(&few.stability, &many.stability) || more == *used {
+            if agree(&few.stability, &many.stability) || more == used {
                 kept.last = Some(modes);
                 return Ok(many);
             }
@@ -141,24 +142,24 @@ pub(super) fn floquet_of(
                 );
             }
         }
-        few = Some((many, more));
+        few = Some(many);
         modes *= 2;
     }
     fail!(
         NoConvergence,
         "the radius has not converged on {} modes of each nodal diameter; use all degrees of freedom (modes = 0)",
-        few.map_or(0, |(_, used)| used)
+        few.map_or(0, |few| few.stability.modes)
     )
 }
 
-/// The multipliers on a number of modes, or on all that there are, and their number.
+/// The multipliers on a number of modes, or on all that there are.
 fn on_a_number(
     model: &Model,
     motion: &Motion<'_>,
     (options, modes): (&FloquetOptions, usize),
     (hooks, kept): (&mut Hooks<'_>, &mut KeptModes),
     interrupt: &Interrupt<'_>,
-) -> Result<(Found, usize)> {
+) -> Result<Found> {
     let on_modes = kept.on(model, modes, options.waves, interrupt)?;
     let subject = Subject {
         model,
@@ -173,8 +174,7 @@ fn on_a_number(
             found.stability.modes, found.stability.radius
         ),
     );
-    let modes = found.stability.modes;
-    Ok((found, modes))
+    Ok(found)
 }
 
 /// Whether two numbers of modes have the same verdict.

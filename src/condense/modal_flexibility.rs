@@ -174,11 +174,9 @@ impl Modal {
             let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
             off <= TOLERANCE * TOLERANCE * size
         });
-        if let Some(from_modes) = &mut self.from_modes[i] {
-            from_modes.agrees = true;
-        }
-        if !agrees {
-            self.from_modes[i] = None;
+        match &mut self.from_modes[i] {
+            Some(from_modes) if agrees => from_modes.agrees = true,
+            disagreeing => *disagreeing = None,
         }
     }
 

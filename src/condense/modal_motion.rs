@@ -22,9 +22,6 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the modes of the structure";
 
-/// Relative size of a denominator below which a mode hides the others: the solution then has so many digits less.
-const NEAR_RESONANCE: f64 = 1e-4;
-
 /// A harmonic of a nonlinear mode.
 pub(super) struct ModalMotion {
     modes: Arc<WaveModes>,
@@ -123,10 +120,7 @@ impl ModalMotion {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let [at, by_omega, by_damping] = self.pairs(omega, damping);
-        if !self
-            .inverse
-            .set(at, &self.modes.values, self.number * omega, interrupt)?
-        {
+        if !self.inverse.set(at, &self.modes, self.number * omega, interrupt)? {
             return Ok(false);
         }
         let n = self.motion.len();
@@ -196,15 +190,8 @@ impl ModalMotion {
 
 impl ModalInverse {
     /// Sets c and s; `false` where a denominator is small.
-    fn set(&mut self, at: Pair, values: &[f64], nu: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
-        let mut least = f64::INFINITY;
-        for (inverse, mu) in self.inverse.iter_mut().zip(values) {
-            let d = 1.0 + at.c - at.s * mu;
-            let size = 1.0 + nu * nu * mu.abs();
-            least = least.min(d.norm_sqr() / (size * size));
-            *inverse = d.inv();
-        }
-        if least <= NEAR_RESONANCE * NEAR_RESONANCE || least.is_nan() {
+    fn set(&mut self, at: Pair, modes: &WaveModes, nu: f64, interrupt: &Interrupt<'_>) -> Result<bool> {
+        if !modes.invert((at.c, at.s), nu, &mut self.inverse) {
             return Ok(false);
         }
         let order = self.entries.len();

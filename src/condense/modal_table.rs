@@ -16,9 +16,6 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the flexibility from modes";
 
-/// Relative size of a denominator below which a mode hides the others: T′ then has so many digits less.
-const NEAR_RESONANCE: f64 = 1e-4;
-
 /// Multiplications up to which plain loops are quicker than the blocked product.
 const SMALL_PRODUCT: usize = 4096;
 
@@ -177,16 +174,12 @@ impl ModalTable {
         let Frequency { c, d_c } = self.frequency(omega);
         let inertia = Complex64::new(nu * nu, -nu * alpha);
         let d_inertia = self.number * Complex64::new(2.0 * nu, -alpha);
-        let mut least = f64::INFINITY;
-        let values = self.modes.values.iter();
-        for ((inverse, slope), mu) in self.inverse.iter_mut().zip(&mut self.slopes).zip(values) {
-            let d = 1.0 + c - inertia * mu;
-            let size = 1.0 + nu * nu * mu.abs();
-            least = least.min(d.norm_sqr() / (size * size));
-            *inverse = d.inv();
+        let is_clear = self.modes.invert((c, inertia), nu, &mut self.inverse);
+        let slopes = self.slopes.iter_mut().zip(&self.inverse).zip(&self.modes.values);
+        for ((slope, inverse), mu) in slopes {
             *slope = -(d_c - d_inertia * mu) * *inverse * *inverse;
         }
-        least > NEAR_RESONANCE * NEAR_RESONANCE
+        is_clear
     }
 
     /// T′, and ∂T′ if `slopes`.

@@ -33,7 +33,22 @@ pub struct WaveModes {
     pub(super) springs: Vec<(MotionRow, f64)>,
 }
 
+/// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.
+const NEAR_RESONANCE: f64 = 1e-4;
+
 impl WaveModes {
+    /// 1/(1 + c − s μ) of all modes at ν, s being ν² and what damping adds to it; `false` where a denominator is small.
+    pub(super) fn invert(&self, (c, s): (Complex64, Complex64), nu: f64, inverse: &mut [Complex64]) -> bool {
+        let mut least = f64::INFINITY;
+        for (inverse, mu) in inverse.iter_mut().zip(&self.values) {
+            let d = 1.0 + c - s * mu;
+            let size = 1.0 + nu * nu * mu.abs();
+            least = least.min(d.norm_sqr() / (size * size));
+            *inverse = d.inv();
+        }
+        least > NEAR_RESONANCE * NEAR_RESONANCE
+    }
+
     /// Whether stiffness damps the wave, so that the part of K_κ that belongs to no structure counts.
     pub(super) fn is_damped_by_stiffness(&self) -> bool {
         self.proportional.1 != 0.0 || self.loss_factor != 0.0

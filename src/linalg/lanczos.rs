@@ -11,6 +11,7 @@ use crate::linalg::cholesky::Definite;
 use crate::linalg::eigen::Pairs;
 use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::{inner, remove};
 use nalgebra::{DMatrix, SymmetricEigen};
 use num_complex::Complex64;
 
@@ -141,10 +142,10 @@ impl Search<'_> {
         self.apply(&mut v)?;
         for step in 0..steps {
             self.interrupt.part(Phase::Modes, step, steps)?;
-            let before = dot(&v, &self.times_mass(&v)?).re.max(0.0).sqrt();
+            let before = inner(&v, &self.times_mass(&v)?).re.max(0.0).sqrt();
             self.orthogonalise(&mut v, &basis, &weighted);
             let mut mv = self.times_mass(&v)?;
-            let square = dot(&v, &mv).re;
+            let square = inner(&v, &mv).re;
             if square < -(EXHAUSTED * before).powi(2) {
                 return fail!(NotPositiveDefinite, "mass matrix is not positive semidefinite");
             }
@@ -159,7 +160,7 @@ impl Search<'_> {
             beta.push(norm);
             let mut next = mv.clone();
             self.inverse.solve(&mut next, self.interrupt)?;
-            alpha.push(dot(&mv, &next).re);
+            alpha.push(inner(&mv, &next).re);
             try_push(&mut basis, v, "the eigenvectors")?;
             try_push(&mut weighted, mv, "the eigenvectors")?;
             v = next;
@@ -193,7 +194,7 @@ impl Search<'_> {
         };
         let mut rest = v.to_vec();
         self.orthogonalise(&mut rest, basis, weighted);
-        let after = dot(&rest, &self.times_mass(&rest)?).re.max(0.0).sqrt();
+        let after = inner(&rest, &self.times_mass(&rest)?).re.max(0.0).sqrt();
         let mut ritz: Vec<_> = (0..k)
             .map(|c| {
                 let s = eigen.eigenvectors.column(c);
@@ -279,23 +280,12 @@ impl Search<'_> {
     fn orthogonalise(&self, v: &mut [Complex64], basis: &[Vec<Complex64>], weighted: &[Vec<Complex64>]) {
         for _ in 0..2 {
             for (q, mq) in basis.iter().zip(weighted) {
-                remove(v, q, dot(mq, v));
+                remove(v, q, inner(mq, v));
             }
             for (_, q, mq) in &self.found {
-                remove(v, q, dot(mq, v));
+                remove(v, q, inner(mq, v));
             }
         }
-    }
-}
-
-/// aᴴ b
-fn dot(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    a.iter().zip(b).map(|(x, y)| x.conj() * y).sum()
-}
-
-fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
-    for (v, q) in v.iter_mut().zip(q) {
-        *v -= part * q;
     }
 }
 

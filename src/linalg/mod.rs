@@ -20,5 +20,5 @@ mod vectors;
 
 pub use vectors::{
     COPIED_UP_TO, add_outer_products, add_outer_products_to, add_product, dot, first_product, inner, norm,
-    power_of_two, transposed_products,
+    power_of_two, remove, transposed_products,
 };

@@ -11,6 +11,13 @@ pub fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
     a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
 }
 
+/// v ← v − part q
+pub fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
+    for (v, q) in v.iter_mut().zip(q) {
+        *v -= part * q;
+    }
+}
+
 /// Σ aⱼ bⱼ in eight partial sums, which the processor adds in parallel.
 #[must_use]
 pub fn dot(a: &[f64], b: &[f64]) -> f64 {

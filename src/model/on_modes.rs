@@ -127,26 +127,31 @@ fn is_own_mirror(structure: &Structure, diameter: usize) -> bool {
     (2 * diameter).is_multiple_of(structure.sectors())
 }
 
-/// Amplitudes of the forces on the independent degrees of freedom, harmonic by harmonic, each with its nodal diameter, for
-/// the wave in which sector s + 1 lags.
-fn forces_of_waves(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
-    let structure = model.structure();
-    let mut harmonics = Vec::new();
-    let mut found = Vec::new();
+/// Amplitudes of the forces on the independent degrees of freedom, harmonic by harmonic.
+fn forces_of_harmonics(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
+    let mut found: Vec<(usize, Vec<Complex64>)> = Vec::new();
     for f in model.excitation().forces() {
-        if harmonics.contains(&f.harmonic) {
+        if found.iter().any(|(harmonic, _)| *harmonic == f.harmonic) {
             continue;
         }
-        try_push(&mut harmonics, f.harmonic, CONTEXT)?;
-        let mut force = try_vec(structure.ndof(), Complex64::ZERO, CONTEXT)?;
+        let mut force = try_vec(model.structure().ndof(), Complex64::ZERO, CONTEXT)?;
         model.add_forces_to(f.harmonic, 1.0, &mut force);
-        let (diameter, backward) = structure.wave_of(f.harmonic);
-        for z in &mut force {
-            if backward {
+        try_push(&mut found, (f.harmonic, force), CONTEXT)?;
+    }
+    Ok(found)
+}
+
+/// The same, each with its nodal diameter in place of the harmonic, for the wave in which sector s + 1 lags.
+fn forces_of_waves(model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
+    let mut found = forces_of_harmonics(model)?;
+    for (number, force) in &mut found {
+        let (diameter, backward) = model.structure().wave_of(*number);
+        *number = diameter;
+        if backward {
+            for z in force {
                 *z = z.conj();
             }
         }
-        try_push(&mut found, (diameter, force), CONTEXT)?;
     }
     Ok(found)
 }
@@ -214,18 +219,12 @@ impl OnModes {
     /// # Errors
     /// `OutOfMemory`.
     pub fn forces(&self, model: &Model) -> Result<Vec<(usize, Vec<Complex64>)>> {
-        let mut found: Vec<(usize, Vec<Complex64>)> = Vec::new();
-        let mut force = try_vec(model.structure().ndof(), Complex64::ZERO, CONTEXT)?;
-        for f in model.excitation().forces() {
-            if found.iter().any(|(harmonic, _)| *harmonic == f.harmonic) {
-                continue;
-            }
-            force.fill(Complex64::ZERO);
-            model.add_forces_to(f.harmonic, 1.0, &mut force);
-            let (basis, _, backward) = self.wave(f.harmonic)?;
+        let mut found = forces_of_harmonics(model)?;
+        for (harmonic, force) in &mut found {
+            let (basis, _, backward) = self.wave(*harmonic)?;
             let mut own = try_vec(self.model.structure().ndof(), Complex64::ZERO, CONTEXT)?;
-            basis.forces(&force, backward, &mut own);
-            try_push(&mut found, (f.harmonic, own), CONTEXT)?;
+            basis.forces(force, backward, &mut own);
+            *force = own;
         }
         Ok(found)
     }

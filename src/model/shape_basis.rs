@@ -3,6 +3,7 @@
 
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::inner;
 use crate::linalg::sparse::Csc;
 use crate::model::structure::MatrixKind;
 use num_complex::Complex64;
@@ -48,7 +49,7 @@ impl ShapeBasis {
                 let value = match which {
                     MatrixKind::Mass if i.max(j) >= self.fixed && i != j => Complex64::ZERO,
                     MatrixKind::Mass if i >= self.fixed => self.scale.powi(2).into(),
-                    _ => dot(row, &image),
+                    _ => inner(row, &image),
                 };
                 if value != Complex64::ZERO {
                     try_push(&mut entries, (i, j, value), CONTEXT)?;
@@ -64,7 +65,7 @@ impl ShapeBasis {
             *out = if backward {
                 column.iter().zip(force).map(|(t, f)| t * f).sum()
             } else {
-                dot(column, force)
+                inner(column, force)
             };
         }
     }
@@ -90,7 +91,7 @@ impl ShapeBasis {
         for (i, (out, column)) in out.iter_mut().zip(self.all()).enumerate() {
             *out = match held.get(i) {
                 Some(&dof) => motion[dof],
-                None => turn(dot(column, &image)) / self.scale.powi(2),
+                None => turn(inner(column, &image)) / self.scale.powi(2),
             };
         }
         Ok(())
@@ -104,17 +105,5 @@ impl ShapeBasis {
                 *out += if backward { t.conj() } else { *t } * x;
             }
         }
-    }
-}
-
-/// aᴴ b
-pub(super) fn dot(a: &[Complex64], b: &[Complex64]) -> Complex64 {
-    a.iter().zip(b).map(|(x, y)| x.conj() * y).sum()
-}
-
-/// v ← v − part q
-pub(super) fn remove(v: &mut [Complex64], q: &[Complex64], part: Complex64) {
-    for (v, q) in v.iter_mut().zip(q) {
-        *v -= part * q;
     }
 }

@@ -12,9 +12,10 @@ use crate::interrupt::Interrupt;
 use crate::linalg::definite::resists_all_motion;
 use crate::linalg::lanczos::Inverse;
 use crate::linalg::sparse::Csc;
+use crate::linalg::{inner, remove};
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
-use crate::model::shape_basis::{ShapeBasis, dot, remove};
+use crate::model::shape_basis::ShapeBasis;
 use crate::model::structure::MatrixKind;
 use crate::model::wave::Wave;
 use nalgebra::DMatrix;
@@ -81,7 +82,7 @@ impl StuckShapes {
         for force in forces {
             let mut shape = try_copy(force, CONTEXT)?;
             inverse.solve(&mut shape, interrupt)?;
-            let norm = dot(&shape, &shapes.mass.times(&shape, CONTEXT)?).re.max(0.0).sqrt();
+            let norm = inner(&shape, &shapes.mass.times(&shape, CONTEXT)?).re.max(0.0).sqrt();
             for z in &mut shape {
                 *z /= norm.max(f64::MIN_POSITIVE);
             }
@@ -121,7 +122,7 @@ impl StuckShapes {
             for _ in 0..2 {
                 let image = self.mass.times(x, CONTEXT)?;
                 for column in modes.chunks_exact(n) {
-                    remove(x, column, dot(column, &image));
+                    remove(x, column, inner(column, &image));
                 }
             }
             for (j, &dof) in held.iter().enumerate() {
@@ -180,11 +181,11 @@ impl StuckShapes {
         for _ in 0..2 {
             let image = self.mass.times(&x, CONTEXT)?;
             for column in self.modal.chunks_exact(self.n) {
-                remove(&mut x, column, dot(column, &image));
+                remove(&mut x, column, inner(column, &image));
             }
         }
         // Modes have norm 1.
-        let norm = dot(&x, &self.mass.times(&x, CONTEXT)?).re.max(0.0).sqrt();
+        let norm = inner(&x, &self.mass.times(&x, CONTEXT)?).re.max(0.0).sqrt();
         if norm > DEPENDENT {
             for z in x {
                 try_push(&mut self.modal, z / norm, CONTEXT)?;

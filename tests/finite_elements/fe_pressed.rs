@@ -18,10 +18,13 @@ use std::f64::consts::TAU;
 use std::path::Path;
 use std::time::Instant;
 
-/// The sector with friction in a plane at each pair of nodes, under a force at the tip.
-fn pressed(force: f64) -> (Model, usize) {
+fn sector() -> Sector {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
-    let sector = Sector::read(&folder, Size::Reduced).unwrap();
+    Sector::read(&folder, Size::Reduced).unwrap()
+}
+
+/// The sector with friction in a plane at each pair of nodes, under a force at the tip.
+fn pressed(sector: &Sector, force: f64) -> (Model, usize) {
     let mut model = sector.model(Interface::Absent).unwrap();
     for pair in &sector.pairs {
         let [along, across] = &pair.friction;
@@ -45,10 +48,9 @@ fn pressed(force: f64) -> (Model, usize) {
 
 /// The same with soft springs that hold the ring. With contacts that slip or open in each period, the travelling wave
 /// drives a ring that friction alone holds, and no motion is periodic.
-fn held(force: f64) -> (Model, usize) {
-    let (mut model, tip) = pressed(force);
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/data/fe");
-    for pair in &Sector::read(&folder, Size::Reduced).unwrap().pairs {
+fn held(sector: &Sector, force: f64) -> (Model, usize) {
+    let (mut model, tip) = pressed(sector, force);
+    for pair in &sector.pairs {
         for friction in &pair.friction {
             let spring = Spring {
                 dof_a: friction.dof_b[0],
@@ -65,7 +67,7 @@ fn held(force: f64) -> (Model, usize) {
 #[test]
 #[ignore = "a minute of processor time; run by tests/deep.sh"]
 fn pressed_contacts_of_a_sector_with_a_held_ring_are_followed_over_four_decades() {
-    let (model, tip) = held(2.0);
+    let (model, tip) = held(&sector(), 2.0);
     let solver = SolverOptions {
         response_dof: Some(tip),
         ..harmonics(1)
@@ -119,7 +121,7 @@ fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
 #[test]
 #[ignore = "half a minute of processor time; run by tests/deep.sh"]
 fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_lift_off() {
-    let (model, tip) = pressed(2.0);
+    let (model, tip) = pressed(&sector(), 2.0);
     let begin = (Instant::now(), processor_time(Instant::now()));
     let branch = mode(&model, tip, 1);
     println!(

@@ -43,15 +43,17 @@ fn bar(n: usize) -> (Vec<f64>, Vec<f64>) {
     (mass, stiffness)
 }
 
+fn set_bar(model: &mut Model, mass: &[f64], stiffness: &[f64]) {
+    let n = model.ndof();
+    for (kind, values) in [(MatrixKind::Mass, mass), (MatrixKind::Stiffness, stiffness)] {
+        model.set_matrix(kind, &MatrixView::dense(n, values)).unwrap();
+    }
+}
+
 fn held_bar(n: usize, contacts: &[Contact], force: f64) -> Model {
     let (mass, stiffness) = bar(n);
     let mut model = Model::new(n).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
+    set_bar(&mut model, &mass, &stiffness);
     model.set_rayleigh(0.1, 0.02).unwrap();
     for contact in contacts {
         model.add_contact(contact).unwrap();
@@ -148,12 +150,7 @@ fn sectors_have_the_multipliers_of_all_degrees_of_freedom() {
         let mut next = vec![0.0; n * n];
         (next[1], next[n]) = (-0.3, -0.1);
         let mut model = Model::cyclic(n, 8).unwrap();
-        model
-            .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-            .unwrap();
-        model
-            .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-            .unwrap();
+        set_bar(&mut model, &mass, &stiffness);
         model
             .set_coupling(MatrixKind::Stiffness, &MatrixView::dense(n, &next))
             .unwrap();
@@ -188,12 +185,7 @@ fn a_rigid_motion_stays_neutral_on_modes() {
     let (mass, mut stiffness) = bar(n);
     stiffness[0] -= 3.0 * n as f64;
     let mut model = Model::new(n).unwrap();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(n, &mass))
-        .unwrap();
-    model
-        .set_matrix(MatrixKind::Stiffness, &MatrixView::dense(n, &stiffness))
-        .unwrap();
+    set_bar(&mut model, &mass, &stiffness);
     model.set_rayleigh(0.0, 0.02).unwrap();
     model.add_contact(&Contact::jenkins(0, None, 3.0, 0.5, 0.2)).unwrap();
     model.add_force(n - 1, 1, 0.4.into()).unwrap();
