@@ -11,8 +11,8 @@ use crate::interrupt::Interrupt;
 use crate::model::Model;
 use crate::model::speed::Speed;
 use crate::options::{FloquetOptions, Waves};
-use crate::results::{MultiplierClass, Recovery, Verdict};
-use crate::time_integration::System;
+use crate::results::{Floquet, MultiplierClass, Recovery, Verdict};
+use crate::time_integration::{State, System};
 
 /// Distance of the motion in time from a point, relative to it, above which it is another motion.
 const FAR: f64 = 0.2;
@@ -24,6 +24,8 @@ pub(super) struct BranchStability<'a> {
     /// Modes of a large structure.
     modes: KeptModes,
     interrupt: &'a Interrupt<'a>,
+    /// Difference of the state in time and that of the harmonics at the point solved last.
+    difference: Option<State>,
     /// The points of the curve recorded last, the last one at the end.
     last: [Option<Verdict>; 2],
     /// Frequency of the last one, where all contacts were linear there.
@@ -48,6 +50,7 @@ impl<'a> BranchStability<'a> {
             options,
             modes,
             interrupt,
+            difference: None,
             last: [None, None],
             linear: None,
             taken: true,
@@ -83,11 +86,13 @@ impl<'a> BranchStability<'a> {
         let highest = resolution.condensed.set().numbers().last().copied().unwrap_or(0);
         let solution = (point.unknowns(), point.parameter(), 0.0);
         let harmonics = Recovery::of(resolution, solution, self.interrupt)?.all(highest)?;
+        let near = self.difference.take();
         let motion = Motion {
             omega: point.parameter(),
             harmonics: &harmonics,
             autonomous: false,
             compared: false,
+            difference: near.as_ref(),
         };
         for refine in [true, false] {
             let options = FloquetOptions { refine, ..self.options };
@@ -100,19 +105,9 @@ impl<'a> BranchStability<'a> {
             );
             match found {
                 Ok(found) if found.shift > FAR => {}
-                Ok(found) if found.stability.radius.is_nan() => return Ok(Verdict::unknown()),
                 Ok(found) => {
-                    let mut multipliers = Vec::new();
-                    let all = found.stability.multipliers.iter();
-                    for m in all.filter(|m| m.class == MultiplierClass::Ordinary) {
-                        try_push(&mut multipliers, m.value, "the stability of a point")?;
-                    }
-                    return Ok(Verdict {
-                        multipliers,
-                        radius: found.stability.radius,
-                        unstable: Some(found.stability.unstable),
-                        in_time: refine,
-                    });
+                    self.difference = found.difference;
+                    return verdict(&found.stability, refine);
                 }
                 Err(e)
                     if matches!(
@@ -124,6 +119,23 @@ impl<'a> BranchStability<'a> {
         }
         Ok(Verdict::unknown())
     }
+}
+
+fn verdict(stability: &Floquet, in_time: bool) -> Result<Verdict> {
+    if stability.radius.is_nan() {
+        return Ok(Verdict::unknown());
+    }
+    let mut multipliers = Vec::new();
+    let all = stability.multipliers.iter();
+    for m in all.filter(|m| m.class == MultiplierClass::Ordinary) {
+        try_push(&mut multipliers, m.value, "the stability of a point")?;
+    }
+    Ok(Verdict {
+        multipliers,
+        radius: stability.radius,
+        unstable: Some(stability.unstable),
+        in_time,
+    })
 }
 
 /// Stability at another frequency where the contacts remain in the same linear state: perturbations grow by the same

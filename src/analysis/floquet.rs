@@ -61,6 +61,7 @@ pub fn floquet(
             harmonics: &harmonics,
             autonomous: branch.mode().is_some(),
             compared: true,
+            difference: None,
         };
         let mut kept = KeptModes::default();
         Ok(floquet_of(model, &motion, options, (hooks, &mut kept), &interrupt)?.stability)

@@ -9,7 +9,7 @@ use crate::model::structure::Structure;
 use crate::options::{FloquetOptions, TimeOptions};
 use crate::results::Floquet;
 use crate::stability::{Blocks, Closure, Known, closures, multipliers_of};
-use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, Search, State, System};
+use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, Search, State, Steady, System};
 use crate::time_integration::{state_of, state_of_sector};
 use num_complex::Complex64;
 
@@ -26,6 +26,8 @@ pub(super) struct Motion<'a> {
     pub autonomous: bool,
     /// Whether the motion in time is compared with the harmonics.
     pub compared: bool,
+    /// Difference of the state in time and that of the harmonics at a neighbouring point, from which shooting begins.
+    pub difference: Option<&'a State>,
 }
 
 /// Stability of a motion.
@@ -33,6 +35,8 @@ pub(super) struct Found {
     pub stability: Floquet,
     /// Distance of the initial state of the motion in time from that of the harmonics, relative to it.
     pub shift: f64,
+    /// The difference itself.
+    pub difference: Option<State>,
 }
 
 /// A model whose motion is integrated, on all its degrees of freedom or on modes.
@@ -61,6 +65,19 @@ impl Subject<'_> {
                 Ok(system)
             }
         }
+    }
+
+    /// Whether forces and laws allow a motion in which sectors half a wave apart move opposite to each other.
+    fn allows_halves(&self, system: &System<'_>) -> Result<bool> {
+        if !system.sectors.is_multiple_of(2) || system.loads.iter().any(|load| load.harmonic.is_multiple_of(2)) {
+            return Ok(false);
+        }
+        for contact in self.on_modes.map_or(self.model, |on_modes| &on_modes.model).contacts() {
+            if !contact.law(1.0)?.is_odd() {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// The state at time 0 of the motion, in the space of the modes the state next to it.
@@ -106,7 +123,7 @@ pub(super) fn perturbed(
     let mut system = subject.system(motion, interrupt)?;
     let mut event_loop = EventLoop::new(&system, options.tolerance)?;
     let mut state = subject.state(&system, motion.harmonics)?;
-    let (mut residual, mut shift) = (f64::NAN, 0.0);
+    let (mut residual, mut shift, mut difference) = (f64::NAN, 0.0, None);
     if options.refine {
         let in_time = TimeOptions {
             omega: motion.omega,
@@ -115,11 +132,29 @@ pub(super) fn perturbed(
             ..TimeOptions::default()
         };
         let start = state.try_clone()?;
-        let mut search = Search::new(&mut system, &mut event_loop, &in_time, hooks, state)?;
-        if motion.autonomous {
-            search = search.free_frequency();
+        let near = motion.difference.filter(|near| near.len() == state.len());
+        let mut found = None;
+        if let Some(near) = near {
+            let mut state = start.try_clone()?;
+            state.add(1.0, near);
+            found = shoot(
+                (&mut system, &mut event_loop),
+                subject,
+                motion,
+                (&in_time, hooks),
+                state,
+            )?;
         }
-        let Some(steady) = search.closest()? else {
+        if found.is_none() {
+            found = shoot(
+                (&mut system, &mut event_loop),
+                subject,
+                motion,
+                (&in_time, hooks),
+                state,
+            )?;
+        }
+        let Some(steady) = found else {
             return fail!(
                 NoConvergence,
                 "shooting did not converge from the point: it has too few harmonics; solve it with more, or set refine to false"
@@ -134,6 +169,9 @@ pub(super) fn perturbed(
         residual = steady.residual;
         state = steady.state;
         shift = start.distance(&state, system.omega);
+        let mut moved = state.try_clone()?;
+        moved.add(-1.0, &start);
+        difference = Some(moved);
         hooks.log(LogLevel::Info, "the motion whose perturbations are integrated is found");
     }
     let closures = closures(subject.structure(), options.waves, is_odd(&system, &state))?;
@@ -156,7 +194,42 @@ pub(super) fn perturbed(
     if let Some(recorder) = recorder {
         stability.orbit_change = distance(motion.harmonics, &subject.harmonics(recorder, &system)?);
     }
-    Ok(Found { stability, shift })
+    Ok(Found {
+        stability,
+        shift,
+        difference,
+    })
+}
+
+/// Shoots from a state: in half the sectors where the others move opposite to them.
+fn shoot(
+    (system, event_loop): (&mut System<'_>, &mut EventLoop),
+    subject: &Subject<'_>,
+    motion: &Motion<'_>,
+    (options, hooks): (&TimeOptions<'_>, &mut Hooks<'_>),
+    mut state: State,
+) -> Result<Option<Steady>> {
+    let halves = !motion.autonomous && subject.allows_halves(system)? && {
+        let mut mirrored = state.try_clone()?;
+        mirrored.unfold(&state.fold(system)?, system);
+        state.distance(&mirrored, system.omega) <= ODD
+    };
+    if halves {
+        let mut half = system.folded()?;
+        let mut in_half = EventLoop::new(&half, options.tolerance)?;
+        let start = state.fold(system)?;
+        let found = Search::new(&mut half, &mut in_half, options, hooks, start)?.closest()?;
+        return Ok(found.map(|mut steady| {
+            state.unfold(&steady.state, system);
+            steady.state = state;
+            steady
+        }));
+    }
+    let mut search = Search::new(system, event_loop, options, hooks, state)?;
+    if motion.autonomous {
+        search = search.free_frequency();
+    }
+    search.closest()
 }
 
 /// Carries all perturbations through a lapse of the motion.
@@ -180,7 +253,6 @@ fn through_a_lapse(
     let observers = Observers {
         recorder,
         variation: Some(&mut blocks),
-        ..Observers::default()
     };
     event_loop.run(system, &mut state, observers)?;
     let moved = |i: usize| {

@@ -21,12 +21,14 @@ pub trait Scalar: ComplexField<RealField = f64> + faer::traits::ComplexField + C
 }
 
 impl Scalar for f64 {
+    #[inline]
     fn size(self) -> f64 {
         self.abs()
     }
 }
 
 impl Scalar for Complex64 {
+    #[inline]
     fn size(self) -> f64 {
         self.re.abs() + self.im.abs()
     }

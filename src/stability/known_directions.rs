@@ -18,7 +18,7 @@ const NO_STRAIN: f64 = 1e-12;
 /// Iterations of the singular values, far above what converging cases need.
 const MOST_ITERATIONS: usize = 100_000;
 
-impl Perturbations {
+impl Perturbations<'_> {
     /// The sliders of the ring that never move; `moved` tells it of the elements of the structure in time.
     pub(super) fn stuck_sliders(&self, moved: &dyn Fn(usize) -> bool) -> Vec<usize> {
         let sliders = self.ring.elements.iter().filter(|e| !moved(e.source));

@@ -1,7 +1,7 @@
 //! Floquet multipliers of periodic motions, by the variational equations along the exact path from event to event.
 //!
 //! `closure` lists the blocks of perturbations of a wheel; `ring` has the matrices of one of them; `perturbations`
-//! carries a basis of perturbations through a lapse; `variational_step` integrates one of them between events;
+//! carries a basis of perturbations of a block through a lapse;
 //! `known_directions` has the perturbations that return unchanged by construction; `multipliers` removes them and
 //! the zeros of sliders, and finds the eigenvalues that remain; `operations` counts what all this costs.
 
@@ -11,7 +11,6 @@ mod multipliers;
 mod operations;
 mod perturbations;
 mod ring;
-mod variational_step;
 
 pub(crate) use closure::{Closure, closures};
 pub(crate) use multipliers::{Known, multipliers_of};

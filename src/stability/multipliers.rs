@@ -10,7 +10,7 @@ use crate::model::structure::Structure;
 use crate::results::{Multiplier, MultiplierClass};
 use crate::stability::perturbations::Perturbations;
 use crate::time_integration::System;
-use nalgebra::{ColPivQR, DMatrix, DVector, Schur};
+use nalgebra::{ColPivQR, ComplexField, DMatrix, DVector, Schur};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the Floquet multipliers";
@@ -43,7 +43,7 @@ pub(crate) struct Known<'a> {
 pub(crate) fn multipliers_of(
     structure: &Structure,
     system: &System<'_>,
-    block: &Perturbations,
+    block: &Perturbations<'_>,
     known: &Known<'_>,
 ) -> Result<Vec<Multiplier>> {
     let (n, states) = (block.ring.order, block.ring.states());
@@ -76,7 +76,14 @@ pub(crate) fn multipliers_of(
         trivial = 1;
     }
     let moving = kept.len() - 2 * n;
-    let (rest, zeros) = without_zeros(without(map, directions), system)?;
+    let map = without(map, directions);
+    let (values, zeros) = if map.iter().all(|z| z.im == 0.0) {
+        let (rest, zeros) = without_zeros(map.map(|z| z.re), system)?;
+        (real_eigenvalues(&rest)?, zeros)
+    } else {
+        let (rest, zeros) = without_zeros(map, system)?;
+        (eigenvalues(rest)?, zeros)
+    };
     let mut found = Vec::new();
     let mut add = |count: usize, value: Complex64, class| {
         (0..count).try_for_each(|_| try_push(&mut found, Multiplier { value, class }, CONTEXT))
@@ -91,7 +98,7 @@ pub(crate) fn multipliers_of(
     let passed = system.follower * lapses / block.closure().sectors;
     let turn = block.closure().factor(structure, passed).conj();
     let mut memories = moving.saturating_sub(zeros);
-    for value in eigenvalues(rest)? {
+    for value in values {
         let value = value.powu(lapses as u32) * turn;
         if value.norm() <= FORGOTTEN && memories > 0 {
             memories -= 1;
@@ -153,7 +160,10 @@ fn without(mut map: DMatrix<Complex64>, mut directions: Vec<DVector<Complex64>>)
 }
 
 /// The map on its lasting range, and the number of its zero multipliers.
-fn without_zeros(mut map: DMatrix<Complex64>, system: &System<'_>) -> Result<(DMatrix<Complex64>, usize)> {
+fn without_zeros<T: ComplexField<RealField = f64>>(
+    mut map: DMatrix<T>,
+    system: &System<'_>,
+) -> Result<(DMatrix<T>, usize)> {
     let mut zeros = 0;
     loop {
         system.interrupt.check()?;
@@ -163,8 +173,10 @@ fn without_zeros(mut map: DMatrix<Complex64>, system: &System<'_>) -> Result<(DM
         }
         let factors = ColPivQR::new(map.clone());
         let r = factors.r();
-        let first = r[(0, 0)].norm();
-        let rank = (0..order).take_while(|&i| r[(i, i)].norm() > ROUNDING * first).count();
+        let first = r[(0, 0)].clone().modulus();
+        let rank = (0..order)
+            .take_while(|&i| r[(i, i)].clone().modulus() > ROUNDING * first)
+            .count();
         if rank == order {
             return Ok((map, zeros));
         }
@@ -172,6 +184,21 @@ fn without_zeros(mut map: DMatrix<Complex64>, system: &System<'_>) -> Result<(DM
         map = (q.adjoint() * map * q).view((0, 0), (rank, rank)).into_owned();
         zeros += order - rank;
     }
+}
+
+fn real_eigenvalues(map: &DMatrix<f64>) -> Result<Vec<Complex64>> {
+    let order = map.nrows();
+    let mut found = Vec::new();
+    if order == 0 {
+        return Ok(found);
+    }
+    let Some(schur) = Schur::try_new(map.clone(), f64::EPSILON, MOST_ITERATIONS) else {
+        return eigenvalues(map.map(Complex64::from));
+    };
+    for value in schur.complex_eigenvalues().iter() {
+        try_push(&mut found, *value, CONTEXT)?;
+    }
+    Ok(found)
 }
 
 fn eigenvalues(map: DMatrix<Complex64>) -> Result<Vec<Complex64>> {

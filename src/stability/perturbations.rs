@@ -4,53 +4,53 @@
 //! of the sector whose motion it repeats, so that the map of a lapse, applied as often as the wave has lapses in a
 //! period, is the monodromy matrix of the period but for a known factor.
 
-use crate::contact::time_piece::{Grazing, TimePiece};
-use crate::error::{Result, try_push, try_vec};
-use crate::interrupt::Interrupt;
+use crate::contact::time_piece::Grazing;
+use crate::error::{Result, try_push};
 use crate::model::structure::Structure;
 use crate::stability::closure::Closure;
-use crate::stability::ring::{Ring, along};
-use crate::stability::variational_step::VariationalStep;
-use crate::time_integration::{Interval, System, Variation};
+use crate::stability::ring::Ring;
+use crate::time_integration::{Interval, PerturbationBasis, System, Variation};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the perturbations";
 
 /// The perturbations of one block.
-pub(crate) struct Perturbations {
+pub(crate) struct Perturbations<'s> {
     pub(super) ring: Ring,
-    step: VariationalStep,
-    /// Column by column.
-    columns: Vec<Complex64>,
+    basis: Basis<'s>,
+}
+
+/// A basis of the perturbations, in real numbers where the block is real.
+enum Basis<'s> {
+    Real(PerturbationBasis<'s, f64>),
+    Complex(PerturbationBasis<'s, Complex64>),
 }
 
 /// The blocks that are carried together.
 pub(crate) struct Blocks<'s> {
-    interrupt: &'s Interrupt<'s>,
     /// The blocks.
-    pub list: Vec<Perturbations>,
+    pub list: Vec<Perturbations<'s>>,
     /// The first contact that touches an event: number of the element, and the event.
     pub grazing: Option<(usize, Grazing)>,
-    /// Intervals with the same tangents through which the perturbations are still to be carried, as one of this length.
-    waiting: f64,
-    pieces: Vec<TimePiece>,
 }
 
-impl Perturbations {
-    fn new(structure: &Structure, system: &System<'_>, closure: Closure) -> Result<Self> {
+impl<'s> Perturbations<'s> {
+    fn new(structure: &Structure, system: &System<'s>, closure: Closure) -> Result<Self> {
         let ring = Ring::new(structure, system, closure)?;
-        let states = ring.states();
-        let mut columns = try_vec(states.saturating_mul(states), Complex64::ZERO, CONTEXT)?;
-        for i in 0..states {
-            columns[i * states + i] = Complex64::ONE;
-        }
-        Ok(Self {
-            step: VariationalStep::new(&ring, !system.is_piecewise_linear())?,
-            ring,
-            columns,
-        })
+        let (count, smooth) = (system.elements.len(), !system.is_piecewise_linear());
+        let interrupt = system.interrupt;
+        let basis = if ring.is_real() {
+            let equations = ring.equations(interrupt)?;
+            Basis::Real(PerturbationBasis::new(equations, count, smooth, interrupt)?)
+        } else {
+            let equations = ring.equations(interrupt)?;
+            Basis::Complex(PerturbationBasis::new(equations, count, smooth, interrupt)?)
+        };
+        Ok(Self { ring, basis })
     }
+}
 
+impl Perturbations<'_> {
     /// The block.
     pub fn closure(&self) -> &Closure {
         &self.ring.closure
@@ -59,7 +59,16 @@ impl Perturbations {
     /// Entry of the map of a lapse: state `i` at the end by state `j` at the begin, sectors exchanged.
     pub(super) fn entry(&self, structure: &Structure, system: &System<'_>, i: usize, j: usize) -> Complex64 {
         let (from, turns) = self.shifted(system, i);
-        self.columns[j * self.ring.states() + from] * self.ring.closure.factor(structure, turns)
+        self.carried(from, j) * self.ring.closure.factor(structure, turns)
+    }
+
+    /// State `i` at the end of the lapse by state `j` at the begin.
+    fn carried(&self, i: usize, j: usize) -> Complex64 {
+        let at = j * self.ring.states() + i;
+        match &self.basis {
+            Basis::Real(basis) => basis.columns[at].into(),
+            Basis::Complex(basis) => basis.columns[at],
+        }
     }
 
     /// The state that state `i` repeats a lapse later, and how often the ring is passed on the way to it.
@@ -77,30 +86,18 @@ impl Perturbations {
         (first + group + to % m * block + within, to / m)
     }
 
-    fn advance(&mut self, interval: &Interval<'_>, interrupt: &Interrupt<'_>) -> Result<()> {
-        self.step.prepare(&self.ring, interval, interrupt)?;
-        let states = self.ring.states();
-        for column in self.columns.chunks_exact_mut(states) {
-            self.step.carry(&mut self.ring, interval, column, interrupt)?;
+    /// The identity, before a lapse.
+    fn begin(&mut self) {
+        match &mut self.basis {
+            Basis::Real(basis) => basis.begin(),
+            Basis::Complex(basis) => basis.begin(),
         }
-        Ok(())
     }
 
-    fn couple(&mut self, element: usize, share: f64) {
-        let Ok(found) = self.ring.elements.binary_search_by_key(&element, |e| e.source) else {
-            return;
-        };
-        let e = &self.ring.elements[found];
-        let Some(slider) = e.slider else { return };
-        let at = 2 * self.ring.order + slider;
-        for column in self.columns.chunks_exact_mut(self.ring.states()) {
-            let mut w = along(&e.rows[0], column);
-            if let Some(normal) = e.rows.get(1)
-                && share != 0.0
-            {
-                w += share * along(normal, column);
-            }
-            column[at] = w;
+    fn variation(&mut self) -> &mut dyn Variation {
+        match &mut self.basis {
+            Basis::Real(basis) => basis,
+            Basis::Complex(basis) => basis,
         }
     }
 }
@@ -110,68 +107,29 @@ impl<'s> Blocks<'s> {
     pub fn new(structure: &Structure, system: &System<'s>, closures: &[Closure]) -> Result<Self> {
         let mut list = Vec::new();
         for closure in closures {
-            try_push(&mut list, Perturbations::new(structure, system, *closure)?, CONTEXT)?;
+            let mut block = Perturbations::new(structure, system, *closure)?;
+            block.begin();
+            try_push(&mut list, block, CONTEXT)?;
         }
-        Ok(Self {
-            interrupt: system.interrupt,
-            list,
-            grazing: None,
-            waiting: 0.0,
-            pieces: try_vec(system.elements.len(), TimePiece::default(), CONTEXT)?,
-        })
-    }
-}
-
-impl Blocks<'_> {
-    /// Carries the perturbations through the intervals that wait.
-    fn catch_up(&mut self) -> Result<()> {
-        let length = core::mem::replace(&mut self.waiting, 0.0);
-        if length == 0.0 {
-            return Ok(());
-        }
-        let interval = Interval {
-            pieces: &self.pieces,
-            length,
-            collocation: None,
-        };
-        for block in &mut self.list {
-            block.advance(&interval, self.interrupt)?;
-        }
-        Ok(())
+        Ok(Self { list, grazing: None })
     }
 }
 
 impl Variation for Blocks<'_> {
     fn advance(&mut self, interval: &Interval<'_>) -> Result<()> {
-        if interval.collocation.is_some() {
-            for block in &mut self.list {
-                block.advance(interval, self.interrupt)?;
-            }
-            return Ok(());
-        }
-        // Without an event the equations of perturbations remain the same: their series may be longer than the steps
-        // of the motion.
-        let same = |(a, b): (&TimePiece, &TimePiece)| a.slope == b.slope && a.memory.to_bits() == b.memory.to_bits();
-        if self.waiting > 0.0 && !self.pieces.iter().zip(interval.pieces).all(same) {
-            self.catch_up()?;
-        }
-        if self.waiting == 0.0 {
-            self.pieces.copy_from_slice(interval.pieces);
-        }
-        self.waiting += interval.length;
-        Ok(())
+        self.list
+            .iter_mut()
+            .try_for_each(|block| block.variation().advance(interval))
     }
 
     fn couple(&mut self, element: usize, share: f64) -> Result<()> {
-        self.catch_up()?;
-        for block in &mut self.list {
-            block.couple(element, share);
-        }
-        Ok(())
+        self.list
+            .iter_mut()
+            .try_for_each(|block| block.variation().couple(element, share))
     }
 
     fn end(&mut self) -> Result<()> {
-        self.catch_up()
+        self.list.iter_mut().try_for_each(|block| block.variation().end())
     }
 
     fn graze(&mut self, element: usize, grazing: Grazing) {
@@ -185,6 +143,7 @@ mod tests {
     use crate::contact::laws::polynomial::{Monomial, Polynomial};
     use crate::contact::laws::table::Table;
     use crate::contact::{Contact, ContactKind};
+    use crate::interrupt::Interrupt;
     use crate::linalg::matrix_view::MatrixView;
     use crate::model::Model;
     use crate::model::structure::MatrixKind;
@@ -357,7 +316,7 @@ mod tests {
                     let (up, down) = (moved(h), moved(-h));
                     for i in 0..states {
                         let difference = (up[i] - down[i]) / (2.0 * h);
-                        let exact = blocks.list[0].columns[j * states + i];
+                        let exact = blocks.list[0].carried(i, j);
                         worst = worst.max((exact - difference).norm());
                     }
                 }

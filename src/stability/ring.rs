@@ -3,15 +3,14 @@
 //! Between the sectors s and s′ of the ring lies A_{ss′} = 1/m Σ_δ A(δ) e^{−2πi(s − s′)δ/N}, the sum over the diameters
 //! δ of the block. A relative motion that reaches over the end of the ring has the factor c there.
 
-use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::error::{Result, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::factor::Factor;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::sector_motion::SectorMotion;
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wave::Wave;
 use crate::stability::closure::Closure;
-use crate::time_integration::System;
+use crate::time_integration::{Number, System, VariationalElement, VariationalEquations};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the equations of perturbations";
@@ -21,18 +20,6 @@ const ROUNDING: f64 = 1e-14;
 
 /// Row of a relative motion: entries (degree of freedom of the ring, coefficient).
 pub(super) type Row = [Option<(usize, Complex64)>; 6];
-
-/// r·x
-pub(super) fn along(row: &Row, x: &[Complex64]) -> Complex64 {
-    row.iter().flatten().map(|&(dof, a)| a * x[dof]).sum()
-}
-
-/// f −= rᴴ g
-pub(super) fn pull(row: &Row, g: Complex64, f: &mut [Complex64]) {
-    for &(dof, a) in row.iter().flatten() {
-        f[dof] -= a.conj() * g;
-    }
-}
 
 /// An element of the ring.
 pub(super) struct RingElement {
@@ -45,20 +32,12 @@ pub(super) struct RingElement {
     pub smooth: bool,
 }
 
-/// Factors of the mass matrix of a ring.
-enum MassFactor {
-    /// 1/mᵢᵢ of a diagonal one.
-    Diagonal(Vec<Complex64>),
-    General(Box<Factor>),
-}
-
 /// A block of perturbations.
 pub(super) struct Ring {
     pub closure: Closure,
     /// Degrees of freedom of all its sectors.
     pub order: usize,
     pub mass: Csc,
-    mass_factor: MassFactor,
     pub damping: Csc,
     pub stiffness: Csc,
     pub elements: Vec<RingElement>,
@@ -68,7 +47,6 @@ pub(super) struct Ring {
 
 impl Ring {
     pub fn new(structure: &Structure, system: &System<'_>, closure: Closure) -> Result<Self> {
-        let interrupt = system.interrupt;
         let order = structure.ndof() * closure.sectors;
         let mass = matrix(structure, MatrixKind::Mass, &closure)?;
         let mut stiffness = matrix(structure, MatrixKind::Stiffness, &closure)?;
@@ -112,7 +90,6 @@ impl Ring {
         Ok(Self {
             closure,
             order,
-            mass_factor: factored(&mass, interrupt)?,
             mass,
             damping: matrix(structure, MatrixKind::Damping, &closure)?,
             stiffness,
@@ -121,42 +98,36 @@ impl Ring {
         })
     }
 
-    /// a ← M⁻¹ a
-    pub fn accelerate(&mut self, a: &mut [Complex64], interrupt: &Interrupt<'_>) -> Result<()> {
-        match &mut self.mass_factor {
-            MassFactor::Diagonal(inverse) => {
-                for (a, m) in a.iter_mut().zip(inverse) {
-                    *a *= *m;
-                }
-                Ok(())
-            }
-            MassFactor::General(factor) => factor.solve(a, false, interrupt),
-        }
-    }
-
     /// Number of states of a perturbation: displacements, velocities and sliders.
     pub fn states(&self) -> usize {
         2 * self.order + self.sliders
     }
-}
 
-fn factored(mass: &Csc, interrupt: &Interrupt<'_>) -> Result<MassFactor> {
-    if (0..mass.cols).all(|j| mass.column(j).all(|(i, v)| i == j || v == Complex64::ZERO)) {
-        // The structure in time has refused degrees of freedom without mass.
-        let mut inverse = try_vec(mass.cols, Complex64::ZERO, CONTEXT)?;
-        for (i, d) in inverse.iter_mut().enumerate() {
-            *d = (1.0 / mass.get(i, i).re).into();
-        }
-        return Ok(MassFactor::Diagonal(inverse));
+    /// Whether matrices and relative motions are real.
+    pub fn is_real(&self) -> bool {
+        let rows = self.elements.iter().flat_map(|e| e.rows.iter().flatten());
+        [&self.mass, &self.damping, &self.stiffness].iter().all(|a| a.is_real())
+            && rows.flatten().all(|(_, a)| a.im == 0.0)
     }
-    let mut factor = Box::new(Factor::new(mass, 1)?);
-    match factor.factor(mass, interrupt) {
-        Ok(()) => Ok(MassFactor::General(factor)),
-        Err(e) if e.status == Status::Singular => fail!(
-            Unsupported,
-            "the mass matrix is singular: some motion in time has no differential equation; give it mass"
-        ),
-        Err(e) => Err(e),
+
+    /// The equations of its perturbations, whose imaginary parts are left out in real numbers.
+    pub fn equations<T: Number>(&self, interrupt: &Interrupt<'_>) -> Result<VariationalEquations<T>> {
+        let mut elements = Vec::new();
+        for e in &self.elements {
+            let mut rows = Vec::new();
+            for row in &e.rows {
+                try_push(&mut rows, row.map(|term| term.map(|(dof, a)| (dof, T::of(a)))), CONTEXT)?;
+            }
+            let element = VariationalElement {
+                source: e.source,
+                rows,
+                slider: e.slider,
+                smooth: e.smooth,
+            };
+            try_push(&mut elements, element, CONTEXT)?;
+        }
+        let matrices = [&self.mass, &self.damping, &self.stiffness];
+        VariationalEquations::new(matrices, elements, self.sliders, interrupt)
     }
 }
 

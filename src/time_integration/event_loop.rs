@@ -3,8 +3,8 @@
 
 use crate::contact::time_piece::{Grazing, Mode, TimePiece, Zeros};
 use crate::error::{Result, fail, try_copy, try_vec};
-use crate::interrupt::{Interrupt, Phase};
-use crate::time_integration::event_law::{Element, along};
+use crate::interrupt::Phase;
+use crate::time_integration::event_law::Element;
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::implicit_step::Implicit;
 use crate::time_integration::linear_step::Taylor;
@@ -74,25 +74,58 @@ impl State {
         if gap == 0.0 { 0.0 } else { (gap / size).sqrt() }
     }
 
+    /// The first half of the sectors of `system`; they decide about the others in [`Self::unfold`].
+    pub fn fold(&self, system: &System<'_>) -> Result<Self> {
+        let mut half = self.try_clone()?;
+        for (values, block) in [(&mut half.x, system.ndof), (&mut half.v, system.ndof), (&mut half.e, 1)] {
+            let group = block * system.sectors;
+            let mut kept = 0;
+            for from in 0..values.len() {
+                if from % group < group / 2 {
+                    values[kept] = values[from];
+                    kept += 1;
+                }
+            }
+            values.truncate(kept);
+        }
+        Ok(half)
+    }
+
+    /// Sets the sectors of `system` to those of the first half, and to their opposite in the second one.
+    pub fn unfold(&mut self, half: &Self, system: &System<'_>) {
+        let block = system.ndof;
+        for (all, half, block) in [
+            (&mut self.x, &half.x, block),
+            (&mut self.v, &half.v, block),
+            (&mut self.e, &half.e, 1),
+        ] {
+            let part = block * system.sectors / 2;
+            for (all, half) in all.chunks_exact_mut(2 * part).zip(half.chunks_exact(part)) {
+                let (first, second) = all.split_at_mut(part);
+                first.copy_from_slice(half);
+                for (to, from) in second.iter_mut().zip(half) {
+                    *to = -from;
+                }
+            }
+        }
+    }
+
+    /// self += sign·other
+    pub fn add(&mut self, sign: f64, other: &Self) {
+        for (own, others) in [
+            (&mut self.x, &other.x),
+            (&mut self.v, &other.v),
+            (&mut self.e, &other.e),
+        ] {
+            for (a, b) in own.iter_mut().zip(others) {
+                *a += sign * b;
+            }
+        }
+    }
+
     /// Number of its entries.
     pub fn len(&self) -> usize {
         self.x.len() + self.v.len() + self.e.len()
-    }
-}
-
-/// Derivatives of a state by the initial state, column by column: (δx, δv, δe). Within the lapse the sliders'
-/// δu = r·δx − δe replaces δe, because it is constant while they rest.
-pub(crate) struct Sensitivity {
-    pub columns: Vec<f64>,
-}
-
-impl Sensitivity {
-    /// Memory for the states of `system`.
-    pub fn new(state: &State, interrupt: &Interrupt<'_>) -> Result<Self> {
-        let m = state.len();
-        Ok(Self {
-            columns: interrupt.zeros(m.saturating_mul(m), "the monodromy matrix")?,
-        })
     }
 }
 
@@ -116,11 +149,9 @@ impl LapseSummary {
 /// Observers of a lapse.
 #[derive(Default)]
 pub(crate) struct Observers<'a, 'v> {
-    /// Derivatives of the state at the end by that at the begin.
-    pub sensitivity: Option<&'a mut Sensitivity>,
     /// Harmonics and samples of the motion.
     pub recorder: Option<&'a mut HarmonicAnalysis>,
-    /// Variational equations of other perturbations than those of the state.
+    /// Perturbations of the motion.
     pub variation: Option<&'a mut (dyn Variation + 'v)>,
 }
 
@@ -179,7 +210,6 @@ impl EventLoop {
         observers: Observers<'_, '_>,
     ) -> Result<LapseSummary> {
         let Observers {
-            mut sensitivity,
             mut recorder,
             mut variation,
         } = observers;
@@ -188,11 +218,6 @@ impl EventLoop {
         summary.update(state);
         system.begin(&state.x, &state.v, &mut state.e, &mut self.modes, &mut self.dependent);
         self.zeros.fill(Zeros::default());
-        if let Some(s) = sensitivity.as_deref_mut() {
-            system.interrupt.check()?;
-            self.identity(system, state, s);
-            system.interrupt.check()?;
-        }
         if let Some(variation) = variation.as_deref_mut() {
             for (i, e) in system.elements.iter().enumerate() {
                 if let Some(mode) = self.dependent[i] {
@@ -230,9 +255,6 @@ impl EventLoop {
                 r.add(&self.polynomial, theta);
             }
             if theta > 0.0 {
-                if let Some(s) = sensitivity.as_deref_mut() {
-                    self.transfer(system, theta, s)?;
-                }
                 if let Some(variation) = variation.as_deref_mut() {
                     variation.advance(&self.interval(theta))?;
                 }
@@ -247,13 +269,7 @@ impl EventLoop {
                 summary.update(state);
                 self.zeros.fill(Zeros::default());
             }
-            let happened = self.switch(
-                system,
-                state,
-                sensitivity.as_deref_mut(),
-                variation.as_deref_mut(),
-                summary.largest.1,
-            )?;
+            let happened = self.switch(system, state, variation.as_deref_mut(), summary.largest.1)?;
             summary.events += happened;
             at_once = if theta * h > 1e-15 * end { 0 } else { at_once + happened };
             if at_once > MOST_AT_ONCE * (1 + system.elements.len()) {
@@ -266,14 +282,8 @@ impl EventLoop {
             };
         }
         system.interrupt.check()?;
-        if let Some(s) = sensitivity {
-            // The place of a slider that still moves follows from the motion.
-            for (i, e) in system.elements.iter().enumerate() {
-                couple_slider(e, i, (self.modes[i], self.modes[i]), state, s);
-            }
-            exchange(system, state, s);
-        }
         if let Some(variation) = variation {
+            // The place of a slider that still moves follows from the motion.
             for (i, e) in system.elements.iter().enumerate() {
                 couple_variation(e, i, (self.modes[i], self.modes[i]), state, variation)?;
             }
@@ -329,7 +339,6 @@ impl EventLoop {
         &mut self,
         system: &System<'_>,
         state: &mut State,
-        mut sensitivity: Option<&mut Sensitivity>,
         mut variation: Option<&mut (dyn Variation + 'v)>,
         largest_speed: f64,
     ) -> Result<usize> {
@@ -344,9 +353,6 @@ impl EventLoop {
             let speed = largest_speed.min(system.omega * state.e[i].abs());
             (self.modes[i], self.zeros[i]) = law.leave(before, which, &at, &mut state.e[i]);
             self.moved[i] |= self.modes[i].moves_slider();
-            if let Some(s) = sensitivity.as_deref_mut() {
-                couple_slider(e, i, (before, self.modes[i]), state, s);
-            }
             if let Some(variation) = variation.as_deref_mut() {
                 couple_variation(e, i, (before, self.modes[i]), state, variation)?;
                 let after = self.modes[i];
@@ -405,39 +411,6 @@ impl EventLoop {
         }
         Ok((accelerations, speeds))
     }
-
-    fn identity(&self, system: &System<'_>, state: &State, s: &mut Sensitivity) {
-        let m = state.len();
-        s.columns.fill(0.0);
-        for i in 0..m {
-            s.columns[i * m + i] = 1.0;
-        }
-        exchange(system, state, s);
-        for (i, e) in system.elements.iter().enumerate() {
-            if let Some(mode) = self.dependent[i] {
-                couple_slider(e, i, (mode, mode), state, s);
-            }
-        }
-    }
-
-    fn transfer(&mut self, system: &mut System<'_>, theta: f64, s: &mut Sensitivity) -> Result<()> {
-        let h = self.polynomial.length;
-        let n = system.order();
-        let m = 2 * n + system.elements.len();
-        if let Stepper::Implicit(stepper) = &mut self.stepper {
-            stepper.prepare(system, &self.pieces, h)?;
-        }
-        for column in s.columns.chunks_exact_mut(m) {
-            system.interrupt.check()?;
-            let (x, rest) = column.split_at_mut(n);
-            let (v, u) = rest.split_at_mut(n);
-            match &mut self.stepper {
-                Stepper::Taylor(stepper) => stepper.transfer(system, &self.pieces, theta * h, x, v, u)?,
-                Stepper::Implicit(stepper) => stepper.transfer(system, &self.pieces, h, theta, x, v, u),
-            }
-        }
-        Ok(())
-    }
 }
 
 /// The event that is touched at a change of mode, if any. `speeds`: of a slip and of a landing, against which slow ones are
@@ -465,29 +438,5 @@ fn couple_variation(
     match e.slider().filter(|_| mode.moves_slider()) {
         Some(slider) => variation.couple(i, slider.follows(mode, after, e.relative(&state.v))),
         None => Ok(()),
-    }
-}
-
-/// Sets, at the end of a mode, the sensitivity of a slider that has moved to that of the motion.
-fn couple_slider(e: &Element, i: usize, (mode, after): (Mode, Mode), state: &State, s: &mut Sensitivity) {
-    let Some(slider) = e.slider().filter(|_| mode.moves_slider()) else {
-        return;
-    };
-    let (m, at) = (state.len(), 2 * state.x.len() + i);
-    let share = slider.follows(mode, after, e.relative(&state.v));
-    for column in s.columns.chunks_exact_mut(m) {
-        let [x, y] = e.relative(column);
-        column[at] = x + share * y;
-    }
-}
-
-/// Exchanges the sensitivities of the stretches and of the sliders, by the same step in both directions:
-/// δu = r·δx − δe, δe = r·δx − δu.
-fn exchange(system: &System<'_>, state: &State, s: &mut Sensitivity) {
-    let (m, first) = (state.len(), 2 * state.x.len());
-    for column in s.columns.chunks_exact_mut(m) {
-        for (i, e) in system.elements.iter().enumerate() {
-            column[first + i] = along(&e.rows[0], column) - column[first + i];
-        }
     }
 }

@@ -22,20 +22,12 @@ const ROUNDS: usize = 100;
 /// Size of a term from which on the next ones may overflow.
 const OVERFLOW: f64 = 1e200;
 
-/// Share of the largest term at which the series of a sensitivity is cut off.
-const CUT: f64 = 1e-17;
-
-/// Terms of the series of a sensitivity, whose motions may be far faster than those of the solution.
-const MOST_TERMS: usize = 400;
-
 /// Memory of the steps.
 pub(super) struct Taylor {
     force: Vec<f64>,
     turning: Vec<Complex64>,
     /// Length of the step to try next.
     trial: f64,
-    /// Three neighbouring terms of the series of a sensitivity.
-    terms: [Vec<f64>; 3],
 }
 
 impl Taylor {
@@ -43,12 +35,10 @@ impl Taylor {
     pub fn new(system: &System<'_>) -> Result<Self> {
         const CONTEXT: &str = "a time step";
         let n = system.order();
-        let zeros = || try_vec(n, 0.0, CONTEXT);
         Ok(Self {
-            force: zeros()?,
+            force: try_vec(n, 0.0, CONTEXT)?,
             turning: try_vec(system.loads.len(), Complex64::ZERO, CONTEXT)?,
             trial: 0.1 * system.lapse(),
-            terms: [zeros()?, zeros()?, zeros()?],
         })
     }
 
@@ -171,55 +161,5 @@ impl Taylor {
             }
         }
         ratio
-    }
-
-    /// Integrates one sensitivity (δx, δv) with the sliders' δu over a time h within the pieces.
-    pub fn transfer(
-        &mut self,
-        system: &mut System<'_>,
-        pieces: &[TimePiece],
-        h: f64,
-        x: &mut [f64],
-        v: &mut [f64],
-        u: &[f64],
-    ) -> Result<()> {
-        let [this, next, new] = &mut self.terms;
-        this.copy_from_slice(x);
-        for ((next, v), x) in next.iter_mut().zip(v.iter_mut()).zip(x.iter_mut()) {
-            *next = h * *v;
-            *x += *next;
-        }
-        let mut largest = this.iter().chain(next.iter()).fold(0.0_f64, |m, c| m.max(c.abs()));
-        let mut small = 0;
-        for k in 0..MOST_TERMS {
-            system.interrupt.check_before(system.operations())?;
-            new.fill(0.0);
-            system.stiffness.multiply_add(-1.0, this, new);
-            system.damping.multiply_add(-((k + 1) as f64) / h, next, new);
-            for (i, (e, piece)) in system.elements.iter().zip(pieces).enumerate() {
-                let mut force = piece.along(e.relative(this));
-                if k == 0 {
-                    force[0] -= piece.memory * u[i];
-                }
-                e.push(-1.0, force, new);
-            }
-            system.accelerate(new)?;
-            let scale = h * h / ((k + 1) * (k + 2)) as f64;
-            let mut size = 0.0_f64;
-            for ((new, x), v) in new.iter_mut().zip(x.iter_mut()).zip(v.iter_mut()) {
-                *new *= scale;
-                *x += *new;
-                *v += (k + 2) as f64 / h * *new;
-                size = size.max((k + 2) as f64 * new.abs());
-            }
-            largest = largest.max(size);
-            small = if size <= CUT * largest { small + 1 } else { 0 };
-            if small == 2 {
-                break;
-            }
-            core::mem::swap(this, next);
-            core::mem::swap(next, new);
-        }
-        Ok(())
     }
 }

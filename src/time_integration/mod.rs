@@ -8,19 +8,24 @@ mod implicit_step;
 mod initial_state;
 mod linear_step;
 mod periodic_response;
+mod perturbation_basis;
+mod sensitivity;
 mod shooting;
 mod smooth_laws;
 mod step_polynomial;
 mod unrolled_structure;
 mod variation;
+mod variational_equations;
+mod variational_step;
 
 pub use periodic_response::{TimeResponse, solve};
 
 // The variational equations of the room `stability`.
 pub(crate) use event_loop::{EventLoop, Observers, State};
-pub(crate) use gauss::STAGES;
 pub(crate) use harmonic_analysis::HarmonicAnalysis;
 pub(crate) use initial_state::{state_of, state_of_sector};
-pub(crate) use shooting::Search;
+pub(crate) use perturbation_basis::PerturbationBasis;
+pub(crate) use shooting::{Search, Steady};
 pub(crate) use unrolled_structure::{System, refuse_massless, refuse_structural_damping};
-pub(crate) use variation::{Collocation, Interval, Variation};
+pub(crate) use variation::{Interval, Variation};
+pub(crate) use variational_equations::{Number, VariationalElement, VariationalEquations};

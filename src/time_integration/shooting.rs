@@ -9,8 +9,10 @@ use crate::error::{Result, Status, fail, try_extend, try_push, try_vec};
 use crate::hooks::{Hooks, Progress};
 use crate::linalg::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
-use crate::time_integration::event_loop::{EventLoop, LapseSummary, Observers, Sensitivity, State};
+use crate::time_integration::event_loop::{EventLoop, LapseSummary, Observers, State};
+use crate::time_integration::sensitivity::Sensitivity;
 use crate::time_integration::unrolled_structure::System;
+use crate::time_integration::variation::Variation;
 
 /// Newton iterations before marching replaces them.
 const MOST_ITERATIONS: usize = 30;
@@ -79,7 +81,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             image: start.try_clone()?,
             shifted: start.try_clone()?,
             state: start,
-            most_laps: options.max_periods.saturating_mul(system.sectors),
+            most_laps: options.max_periods.saturating_mul(system.lapses),
             system,
             event_loop,
             options,
@@ -123,7 +125,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
 
     fn result(self, status: Status, marched: bool) -> Steady {
         Steady {
-            periods: self.laps.div_ceil(self.system.sectors),
+            periods: self.laps.div_ceil(self.system.lapses),
             state: self.state,
             residual: self.residual,
             status,
@@ -144,7 +146,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             }
             if matches!(outcome, Outcome::Failed) {
                 *marched = true;
-                outcome = self.march(march.saturating_mul(self.system.sectors))?;
+                outcome = self.march(march.saturating_mul(self.system.lapses))?;
                 march *= 2;
             }
             match outcome {
@@ -156,7 +158,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     }
 
     /// Integrates one lapse from the state; the image is shifted and compared. `true`: the caller requested a stop.
-    fn lap(&mut self, sensitivity: Option<&mut Sensitivity>) -> Result<bool> {
+    fn lap(&mut self, sensitivity: Option<&mut Sensitivity<'s>>) -> Result<bool> {
         if self.laps >= self.most_laps {
             return fail!(
                 NoConvergence,
@@ -169,7 +171,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         self.image.set(&self.state);
         let summary = {
             let observers = Observers {
-                sensitivity,
+                variation: sensitivity.map(|s| s.begin() as &mut dyn Variation),
                 ..Observers::default()
             };
             self.event_loop.run(self.system, &mut self.image, observers)?
@@ -229,7 +231,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
         let unknowns = self.state.len() + usize::from(self.free);
         let interrupt = self.system.interrupt;
         interrupt.check()?;
-        let mut sensitivity = Sensitivity::new(&self.state, interrupt)?;
+        let mut sensitivity = Sensitivity::new(self.system)?;
         let mut equations = LeastSquares::new(unknowns, interrupt)?;
         let mut step = try_vec(unknowns, 0.0, "Newton's method in time")?;
         let mut base = self.state.try_clone()?;
@@ -302,7 +304,7 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
 
     /// Solves (I − S ∂G/∂z) step = S G(z) − z, with a free frequency bordered by the rate of the state; `false`: it has
     /// no solution.
-    fn correction(&mut self, s: &Sensitivity, equations: &mut LeastSquares, step: &mut [f64]) -> Result<bool> {
+    fn correction(&mut self, s: &Sensitivity<'_>, equations: &mut LeastSquares, step: &mut [f64]) -> Result<bool> {
         let rates = if self.free { Some(self.rates()?) } else { None };
         let (system, m, n) = (&*self.system, self.state.len(), self.state.x.len());
         let order = m + usize::from(self.free);
@@ -325,18 +327,20 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             if i < n {
                 shifted_from(system, system.ndof, i)
             } else if i < 2 * n {
-                n + shifted_from(system, system.ndof, i - n)
+                let (from, sign) = shifted_from(system, system.ndof, i - n);
+                (n + from, sign)
             } else {
-                2 * n + shifted_from(system, 1, i - 2 * n)
+                let (from, sign) = shifted_from(system, 1, i - 2 * n);
+                (2 * n + from, sign)
             }
         };
         let matrix = equations.matrix();
         matrix.fill(0.0);
         for i in 0..m {
             system.interrupt.check()?;
-            let (void, from) = (rests(i), source(i));
+            let (void, (from, sign)) = (rests(i), source(i));
             for j in 0..m {
-                let image = if void { 0.0 } else { s.columns[j * m + from] };
+                let image = if void { 0.0 } else { sign * s.by_initial(j, from) };
                 matrix[j * order + i] = f64::from(u8::from(i == j)) - image * unit(j) / unit(i);
             }
             step[i] = match i {
@@ -359,8 +363,12 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
             let lapse = system.lapse();
             let size: f64 = (0..m).map(|i| (here[i] / unit(i)).powi(2)).sum::<f64>().sqrt();
             for i in 0..m {
-                let void = rests(i);
-                matrix[m * order + i] = if void { 0.0 } else { -lapse * there[source(i)] / unit(i) };
+                let (void, (from, sign)) = (rests(i), source(i));
+                matrix[m * order + i] = if void {
+                    0.0
+                } else {
+                    -lapse * sign * there[from] / unit(i)
+                };
                 matrix[i * order + m] = if void { 0.0 } else { here[i] / unit(i) / size };
             }
             step[m] = 0.0;
@@ -413,16 +421,18 @@ impl<'a, 'h, 's> Search<'a, 'h, 's> {
     }
 }
 
-/// Source of the entry `i` of a shifted vector, with `block` entries per sector.
-fn shifted_from(system: &System<'_>, block: usize, i: usize) -> usize {
+/// Source of the entry `i` of a shifted vector and its sign, with `block` entries per sector.
+fn shifted_from(system: &System<'_>, block: usize, i: usize) -> (usize, f64) {
     let (sector, within) = (i / block % system.sectors, i % block);
     let group = i - sector * block - within;
-    group + system.after_lapse(sector) * block + within
+    let (to, sign) = system.after_lapse(sector);
+    (group + to * block + within, sign)
 }
 
 /// Assigns to every sector the values of the one with the same motion a lapse later.
 fn shift(system: &System<'_>, block: usize, from: &[f64], to: &mut [f64]) {
     for (i, to) in to.iter_mut().enumerate() {
-        *to = from[shifted_from(system, block, i)];
+        let (at, sign) = shifted_from(system, block, i);
+        *to = sign * from[at];
     }
 }

@@ -70,6 +70,7 @@ enum Mass {
 }
 
 /// A force Re(value·e^{i·harmonic·ωt}).
+#[derive(Clone)]
 pub(crate) struct Load {
     pub dof: usize,
     pub harmonic: usize,
@@ -86,6 +87,10 @@ pub(crate) struct System<'s> {
     pub degrees: DegreeMap,
     /// Sectors that are carried.
     pub sectors: usize,
+    /// Lapses of a period.
+    pub lapses: usize,
+    /// Whether the motion past the carried sectors is theirs with the opposite sign.
+    pub folded: bool,
     /// x_{s+j}(t + T/sectors) = x_s(t) with this j.
     pub follower: usize,
     /// Angular frequency of harmonic 1.
@@ -140,6 +145,8 @@ impl<'s> System<'s> {
             ndof,
             degrees: structure.degrees().clone(),
             sectors,
+            lapses: sectors,
+            folded: false,
             follower: structure.sectors_per_part(),
             omega,
             mass: Mass::new(&inertia, ndof, interrupt)?,
@@ -202,12 +209,69 @@ impl<'s> System<'s> {
 
     /// The part of the period after which every sector repeats the motion of another one.
     pub fn lapse(&self) -> f64 {
-        TAU / self.omega / self.sectors as f64
+        TAU / self.omega / self.lapses as f64
     }
 
-    /// The sector whose motion after a lapse is that of sector `s` now.
-    pub fn after_lapse(&self, s: usize) -> usize {
-        (s + self.follower) % self.sectors
+    /// The sector whose motion after a lapse is that of sector `s` now, and the sign with which it is.
+    pub fn after_lapse(&self, s: usize) -> (usize, f64) {
+        let to = s + self.follower;
+        let opposite = self.folded && !(to / self.sectors).is_multiple_of(2);
+        (to % self.sectors, if opposite { -1.0 } else { 1.0 })
+    }
+
+    /// The same structure with half the sectors, for motions whose other half moves opposite to them; the number of
+    /// sectors is even, forces have odd harmonics and laws are odd.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, `StoppedByCaller`.
+    pub fn folded(&self) -> Result<Self> {
+        let half = self.sectors / 2;
+        let n = half * self.ndof;
+        let fold = |a: &Sparse| -> Result<Csc> {
+            let mut entries = try_vec(a.values.len(), (0, 0, Complex64::ZERO), CONTEXT)?;
+            let mut count = 0;
+            a.each(|i, j, v| {
+                if i < n {
+                    entries[count] = if j < n {
+                        (i, j, v.into())
+                    } else {
+                        (i, j - n, (-v).into())
+                    };
+                    count += 1;
+                }
+            });
+            entries.truncate(count);
+            Csc::from_triplets(n, n, entries)
+        };
+        let (mut loads, mut elements) = (Vec::new(), Vec::new());
+        for load in self.loads.iter().filter(|load| load.dof < n) {
+            try_push(&mut loads, load.clone(), CONTEXT)?;
+        }
+        for e in self.elements.iter().filter(|e| e.sector < half) {
+            let mut e = e.clone();
+            for (dof, a) in e.rows.iter_mut().flatten().flatten().filter(|(dof, _)| *dof >= n) {
+                (*dof, *a) = (*dof - n, -*a);
+            }
+            try_push(&mut elements, e, CONTEXT)?;
+        }
+        let inertia = fold(&self.inertia)?;
+        Ok(Self {
+            interrupt: self.interrupt,
+            ndof: self.ndof,
+            degrees: self.degrees.clone(),
+            sectors: half,
+            lapses: self.lapses,
+            folded: true,
+            follower: self.follower,
+            omega: self.omega,
+            mass: Mass::new(&inertia, self.ndof, self.interrupt)?,
+            inertia: Sparse::new(&inertia)?,
+            damping: Sparse::new(&fold(&self.damping)?)?,
+            stiffness: Sparse::new(&fold(&self.stiffness)?)?,
+            loads,
+            springs: Vec::new(),
+            elements,
+        })
     }
 
     /// Whether every law is linear between events.

@@ -1,0 +1,242 @@
+//! The equations of perturbations between events, in real numbers where they are real:
+//! M δẍ + C δẋ + K δx + Rᴴ(S R δx − kt δw) = 0 with the slopes S of the contacts.
+
+use crate::error::{Result, Status, fail, try_push, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::factor::Factor;
+use crate::linalg::lu::Scalar;
+use crate::linalg::sparse::Csc;
+use crate::linalg::triangle::Entry;
+use crate::time_integration::unrolled_structure::{Sparse, System};
+use num_complex::Complex64;
+
+const CONTEXT: &str = "the equations of perturbations";
+
+/// Perturbations that are carried together.
+pub(crate) const LANES: usize = 8;
+
+/// One number of each of the perturbations that are carried together.
+pub(super) type Lanes<T> = [T; LANES];
+
+/// Updates each lane of `y` by that of `x`. A plain loop over a fixed number is unrolled in every build.
+#[inline]
+pub(super) fn each_lane<T: Copy>(y: &mut Lanes<T>, x: &Lanes<T>, update: impl Fn(&mut T, T)) {
+    let mut k = 0;
+    while k < LANES {
+        update(&mut y[k], x[k]);
+        k += 1;
+    }
+}
+
+/// Numbers of perturbations: real ones, or complex ones.
+pub(crate) trait Number: Entry + Scalar {}
+
+impl Number for f64 {}
+impl Number for Complex64 {}
+
+/// Row of a relative motion: entries (degree of freedom, coefficient).
+pub(crate) type VariationalRow<T> = [Option<(usize, T)>; 6];
+
+/// A contact in these equations.
+pub(crate) struct VariationalElement<T> {
+    /// Number of the element in the structure in time.
+    pub source: usize,
+    /// Its relative motions.
+    pub rows: Vec<VariationalRow<T>>,
+    /// Number of its slider among those that are carried.
+    pub slider: Option<usize>,
+    /// Whether its law has no events.
+    pub smooth: bool,
+}
+
+/// The equations of a number of degrees of freedom.
+pub(crate) struct VariationalEquations<T> {
+    pub(super) order: usize,
+    pub(super) mass: Columns<T>,
+    mass_factor: MassFactor<T>,
+    pub(super) damping: Columns<T>,
+    pub(super) stiffness: Columns<T>,
+    pub(super) elements: Vec<VariationalElement<T>>,
+    /// Number of sliders.
+    pub(super) sliders: usize,
+}
+
+/// A sparse matrix, column by column.
+pub(super) struct Columns<T> {
+    starts: Vec<usize>,
+    entries: Vec<(usize, T)>,
+}
+
+/// Factors of the mass matrix.
+enum MassFactor<T> {
+    /// 1/mᵢᵢ of a diagonal one.
+    Diagonal(Vec<T>),
+    General {
+        factor: Box<Factor>,
+        buffer: Vec<Complex64>,
+    },
+}
+
+impl<T: Number> Columns<T> {
+    fn new(a: &Csc) -> Result<Self> {
+        let mut starts = try_vec(a.cols + 1, 0, CONTEXT)?;
+        let mut entries = Vec::new();
+        for j in 0..a.cols {
+            for (i, v) in a.column(j).filter(|(_, v)| *v != Complex64::ZERO) {
+                try_push(&mut entries, (i, T::of(v)), CONTEXT)?;
+            }
+            starts[j + 1] = entries.len();
+        }
+        Ok(Self { starts, entries })
+    }
+
+    /// Its entries (row, column, value).
+    pub fn each(&self) -> impl Iterator<Item = (usize, usize, T)> {
+        let columns = self.starts.windows(2).enumerate();
+        columns.flat_map(|(j, ends)| self.entries[ends[0]..ends[1]].iter().map(move |&(i, v)| (i, j, v)))
+    }
+
+    /// y −= s·A x for all lanes.
+    pub fn subtract(&self, s: f64, x: &[Lanes<T>], y: &mut [Lanes<T>]) {
+        for (j, x) in x.iter().enumerate() {
+            let mut sx = [T::NONE; LANES];
+            each_lane(&mut sx, x, |sx, x| *sx = x.scaled(s));
+            for &(i, v) in &self.entries[self.starts[j]..self.starts[j + 1]] {
+                each_lane(&mut y[i], &sx, |y, x| *y -= v * x);
+            }
+        }
+    }
+
+    fn len(&self) -> usize {
+        self.entries.len()
+    }
+}
+
+impl<T: Number> VariationalEquations<T> {
+    /// The equations with the given matrices M, C and K.
+    ///
+    /// # Errors
+    /// `OutOfMemory`, `StoppedByCaller`; `Unsupported` if the mass matrix is singular.
+    pub fn new(
+        [mass, damping, stiffness]: [&Csc; 3],
+        elements: Vec<VariationalElement<T>>,
+        sliders: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Self> {
+        Ok(Self {
+            order: mass.cols,
+            mass: Columns::new(mass)?,
+            mass_factor: MassFactor::new(mass, interrupt)?,
+            damping: Columns::new(damping)?,
+            stiffness: Columns::new(stiffness)?,
+            elements,
+            sliders,
+        })
+    }
+
+    /// Number of states of a perturbation: displacements, velocities and sliders.
+    pub fn states(&self) -> usize {
+        2 * self.order + self.sliders
+    }
+
+    /// Operations of one product with the matrices.
+    pub(super) fn operations(&self) -> u64 {
+        (LANES * (self.stiffness.len() + self.damping.len() + self.order)) as u64
+    }
+
+    /// a ← M⁻¹ a
+    pub(super) fn accelerate(&mut self, a: &mut [Lanes<T>], interrupt: &Interrupt<'_>) -> Result<()> {
+        match &mut self.mass_factor {
+            MassFactor::Diagonal(inverse) => {
+                for (a, m) in a.iter_mut().zip(inverse) {
+                    let from = *a;
+                    each_lane(a, &from, |a, from| *a = from * *m);
+                }
+            }
+            MassFactor::General { factor, buffer } => {
+                let n = a.len();
+                for (i, a) in a.iter().enumerate() {
+                    for (k, a) in a.iter().enumerate() {
+                        buffer[k * n + i] = a.complex();
+                    }
+                }
+                factor.solve(buffer, false, interrupt)?;
+                for (i, a) in a.iter_mut().enumerate() {
+                    for (k, a) in a.iter_mut().enumerate() {
+                        *a = T::of(buffer[k * n + i]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl VariationalEquations<f64> {
+    /// Those of the states of the structure in time; each element has the place of a slider.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn of_system(system: &System<'_>) -> Result<Self> {
+        let mut elements = Vec::new();
+        for (source, e) in system.elements.iter().enumerate() {
+            let mut rows = Vec::new();
+            for row in &e.rows {
+                try_push(&mut rows, *row, CONTEXT)?;
+            }
+            let element = VariationalElement {
+                source,
+                rows,
+                slider: Some(source),
+                smooth: e.smooth().is_some(),
+            };
+            try_push(&mut elements, element, CONTEXT)?;
+        }
+        let sparse = |a: &Sparse| -> Result<Csc> {
+            let mut entries = Vec::new();
+            let mut failed = None;
+            a.each(|i, j, v| {
+                failed = failed
+                    .take()
+                    .or(try_push(&mut entries, (i, j, v.into()), CONTEXT).err());
+            });
+            match failed {
+                Some(e) => Err(e),
+                None => Csc::from_triplets(system.order(), system.order(), entries),
+            }
+        };
+        let matrices = [
+            sparse(&system.inertia)?,
+            sparse(&system.damping)?,
+            sparse(&system.stiffness)?,
+        ];
+        let [m, c, k] = &matrices;
+        let count = elements.len();
+        Self::new([m, c, k], elements, count, system.interrupt)
+    }
+}
+
+impl<T: Number> MassFactor<T> {
+    fn new(mass: &Csc, interrupt: &Interrupt<'_>) -> Result<Self> {
+        if (0..mass.cols).all(|j| mass.column(j).all(|(i, v)| i == j || v == Complex64::ZERO)) {
+            // The structure in time has refused degrees of freedom without mass.
+            let mut inverse = try_vec(mass.cols, T::NONE, CONTEXT)?;
+            for (i, d) in inverse.iter_mut().enumerate() {
+                *d = T::of((1.0 / mass.get(i, i).re).into());
+            }
+            return Ok(Self::Diagonal(inverse));
+        }
+        let mut factor = Box::new(Factor::new(mass, LANES)?);
+        match factor.factor(mass, interrupt) {
+            Ok(()) => Ok(Self::General {
+                factor,
+                buffer: try_vec(mass.cols.saturating_mul(LANES), Complex64::ZERO, CONTEXT)?,
+            }),
+            Err(e) if e.status == Status::Singular => fail!(
+                Unsupported,
+                "the mass matrix is singular: some motion in time has no differential equation; give it mass"
+            ),
+            Err(e) => Err(e),
+        }
+    }
+}

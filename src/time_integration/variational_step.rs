@@ -1,0 +1,415 @@
+//! Perturbations (δx, δv, δw) between two events, where their equations have constant coefficients or those of smooth
+//! laws along the motion, several at a time.
+//!
+//! With constant coefficients the Taylor series is summed, on parts so short that no term is far larger than the
+//! result. With smooth laws a perturbation takes the implicit step of the motion, with the tangents at its nodes.
+
+use crate::error::{Result, Status, fail, try_vec};
+use crate::interrupt::Interrupt;
+use crate::linalg::lu::{Lu, Scalar};
+use crate::time_integration::gauss::STAGES;
+use crate::time_integration::variation::{Collocation, Interval};
+use crate::time_integration::variational_equations::{
+    LANES, Lanes, Number, VariationalEquations, VariationalRow, each_lane,
+};
+
+const CONTEXT: &str = "a step of perturbations";
+
+/// Share of the largest term at which the series is cut off.
+const CUT: f64 = 1e-17;
+
+/// Terms of a series.
+const MOST_TERMS: usize = 200;
+
+/// Largest ratio of a term to the result: so many digits are lost.
+const LARGEST_TERM: f64 = 100.0;
+
+/// Size of a term from which on the next ones may overflow.
+const OVERFLOW: f64 = 1e200;
+
+/// Parts of an interval, beyond which the structure is too stiff.
+const MOST_PARTS: usize = 1 << 20;
+
+/// Memory of the steps.
+pub(super) struct VariationalStep<T> {
+    /// Three neighbouring terms of the series.
+    terms: [Vec<Lanes<T>>; 3],
+    /// The perturbations at the begin of a part, and sums of their series.
+    begin: [Vec<Lanes<T>>; 2],
+    sums: [Vec<Lanes<T>>; 2],
+    sliders: Vec<Lanes<T>>,
+    /// Largest length of a part so far found short enough.
+    part: f64,
+    /// Equations of an implicit step, where a law is smooth.
+    implicit: Option<Implicit<T>>,
+}
+
+struct Implicit<T> {
+    lu: Lu<T>,
+    accelerations: Vec<T>,
+    at_node: Vec<T>,
+}
+
+impl<T: Number> VariationalStep<T> {
+    /// Memory for steps of `equations`; `smooth`: some law has no events.
+    pub fn new(equations: &VariationalEquations<T>, smooth: bool) -> Result<Self> {
+        let n = if smooth { 0 } else { equations.order };
+        let zeros = |n: usize| try_vec(n, [T::NONE; LANES], CONTEXT);
+        let implicit = if smooth {
+            Some(Implicit::new(equations.order)?)
+        } else {
+            None
+        };
+        Ok(Self {
+            terms: [zeros(n)?, zeros(n)?, zeros(n)?],
+            begin: [zeros(n)?, zeros(n)?],
+            sums: [zeros(n)?, zeros(n)?],
+            sliders: zeros(equations.sliders)?,
+            part: f64::INFINITY,
+            implicit,
+        })
+    }
+
+    /// Carries perturbations, columns (δx, δv, δw), over the interval.
+    pub fn carry(
+        &mut self,
+        equations: &mut VariationalEquations<T>,
+        interval: &Interval<'_>,
+        columns: &mut [T],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let states = equations.states();
+        if let (Some(implicit), Some(step)) = (&mut self.implicit, &interval.collocation) {
+            implicit.factor(equations, interval, step, interrupt)?;
+            for column in columns.chunks_exact_mut(states.max(1)) {
+                interrupt.check()?;
+                implicit.carry(equations, interval, step, column);
+            }
+            return Ok(());
+        }
+        let n = equations.order;
+        for columns in columns.chunks_mut(LANES * states.max(1)) {
+            self.load(n, states, columns);
+            self.through(equations, interval, interrupt)?;
+            for (k, column) in columns.chunks_exact_mut(states).enumerate() {
+                let (x, v) = column.split_at_mut(n);
+                for (to, from) in [(x, &self.begin[0]), (v, &self.begin[1])] {
+                    for (to, from) in to.iter_mut().zip(from) {
+                        *to = from[k];
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Perturbations as lanes; missing ones are zero.
+    fn load(&mut self, n: usize, states: usize, columns: &[T]) {
+        let [x, v] = &mut self.begin;
+        for (lanes, first) in [(x, 0), (v, n), (&mut self.sliders, 2 * n)] {
+            for (i, lanes) in lanes.iter_mut().enumerate() {
+                *lanes = [T::NONE; LANES];
+                for (lane, column) in lanes.iter_mut().zip(columns.chunks_exact(states)) {
+                    *lane = column[first + i];
+                }
+            }
+        }
+    }
+
+    fn through(
+        &mut self,
+        equations: &mut VariationalEquations<T>,
+        interval: &Interval<'_>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let mut done = 0.0;
+        let mut tries = 0;
+        while done < interval.length {
+            let rest = interval.length - done;
+            // Equal parts: a short last one would cost as many terms.
+            let parts = (rest / self.part).ceil().max(1.0);
+            let h = rest / parts;
+            if self.series(equations, interval, h, interrupt)? {
+                done = if parts > 1.0 { done + h } else { interval.length };
+            } else {
+                self.part = 0.5 * h;
+                tries += 1;
+                if tries > MOST_PARTS {
+                    return fail!(NoConvergence, "perturbations grow beyond all bounds");
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// One part by the Taylor series; `false`: it is too long, and nothing has changed.
+    fn series(
+        &mut self,
+        equations: &mut VariationalEquations<T>,
+        interval: &Interval<'_>,
+        h: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<bool> {
+        let operations = equations.operations();
+        let [x0, v0] = &mut self.begin;
+        let [x, v] = &mut self.sums;
+        let [this, next, new] = &mut self.terms;
+        x.copy_from_slice(x0);
+        v.copy_from_slice(v0);
+        this.copy_from_slice(x0);
+        for ((next, v), x) in next.iter_mut().zip(v0.iter()).zip(x.iter_mut()) {
+            each_lane(next, v, |next, v| *next = v.scaled(h));
+            each_lane(x, next, |x, next| *x += next);
+        }
+        let begin = larger(sizes(this, 1.0), sizes(next, 1.0));
+        let (mut largest, mut small) = (begin, 0);
+        for k in 0..MOST_TERMS {
+            interrupt.check_before(operations)?;
+            new.fill([T::NONE; LANES]);
+            equations.stiffness.subtract(1.0, this, new);
+            equations.damping.subtract((k + 1) as f64 / h, next, new);
+            for element in &equations.elements {
+                let piece = &interval.pieces[element.source];
+                let mut y = [[T::NONE; LANES]; 2];
+                for (y, row) in y.iter_mut().zip(&element.rows) {
+                    along(row, this, y);
+                }
+                for (i, (row, slope)) in element.rows.iter().zip(&piece.slope).enumerate() {
+                    let memory = match (k, i, element.slider) {
+                        (0, 0, Some(slider)) if piece.memory != 0.0 => Some((slider, piece.memory)),
+                        _ => None,
+                    };
+                    if memory.is_none() && slope.iter().all(|s| *s == 0.0) {
+                        continue;
+                    }
+                    let mut force = [T::NONE; LANES];
+                    each_lane(&mut force, &y[0], |f, y| *f = y.scaled(slope[0]));
+                    if slope[1] != 0.0 {
+                        each_lane(&mut force, &y[1], |f, y| *f += y.scaled(slope[1]));
+                    }
+                    if let Some((slider, memory)) = memory {
+                        each_lane(&mut force, &self.sliders[slider], |f, w| *f -= w.scaled(memory));
+                    }
+                    pull(row, &force, new);
+                }
+            }
+            // A part that is too long overflows.
+            if !sizes(new, 1.0).iter().all(|a| *a < OVERFLOW) {
+                return Ok(false);
+            }
+            equations.accelerate(new, interrupt)?;
+            let scale = h * h / ((k + 1) * (k + 2)) as f64;
+            let rate = (k + 2) as f64 / h;
+            for ((new, x), v) in new.iter_mut().zip(x.iter_mut()).zip(v.iter_mut()) {
+                let unscaled = *new;
+                each_lane(new, &unscaled, |new, a| *new = a.scaled(scale));
+                each_lane(x, new, |x, new| *x += new);
+                each_lane(v, new, |v, new| *v += new.scaled(rate));
+            }
+            let term = sizes(new, (k + 2) as f64);
+            if !term.iter().copied().all(f64::is_finite) {
+                return Ok(false);
+            }
+            largest = larger(largest, term);
+            small = if below(&term, CUT, &largest) { small + 1 } else { 0 };
+            if small == 2 {
+                let end = larger(begin, larger(sizes(x, 1.0), sizes(v, h)));
+                if !below(&largest, LARGEST_TERM, &end) {
+                    return Ok(false);
+                }
+                core::mem::swap(x0, x);
+                core::mem::swap(v0, v);
+                return Ok(true);
+            }
+            core::mem::swap(this, next);
+            core::mem::swap(next, new);
+        }
+        Ok(false)
+    }
+}
+
+/// Largest |re| + |im| of each lane, times a factor.
+fn sizes<T: Number>(x: &[Lanes<T>], factor: f64) -> [f64; LANES] {
+    let mut largest = [0.0_f64; LANES];
+    for x in x {
+        let mut size = [0.0_f64; LANES];
+        for (size, x) in size.iter_mut().zip(x) {
+            *size = Scalar::size(*x);
+        }
+        each_lane(&mut largest, &size, |m, size| {
+            if size > *m || size.is_nan() {
+                *m = size;
+            }
+        });
+    }
+    let all = largest;
+    each_lane(&mut largest, &all, |m, a| *m = a * factor);
+    largest
+}
+
+/// The larger one in each lane.
+fn larger(mut a: [f64; LANES], b: [f64; LANES]) -> [f64; LANES] {
+    each_lane(&mut a, &b, |a, b| *a = a.max(b));
+    a
+}
+
+/// Whether a ≤ factor·b in each lane.
+fn below(a: &[f64; LANES], factor: f64, b: &[f64; LANES]) -> bool {
+    a.iter().zip(b).all(|(a, b)| *a <= factor * b)
+}
+
+/// y += r·x
+fn along<T: Number>(row: &VariationalRow<T>, x: &[Lanes<T>], y: &mut Lanes<T>) {
+    for &(dof, a) in row.iter().flatten() {
+        each_lane(y, &x[dof], |y, x| *y += a * x);
+    }
+}
+
+/// f −= rᴴ g
+fn pull<T: Number>(row: &VariationalRow<T>, g: &Lanes<T>, f: &mut [Lanes<T>]) {
+    for &(dof, a) in row.iter().flatten() {
+        let a = a.conjugate();
+        each_lane(&mut f[dof], g, |f, g| *f -= a * g);
+    }
+}
+
+impl<T: Number> Implicit<T> {
+    fn new(order: usize) -> Result<Self> {
+        let all = order.saturating_mul(STAGES);
+        Ok(Self {
+            lu: Lu::new(all, 1)?,
+            accelerations: try_vec(all, T::NONE, CONTEXT)?,
+            at_node: try_vec(order, T::NONE, CONTEXT)?,
+        })
+    }
+
+    /// The matrix δᵢⱼM + h aᵢⱼCᵢ + h² (A²)ᵢⱼKᵢ of the accelerations at the nodes.
+    fn factor(
+        &mut self,
+        equations: &VariationalEquations<T>,
+        interval: &Interval<'_>,
+        step: &Collocation<'_>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<()> {
+        let n = equations.order;
+        let all = n * STAGES;
+        let h = step.step;
+        let matrix = self.lu.matrix();
+        matrix.fill(T::NONE);
+        for i in 0..STAGES {
+            interrupt.check()?;
+            for (r, c, m) in equations.mass.each() {
+                matrix[(i * n + c) * all + i * n + r] += m;
+            }
+            for j in 0..STAGES {
+                let (once, twice) = (h * step.tables.once[i][j], h * h * step.tables.twice[i][j]);
+                let mut add = |r: usize, c: usize, value: T| matrix[(j * n + c) * all + i * n + r] += value;
+                for (r, c, d) in equations.damping.each() {
+                    add(r, c, d.scaled(once));
+                }
+                for (r, c, k) in equations.stiffness.each() {
+                    add(r, c, k.scaled(twice));
+                }
+                each_tangent(equations, interval, step, i, |r, c, by_x, by_v| {
+                    add(r, c, by_x.scaled(twice) + by_v.scaled(once));
+                });
+            }
+        }
+        match self.lu.factor(interrupt) {
+            Err(e) if e.status == Status::Singular => fail!(
+                NoConvergence,
+                "an implicit step of the perturbations has no solution; use a smaller tolerance"
+            ),
+            other => other,
+        }
+    }
+
+    fn carry(
+        &mut self,
+        equations: &VariationalEquations<T>,
+        interval: &Interval<'_>,
+        step: &Collocation<'_>,
+        z: &mut [T],
+    ) {
+        let n = equations.order;
+        let (motion, w) = z.split_at_mut(2 * n);
+        let (x, v) = motion.split_at_mut(n);
+        let h = step.step;
+        for i in 0..STAGES {
+            let c = step.tables.nodes[i];
+            for ((at, x), v) in self.at_node.iter_mut().zip(x.iter()).zip(v.iter()) {
+                *at = *x + v.scaled(c * h);
+            }
+            let at_node = &self.at_node;
+            let r = &mut self.accelerations[i * n..(i + 1) * n];
+            r.fill(T::NONE);
+            for (to, from, d) in equations.damping.each() {
+                r[to] -= d * v[from];
+            }
+            for (to, from, k) in equations.stiffness.each() {
+                r[to] -= k * at_node[from];
+            }
+            for element in &equations.elements {
+                let piece = &interval.pieces[element.source];
+                if let (Some(slider), Some(row)) = (element.slider, element.rows.first()) {
+                    let force = w[slider].scaled(piece.memory);
+                    for &(dof, a) in row.iter().flatten() {
+                        r[dof] += a.conjugate() * force;
+                    }
+                }
+            }
+            each_tangent(equations, interval, step, i, |to, from, by_x, by_v| {
+                r[to] -= by_x * at_node[from] + by_v * v[from];
+            });
+        }
+        self.lu.solve(&mut self.accelerations);
+        let (p, q) = step.tables.weights(step.theta);
+        for d in 0..n {
+            let (mut once, mut twice) = (T::NONE, T::NONE);
+            for j in 0..STAGES {
+                let a = self.accelerations[j * n + d];
+                once += a.scaled(p[j]);
+                twice += a.scaled(q[j]);
+            }
+            x[d] += (v[d].scaled(step.theta) + twice.scaled(h)).scaled(h);
+            v[d] += once.scaled(h);
+        }
+    }
+}
+
+/// Visits the tangents of all contacts at a node: (degree of freedom of the force, that of the motion, ∂f/∂x, ∂f/∂v).
+fn each_tangent<T: Number>(
+    equations: &VariationalEquations<T>,
+    interval: &Interval<'_>,
+    step: &Collocation<'_>,
+    node: usize,
+    mut visit: impl FnMut(usize, usize, T, T),
+) {
+    for element in &equations.elements {
+        let d = element.rows.len();
+        let (by_x, by_v) = if element.smooth {
+            step.smooth.tangents(node, element.source, d)
+        } else {
+            (&[][..], &[][..])
+        };
+        let piece = &interval.pieces[element.source];
+        for (i, to) in element.rows.iter().enumerate() {
+            for (j, from) in element.rows.iter().enumerate() {
+                let slope = match (piece.slope.get(i), element.smooth) {
+                    (Some(slopes), false) => slopes.get(j).copied().unwrap_or(0.0),
+                    _ => by_x.get(i * d + j).copied().unwrap_or(0.0),
+                };
+                let damping = by_v.get(i * d + j).copied().unwrap_or(0.0);
+                if slope == 0.0 && damping == 0.0 {
+                    continue;
+                }
+                for &(r, a) in to.iter().flatten() {
+                    for &(c, b) in from.iter().flatten() {
+                        let both = a.conjugate() * b;
+                        visit(r, c, both.scaled(slope), both.scaled(damping));
+                    }
+                }
+            }
+        }
+    }
+}
