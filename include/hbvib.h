@@ -45,11 +45,11 @@
  *             no environment variable, and starts no thread. It runs in the default floating-point
  *             environment (no traps, rounding to nearest, no flush to zero); the environment of the
  *             caller is restored for callbacks and on return.
- *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY. 128 KiB of stack suffice for
- *             every function, 64 KiB for forced responses and modes of small models. After fork
- *             both processes may go on; a handle that a call of another thread used at that time
- *             stays HBVIB_E_BUSY in the child. dlclose frees all memory of the library but handles
- *             that were not freed.
+ *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY; docs/memory.md tells the bytes
+ *             that each call needs at most. 128 KiB of stack suffice for every function, 64 KiB for
+ *             forced responses and modes of small models. After fork both processes may go on; a
+ *             handle that a call of another thread used at that time stays HBVIB_E_BUSY in the
+ *             child. dlclose frees all memory of the library but handles that were not freed.
  *   safety    No panic leaves the library (HBVIB_E_INTERNAL). Callbacks must not throw or longjmp.
  *             NaN in an input, or infinity anywhere but in the preload of a contact, is
  *             HBVIB_E_NOT_FINITE. The library cannot check that arrays are as long as stated and
@@ -1432,9 +1432,11 @@ typedef struct {
   /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution
   /// with more harmonics at each point; 0 (default): do so only with a tolerance.
   int32_t estimate_error;
-  /// Largest number of bytes for factors and bases of the structure; 0 (default): no limit. A
-  /// request beyond it is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message
-  /// has the need and the limit.
+  /// Largest number of bytes for factors and bases of the structure, for the equations of a point,
+  /// and for an estimate of its error, each by itself; 0 (default): no limit. A request beyond it
+  /// is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message has the need and
+  /// the limit. Where a tolerance chooses the harmonics, fewer are used, and an estimate that
+  /// needs more is an unknown error.
   int64_t memory_limit;
   /// Way to the flexibility of the structure at its contacts in a forced response: a value of
   /// enum hbvib_flexibility.
@@ -3458,7 +3460,7 @@ hbvib_status hbvib_batch_branch(hbvib_batch *batch, int64_t design, hbvib_branch
 /// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
 ///             or NULL.
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
-/// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 100 bytes for each of the samples or of
+/// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or of
 /// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
 /// jac. Above 16 GiB nothing is requested, and the error is HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),

@@ -38,9 +38,10 @@ class SolverOptions(TypedDict, total=False):
         Default: 0.
     estimate_error   1: estimate the error of every point, for Field.ERROR_ESTIMATE, at the cost of a solution with more
         harmonics at each point; 0 (default): do so only with a tolerance. Default: 0.
-    memory_limit   Largest number of bytes for factors and bases of the structure; 0 (default): no limit. A request
-        beyond it is refused with Status.E_OUT_OF_MEMORY before it is allocated; the message has the need and the limit.
-        Default: 0.
+    memory_limit   Largest number of bytes for factors and bases of the structure, for the equations of a point, and for
+        an estimate of its error, each by itself; 0 (default): no limit. A request beyond it is refused with
+        Status.E_OUT_OF_MEMORY before it is allocated; the message has the need and the limit. Where a tolerance chooses
+        the harmonics, fewer are used, and an estimate that needs more is an unknown error. Default: 0.
     flexibility   Way to the flexibility of the structure at its contacts in a forced response: a value of enum
         Flexibility. Default: 0.
     stability   Perturbations whose Floquet multipliers are computed at each point of the curve of a forced response, a

@@ -2,7 +2,7 @@
 
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, fail, try_push};
-use crate::error_estimate::affordable;
+use crate::error_estimate::{affordable, allow_point, is_allowed};
 use crate::fourier::{HarmonicSet, gcd};
 use crate::model::Model;
 use crate::options::{MAX_SAMPLES, SolverOptions};
@@ -33,6 +33,8 @@ pub(crate) struct HarmonicLevels<'m> {
     models: ModelCache,
     samples: usize,
     automatic: bool,
+    /// Bytes that the equations of a level may have; 0: any.
+    memory_limit: usize,
     condense: Box<Condense<'m>>,
 }
 
@@ -59,6 +61,7 @@ impl<'m> HarmonicLevels<'m> {
             models: ModelCache::new(numbers.into_iter())?,
             samples: options.samples,
             automatic,
+            memory_limit: options.memory_limit,
             condense: Box::new(condense),
         })
     }
@@ -105,26 +108,34 @@ impl<'m> HarmonicLevels<'m> {
 
     /// The highest affordable level.
     pub fn last(&self) -> usize {
-        let most = self
-            .models
-            .any()
-            .map_or(usize::MAX, |known| affordable(&known.condensed, MOST_UNKNOWNS));
-        let below = self.models.numbers().take_while(|&n| n <= most).count();
+        let Some(known) = self.models.any() else {
+            return self.count() - 1;
+        };
+        let most = affordable(&known.condensed, MOST_UNKNOWNS);
+        let fits = |n| is_allowed(self.memory_limit, &known.condensed, n, self.samples_up_to(n));
+        let below = self.models.numbers().take_while(|&n| n <= most && fits(n)).count();
         below.max(1) - 1
+    }
+
+    /// Samples of the laws at a level.
+    fn samples_up_to(&self, highest: usize) -> usize {
+        match self.samples {
+            n if n > 0 && self.automatic => n.max(SAMPLES_PER_HARMONIC * highest).min(MAX_SAMPLES),
+            n => n,
+        }
     }
 
     /// The model at a level.
     ///
     /// # Errors
-    /// Those of condensing the model.
+    /// Those of condensing the model; `OutOfMemory` where its equations exceed the limit of the options.
     pub fn at(&self, level: usize) -> Result<&Resolution> {
         self.models.model(level, |highest| {
-            let samples = match self.samples {
-                n if n > 0 && self.automatic => n.max(SAMPLES_PER_HARMONIC * highest).min(MAX_SAMPLES),
-                n => n,
-            };
+            let samples = self.samples_up_to(highest);
+            let condensed = (self.condense)(highest)?;
+            allow_point(self.memory_limit, &condensed, highest, samples)?;
             Ok(Resolution {
-                condensed: Arc::new((self.condense)(highest)?),
+                condensed: Arc::new(condensed),
                 samples,
             })
         })

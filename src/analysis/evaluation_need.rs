@@ -9,7 +9,7 @@ use crate::options::SolverOptions;
 /// Bytes above which the evaluation of a law is refused.
 const MOST_OF_A_LAW: usize = 16 << 30;
 
-/// Bytes that suffice for the evaluation of a law: 8 (1 + d) (2 d (H + 1))² for Jacobians, 100 a sample, of which a law that
+/// Bytes that suffice for the evaluation of a law: 8 (1 + d) (2 d (H + 1))² for Jacobians, 250 a sample, of which a law that
 /// is always sampled takes at most 128 (H + 1) by itself, and 1 MiB; in a plane the pieces of the path take 2 MiB (H + 1) at most.
 fn need_of_a_law(harmonics: usize, directions: usize, samples: usize) -> usize {
     let order = (harmonics + 1).saturating_mul(2 * directions);
@@ -21,7 +21,7 @@ fn need_of_a_law(harmonics: usize, directions: usize, samples: usize) -> usize {
         0
     };
     jacobians
-        .saturating_add(samples.saturating_mul(100))
+        .saturating_add(samples.saturating_mul(250))
         .saturating_add(pieces)
         .saturating_add(1 << 20)
 }

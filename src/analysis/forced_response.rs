@@ -194,7 +194,7 @@ fn first_point(
         Err(e) if e.status == Status::NoConvergence && response.levels().is_automatic() => e,
         found => return found,
     };
-    for level in [0, response.levels().first(harmonics)] {
+    for level in [0, response.levels().first(harmonics).min(response.levels().last())] {
         if level == response.resolution() {
             continue;
         }

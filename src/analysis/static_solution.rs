@@ -8,6 +8,7 @@ use crate::continuation::Settings;
 use crate::continuation::initial_point;
 use crate::continuation::step_control::StepControl;
 use crate::error::{Error, Result, Status, fail, try_vec};
+use crate::error_estimate::allow_point;
 use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
@@ -52,6 +53,7 @@ pub(super) fn static_state(model: &Model, solver: &SolverOptions, interrupt: &In
         );
     }
     let condensed = Condensed::for_static(model, solver, interrupt)?;
+    allow_point(solver.memory_limit, &condensed, 0, solver.samples)?;
     if condensed.coordinates() == 0
         || (!loaded && static_force(&condensed, OMEGA, solver.samples, interrupt)?.is_none())
     {

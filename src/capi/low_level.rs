@@ -37,7 +37,7 @@ use num_complex::Complex64;
 /// jac         receives d F / d Y over the pairs (re, im), real, column-major of order 2 d (H + 1);
 ///             or NULL.
 /// jac_len     doubles in it, (2 d (H + 1))^2; 0 with NULL.
-/// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 100 bytes for each of the samples or of
+/// Memory: at most 8 (1 + d) (2 d (H + 1))^2 bytes, 250 bytes for each of the samples or of
 /// 128 (H + 1), whichever are more, and 1 MiB, with d > 1 another 2 MiB (H + 1), with or without
 /// jac. Above 16 GiB nothing is requested, and the error is HBVIB_E_OUT_OF_MEMORY.
 /// Errors: HBVIB_E_ARGUMENT (kind, constants, harmonics, samples, omega, overlapping arrays),

@@ -80,9 +80,11 @@ pub struct hbvib_solver_options {
     /// 1: estimate the error of every point, for HBVIB_ERROR_ESTIMATE, at the cost of a solution
     /// with more harmonics at each point; 0 (default): do so only with a tolerance.
     pub estimate_error: i32,
-    /// Largest number of bytes for factors and bases of the structure; 0 (default): no limit. A
-    /// request beyond it is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message
-    /// has the need and the limit.
+    /// Largest number of bytes for factors and bases of the structure, for the equations of a point,
+    /// and for an estimate of its error, each by itself; 0 (default): no limit. A request beyond it
+    /// is refused with HBVIB_E_OUT_OF_MEMORY before it is allocated; the message has the need and
+    /// the limit. Where a tolerance chooses the harmonics, fewer are used, and an estimate that
+    /// needs more is an unknown error.
     pub memory_limit: i64,
     /// Way to the flexibility of the structure at its contacts in a forced response: a value of
     /// enum hbvib_flexibility.

@@ -148,7 +148,8 @@ impl<'a> ForcedEstimator<'a> {
     }
 
     fn extend(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
-        let work = Work::of_point(&Sizes::new(solved.condensed, self.options.samples), solved.iterations);
+        let sizes = Sizes::new(solved.condensed, self.options.samples);
+        let work = Work::of_point(&sizes, solved.iterations, self.options.memory_limit);
         let Some(extent) = self.extent(solved, &work)? else {
             return solved.unknown(0.0, true).map(Some);
         };

@@ -11,3 +11,4 @@ mod work;
 
 pub(crate) use cutoff_harmonic::affordable;
 pub use estimate::{Corrected, Estimate, Solved};
+pub(crate) use work::{allow_point, is_allowed};

@@ -100,7 +100,8 @@ impl<'a> ModeEstimator<'a> {
     fn extend(&mut self, solved: &Solved<'_>, log10_amplitude: f64, damping: f64) -> Result<Option<Estimate>> {
         let set = solved.condensed.set();
         let own = set.numbers().last().copied().unwrap_or(0);
-        let work = Work::of_point(&Sizes::new(solved.condensed, self.options.samples), solved.iterations);
+        let sizes = Sizes::new(solved.condensed, self.options.samples);
+        let work = Work::of_point(&sizes, solved.iterations, self.options.memory_limit);
         let most = work.highest(solved.condensed, &self.options, ITERATIONS, |sizes| {
             sizes.evaluation() + sizes.factors(sizes.packed(), 0.0)
         });

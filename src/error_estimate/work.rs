@@ -6,6 +6,8 @@
 
 use crate::aft::Evaluator;
 use crate::condense::Condensed;
+use crate::condense::memory_limit::within;
+use crate::error::Result;
 use crate::error_estimate::cutoff_harmonic::affordable;
 use crate::error_estimate::estimate::{MOST_EXTENDED, extended_options};
 use crate::options::SolverOptions;
@@ -27,6 +29,9 @@ const SMALL: f64 = 0.25;
 
 /// Bytes that every estimate may take, and as a multiple of those of the point.
 const BYTES: (f64, f64) = (100e6, 4.0);
+
+/// Bytes of a sample and direction of a law.
+const OF_A_SAMPLE: f64 = 300.0;
 
 /// Tables of the flexibility, per harmonic, whose time the preparation and the solution of such a point take.
 const TABLES: f64 = 6.0;
@@ -174,6 +179,36 @@ impl Sizes {
     }
 }
 
+/// Bytes that the equations of a point need with the harmonics up to one, Newton's matrix factored directly: those of
+/// [`Sizes::bytes`], the Jacobian of the law with the most directions with its derivatives, and the samples of a law at two
+/// numbers of them.
+fn bytes_of_point(condensed: &Condensed, highest: usize, samples: usize) -> usize {
+    let sizes = Sizes::extended(condensed, highest, samples);
+    let sampling = (samples, condensed.refinement());
+    let mut largest = 0.0_f64;
+    for assembled in condensed.laws() {
+        let d = assembled.coordinates.len() as f64;
+        let own = Evaluator::samples_of(&*assembled.law, highest / condensed.set().base(), sampling);
+        // Those requested have memory for laws that are evaluated exactly, too.
+        let count = own.max(samples) as f64;
+        largest = largest.max(8.0 * (1.0 + d) * (d * sizes.packed).powi(2) + OF_A_SAMPLE * d * count);
+    }
+    (sizes.bytes(sizes.packed, 0.0) + largest) as usize
+}
+
+/// Whether a limit of bytes, 0: none, allows the equations of a point with the harmonics up to one.
+pub(crate) fn is_allowed(limit: usize, condensed: &Condensed, highest: usize, samples: usize) -> bool {
+    limit == 0 || bytes_of_point(condensed, highest, samples) <= limit
+}
+
+/// Refuses the equations of a point that a limit of bytes does not allow; 0 is no limit.
+///
+/// # Errors
+/// `OutOfMemory` with the need and the limit.
+pub(crate) fn allow_point(limit: usize, condensed: &Condensed, highest: usize, samples: usize) -> Result<()> {
+    within(limit, bytes_of_point(condensed, highest, samples))
+}
+
 /// The work that an estimate has left.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Work {
@@ -182,12 +217,14 @@ pub(super) struct Work {
 }
 
 impl Work {
-    /// The work for a point of these sizes, whose solution without a neighbour takes so many Newton iterations.
-    pub fn of_point(point: &Sizes, iterations: usize) -> Self {
+    /// The work for a point of these sizes, whose solution without a neighbour takes so many Newton iterations, with at
+    /// most the bytes of a limit; 0 is no limit.
+    pub fn of_point(point: &Sizes, iterations: usize, limit: usize) -> Self {
+        let limit = if limit == 0 { f64::INFINITY } else { limit as f64 };
         Self {
             operations: LEAST
                 + MULTIPLE * (iterations.max(ITERATIONS) as f64 * point.iteration() + TABLES * point.flexibility()),
-            bytes: BYTES.0 + BYTES.1 * point.bytes(point.packed, 0.0),
+            bytes: (BYTES.0 + BYTES.1 * point.bytes(point.packed, 0.0)).min(limit),
         }
     }
 

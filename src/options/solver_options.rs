@@ -62,8 +62,9 @@ pub struct SolverOptions {
     pub flexibility: Flexibility,
     /// Largest estimated relative error of the motion of the structure on a basis, up to which the basis grows.
     pub certificate: f64,
-    /// Largest number of bytes for factors and bases of the structure; `0`: no limit. A call that needs more is refused
-    /// before it asks for them.
+    /// Largest number of bytes for factors and bases of the structure, for the equations of a point, and for an estimate
+    /// of its error, each by itself; `0`: no limit. A call that needs more is refused before it asks for them; where a
+    /// tolerance chooses the harmonics, fewer are used, and an estimate that needs more is an unknown error.
     pub memory_limit: usize,
     /// Stability along the curve of a forced response: the perturbations whose Floquet multipliers are computed at each
     /// point; `None`: none. A nonlinear mode refuses it.

@@ -4,6 +4,7 @@
 // Each test crate uses its own part of this module.
 #![allow(dead_code)]
 
+pub mod decimal_comma;
 pub mod energy;
 pub mod example;
 pub mod friction;

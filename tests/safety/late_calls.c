@@ -1,9 +1,7 @@
-/* An analysis at the end of a process, in a function of atexit that was registered before the first call, has the result of
- * the one before; and a locale with a decimal comma, where the system has one, changes no sentence and no result. Prints
- * one line at the end. */
+/* An analysis at the end of a process, in a function of atexit that was registered before the first call and in a destructor
+ * of the program after it, as those of static objects, has the result of the one before. Prints two lines at the end. */
 #include "analyses.h"
 
-#include <locale.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -21,23 +19,27 @@ static uint64_t solve(void)
     return sum;
 }
 
+static void check(const char *when)
+{
+    if (before == 1) return;
+    if (solve() != before) _exit(4);
+    printf("the same %s\n", when);
+    fflush(stdout);
+}
+
 static void at_end(void)
 {
-    if (solve() != before) _exit(4);
-    printf("the same at the end\n");
+    check("in atexit");
+}
+
+__attribute__((destructor)) static void last(void)
+{
+    check("in a destructor");
 }
 
 int main(void)
 {
-    static const char *const commas[] = {"de_DE.UTF-8", "de_DE.utf8", "fr_FR.UTF-8", "nl_NL.UTF-8", "C.UTF-8"};
-    hbvib_model *model = NULL;
-    int i;
     if (atexit(at_end) != 0) return 2;
     before = solve();
-    for (i = 0; i < 5 && setlocale(LC_ALL, commas[i]) == NULL; i++) {
-    }
-    if (solve() != before) return 5;
-    if (three(&model) < 0 || hbvib_model_set_loss_factor(model, -0.5) != HBVIB_E_ARGUMENT) return 6;
-    if (strstr(hbvib_last_error(), "-0.5") == NULL) return 7;
-    return hbvib_model_free(model);
+    return 0;
 }

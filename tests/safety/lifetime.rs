@@ -47,5 +47,8 @@ fn calls_at_the_end_of_a_process_have_the_results_of_earlier_ones() {
     let folder = workshop("late_calls");
     let program = compile("late_calls", &folder, &["-Wno-unused-function"]);
     let output = run(&mut Command::new(program));
-    assert_eq!(String::from_utf8_lossy(&output.stdout), "the same at the end\n");
+    assert_eq!(
+        String::from_utf8_lossy(&output.stdout),
+        "the same in atexit\nthe same in a destructor\n"
+    );
 }

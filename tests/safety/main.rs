@@ -5,6 +5,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod decimal_comma;
 mod failing_allocations;
 mod lifetime;
 mod needs;

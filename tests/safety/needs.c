@@ -1,7 +1,7 @@
-/* Evaluations at a given motion need at most the bytes that the header tells, and are refused before they ask for what a
- * limit does not allow. Run under LD_PRELOAD=libfailing_malloc.so. Prints the largest share of the told bytes. */
-#include "models.h"
+/* Calls need at most the bytes that the header and docs/memory.md tell, and are refused before they ask for what a limit
+ * does not allow. Run under LD_PRELOAD=libfailing_malloc.so. Prints the largest share of the told bytes. */
 #include "failing_malloc.h"
+#include "predicted_need.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -22,20 +22,14 @@ static void judge(const char *what, int64_t before, hbvib_status status, int64_t
     printf("%s: status %d, %.2f of %lld bytes: %s\n", what, (int)status, share, (long long)told, hbvib_last_error());
 }
 
-static int64_t of_a_law(int64_t d, int64_t h, int64_t samples)
-{
-    if (samples < 128 * (h + 1)) samples = 128 * (h + 1);
-    return 8 * (1 + d) * 4 * d * d * (h + 1) * (h + 1) + 100 * samples + (1 << 20) + (d > 1 ? (h + 1) << 21 : 0);
-}
-
 static void laws(void)
 {
     static const int32_t kinds[6] = {HBVIB_JENKINS, HBVIB_FRICTION_2D, HBVIB_FRICTION_3D, HBVIB_UNILATERAL, HBVIB_CUBIC, HBVIB_REGULARISED};
-    static const int64_t directions[6] = {1, 2, 3, 1, 1, 1}, harmonics[3] = {1, 20, 150}, samples[2] = {0, 4096};
+    static const int64_t directions[6] = {1, 2, 3, 1, 1, 1}, harmonics[3] = {1, 20, 150}, samples[3] = {0, 4096, 1048573};
     int i, j, k;
     for (i = 0; i < 6; i++) {
         for (j = 0; j < 3; j++) {
-            for (k = 0; k < 2; k++) {
+            for (k = 0; k < (j == 1 ? 3 : 2); k++) {
                 const int64_t n = directions[i] * (harmonics[j] + 1), before = memory_bytes();
                 hbvib_contact c = law(kinds[i], 0, 1, 2);
                 hbvib_status status;
@@ -48,7 +42,7 @@ static void laws(void)
                 c.velocity = i == 5 ? 0.1 : 0;
                 memory_arm(0, 0);
                 status = hbvib_contact_evaluate(&c, harmonics[j], samples[k], 1.1, x, n, r, n, NULL, 0);
-                judge("a law", before, status, of_a_law(directions[i], harmonics[j], samples[k]));
+                judge("a law", before, status, (int64_t)need_of_a_law((double)directions[i], (double)harmonics[j], (double)samples[k]));
             }
         }
     }
@@ -66,7 +60,7 @@ static void residual(const char *what, hbvib_status (*build)(hbvib_model **), in
     s.tolerance = 0;
     s.harmonics = H;
     n = (H + 1) * hbvib_model_dofs(model);
-    told = contacts * of_a_law(directions, H, 0) + 96 * (H + 1) * entries;
+    told = contacts * (int64_t)need_of_a_law((double)directions, H, 0) + 96 * (H + 1) * entries;
     before = memory_bytes();
     memory_arm(0, 0);
     status = hbvib_forced_residual(model, &s, 1.1, x, n, r, n, NULL, 0, NULL, 0);
@@ -109,19 +103,100 @@ static void too_large(void)
     memory_disarm();
 }
 
+static hbvib_solver_options fixed(int64_t harmonics)
+{
+    hbvib_solver_options s;
+    if (hbvib_solver_options_init(&s, sizeof s) != HBVIB_OK) abort();
+    s.tolerance = 0;
+    s.harmonics = harmonics;
+    s.max_points = 3;
+    return s;
+}
+
+/* The bytes of a response of a few points; a refused one has no branch. */
+static hbvib_status respond(const hbvib_model *model, const hbvib_solver_options *s, double omega, int64_t *before)
+{
+    hbvib_forced_options o;
+    hbvib_branch *branch = NULL;
+    hbvib_status status;
+    if (hbvib_forced_options_init(&o, sizeof o) != HBVIB_OK) abort();
+    o.omega_start = omega;
+    o.omega_stop = 1.01 * omega;
+    *before = memory_bytes();
+    memory_arm(0, 0);
+    status = hbvib_forced_response(model, s, &o, NULL, &branch);
+    if (branch != NULL && hbvib_branch_free(branch) != HBVIB_OK) abort();
+    return status < 0 ? status : HBVIB_OK;
+}
+
+/* Chain with a contact at each of its masses. */
+static hbvib_status many(hbvib_model **model)
+{
+    hbvib_contact c = law(HBVIB_JENKINS, 0, HBVIB_GROUND, HBVIB_GROUND);
+    hbvib_status status = chain(model);
+    c.kt = c.mu = c.preload = 0.5;
+    for (c.dof_a[0] = 0; c.dof_a[0] < LONG; c.dof_a[0]++) STEP(hbvib_model_add_contact(*model, &c, NULL));
+    return finished(status, model);
+}
+
+/* Forced responses with fixed harmonics take what is told, and far less where a limit refuses their equations. */
+static void responses(void)
+{
+    static hbvib_status (*const build[])(hbvib_model **) = {ring, friction_3d, friction_2d, cubic, unilateral, regularised, chain, many};
+    enum { MODELS = sizeof build / sizeof *build };
+    static const int64_t harmonics[2] = {15, 120};
+    int i, j;
+    for (i = 0; i < MODELS; i++) {
+        hbvib_model *model = NULL;
+        const double omega = i == 0 ? 1300 : i >= 6 ? 0.4 : 1.2;
+        sizes size;
+        if (build[i](&model) != HBVIB_OK) abort();
+        size = sizes_of(model);
+        for (j = 0; j < (i == 1 ? 1 : 2); j++) {
+            hbvib_solver_options s = fixed(harmonics[j]);
+            int64_t before = 0;
+            hbvib_status status = respond(model, &s, omega, &before);
+            judge("a response", before, status, (int64_t)need_of_a_branch(&size, &s, 6));
+        }
+        {
+            hbvib_solver_options s = fixed(2000);
+            int64_t before = 0;
+            hbvib_status status;
+            s.memory_limit = 1 << 23;
+            status = respond(model, &s, omega, &before);
+            if (status != HBVIB_E_OUT_OF_MEMORY || (double)(memory_peak() - before) > need_of_structure(&size, 2000) || strstr(hbvib_last_error(), "memory_limit") == NULL) {
+                printf("2000 harmonics with a limit: status %d, %lld bytes: %s\n", (int)status,
+                       (long long)(memory_peak() - before), hbvib_last_error());
+                failures++;
+            }
+            memory_disarm();
+            /* With a tolerance the limit lets fewer harmonics, and estimates of fewer, through. */
+            s.tolerance = 1e-9;
+            s.max_harmonics = 2000;
+            s.memory_limit = 1 << 21;
+            status = respond(model, &s, omega, &before);
+            if (i != 1) judge("a tolerance with a limit", before, status, (int64_t)need_of_a_branch(&size, &s, 6));
+        }
+        if (hbvib_model_free(model) != HBVIB_OK) abort();
+    }
+}
+
 int main(void)
 {
     hbvib_contact c = law(HBVIB_CUBIC, 0, HBVIB_GROUND, HBVIB_GROUND);
+    hbvib_hooks h;
     int64_t i;
     for (i = 0; i < MOST; i++) x[i] = 0.5 / (double)(1 + i) * (double)(i % 3 - 1);
     c.cubic = 1;
     /* What a thread needs once. */
     if (hbvib_contact_evaluate(&c, 1, 0, 1, x, 2, r, 2, NULL, 0) != HBVIB_OK) abort();
+    if (hbvib_hooks_init(&h, sizeof h) != HBVIB_OK || hbvib_branch_energy_with_hooks(NULL, 0, NULL, &h) == HBVIB_OK) abort();
     laws();
     residual("friction in one direction", friction_2d, 2, 1, 3 * 9);
     residual("cubic", cubic, 1, 1, 3 * 9);
     residual("chain", chain, 1, 2, 4 * 3 * LONG);
     too_large();
+    responses();
     printf("%.2f of the told bytes at most, %d failures\n", largest, failures);
     return failures > 0;
 }

@@ -1,11 +1,12 @@
 /* Random sequences of calls through the C interface: good and extreme values, live, freed and foreign handles, options of
  * other sizes, callbacks that fail, call back into the library, or cancel. Run as: random_calls <seed> <seconds> [calls
- * [seconds of the longest call]]; the calls depend on the seed, but for those that are stopped for their time. Prints the
- * outcomes of each function and one line of counts; a crash, an internal error, output of a success that is not finite, a
- * call that runs on for 1.5 seconds after it was stopped or takes more memory than it may, or solves of which fewer than a
- * third have a result are failures. */
+ * [seconds of the longest call [seconds after which a call is stopped]]]; the calls depend on the seed, but for those that are
+ * stopped for their time. Prints the outcomes of each function and one line of counts; a crash, an internal error, output of a
+ * success that is not finite, a call that runs on after it was stopped or takes more memory than its predicted need, or solves
+ * of which fewer than a third have a result are failures. */
 #include "models.h"
 #include "failing_malloc.h"
+#include "predicted_need.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -51,6 +52,12 @@ static int n_models, n_branches;
 static hbvib_model *freed_model;
 static hbvib_branch *freed_branch;
 
+/* From which the need of results follows. */
+static struct solved {
+    sizes model;
+    double harmonics, samples;
+} of_branch[MOST];
+
 static hbvib_model *some_model(int *which)
 {
     *which = n_models > 0 ? (int)(next() % (uint64_t)n_models) : -1;
@@ -60,6 +67,7 @@ static hbvib_model *some_model(int *which)
     return models[*which];
 }
 
+/* A branch, mostly a live one. */
 static hbvib_branch *some_branch(void)
 {
     if (one_in(50)) return (hbvib_branch *)(uintptr_t)next();
@@ -67,20 +75,31 @@ static hbvib_branch *some_branch(void)
     return branches[next() % (uint64_t)n_branches];
 }
 
+/* What the need of its results follows from; nothing for another handle. */
+static struct solved sizes_of_branch(const hbvib_branch *branch)
+{
+    static const struct solved none;
+    int i;
+    for (i = 0; i < n_branches; i++) {
+        if (branches[i] == branch) return of_branch[i];
+    }
+    return none;
+}
+
 /* Outcomes of each function: its statuses, from HBVIB_OK on. */
 static struct outcome {
     const char *name;
     int64_t calls, succeeded, stopped, refused, bytes;
+    double share;
 } outcomes[N_FUNCTIONS];
 static int64_t calls, failures, solves, solved;
 static clock_t longest;
 
-/* Bytes that a call on these models, of at most 100 degrees of freedom, may take at one time: the limit of memory in the
- * options, and 100 MB of an error estimate with four times the memory of its point. */
-enum { MOST_BYTES = 512 << 20 };
-static int64_t allowed = MOST_BYTES;
+/* Bytes that the next call may take at one time: its predicted need. */
+static double allowed;
 
-static const char *slowest = "";
+/* What is solved, for a report, and the longest call. */
+static char solving[400] = "", slowest[500] = "";
 
 static struct outcome *outcome_of(const char *name)
 {
@@ -113,9 +132,10 @@ static void judge(const char *name, int64_t status, beginning begin)
     const clock_t spent = clock() - begin.time;
     const int64_t bytes = memory_arm != NULL ? memory_peak() - begin.bytes : 0;
     if (bytes > o->bytes) o->bytes = bytes;
-    if (bytes > allowed) {
+    if ((double)bytes > o->share * allowed) o->share = (double)bytes / allowed;
+    if ((double)bytes > allowed) {
         failures++;
-        fprintf(stderr, "%s: %lld bytes, %lld are allowed\n", name, (long long)bytes, (long long)allowed);
+        fprintf(stderr, "%s: %lld bytes, %.0f are its need%s\n", name, (long long)bytes, allowed, solving);
     }
     calls++;
     o->calls++;
@@ -124,7 +144,7 @@ static void judge(const char *name, int64_t status, beginning begin)
     else o->refused++;
     if (spent > longest) {
         longest = spent;
-        slowest = name;
+        snprintf(slowest, sizeof slowest, "%s%s", name, solving);
     }
     if (status == HBVIB_E_INTERNAL || status < HBVIB_E_INTERNAL || (status < 0 && hbvib_last_error()[0] == '\0')) {
         failures++;
@@ -132,22 +152,30 @@ static void judge(const char *name, int64_t status, beginning begin)
     }
 }
 
-#define CALL(function, ...)                                                                    \
+/* A call that may take so many bytes beside those of any call, counted under a name. */
+#define CALL_NAMED(name, need, function, ...)                                                  \
     do {                                                                                       \
-        const beginning begin = begin_call();                                                  \
+        beginning begin;                                                                       \
+        allowed = 16 * KIB + (need);                                                           \
+        begin = begin_call();                                                                  \
         status = function(__VA_ARGS__);                                                        \
-        judge(#function, status, begin);                                                       \
+        judge(name, status, begin);                                                            \
     } while (0)
+
+#define CALL_WITHIN(need, function, ...) CALL_NAMED(#function, need, function, __VA_ARGS__)
+
+#define CALL(function, ...) CALL_WITHIN(0, function, __VA_ARGS__)
 
 /* Callbacks: most go on; some stop, fail, or call the library. Every call is stopped after a number of reports, or a share
  * of the time that it may take. */
-enum { MOST_REPORTS = 300 };
+enum { MOST_REPORTS = 300, MOST_POINTS = 2 * MOST_REPORTS };
 static int64_t reports;
 static clock_t started;
+static double most_working = 0.5; /* seconds */
 
 static int late(void)
 {
-    return ++reports > MOST_REPORTS || clock() - started > CLOCKS_PER_SEC / 2;
+    return ++reports > MOST_REPORTS || (double)(clock() - started) > most_working * CLOCKS_PER_SEC;
 }
 
 static void intrude(void)
@@ -248,8 +276,11 @@ static void add_model(void)
     if (n_models == MOST) return;
     if (one_in(10)) CALL(hbvib_model_new, count(3), &model);
     else if (one_in(10)) CALL(hbvib_cyclic_new, count(3), count(5), &model);
-    else if (n_models > 0 && one_in(4)) CALL(hbvib_model_clone, models[next() % (uint64_t)n_models], &model);
-    else status = build[next() % (sizeof build / sizeof *build)](&model);
+    else if (n_models > 0 && one_in(4)) {
+        const int i = (int)(next() % (uint64_t)n_models);
+        const sizes m = sizes_of(models[i]);
+        CALL_WITHIN(need_of_a_change(&m), hbvib_model_clone, models[i], &model);
+    } else status = build[next() % (sizeof build / sizeof *build)](&model);
     if (model == NULL) return;
     dofs[n_models] = hbvib_model_dofs(model);
     if (dofs[n_models] > 100) {
@@ -279,6 +310,8 @@ static void usual_constants(hbvib_contact *c)
     }
 }
 
+#define CHANGE(function, ...) CALL_WITHIN(need, function, __VA_ARGS__)
+
 static void change_model(void)
 {
     int which, i;
@@ -290,6 +323,8 @@ static void change_model(void)
     hbvib_contact *const c = &wide.c;
     hbvib_user_force force;
     hbvib_matrix m;
+    const sizes before = sizes_of(model);
+    const double need = need_of_a_change(&before);
     for (i = 0; i < 16; i++) x[i] = number(i % 4 == 0 ? 1 : 0.1) * (i % 3 == 0);
     a[0] = degree(which);
     a[1] = degree(which);
@@ -298,29 +333,29 @@ static void change_model(void)
         usual_constants(c);
         if (one_in(3)) c->dof_b[0] = a[1];
         if (one_in(20)) c->struct_size = (uint32_t)next() % 400;
-        CALL(hbvib_model_add_contact, model, c, &id);
+        CHANGE(hbvib_model_add_contact, model, c, &id);
         break;
-    case 1: CALL(hbvib_model_add_force, model, a[0], count(1), number(0.3), one_in(4) ? number(0.1) : 0); break;
-    case 2: CALL(hbvib_model_set_preload, model, count(0), number(0.5)); break;
-    case 3: CALL(hbvib_model_set_rayleigh, model, number(0.02), number(0.01)); break;
-    case 4: CALL(hbvib_model_add_springs, model, one_in(20) ? -1 : 1, &a[0], &a[1], NULL, x); break;
-    case 5: CALL(hbvib_model_set_loss_factor, model, number(0.02)); break;
+    case 1: CHANGE(hbvib_model_add_force, model, a[0], count(1), number(0.3), one_in(4) ? number(0.1) : 0); break;
+    case 2: CHANGE(hbvib_model_set_preload, model, count(0), number(0.5)); break;
+    case 3: CHANGE(hbvib_model_set_rayleigh, model, number(0.02), number(0.01)); break;
+    case 4: CHANGE(hbvib_model_add_springs, model, one_in(20) ? -1 : 1, &a[0], &a[1], NULL, x); break;
+    case 5: CHANGE(hbvib_model_set_loss_factor, model, number(0.02)); break;
     case 6:
         for (i = 0; i < 4; i++) x[i] = number(0.1 * (i + 1)) + 0.2 * i - 0.3;
-        CALL(hbvib_model_add_table, model, a[0], HBVIB_GROUND, 0, 4, x, x + 4, &id);
+        CHANGE(hbvib_model_add_table, model, a[0], HBVIB_GROUND, 0, 4, x, x + 4, &id);
         break;
-    case 7: CALL(hbvib_model_add_spring_damper, model, a[0], HBVIB_GROUND, 0, 3, x, 2, x + 3, &id); break;
-    case 8: CALL(hbvib_model_set_speed, model, one_in(2) ? 0 : number(0.4)); break;
+    case 7: CHANGE(hbvib_model_add_spring_damper, model, a[0], HBVIB_GROUND, 0, 3, x, 2, x + 3, &id); break;
+    case 8: CHANGE(hbvib_model_set_speed, model, one_in(2) ? 0 : number(0.4)); break;
     case 9:
-        if (one_in(4)) CALL(hbvib_model_fix, model, 1, a);
-        else if (one_in(2)) CALL(hbvib_cyclic_set_wave, model, count((int64_t)(next() % 7) - 3));
-        else CALL(hbvib_cyclic_set_aero, model, one_in(20) ? -1 : 1, a, one_in(9) ? 0 : 1, x, a + 1, (int32_t)(next() % 3));
+        if (one_in(4)) CHANGE(hbvib_model_fix, model, 1, a);
+        else if (one_in(2)) CHANGE(hbvib_cyclic_set_wave, model, count((int64_t)(next() % 7) - 3));
+        else CHANGE(hbvib_cyclic_set_aero, model, one_in(20) ? -1 : 1, a, one_in(9) ? 0 : 1, x, a + 1, (int32_t)(next() % 3));
         break;
     case 10:
         m = dense(which < 0 ? 3 : dofs[which], x);
         if (dofs[which < 0 ? 0 : which] > 4) break;
         m.part = (int32_t)(next() % 8);
-        CALL(hbvib_model_set_matrix, model, one_in(3) ? (int32_t)(next() % 7) : HBVIB_DAMPING, &m);
+        CHANGE(hbvib_model_set_matrix, model, one_in(3) ? (int32_t)(next() % 7) : HBVIB_DAMPING, &m);
         break;
     case 11:
         memset(&force, 0, sizeof force);
@@ -328,14 +363,14 @@ static void change_model(void)
         force.dofs = a;
         force.n = 1;
         force.force = on_force;
-        CALL(hbvib_model_add_user_force, model, &force, &id);
+        CHANGE(hbvib_model_add_user_force, model, &force, &id);
         break;
-    case 12: CALL(hbvib_model_set_preload_at_speed, model, count(0), number(0.3), number(0.01)); break;
-    default: CALL(hbvib_model_add_iwan, model, a[0], HBVIB_GROUND, 0, number(0.2), number(1), number(-0.3), number(0.1), count(5), &id);
+    case 12: CHANGE(hbvib_model_set_preload_at_speed, model, count(0), number(0.3), number(0.01)); break;
+    default: CHANGE(hbvib_model_add_iwan, model, a[0], HBVIB_GROUND, 0, number(0.2), number(1), number(-0.3), number(0.1), count(5), &id);
     }
 }
 
-static void keep(hbvib_branch *branch)
+static void keep(hbvib_branch *branch, const struct solved *from)
 {
     hbvib_status status;
     if (branch == NULL) return;
@@ -343,6 +378,7 @@ static void keep(hbvib_branch *branch)
         freed_branch = branches[--n_branches];
         CALL(hbvib_branch_free, freed_branch);
     }
+    of_branch[n_branches] = *from;
     branches[n_branches++] = branch;
 }
 
@@ -360,13 +396,31 @@ static void solve(void)
     hbvib_hooks h = hooks();
     hbvib_branch *branch = NULL;
     hbvib_status status;
+    struct solved from = {sizes_of(model), 0, 0};
+    snprintf(solving, sizeof solving,
+             "; n = %lld, wheel = %lld, m = %g, d = %g, tolerance = %g, harmonics = %lld and %lld, samples = %lld, points = %lld, step_max = %g, "
+             "limit = %lld, flexibility = %d, bytes saved = %lld",
+             (long long)from.model.dofs, (long long)from.model.wheel, from.model.motions, from.model.most, s->tolerance, (long long)s->harmonics,
+             (long long)s->max_harmonics, (long long)s->samples, (long long)s->max_points, s->step_max, (long long)s->memory_limit,
+             (int)s->flexibility, (long long)from.model.saved);
+    const int estimates = s->tolerance > 0 || s->estimate_error;
+    from.harmonics = highest(s);
+    from.samples = most_samples(s);
     if (one_in(2)) {
         hbvib_forced_options o;
         memset(&o, 0, sizeof o);
         hbvib_forced_options_init(&o, sizeof o);
         o.omega_start = somewhere(which);
         o.omega_stop = one_in(3) ? o.omega_start : o.omega_start * number(1.02);
-        CALL(hbvib_forced_response, model, one_in(20) ? NULL : s, &o, &h, &branch);
+        if (one_in(20)) {
+            hbvib_solver_options_init(s, sizeof *s);
+            from.harmonics = highest(s);
+            from.samples = 0;
+            CALL_WITHIN(need_of_a_branch(&from.model, s, MOST_POINTS), hbvib_forced_response, model, NULL, &o, &h, &branch);
+        } else {
+            CALL_NAMED(estimates ? "hbvib_forced_response" : "hbvib_forced_response, no estimate",
+                       need_of_a_branch(&from.model, s, MOST_POINTS), hbvib_forced_response, model, s, &o, &h, &branch);
+        }
     } else if (one_in(2)) {
         hbvib_mode_options o;
         memset(&o, 0, sizeof o);
@@ -374,7 +428,8 @@ static void solve(void)
         o.log10_start = which >= 0 && dofs[which] == 4 ? -5.6 : number(-1);
         o.log10_stop = o.log10_start + fabs(number(0.5));
         o.mode_index = count(0);
-        CALL(hbvib_nonlinear_mode, model, s, &o, &h, &branch);
+        CALL_NAMED(estimates ? "hbvib_nonlinear_mode" : "hbvib_nonlinear_mode, no estimate",
+                   need_of_a_branch(&from.model, s, MOST_POINTS), hbvib_nonlinear_mode, model, s, &o, &h, &branch);
     } else {
         static double x[4096];
         hbvib_time_options o;
@@ -386,11 +441,12 @@ static void solve(void)
         o.omega = somewhere(which);
         o.max_periods = count(40);
         o.harmonics = 5;
-        CALL(hbvib_time_response, model, &o, &h, which < 0 ? NULL : x, which < 0 ? 0 : 6 * dofs[which], NULL, 0, &info);
+        CALL_WITHIN(need_in_time(&from.model, 5), hbvib_time_response, model, &o, &h, which < 0 ? NULL : x, which < 0 ? 0 : 6 * dofs[which], NULL, 0, &info);
     }
     solves++;
     if (status >= 0) solved++;
-    keep(branch);
+    solving[0] = '\0';
+    keep(branch, &from);
 }
 
 static void ask(void)
@@ -411,6 +467,9 @@ static void ask(void)
     hbvib_verification v;
     hbvib_floquet_info info;
     hbvib_reduction r;
+    const struct solved of = sizes_of_branch(branch);
+    const sizes m = sizes_of(model);
+    const double result = need_of_a_result(&of.model, of.harmonics, of.samples);
     memset(&r, 0, sizeof r);
     hbvib_reduction_init(&r, sizeof r);
     switch (next() % 12) {
@@ -422,35 +481,35 @@ static void ask(void)
     case 1:
         CALL(hbvib_branch_reduction, branch, &r);
         if (status != HBVIB_OK || r.harmonics_asked > 60) break;
-        CALL(hbvib_branch_harmonics, branch, at, 0, 1, x, one_in(20) ? count(7) : r.harmonics_asked + 1);
+        CALL_WITHIN(result, hbvib_branch_harmonics, branch, at, 0, 1, x, one_in(20) ? count(7) : r.harmonics_asked + 1);
         for (i = 0; status == HBVIB_OK && i < 2 * (r.harmonics_asked + 1); i++) failures += !isfinite(x[i]);
         break;
     case 2:
         memset(&energy, 0, sizeof energy);
         hbvib_energy_init(&energy, sizeof energy);
-        CALL(hbvib_branch_energy_with_hooks, branch, at, &energy, &h);
+        CALL_WITHIN(result, hbvib_branch_energy_with_hooks, branch, at, &energy, &h);
         break;
-    case 3: CALL(hbvib_branch_contact_loop, branch, at, count(0), count(0), 256, y, f, states); break;
+    case 3: CALL_WITHIN(result, hbvib_branch_contact_loop, branch, at, count(0), count(0), 256, y, f, states); break;
     case 4:
         memset(&summary, 0, sizeof summary);
         hbvib_contact_summary_init(&summary, sizeof summary);
-        CALL(hbvib_branch_contact_summary, branch, at, count(0), &summary);
+        CALL_WITHIN(result, hbvib_branch_contact_summary, branch, at, count(0), &summary);
         break;
     case 5: CALL(hbvib_branch_peaks, branch, 64, y, f, point, &n); break;
     case 6: CALL(hbvib_branch_folds, branch, 64, y, f, point, &n); break;
-    case 7: CALL(hbvib_branch_time_history_with_hooks, branch, at, 0, 256, y, &h); break;
+    case 7: CALL_WITHIN(result, hbvib_branch_time_history_with_hooks, branch, at, 0, 256, y, &h); break;
     case 8:
         memset(&v, 0, sizeof v);
         hbvib_verification_init(&v, sizeof v);
-        CALL(hbvib_verify, model, branch, at, NULL, &h, NULL, 0, NULL, 0, &v);
+        CALL_WITHIN(result + need_in_time(&m, of.harmonics), hbvib_verify, model, branch, at, NULL, &h, NULL, 0, NULL, 0, &v);
         break;
     case 9:
         memset(&info, 0, sizeof info);
         hbvib_floquet_info_init(&info, sizeof info);
-        CALL(hbvib_floquet, model, branch, at, NULL, &h, x, 64, NULL, 0, &info);
+        CALL_WITHIN(result + need_of_multipliers(&m, of.harmonics), hbvib_floquet, model, branch, at, NULL, &h, x, 64, NULL, 0, &info);
         break;
-    case 10: CALL(hbvib_branch_synthesis_with_hooks, branch, model, NULL, 64, y, x, f, &n, &h); break;
-    default: CALL(hbvib_linear_modes_with_hooks, model, count(0), (int32_t)(next() % 4), count(1), y, NULL, &h);
+    case 10: CALL_WITHIN(result, hbvib_branch_synthesis_with_hooks, branch, model, NULL, 64, y, x, f, &n, &h); break;
+    default: CALL_WITHIN(need_of_linear_modes(&m), hbvib_linear_modes_with_hooks, model, count(0), (int32_t)(next() % 4), count(1), y, NULL, &h);
     }
 }
 
@@ -469,17 +528,14 @@ static void low(void)
         const int64_t d = c.kind == HBVIB_FRICTION_3D && c.kn != 0 ? 3
                           : c.kind == HBVIB_FRICTION_3D || (c.kind == HBVIB_FRICTION_2D && c.kn != 0) ? 2 : 1;
         const int64_t n = one_in(20) ? 6 : 6 * d, samples = one_in(3) ? count(32) : 0;
-        /* As the header tells. */
-        allowed = 8 * (1 + d) * 4 * n * n + 100 * (samples < 768 ? 768 : samples > 1 << 20 ? 1 << 20 : samples) +
-                  (d > 1 ? 13 << 20 : 1 << 20);
-        CALL(hbvib_contact_evaluate, &c, 5, samples, number(1), x, n, y, n, jac, 4 * n * n);
-        allowed = MOST_BYTES;
+        const double times = (double)(samples > 1 << 20 ? 1 << 20 : samples);
+        CALL_WITHIN(need_of_a_law((double)d, 5, times), hbvib_contact_evaluate, &c, 5, samples, number(1), x, n, y, n, jac, 4 * n * n);
         return;
     }
     CALL(hbvib_model_save, some_model(&which), sizeof bytes, bytes, &size);
     if (status != HBVIB_OK) return;
     if (one_in(2)) bytes[next() % (uint64_t)size] ^= (unsigned char)(1 << next() % 8);
-    CALL(hbvib_model_load, one_in(4) ? (int64_t)(next() % (uint64_t)size) : size, bytes, &model);
+    CALL_WITHIN(8 * (double)size, hbvib_model_load, one_in(4) ? (int64_t)(next() % (uint64_t)size) : size, bytes, &model);
     if (model != NULL) CALL(hbvib_model_free, model);
 }
 
@@ -499,6 +555,7 @@ static void end_one(void)
         freed_branch = branches[i];
         CALL(hbvib_branch_free, freed_branch);
         branches[i] = branches[--n_branches];
+        of_branch[i] = of_branch[n_branches];
     }
 }
 
@@ -518,6 +575,7 @@ int main(int argc, char **argv)
     h = hooks();
     (void)!hbvib_branch_energy_with_hooks(NULL, 0, NULL, &h);
     most_seconds = argc > 4 ? atof(argv[4]) : 2;
+    if (argc > 5) most_working = atof(argv[5]);
     while (calls < most && (double)(clock() - begin) / CLOCKS_PER_SEC < seconds) {
         switch (next() % 12) {
         case 0: add_model(); break;
@@ -533,9 +591,9 @@ int main(int argc, char **argv)
     while (n_models > 0) CALL(hbvib_model_free, models[--n_models]);
     while (n_branches > 0) CALL(hbvib_branch_free, branches[--n_branches]);
     for (i = 0; i < N_FUNCTIONS && outcomes[i].name != NULL; i++)
-        printf("%-40s %lld calls: %lld done, %lld stopped early, %lld refused, %lld kB at most\n", outcomes[i].name,
+        printf("%-40s %lld calls: %lld done, %lld stopped early, %lld refused, %lld kB at most, %.2f of the need\n", outcomes[i].name,
                (long long)outcomes[i].calls, (long long)outcomes[i].succeeded, (long long)outcomes[i].stopped,
-               (long long)outcomes[i].refused, (long long)(outcomes[i].bytes / 1024));
+               (long long)outcomes[i].refused, (long long)(outcomes[i].bytes / 1024), outcomes[i].share);
     printf("%lld calls, %lld of %lld solves with a result, %.2f s the longest (%s), %lld failures\n", (long long)calls,
            (long long)solved, (long long)solves, (double)longest / CLOCKS_PER_SEC, slowest, (long long)failures);
     return failures == 0 && 3 * solved >= solves && (double)longest < most_seconds * CLOCKS_PER_SEC ? 0 : 1;

@@ -45,11 +45,11 @@
  *             no environment variable, and starts no thread. It runs in the default floating-point
  *             environment (no traps, rounding to nearest, no flush to zero); the environment of the
  *             caller is restored for callbacks and on return.
- *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY. 128 KiB of stack suffice for
- *             every function, 64 KiB for forced responses and modes of small models. After fork
- *             both processes may go on; a handle that a call of another thread used at that time
- *             stays HBVIB_E_BUSY in the child. dlclose frees all memory of the library but handles
- *             that were not freed.
+ *   process   A failing request for memory is HBVIB_E_OUT_OF_MEMORY; docs/memory.md tells the bytes
+ *             that each call needs at most. 128 KiB of stack suffice for every function, 64 KiB for
+ *             forced responses and modes of small models. After fork both processes may go on; a
+ *             handle that a call of another thread used at that time stays HBVIB_E_BUSY in the
+ *             child. dlclose frees all memory of the library but handles that were not freed.
  *   safety    No panic leaves the library (HBVIB_E_INTERNAL). Callbacks must not throw or longjmp.
  *             NaN in an input, or infinity anywhere but in the preload of a contact, is
  *             HBVIB_E_NOT_FINITE. The library cannot check that arrays are as long as stated and
