@@ -20,7 +20,7 @@ pub(super) type Lanes<T> = [T; LANES];
 
 /// Updates each lane of `y` by that of `x`. A plain loop over a fixed number is unrolled in every build.
 #[inline]
-pub(super) fn each_lane<T: Copy>(y: &mut Lanes<T>, x: &Lanes<T>, update: impl Fn(&mut T, T)) {
+pub(super) fn each_lane<S, T: Copy>(y: &mut Lanes<S>, x: &Lanes<T>, update: impl Fn(&mut S, T)) {
     let mut k = 0;
     while k < LANES {
         update(&mut y[k], x[k]);
@@ -137,6 +137,10 @@ impl<T: Number> VariationalEquations<T> {
     /// Number of states of a perturbation: displacements, velocities and sliders.
     pub fn states(&self) -> usize {
         2 * self.order + self.sliders
+    }
+
+    pub(super) fn has_diagonal_mass(&self) -> bool {
+        matches!(self.mass_factor, MassFactor::Diagonal(_))
     }
 
     /// Operations of one product with the matrices.

@@ -193,8 +193,8 @@ impl<T: Number> VariationalStep<T> {
                     pull(row, &force, new);
                 }
             }
-            // A part that is too long overflows.
-            if !sizes(new, 1.0).iter().all(|a| *a < OVERFLOW) {
+            // A part that is too long overflows; factors of a mass matrix take finite numbers only.
+            if !equations.has_diagonal_mass() && !sizes(new, 1.0).iter().all(|a| *a < OVERFLOW) {
                 return Ok(false);
             }
             equations.accelerate(new, interrupt)?;
@@ -232,14 +232,10 @@ impl<T: Number> VariationalStep<T> {
 fn sizes<T: Number>(x: &[Lanes<T>], factor: f64) -> [f64; LANES] {
     let mut largest = [0.0_f64; LANES];
     for x in x {
-        let mut size = [0.0_f64; LANES];
-        for (size, x) in size.iter_mut().zip(x) {
-            *size = Scalar::size(*x);
-        }
-        each_lane(&mut largest, &size, |m, size| {
-            if size > *m || size.is_nan() {
-                *m = size;
-            }
+        each_lane(&mut largest, x, |m, x| {
+            let size = Scalar::size(x);
+            // Stays NaN once it is.
+            *m = if size <= *m || m.is_nan() { *m } else { size };
         });
     }
     let all = largest;
