@@ -10,6 +10,7 @@ mod floquet_classes;
 mod floquet_references;
 mod floquet_wheel;
 mod hard_cases_in_time;
+mod hill;
 mod limit_cycles;
 mod on_modes;
 
