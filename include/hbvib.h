@@ -2962,7 +2962,8 @@ typedef struct {
   double residual;
   /// Modes of each nodal diameter on which the motion was computed; 0: on all degrees of freedom.
   int64_t modes;
-  /// Change of the radius from half as many modes.
+  /// Largest change of a multiplier above half the radius from half as many modes; NaN where
+  /// orbit_change is above 0.2.
   double modes_change;
 } hbvib_floquet_info;
 

@@ -329,7 +329,8 @@ class Floquet(NamedTuple):
     outside the unit circle. `neutral` of the others are 1 by construction. `orbit_change` is the distance that shooting
     moved the point, `omega` the angular frequency of the motion. `reason` tells why the radius is NaN, or is empty.
     A large structure is computed on `modes` modes of each nodal diameter, not on all degrees of freedom (0);
-    `modes_change` is the change of the radius from half as many.
+    `modes_change` is the largest change of a multiplier above half the radius from half as many, NaN where
+    `orbit_change` is above 0.2.
 
     >>> import hbvib
     >>> model = hbvib.Model(mass=1, damping=0.1, stiffness=1)

@@ -11,7 +11,7 @@ use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wave::Wave;
 use crate::options::{FloquetOptions, Waves};
-use crate::results::Floquet;
+use crate::results::{Floquet, Multiplier, MultiplierClass};
 use crate::stability::{Extent, fastest_motion};
 use crate::time_integration::{refuse_massless, refuse_structural_damping};
 use std::f64::consts::TAU;
@@ -34,6 +34,13 @@ const AGREEMENT: f64 = 0.01;
 
 /// The same where the radius is next to 1.
 const LEAST: f64 = 1e-7;
+
+/// Share of the radius above which multipliers of two numbers of modes are compared.
+const LARGE: f64 = 0.5;
+
+/// Distance of the motion in time from the point, relative to it, above which two numbers of modes may agree on a motion
+/// that has little to do with the point, and bound nothing.
+const FAR: f64 = 0.2;
 
 /// Shapes and small models that points of one branch share.
 #[derive(Default)]
@@ -127,7 +134,7 @@ pub(super) fn floquet_of(
         };
         if let Some(few) = &few {
             let (used, more) = (few.stability.modes, many.stability.modes);
-            many.stability.modes_change = (many.stability.radius - few.stability.radius).abs();
+            many.stability.modes_change = change(&few.stability, &many.stability);
             // Where no more modes exist nothing is left out.
             if agree(&few.stability, &many.stability) || more == used {
                 kept.last = Some(modes);
@@ -183,7 +190,25 @@ fn agree(few: &Floquet, many: &Floquet) -> bool {
         return few.grazing.is_some() == many.grazing.is_some();
     }
     let allowed = LEAST.max(AGREEMENT * (1.0 - many.radius).abs());
-    few.unstable == many.unstable && many.modes_change <= allowed
+    few.unstable == many.unstable && (many.radius - few.radius).abs() <= allowed
+}
+
+/// Largest distance of a large ordinary multiplier on few modes from the next one on many; NaN where the motion is far
+/// from the point.
+fn change(few: &Floquet, many: &Floquet) -> f64 {
+    if few.orbit_change.max(many.orbit_change) > FAR {
+        return f64::NAN;
+    }
+    let ordinary = |m: &&Multiplier| m.class == MultiplierClass::Ordinary;
+    let mut largest = (many.radius - few.radius).abs();
+    for a in few.multipliers.iter().filter(ordinary) {
+        if a.value.norm() >= LARGE * few.radius {
+            let all = many.multipliers.iter().filter(ordinary);
+            let next = all.map(|b| (a.value - b.value).norm()).fold(f64::INFINITY, f64::min);
+            largest = largest.max(next);
+        }
+    }
+    largest
 }
 
 /// The modes below a multiple of the frequency of the highest force.

@@ -129,7 +129,8 @@ pub struct hbvib_floquet_info {
     pub residual: f64,
     /// Modes of each nodal diameter on which the motion was computed; 0: on all degrees of freedom.
     pub modes: i64,
-    /// Change of the radius from half as many modes.
+    /// Largest change of a multiplier above half the radius from half as many modes; NaN where
+    /// orbit_change is above 0.2.
     pub modes_change: f64,
 }
 

@@ -30,7 +30,8 @@ pub struct Floquet {
     pub grazing: Option<(usize, Grazing)>,
     /// Modes of each nodal diameter on which the motion and its perturbations were computed; 0: on all degrees of freedom.
     pub modes: usize,
-    /// Change of the radius from half as many modes; 0 on all degrees of freedom.
+    /// Largest change of a multiplier above half the radius from half as many modes; 0 on all degrees of freedom. NaN where
+    /// `orbit_change` is above a fifth: two numbers of modes then bound nothing.
     pub modes_change: f64,
 }
 

@@ -136,6 +136,26 @@ fn compare(n: usize, modes: usize) {
     }
 }
 
+/// Few harmonics: the motion in time is another one, and the change between two numbers of modes bounds nothing.
+#[test]
+fn a_motion_far_from_its_point_has_no_bound() {
+    let contacts = [Contact::jenkins(15, None, 20.0, 0.5, 0.4)];
+    let model = held_bar(16, &contacts, 0.4);
+    for (highest, omega) in [(3, 1.0), (5, 1.0), (3, 1.5)] {
+        let branch = solve_at(&model, &harmonics(highest), omega);
+        let all = on(&model, &branch, Some(0), Waves::Wave);
+        let few = on(&model, &branch, Some(8), Waves::Wave);
+        let gap = (few.radius - all.radius).abs();
+        println!(
+            "{:.3} from the point, {gap:.1e} off, {:.1e} told",
+            few.orbit_change, few.modes_change
+        );
+        assert_eq!(few.modes_change.is_nan(), few.orbit_change > 0.2);
+        assert_eq!(few.modes_change.is_nan(), (highest, omega) == (3, 1.0));
+        assert!(few.modes_change.is_nan() || gap <= few.modes_change);
+    }
+}
+
 /// With all modes nothing is left out.
 #[test]
 fn sectors_have_the_multipliers_of_all_degrees_of_freedom() {
