@@ -14,6 +14,9 @@ use crate::model::structure::{MatrixKind, Structure};
 use crate::model::wave::Wave;
 use num_complex::Complex64;
 
+/// Relative deviation from a Hermitian matrix that is rounding.
+const HERMITIAN: f64 = 1e-10;
+
 /// Terms of a speed Ω = pω, which Z_h = … + ω² p²K₁ + ihω² pG contains.
 #[derive(Clone, Debug)]
 pub struct Tied {
@@ -314,6 +317,23 @@ impl Structure {
         Ok(Some(matrix))
     }
 
+    /// Refuses to conjugate a stiffness that no real matrices of sectors have: of a loss K(1 + iη), where A(−d) = A(d)ᵀ,
+    /// the imaginary part would drive the backward wave.
+    fn check_backward(which: MatrixKind, diameter: usize, matrix: &Csc) -> Result<()> {
+        if !matches!(which, MatrixKind::Stiffness | MatrixKind::StiffnessSpeed2)
+            || matrix.is_real()
+            || matrix.worst_hermitian_pair().2 <= HERMITIAN * matrix.max_abs()
+        {
+            return Ok(());
+        }
+        fail!(
+            Unsupported,
+            "{} of nodal diameter {diameter} is complex and not Hermitian, and a carried harmonic is the backward wave of this \
+             diameter, whose matrix does not follow from it: give a loss K(1 + i eta) as loss factor, or as structural matrix eta K",
+            which.name()
+        )
+    }
+
     /// Entry (p, p) of the matrix of a harmonic, without its assembly and without Rayleigh damping.
     #[must_use]
     pub fn wave_diagonal(&self, which: MatrixKind, harmonic: usize, p: usize) -> Complex64 {
@@ -361,6 +381,9 @@ impl Structure {
                     "the matrices of nodal diameter {diameter} are needed for a carried harmonic, but were not given"
                 );
             };
+            if backward {
+                Self::check_backward(which, diameter, matrix)?;
+            }
             let form = if backward { Form::Conjugated } else { Form::Plain };
             Csc::sum(n, &[(Complex64::ONE, matrix, form)])?
         };
