@@ -4,6 +4,7 @@
 #[path = "../common/mod.rs"]
 mod common;
 
+mod backward_waves;
 mod capacity;
 mod continuation;
 mod derivatives;
@@ -17,6 +18,7 @@ mod preload;
 mod reduced_structures;
 mod reference_point;
 mod reference_response;
+mod ring_damper_speeds;
 mod rotation;
 mod small_systems;
 mod structural_damping;
