@@ -5,6 +5,8 @@
 //! plane orthogonal to the tangent (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
 //! doi:10.1137/1.9780898719154), and is accepted if the prediction was close and the direction kept.
 
+mod corners;
+
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::metric::Metric;
 use crate::continuation::point::Point;
@@ -56,9 +58,6 @@ const STRAIGHT: f64 = 0.5;
 
 /// Step below which a failure counts as a corner of the branch.
 const CORNER_STEP: f64 = 1e-6;
-
-/// Lengths of the steps that leave a wider corner.
-const WIDE_CORNERS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
 
 /// Least cosine between the branch beyond a corner and its direction as predicted there.
 const ALONG: f64 = 0.9;
@@ -205,74 +204,6 @@ impl Continuation {
                 }
             }
         }
-    }
-
-    /// The next point beyond a corner of the branch that lies within `step`.
-    ///
-    /// Where a contact begins to slip the residual has a kink, and the branch may turn there by any angle, back in
-    /// the parameter too. The Jacobian just beyond determines the new direction. The sign of the bordered
-    /// determinant, which a path through a piecewise smooth map keeps, determines its sense (Allgower & Georg, ch.
-    /// 15).
-    fn turn_corner(
-        &mut self,
-        problem: &mut dyn Problem,
-        metric: Metric,
-        step: f64,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Point>> {
-        let n = self.row.len() - 1;
-        let mut v = try_copy(&self.current.v, CONTEXT)?;
-        metric.unit(&self.current.tangent, &mut self.row);
-        metric.add(&mut v, step, &self.row);
-        let found = self
-            .corrector
-            .direction_at(problem, &v, &self.row, metric, &mut self.scratch, interrupt)?;
-        let Some(positive) = found else { return Ok(None) };
-        metric.unit(&self.scratch, &mut self.row);
-        if positive != self.current.positive {
-            for r in &mut self.row {
-                *r = -*r;
-            }
-        }
-        for factor in [2.0, 8.0, 32.0] {
-            let length = factor * step;
-            v.copy_from_slice(&self.current.v);
-            metric.add(&mut v, length, &self.row);
-            let outcome = self
-                .corrector
-                .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
-            let Outcome::Converged(corrected) = outcome else {
-                continue;
-            };
-            let mut point = Point::new(try_copy(&v, CONTEXT)?, corrected, length);
-            if point.positive != self.current.positive {
-                point.reverse();
-            }
-            metric.unit(&point.tangent, &mut self.scratch);
-            let along: f64 = self.scratch.iter().zip(&self.row).map(|(a, b)| a * b).sum();
-            let near = metric.distance(&point.v, &self.current.v) <= 3.0 * length;
-            if along >= ALONG && near && self.overshoot(point.v[n]).is_none() {
-                return Ok(Some(point));
-            }
-        }
-        Ok(None)
-    }
-
-    /// The next point beyond a corner that is wider than [`CORNER_STEP`], or within which rounding hides the direction
-    /// of the branch: that of contacts which are nearly rigid.
-    fn leave_corner(
-        &mut self,
-        problem: &mut dyn Problem,
-        metric: Metric,
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Point>> {
-        for length in WIDE_CORNERS {
-            if let Some(point) = self.turn_corner(problem, metric, length, interrupt)? {
-                self.steps.restart(length);
-                return Ok(Some(point));
-            }
-        }
-        Ok(None)
     }
 
     fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {

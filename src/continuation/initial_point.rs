@@ -59,6 +59,9 @@ const CONTEXT: &str = "the start";
 /// Most points of a homotopy; one that needs more circulates among corners.
 const MAX_HOMOTOPY_POINTS: usize = 1_000;
 
+/// Share of a homotopy that counts as progress.
+const PROGRESS: f64 = 1e-3;
+
 /// Longest step of a homotopy, of which only the end matters.
 const LONG_STEP: f64 = 0.1;
 
@@ -194,7 +197,8 @@ fn homotopy(
         steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
-    let reached = follow(&mut *homotopy.problem, (&path, most_points), u, corrector, interrupt);
+    let points = (most_points, homotopy.patience);
+    let reached = follow(&mut *homotopy.problem, (&path, points), u, corrector, interrupt);
     drop(homotopy);
     let Reached::End(v) = reached? else { return Ok(None) };
     finish(problem, settings, v, Way::Homotopy, corrector, interrupt)
@@ -253,7 +257,13 @@ fn try_anchors(
             *a *= factor;
         }
         let mut homotopy = NewtonHomotopy::new(problem, p, &anchor)?;
-        let reached = match follow(&mut homotopy, (&path, most_points), &anchor, corrector, interrupt) {
+        let reached = match follow(
+            &mut homotopy,
+            (&path, (most_points, most_points)),
+            &anchor,
+            corrector,
+            interrupt,
+        ) {
             Err(e) if e.recoverable => Reached::Nothing,
             reached => reached?,
         };
@@ -291,10 +301,10 @@ enum Reached {
     Nothing,
 }
 
-/// Follows a homotopy.
+/// Follows a homotopy over so many points at most, of which so many may make no progress.
 fn follow(
     problem: &mut dyn Problem,
-    (settings, most_points): (&Settings, usize),
+    (settings, (most_points, patience)): (&Settings, (usize, usize)),
     u: &[f64],
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
@@ -307,13 +317,22 @@ fn follow(
     let left = |v: &[f64]| (settings.end - v[v.len() - 1]).abs();
     let mut nearest = try_copy(&v, CONTEXT)?;
     let mut continuation = Continuation::new(*settings, Point::new(v, corrected, 0.0))?;
+    let path = (settings.end - settings.start).abs();
+    let (mut reference, mut since) = (left(&nearest), 0);
     for _ in 0..most_points {
+        if since >= patience {
+            break;
+        }
         match continuation.advance(problem, interrupt)? {
             Advance::Accepted { point, last: true } => {
                 corrector.count_steps(continuation.steps_taken());
                 return Ok(Reached::End(point.v));
             }
             Advance::Accepted { point, .. } => {
+                since += 1;
+                if (left(&point.v) - reference).abs() > PROGRESS * path {
+                    (reference, since) = (left(&point.v), 0);
+                }
                 if left(&point.v) < left(&nearest) {
                     nearest = point.v;
                 }

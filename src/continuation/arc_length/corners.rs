@@ -1,0 +1,176 @@
+//! Corners of a branch: where the residual has a kink, the direction changes at once.
+
+use super::{ALONG, Continuation, STRAIGHT};
+use crate::continuation::corrector::Outcome;
+use crate::continuation::metric::Metric;
+use crate::continuation::point::Point;
+use crate::error::{Result, try_copy};
+use crate::interrupt::Interrupt;
+use crate::problem::Problem;
+
+/// Lengths of the steps that leave a wider corner.
+const WIDE_CORNERS: [f64; 5] = [1e-6, 1e-5, 1e-4, 1e-3, 1e-2];
+
+/// Lengths of the steps that leave an event's surface. Longer ones would lead to another solution, as across a resonance
+/// without damping.
+const BESIDE_SURFACE: [f64; 3] = [1e-6, 1e-5, 1e-4];
+
+/// Cosine between two directions below which a corner leads back along the branch.
+const STRAIGHT_BACK: f64 = -0.9999;
+
+const CONTEXT: &str = "the continuation";
+
+impl Continuation {
+    /// The next point beyond a corner of the branch that lies within `step`.
+    ///
+    /// Where a contact begins to slip the residual has a kink, and the branch may turn there by any angle, back in
+    /// the parameter too. The Jacobian just beyond determines the new direction. The sign of the bordered
+    /// determinant, which a path through a piecewise smooth map keeps, determines its sense (Allgower & Georg, ch.
+    /// 15).
+    pub(super) fn turn_corner(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        step: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        let mut probe = try_copy(&self.current.v, CONTEXT)?;
+        metric.unit(&self.current.tangent, &mut self.row);
+        metric.add(&mut probe, step, &self.row);
+        let Some(positive) = self.direction_beyond(problem, metric, &probe, interrupt)? else {
+            return Ok(None);
+        };
+        if positive != self.current.positive {
+            for r in &mut self.row {
+                *r = -*r;
+            }
+        }
+        if self.onwards(metric)? < STRAIGHT_BACK {
+            return Ok(None);
+        }
+        self.beyond_corner(problem, metric, (step, true), interrupt)
+    }
+
+    /// Leaves the direction of the linearisation at `probe` as the row of the plane. Returns whether the bordered
+    /// determinant is positive there.
+    fn direction_beyond(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        probe: &[f64],
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<bool>> {
+        metric.unit(&self.current.tangent, &mut self.row);
+        let found = self
+            .corrector
+            .direction_at(problem, probe, &self.row, metric, &mut self.scratch, interrupt)?;
+        metric.unit(&self.scratch, &mut self.row);
+        Ok(found)
+    }
+
+    /// A point beyond the current one along the row of the plane, from which the branch goes on in that direction;
+    /// with the sign of the bordered determinant kept if `keeps_sense`.
+    fn beyond_corner(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        (step, keeps_sense): (f64, bool),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        let n = self.row.len() - 1;
+        for factor in [2.0, 8.0, 32.0] {
+            let length = factor * step;
+            let mut v = try_copy(&self.current.v, CONTEXT)?;
+            metric.add(&mut v, length, &self.row);
+            let outcome = self
+                .corrector
+                .correct(problem, &mut v, &self.row, metric, false, interrupt)?;
+            let Outcome::Converged(corrected) = outcome else {
+                continue;
+            };
+            let mut point = Point::new(v, corrected, length);
+            let along = |point: &Point, scratch: &mut [f64], row: &[f64]| -> f64 {
+                metric.unit(&point.tangent, scratch);
+                scratch.iter().zip(row).map(|(a, b)| a * b).sum()
+            };
+            let turned = if keeps_sense {
+                point.positive != self.current.positive
+            } else {
+                along(&point, &mut self.scratch, &self.row) < 0.0
+            };
+            if turned {
+                point.reverse();
+            }
+            let along = along(&point, &mut self.scratch, &self.row);
+            let near = metric.distance(&point.v, &self.current.v) <= 3.0 * length;
+            if along >= ALONG && near && self.overshoot(point.v[n]).is_none() {
+                return Ok(Some(point));
+            }
+        }
+        Ok(None)
+    }
+
+    /// The next point beyond a corner that the branch reaches along the surface of the event, where no step in its
+    /// direction crosses that: friction in a plane, whose slider at rest is held by two circles that cease to meet. The
+    /// linearisation is taken at other parameters, and its sense is that in which a point is found; straight back is none.
+    fn leave_along_surface(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        let n = self.row.len() - 1;
+        for length in BESIDE_SURFACE {
+            for side in [length, -length] {
+                let mut probe = try_copy(&self.current.v, CONTEXT)?;
+                probe[n] += side * (self.settings.end - self.settings.start).signum() * metric.p;
+                if self.direction_beyond(problem, metric, &probe, interrupt)?.is_none() {
+                    continue;
+                }
+                for _ in 0..2 {
+                    let onwards = self.onwards(metric)?;
+                    if onwards > -STRAIGHT
+                        && let Some(point) = self.beyond_corner(problem, metric, (length, false), interrupt)?
+                    {
+                        self.steps.restart(length);
+                        return Ok(Some(point));
+                    }
+                    for r in &mut self.row {
+                        *r = -*r;
+                    }
+                }
+            }
+        }
+        Ok(None)
+    }
+
+    /// Cosine between the row of the plane and the direction at the current point.
+    fn onwards(&self, metric: Metric) -> Result<f64> {
+        let row = self.unscaled_row(metric)?;
+        Ok(metric.dot(&row, &self.current.tangent) / metric.norm(&self.current.tangent))
+    }
+
+    /// The row of the plane in unscaled numbers.
+    fn unscaled_row(&self, metric: Metric) -> Result<Vec<f64>> {
+        let mut row = try_copy(&self.row, CONTEXT)?;
+        metric.unscale(&mut row);
+        Ok(row)
+    }
+
+    /// The next point beyond a corner that is wider than [`CORNER_STEP`], or within which rounding hides the direction
+    /// of the branch: that of contacts which are nearly rigid.
+    pub(super) fn leave_corner(
+        &mut self,
+        problem: &mut dyn Problem,
+        metric: Metric,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Point>> {
+        for length in WIDE_CORNERS {
+            if let Some(point) = self.turn_corner(problem, metric, length, interrupt)? {
+                self.steps.restart(length);
+                return Ok(Some(point));
+            }
+        }
+        self.leave_along_surface(problem, metric, interrupt)
+    }
+}
