@@ -14,7 +14,7 @@ use crate::condense::wave_cache::SharedWaves;
 use crate::continuation::initial_point::{self, First, Way};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Advance, Continuation, Point, Settings};
-use crate::error::{Result, Status, boxed, fail, try_copy};
+use crate::error::{Error, Result, Status, boxed, fail, try_copy};
 use crate::error_estimate::mode_error::ModeEstimator;
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
@@ -264,12 +264,27 @@ fn on_wave(
     let onset = Onset { linear_up_to, nearly };
     let (course, settings) = course(solver, range, settings, onset);
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
-    let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, interrupt);
+    let outcome = trace(&mut mode, &mut tracer, (settings, onset), hooks, interrupt)
+        .map_err(|e| if linear.rest.is_loaded() { about_static(e) } else { e });
     if let Some(factor) = required(solver, &*mode) {
         return Ok(Err(factor));
     }
     let ending = Ending::of(outcome, mode.branch())?;
     mode.finish(model, solver, &ending, tracer.estimates()).map(Ok)
+}
+
+/// The error of a mode about a loaded static state.
+fn about_static(e: Error) -> Error {
+    if e.status != Status::NoConvergence {
+        return e;
+    }
+    Error::new(
+        e.status,
+        format_args!(
+            "no vibration about the static state was found at the first amplitude: a body that friction alone holds may have \
+             none, hold it by soft springs; constant forces that balance the preload keep contacts from slipping at rest"
+        ),
+    )
 }
 
 /// Selects the degree of freedom of the phase and scales the linear mode to amplitude 1.

@@ -10,6 +10,10 @@ use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual};
 use num_complex::Complex64;
 
+/// Points without progress towards the laws after which a mode about a static state is given up: a body that friction
+/// alone holds, and whose mean friction has no balance, moves ever further there.
+const PATIENCE: usize = 60;
+
 /// The meaning of the parameter of a homotopy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Path {
@@ -53,6 +57,11 @@ impl<'p> PathHomotopy<'p> {
             problem: Box::new(Self { problem, path, fixed }),
             start,
             end,
+            patience: if path == Path::FromTangents {
+                PATIENCE
+            } else {
+                usize::MAX
+            },
         }
     }
 }

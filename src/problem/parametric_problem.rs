@@ -53,6 +53,8 @@ pub struct Homotopy<'a> {
     pub start: f64,
     /// Parameter at which it is the given problem.
     pub end: f64,
+    /// Points without progress after which it is given up: it then follows a motion that grows without bound.
+    pub patience: usize,
 }
 
 /// A problem R(u, p) = 0 with one parameter. Its Jacobian is that of the point last evaluated.
