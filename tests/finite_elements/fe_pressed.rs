@@ -6,7 +6,7 @@ use crate::common::processor_time;
 use crate::sector::{Interface, Sector, Size};
 use hbvib::analysis::{nonlinear_mode, synthesise};
 use hbvib::contact::Contact;
-use hbvib::error::Status;
+use hbvib::error::{Error, Status};
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
@@ -25,6 +25,11 @@ fn sector() -> Sector {
 
 /// The sector with friction in a plane at each pair of nodes, under a force at the tip.
 fn pressed(sector: &Sector, force: f64) -> (Model, usize) {
+    with_preload(sector, force, true)
+}
+
+/// The same; `balanced` with constant forces that keep the structure where the preload acts.
+fn with_preload(sector: &Sector, force: f64, balanced: bool) -> (Model, usize) {
     let mut model = sector.model(Interface::Absent).unwrap();
     for pair in &sector.pairs {
         let [along, across] = &pair.friction;
@@ -36,6 +41,9 @@ fn pressed(sector: &Sector, force: f64) -> (Model, usize) {
             along.preload,
         );
         model.add_contact(&contact).unwrap();
+        if !balanced {
+            continue;
+        }
         // The preload of the table acts in the deformed state: constant forces keep the structure there.
         for (dof, force) in [(pair.normal.dof_a, -along.preload), (pair.normal.dof_b, along.preload)] {
             model.add_force(dof.unwrap(), 0, Complex64::from(force)).unwrap();
@@ -48,26 +56,21 @@ fn pressed(sector: &Sector, force: f64) -> (Model, usize) {
 
 /// The same with soft springs that hold the ring. With contacts that slip or open in each period, the travelling wave
 /// drives a ring that friction alone holds, and no motion is periodic.
-fn held(sector: &Sector, force: f64) -> (Model, usize) {
-    let (mut model, tip) = pressed(sector, force);
+fn hold(model: &mut Model, sector: &Sector, stiffness: f64) {
     for pair in &sector.pairs {
         for friction in &pair.friction {
             let spring = Spring {
                 dof_a: friction.dof_b[0],
                 dof_b: None,
                 sector_offset: 0,
-                stiffness: 1e3,
+                stiffness,
             };
             model.add_spring(&spring).unwrap();
         }
     }
-    (model, tip)
 }
 
-#[test]
-#[ignore = "a minute of processor time; run by tests/deep.sh"]
-fn pressed_contacts_of_a_sector_with_a_held_ring_are_followed_over_four_decades() {
-    let (model, tip) = held(&sector(), 2.0);
+fn followed(model: &Model, tip: usize, log10_stop: f64) -> Result<Branch, Error> {
     let solver = SolverOptions {
         response_dof: Some(tip),
         ..harmonics(1)
@@ -75,18 +78,36 @@ fn pressed_contacts_of_a_sector_with_a_held_ring_are_followed_over_four_decades(
     let range = ModeOptions {
         choice: ModeChoice::Near(530.0 * TAU),
         log10_start: -7.0,
-        log10_stop: -3.0,
+        log10_stop,
         ..ModeOptions::default()
     };
+    nonlinear_mode(model, &solver, &range, &mut Hooks::default())
+}
+
+#[test]
+#[ignore = "two minutes of processor time; run by tests/deep.sh"]
+fn pressed_contacts_of_a_sector_with_a_held_ring_are_followed_over_four_decades() {
+    // With the stiffer springs the last contact that holds the ring slips at a corner that the branch reaches along its surface.
+    for stiffness in [1e3, 1e5] {
+        four_decades(stiffness);
+    }
+}
+
+fn four_decades(stiffness: f64) {
+    let sector = sector();
+    let (mut model, tip) = pressed(&sector, 2.0);
+    hold(&mut model, &sector, stiffness);
     let begin = (Instant::now(), processor_time(Instant::now()));
-    let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
+    let branch = followed(&model, tip, -3.0).unwrap();
     let time = processor_time(begin.0).saturating_sub(begin.1).as_secs_f64();
     println!(
-        "{} points in {time:.1} s of processor time, {:?}",
+        "{stiffness:e} N/m: {} points in {time:.1} s of processor time, {:?}",
         branch.points(),
         branch.status()
     );
-    assert_eq!(branch.status(), Status::Ok);
+    // Beside the corner the slider's place is known to the root of rounding alone.
+    assert!(branch.status() == Status::Ok || (stiffness > 1e4 && branch.status() == Status::StoppedStalled));
+    assert!((branch.mode_at(branch.points() - 1).unwrap().log10_amplitude + 3.0).abs() < 1e-12);
     let damping = branch.mode_field(ModeField::DampingRatio).unwrap();
     let largest = damping.iter().fold(0.0_f64, |m, d| m.max(*d));
     for (point, d) in damping.iter().enumerate() {
@@ -100,7 +121,40 @@ fn pressed_contacts_of_a_sector_with_a_held_ring_are_followed_over_four_decades(
         assert!((check - d).abs() < 1e-5 * largest, "point {point}: {check} {d}");
     }
     // Far above the contact forces the ring slides freely: the damping of the structure is left.
-    assert!(*damping.last().unwrap() < 0.4 * largest);
+    assert!(*damping.last().unwrap() < 0.6 * largest);
+}
+
+#[test]
+#[ignore = "a minute of processor time; run by tests/deep.sh"]
+fn a_sector_whose_preload_makes_contacts_slip_at_rest_has_a_mode_where_the_ring_is_held() {
+    let sector = sector();
+    let (mut model, tip) = with_preload(&sector, 2.0, false);
+    let begin = processor_time(Instant::now());
+    let refused = followed(&model, tip, -4.0).unwrap_err();
+    let time = processor_time(Instant::now()).saturating_sub(begin).as_secs_f64();
+    println!("a ring that friction alone holds: {refused}, after {time:.1} s of processor time");
+    assert_eq!(refused.status, Status::NoConvergence);
+    assert!(refused.to_string().contains("hold it by soft springs"));
+    hold(&mut model, &sector, 1e3);
+    let begin = processor_time(Instant::now());
+    let branch = followed(&model, tip, -4.0).unwrap();
+    let time = processor_time(Instant::now()).saturating_sub(begin).as_secs_f64();
+    let slipping = branch.slip_fraction()[..30]
+        .iter()
+        .filter(|&&share| share > 0.0)
+        .count();
+    println!(
+        "held: {} points in {time:.1} s, {slipping} contacts slip at the first",
+        branch.points()
+    );
+    assert_eq!(branch.status(), Status::Ok);
+    assert!(slipping > 5 && branch.mode().unwrap().slip_from == f64::NEG_INFINITY);
+    let damping = branch.mode_field(ModeField::DampingRatio).unwrap();
+    let largest = damping.iter().fold(0.0_f64, |m, d| m.max(*d));
+    for (point, d) in damping.iter().enumerate() {
+        let check = branch.mode_at(point).unwrap().energy_damping_ratio();
+        assert!((check - d).abs() < 1e-5 * largest, "point {point}: {check} {d}");
+    }
 }
 
 fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
@@ -112,7 +166,7 @@ fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
     let range = ModeOptions {
         choice: ModeChoice::Near(530.0 * TAU),
         log10_start: -7.0,
-        log10_stop: -5.5,
+        log10_stop: -5.0,
         ..ModeOptions::default()
     };
     nonlinear_mode(model, &solver, &range, &mut Hooks::default()).unwrap()
@@ -121,7 +175,10 @@ fn mode(model: &Model, tip: usize, harmonic: usize) -> Branch {
 #[test]
 #[ignore = "half a minute of processor time; run by tests/deep.sh"]
 fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_lift_off() {
-    let (model, tip) = pressed(&sector(), 2.0);
+    let sector = sector();
+    let (mut model, tip) = pressed(&sector, 2.0);
+    // A ring that friction alone holds has no periodic motion once each of its contacts slips.
+    hold(&mut model, &sector, 1e3);
     let begin = (Instant::now(), processor_time(Instant::now()));
     let branch = mode(&model, tip, 1);
     println!(
@@ -157,7 +214,7 @@ fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_lift_off() {
     }
     // It follows the residual: 1e-6 with the default tolerance, a hundred times larger.
     println!("balance of work: {worst:.1e}");
-    assert!(info.slip_from < info.lift_off_from && info.lift_off_from < -5.5);
+    assert!(info.slip_from < info.lift_off_from && info.lift_off_from < -5.0);
     let begin = processor_time(Instant::now());
     let found = synthesise(&branch, &model, &SynthesisOptions::default()).unwrap();
     for peak in &found.peaks {
