@@ -104,3 +104,28 @@ class _LinearModes(_Matrices):
         from . import _plots
         diagram = self.campbell(speeds, count, engine_orders, diameter, contacts)
         return _plots.campbell(diagram, engine_orders, ax, hertz, line)
+
+    def plot_interference(self, speed: float, count: int, engine_orders: Sequence[int] = (),
+                          contacts: Any = ContactState.STUCK, *, ax: Any = None, hertz: bool = False,
+                          **line: Any) -> Any:
+        """Draws the interference (SAFE) diagram of a wheel with matplotlib: frequencies of the damped modes over the nodal
+        diameter at one speed, and the frequency of each engine order, folded onto the diameter that it excites. A dot on
+        the zigzag is a resonance. Returns the axes. ValueError for a structure that is not cyclic, ImportError without
+        matplotlib.
+
+        speed           in rad per time unit.    count, contacts   as in damped_modes, for each nodal diameter.
+        engine_orders   marked on the zigzag; none: the zigzag alone.
+        ax              axes to draw into; None: new ones.    hertz   True: 1 / time unit.    line   options of the dots.
+
+        >>> import hbvib
+        >>> model = hbvib.Model.cyclic(sectors=8, engine_order=2, mass=1, stiffness=3, coupling=dict(stiffness=-1))
+        >>> axes = model.plot_interference(0.5, 1, engine_orders=(2, 3))
+        >>> axes.get_xlabel()
+        'nodal diameter'
+        """
+        from . import _plots
+        if self.sectors == 1:
+            raise ValueError("plot_interference needs a cyclic structure: a plain one has no nodal diameters")
+        diameters = range(self.sectors // 2 + 1)
+        rows = [self.campbell([speed], count, (), diameter, contacts).omega[0] for diameter in diameters]
+        return _plots.interference(np.array(rows), self.sectors, speed, engine_orders, ax, hertz, line)

@@ -102,3 +102,25 @@ def campbell(diagram: Campbell, orders: Sequence[int], ax: Any, hertz: bool, lin
     ax.set(xlabel=name.replace("angular frequency omega", "speed Omega").replace("frequency", "speed"), ylabel=name,
            ylim=(0, top))
     return ax
+
+
+def interference(omega: Any, sectors: int, speed: float, orders: Sequence[int], ax: Any, hertz: bool,
+                 line: dict[str, Any]) -> Any:
+    """See Model.plot_interference."""
+    ax = axes() if ax is None else ax
+    unit, name = (2 * np.pi, "frequency / Hz") if hertz else (1.0, "angular frequency omega")
+    diameters = np.arange(len(omega))
+    top = 1.05 * np.nanmax(omega) / unit
+    for mode in omega.T:
+        ax.plot(diameters, mode / unit, **{"linestyle": "none", "marker": "o", "markersize": 4, **line})
+    highest = min(int(top * unit / abs(speed)), 100 * sectors) + 1 if speed else 0
+    zigzag = np.arange(highest + 1)
+    folded = np.abs((zigzag + sectors // 2) % sectors - sectors // 2)
+    ax.plot(folded, zigzag * abs(speed) / unit, "--", color="0.6", linewidth=1)
+    for order in orders:
+        at = (abs((order + sectors // 2) % sectors - sectors // 2), abs(order * speed) / unit)
+        if at[1] <= top:
+            ax.plot(*at, "s", color="0.2", markersize=4)
+            ax.annotate(f"EO {order}", at, textcoords="offset points", xytext=(6, 0), va="center")
+    ax.set(xlabel="nodal diameter", ylabel=name, xlim=(-0.5, sectors // 2 + 0.5), ylim=(0, top))
+    return ax

@@ -6,6 +6,7 @@ mod common;
 mod book;
 mod book_sessions;
 mod c_abi;
+mod campbell_example;
 mod designs;
 mod flutter_example;
 mod languages;
