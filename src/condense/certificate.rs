@@ -5,6 +5,9 @@
 //! about statically, which gives ρ/‖q‖. A motion that the basis holds to a share of about ρ/‖q‖ answers it as near its
 //! resonance as it is, which adds ‖Z⁻¹‖ (ρ/‖q‖)² with the inverse on the basis: near a resonance a small residual is an
 //! error that is 1/(2ζ) times larger.
+//!
+//! Rounding of the stiffness, of its factor and of the basis is an error of A of the relative size ε_A in that norm, which is
+//! measured when the basis is made, and an error (1 + ‖Z⁻¹‖) ε_A of the motion, which no larger basis makes smaller.
 
 use crate::condense::HarmonicBlock;
 use crate::condense::sweep::Sweep;
@@ -24,6 +27,31 @@ const RESONANCES: usize = 6;
 /// Steps of the power iteration for ‖Z⁻¹‖, whose size alone matters.
 const STEPS: usize = 4;
 
+/// Largest estimated errors over a sweep.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Certificate {
+    /// By motions that the basis lacks.
+    pub basis: f64,
+    /// The same with rounding.
+    pub total: f64,
+}
+
+impl Certificate {
+    /// The larger errors of two.
+    pub fn max(self, other: Self) -> Self {
+        Self {
+            basis: self.basis.max(other.basis),
+            total: self.total.max(other.total),
+        }
+    }
+
+    /// Nothing is known.
+    const UNKNOWN: Self = Self {
+        basis: f64::INFINITY,
+        total: f64::INFINITY,
+    };
+}
+
 /// The largest estimated error of a harmonic over a sweep: at its ends, its middle, and the resonances within it.
 ///
 /// # Errors
@@ -34,11 +62,11 @@ pub(super) fn certificate(
     inputs: &[SparseVector],
     sweep: Sweep,
     interrupt: &Interrupt<'_>,
-) -> Result<f64> {
+) -> Result<Certificate> {
     let order = view.pencil().order();
     let n = block.reference.rows;
     if order == 0 {
-        return Ok(f64::INFINITY);
+        return Ok(Certificate::UNKNOWN);
     }
     let mut forces = try_vec(inputs.len() * n, Complex64::ZERO, CONTEXT)?;
     for (to, input) in forces.chunks_exact_mut(n).zip(inputs) {
@@ -55,7 +83,8 @@ pub(super) fn certificate(
         resonances(block, view, sweep, &mut frequencies, interrupt)?;
     }
     let mut lu = Lu::new(n, inputs.len().max(1))?;
-    let mut worst = 0.0_f64;
+    let mut worst = Certificate::default();
+    let rounding = view.pencil().remainder.rounding;
     let mut q = try_copy(&forces, CONTEXT)?;
     for nu in frequencies {
         let i_nu = Complex64::new(0.0, nu);
@@ -65,7 +94,7 @@ pub(super) fn certificate(
         }
         match lu.factor(interrupt) {
             Ok(()) => {}
-            Err(e) if e.status == Status::Singular => return Ok(f64::INFINITY),
+            Err(e) if e.status == Status::Singular => return Ok(Certificate::UNKNOWN),
             Err(e) => return Err(e),
         }
         q.copy_from_slice(&forces);
@@ -77,7 +106,9 @@ pub(super) fn certificate(
                 continue;
             }
             let share = residual(view, nu, &q[..order])? / size;
-            worst = worst.max(share + inverse * share * share);
+            let basis = share + inverse * share * share;
+            let total = basis + (1.0 + inverse) * rounding;
+            worst = worst.max(Certificate { basis, total });
         }
     }
     Ok(worst)

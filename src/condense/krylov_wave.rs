@@ -1,5 +1,6 @@
 //! The basis of one wave: its matrices, its factor, and blocks until the certificate is met.
 
+use crate::condense::certificate::Certificate;
 use crate::condense::memory_limit::within;
 use crate::condense::wave_modes::proportional;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
@@ -16,6 +17,9 @@ use num_complex::Complex64;
 use std::sync::Arc;
 
 const CONTEXT: &str = "the reduced structure";
+
+/// Motions of the lowest frequencies by which rounding is measured.
+const SOFTEST: usize = 3;
 
 /// Shift σ over the square of the lowest frequency of the sweep. It makes a structure that can move freely definite, and is
 /// so small that the basis finds the modes near the sweep first.
@@ -115,9 +119,9 @@ pub(super) fn prepare(
     matrices: &WaveMatrices<'_>,
     inputs: Vec<SparseVector>,
     limit: f64,
-    error: impl Fn(&Arc<ReducedWave>) -> Result<f64>,
+    error: impl Fn(&Arc<ReducedWave>) -> Result<Certificate>,
     interrupt: &Interrupt<'_>,
-) -> Result<Option<(Arc<ReducedWave>, f64)>> {
+) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
     let Some(assembled) = matrices.assembled(interrupt)? else {
         return Ok(None);
     };
@@ -157,10 +161,10 @@ fn build<T: Entry>(
     assembled: Assembled,
     inputs: Vec<SparseVector>,
     limit: f64,
-    error: impl Fn(&Arc<ReducedWave>) -> Result<f64>,
+    error: impl Fn(&Arc<ReducedWave>) -> Result<Certificate>,
     (basis, back): Wrapping<T>,
     interrupt: &Interrupt<'_>,
-) -> Result<Option<(Arc<ReducedWave>, f64)>> {
+) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
     let Some((mut krylov, prepared)) = started::<T>(matrices, assembled, &inputs, interrupt)? else {
         return Ok(None);
     };
@@ -169,7 +173,7 @@ fn build<T: Entry>(
     let mut wave = ReducedWave {
         key: matrices.key,
         inputs,
-        pencil: pencil(&krylov, &prepared, interrupt)?,
+        pencil: pencil(&mut krylov, &prepared, interrupt)?,
         basis: basis(krylov.take_basis()),
         n: prepared.n,
         exhausted: false,
@@ -185,13 +189,14 @@ fn build<T: Entry>(
         };
         let order = wave.pencil.order();
         let full = order + krylov.next_columns() > most || krylov.next_columns() == 0;
-        if found <= limit || full {
-            wave.exhausted = full && found > limit;
+        // Rounding is no reason for a larger basis.
+        if found.basis <= limit || full {
+            wave.exhausted = full && found.basis > limit;
             return Ok(Some((Arc::new(wave), found)));
         }
         krylov.give_basis(back(wave.basis));
         let grown = krylov.grow(interrupt)?;
-        wave.pencil = pencil(&krylov, &prepared, interrupt)?;
+        wave.pencil = pencil(&mut krylov, &prepared, interrupt)?;
         wave.basis = basis(krylov.take_basis());
         if !grown {
             // Images and basis are the same space: there is nothing to add.
@@ -272,7 +277,11 @@ fn started<T: Entry>(
 }
 
 /// The matrices on the basis, with the basis rotated so that the mass is diagonal.
-fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &Interrupt<'_>) -> Result<ReducedPencil> {
+fn pencil<T: Entry>(
+    krylov: &mut BlockKrylov<T>,
+    prepared: &Prepared,
+    interrupt: &Interrupt<'_>,
+) -> Result<ReducedPencil> {
     let order = krylov.order();
     let mut mass = try_copy(krylov.reduced(0), CONTEXT)?;
     for j in 0..order {
@@ -283,6 +292,7 @@ fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &In
         }
     }
     let (values, rotation) = hermitian::eigen(&mut mass, order, interrupt)?;
+    let rounding = krylov.rounding(&probes(&values, &rotation)?, interrupt)?;
     let damping = match prepared.damping {
         Some((alpha, beta)) => WaveDamping::Proportional(alpha, beta),
         None => WaveDamping::General(rotated(krylov.reduced(1), &rotation, order)?),
@@ -295,8 +305,30 @@ fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &In
         remainder: Remainder {
             last: krylov.last(),
             gram: try_copy(krylov.gram(), CONTEXT)?,
+            rounding,
         },
     })
+}
+
+/// Motions in which rounding shows most: those of the lowest frequencies, and all of the basis at once.
+fn probes(values: &[f64], rotation: &[Complex64]) -> Result<Vec<Complex64>> {
+    let order = values.len();
+    let mut found = try_vec((SOFTEST + 1) * order, Complex64::ZERO, CONTEXT)?;
+    let mut ranked: Vec<usize> = Vec::new();
+    for k in 0..order {
+        try_push(&mut ranked, k, CONTEXT)?;
+    }
+    ranked.sort_unstable_by(|&a, &b| values[b].total_cmp(&values[a]));
+    for (probe, k) in found
+        .chunks_exact_mut(order.max(1))
+        .zip(ranked.into_iter().take(SOFTEST))
+    {
+        probe.copy_from_slice(&rotation[k * order..(k + 1) * order]);
+    }
+    for (k, z) in found[SOFTEST * order..].iter_mut().enumerate() {
+        *z = if k % 2 == 0 { 1.0 } else { -1.0 }.into();
+    }
+    Ok(found)
 }
 
 /// Qᴴ C Q

@@ -5,7 +5,7 @@
 //! through these, it does not depend on their constants.
 
 use crate::condense::HarmonicBlock;
-use crate::condense::certificate::certificate;
+use crate::condense::certificate::{Certificate, certificate};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::krylov_wave::{WaveMatrices, prepare};
 use crate::condense::reduced_block::reduced_block;
@@ -84,13 +84,13 @@ pub(super) fn reduced_blocks(
         return Ok(None);
     }
     let mut views = try_vec(request.numbers.len(), None, CONTEXT)?;
-    let mut worst = 0.0_f64;
+    let mut worst = Certificate::default();
     for group in &groups {
         let Some((wave, error)) = wave_of(request, group, &kappa, interrupt)? else {
             return declined(forced);
         };
         worst = worst.max(error);
-        if !forced && error > options.certificate && n <= DIRECT_UP_TO {
+        if !forced && error.basis > options.certificate && n <= DIRECT_UP_TO {
             return Ok(None);
         }
         for &(i, conjugated) in &group.members {
@@ -109,7 +109,7 @@ pub(super) fn reduced_blocks(
         let block = reduced_block(model, number, request.contacts, |c| kappa(c, number), (view, order))?;
         try_push(&mut blocks, block, CONTEXT)?;
     }
-    Ok(Some((blocks, worst)))
+    Ok(Some((blocks, worst.total)))
 }
 
 fn declined<T>(forced: bool) -> Result<Option<T>> {
@@ -129,7 +129,7 @@ fn wave_of(
     group: &Group,
     kappa: &impl Fn(usize, usize) -> Complex64,
     interrupt: &Interrupt<'_>,
-) -> Result<Option<(Arc<ReducedWave>, f64)>> {
+) -> Result<Option<(Arc<ReducedWave>, Certificate)>> {
     let limit = request.options.certificate;
     let error = |wave: &Arc<ReducedWave>| certificate_of(request, group, wave, kappa, interrupt);
     let mut inputs = Vec::new();
@@ -140,7 +140,7 @@ fn wave_of(
     if let Some(wave) = &kept {
         if inputs.iter().all(|input| wave.inputs.contains(input)) {
             let error = error(wave)?;
-            if error <= limit || wave.exhausted {
+            if error.basis <= limit || wave.exhausted {
                 return Ok(Some((Arc::clone(wave), error)));
             }
         }
@@ -186,8 +186,8 @@ fn certificate_of(
     wave: &Arc<ReducedWave>,
     kappa: &impl Fn(usize, usize) -> Complex64,
     interrupt: &Interrupt<'_>,
-) -> Result<f64> {
-    let mut worst = 0.0_f64;
+) -> Result<Certificate> {
+    let mut worst = Certificate::default();
     for &(i, conjugated) in &group.members {
         let view = ReducedView {
             wave: Arc::clone(wave),

@@ -57,6 +57,12 @@ impl<T: Entry> Operator<T> {
     }
 }
 
+/// |xᴴ y|
+fn energy<T: Entry>(x: &[T], y: &[T]) -> f64 {
+    let product = |(x, y): (&T, &T)| x.complex().conj() * y.complex();
+    x.iter().zip(y).map(product).sum::<Complex64>().norm()
+}
+
 /// A growing basis.
 pub struct BlockKrylov<T> {
     factor: Cholesky<T>,
@@ -132,6 +138,39 @@ impl<T: Entry> BlockKrylov<T> {
     /// The basis as it was taken.
     pub fn give_basis(&mut self, basis: Vec<T>) {
         self.basis = basis;
+    }
+
+    /// Largest relative change, in the norm of A, of motions V z that products with A and solutions leave by rounding, over
+    /// `probes` of coordinates z, one after the other. A stiff structure loses its smallest stiffness in that of its
+    /// largest: the change is ε times the ratio of the two.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn rounding(&mut self, probes: &[Complex64], interrupt: &Interrupt<'_>) -> Result<f64> {
+        let (n, order) = (self.a.n.max(1), self.order().max(1));
+        let mut worst = 0.0_f64;
+        let mut motion = try_vec(n, T::NONE, CONTEXT)?;
+        let mut force = try_vec(n, T::NONE, CONTEXT)?;
+        for probe in probes.chunks_exact(order) {
+            motion.fill(T::NONE);
+            for (column, &z) in self.basis.chunks_exact(n).zip(probe) {
+                for (x, v) in motion.iter_mut().zip(column) {
+                    x.add_product(*v, T::of(z));
+                }
+            }
+            self.a.multiply(&motion, &mut force, interrupt)?;
+            let mut found = try_copy(&force, CONTEXT)?;
+            self.factor.solve(&mut found, interrupt)?;
+            let size = energy(&motion, &force);
+            for (x, v) in found.iter_mut().zip(&motion) {
+                x.add_product(v.scaled(-1.0), T::of(Complex64::ONE));
+            }
+            self.a.multiply(&found, &mut force, interrupt)?;
+            if size > 0.0 {
+                worst = worst.max((energy(&found, &force) / size).sqrt());
+            }
+        }
+        Ok(worst)
     }
 
     /// The first block, of A⁻¹ times the given vectors.

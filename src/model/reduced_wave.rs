@@ -102,6 +102,8 @@ pub struct Remainder {
     pub last: usize,
     /// Gram matrix of the parts, mass before damping.
     pub gram: Vec<Complex64>,
+    /// Relative error of a motion in the norm of A by rounding, see [`crate::linalg::block_krylov::BlockKrylov::rounding`].
+    pub rounding: f64,
 }
 
 /// The structure of a wave on its basis.
