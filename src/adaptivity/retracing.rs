@@ -41,7 +41,7 @@ pub(super) struct RecentPoints {
 impl RecentPoints {
     /// Begins at a recorded point, with the continuation from there.
     pub fn begin(settings: Settings, point: Point, resolution: usize) -> Result<(Self, Continuation)> {
-        let continuation = Continuation::new(settings, point)?;
+        let continuation = Continuation::new(settings, point)?.leaving_surfaces();
         let recent = Self {
             before: Vec::new(),
             last: (continuation.current().try_clone()?, resolution),

@@ -49,6 +49,8 @@ pub struct Continuation {
     largest: (f64, f64),
     row: Vec<f64>,
     scratch: Vec<f64>,
+    /// Whether corners are left that it reaches along their surface. Paths of homotopies end there.
+    leaves_surfaces: bool,
 }
 
 const CONTEXT: &str = "the continuation";
@@ -91,7 +93,15 @@ impl Continuation {
             current: first,
             row: try_vec(n + 1, 0.0, CONTEXT)?,
             scratch: try_vec(n + 1, 0.0, CONTEXT)?,
+            leaves_surfaces: false,
         })
+    }
+
+    /// The same for a branch, which leaves corners that it reaches along their surface, too.
+    #[must_use]
+    pub fn leaving_surfaces(mut self) -> Self {
+        self.leaves_surfaces = true;
+        self
     }
 
     /// Continues from a point in place of the one accepted last, and from `previous` in place of the one before, both

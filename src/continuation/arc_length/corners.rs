@@ -171,6 +171,9 @@ impl Continuation {
                 return Ok(Some(point));
             }
         }
-        self.leave_along_surface(problem, metric, interrupt)
+        if self.leaves_surfaces {
+            return self.leave_along_surface(problem, metric, interrupt);
+        }
+        Ok(None)
     }
 }
