@@ -12,7 +12,12 @@ use num_complex::Complex64;
 const PLATE: [usize; 3] = [20, 16, 2];
 
 fn plate() -> (Plate, Model, f64) {
-    let plate = Plate::new(PLATE);
+    of_thickness(0.02)
+}
+
+fn of_thickness(thickness: f64) -> (Plate, Model, f64) {
+    let mut plate = Plate::new(PLATE);
+    plate.size[2] = thickness;
     let model = plate.with_sliders(8, 2e5, 0.05).unwrap();
     let omega = model.lowest_modes(0, ContactState::Stuck, 1).unwrap().omega[0];
     (plate, model, omega)
@@ -77,6 +82,27 @@ fn all_degrees_of_freedom_agree_with_direct_factors_within_the_limit_of_the_cert
                 .all(|(a, b)| (a - b).abs() < 1e-8 * largest)
         );
     }
+}
+
+#[test]
+fn the_certificate_bounds_the_error_of_plates_so_thin_that_rounding_decides() {
+    let mut told = Vec::new();
+    for thickness in [0.02, 0.002, 0.0002] {
+        let (plate, model, omega) = of_thickness(thickness);
+        for share in [0.8, 1.02] {
+            let at = share * omega;
+            let reduced = solve(&model, &options(&plate, Flexibility::Automatic), (at, at));
+            let direct = solve(&model, &options(&plate, Flexibility::Direct), (at, at));
+            let certificate = reduced.reduction().certificate;
+            let (x, exact) = (motion(&reduced, 0), motion(&direct, 0));
+            let size = |x: &mut dyn Iterator<Item = Complex64>| x.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+            let off = size(&mut x.iter().zip(&exact).map(|(a, b)| a - b)) / size(&mut exact.iter().copied());
+            println!("{thickness} m, {share} of the resonance: certificate {certificate:.1e}, true {off:.1e}");
+            assert!(off < certificate, "{thickness} m: {off:e} {certificate:e}");
+            told.push(certificate);
+        }
+    }
+    assert!(told[4] > 100.0 * told[0], "rounding is told: {told:?}");
 }
 
 #[test]
