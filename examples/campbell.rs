@@ -63,8 +63,8 @@ fn run(folder: &Path, screen: &mut impl Write) -> Result<(), Box<dyn Error>> {
     let speeds: Vec<f64> = (0..POINTS)
         .map(|i| (RPM.0 + (RPM.1 - RPM.0) * i as f64 / (POINTS - 1) as f64) * PER_RPM)
         .collect();
-    let what = (DIAMETER, LinearContacts::Stuck, COUNT);
-    let found = campbell(&model, &speeds, what, &ENGINE_ORDERS, &mut Hooks::default())?;
+    let selection = (DIAMETER, LinearContacts::Stuck, COUNT);
+    let found = campbell(&model, &speeds, selection, &ENGINE_ORDERS, &mut Hooks::default())?;
     writeln!(screen, "Engine orders meet modes of nodal diameter {DIAMETER}:")?;
     for crossing in &found.crossings {
         writeln!(
