@@ -49,8 +49,10 @@ pub struct Continuation {
     largest: (f64, f64),
     row: Vec<f64>,
     scratch: Vec<f64>,
-    /// Whether corners are left that it reaches along their surface. Paths of homotopies end there.
+    /// Whether corners are left that it reaches along their surface. Paths of homotopies end there, and so does a branch
+    /// that meets the next one before its steps have grown again: one that goes to infinity would creep.
     leaves_surfaces: bool,
+    left_surface: bool,
 }
 
 const CONTEXT: &str = "the continuation";
@@ -60,6 +62,9 @@ const STRAIGHT: f64 = 0.5;
 
 /// Step below which a failure counts as a corner of the branch.
 const CORNER_STEP: f64 = 1e-6;
+
+/// Step of a branch that a corner no longer shortens.
+const GROWN: f64 = 1e-3;
 
 /// Least cosine between the branch beyond a corner and its direction as predicted there.
 const ALONG: f64 = 0.9;
@@ -94,6 +99,7 @@ impl Continuation {
             row: try_vec(n + 1, 0.0, CONTEXT)?,
             scratch: try_vec(n + 1, 0.0, CONTEXT)?,
             leaves_surfaces: false,
+            left_surface: false,
         })
     }
 
@@ -219,6 +225,7 @@ impl Continuation {
     fn accept(&mut self, point: Point, fixed: Option<f64>) -> Result<Advance> {
         self.largest.0 = self.largest.0.max(norm(point.unknowns()));
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
+        self.left_surface &= point.step < GROWN;
         self.previous = Some(core::mem::replace(&mut self.current, point.try_clone()?));
         Ok(match fixed {
             Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },

@@ -129,10 +129,11 @@ impl Continuation {
                 }
                 for _ in 0..2 {
                     let onwards = self.onwards(metric)?;
-                    if onwards > -STRAIGHT
+                    if (-STRAIGHT..=-STRAIGHT_BACK).contains(&onwards)
                         && let Some(point) = self.beyond_corner(problem, metric, (length, false), interrupt)?
                     {
                         self.steps.restart(length);
+                        self.left_surface = true;
                         return Ok(Some(point));
                     }
                     for r in &mut self.row {
@@ -171,7 +172,7 @@ impl Continuation {
                 return Ok(Some(point));
             }
         }
-        if self.leaves_surfaces {
+        if self.leaves_surfaces && !self.left_surface {
             return self.leave_along_surface(problem, metric, interrupt);
         }
         Ok(None)
