@@ -111,7 +111,7 @@ fn masses_and_speeds_of_one_model_are_those_of_models_built_anew() {
         turn(&mut model, 60_000.0);
         let (f, _, share) = peak(&model, &nine);
         let natural = number(&stuck["ring_stuck"][format!("{grams}g")]["2"]["f"][0]);
-        assert_eq!(share, 0.0);
+        assert!(share < f64::EPSILON);
         // Damping of 0.1 % lowers the frequency of the peak by its square.
         assert!((f / natural - 1.0).abs() < 5e-6, "{f} {natural}");
     }

@@ -57,11 +57,11 @@ fn engine_orders_meet_the_modes_of_the_rotating_disk() {
         assert!(near, "EO {order} at {rpm} rpm, {hertz} Hz");
     }
     // The waves of the second figure at the speed of the first crossing of EO 2.
-    let [_, rpm, hertz] = *crossings.iter().find(|c| c[0] == 2.0).unwrap();
+    let [_, rpm, hertz] = *crossings.iter().find(|c| (c[0] - 2.0).abs() < 0.5).unwrap();
     let waves = rows("interference.csv");
     assert_eq!(waves.len(), 13 * 3);
     let of_two = waves
         .iter()
-        .find(|row| row[0] == 2.0 && (row[2] / hertz - 1.0).abs() < 1e-6);
+        .find(|row| (row[0] - 2.0).abs() < 0.5 && (row[2] / hertz - 1.0).abs() < 1e-6);
     assert!(of_two.is_some(), "{hertz} Hz at {rpm} rpm, {} rad/s", rpm * TAU / 60.0);
 }
