@@ -32,7 +32,8 @@ fn engine_orders_meet_the_modes_of_the_rotating_disk() {
     assert_eq!((curves.len(), curves[0].len()), (46, 4));
     for (k, hertz) in curves[0][1..].iter().enumerate() {
         let known = number(&stuck["2"]["f"][k]);
-        assert!((hertz / known - 1.0).abs() < 1e-6, "mode {k} at rest: {hertz} {known}");
+        // Damping of 0.3 % lowers a frequency by half of its square.
+        assert!((hertz / known - 1.0).abs() < 1e-5, "mode {k} at rest: {hertz} {known}");
     }
     assert!(
         curves.windows(2).all(|pair| (1..4).all(|k| pair[1][k] > pair[0][k])),
