@@ -111,3 +111,68 @@ fn points_without_a_motion_in_time_are_refused() {
     assert_eq!(refused.status, Status::Unsupported);
     assert!(refused.to_string().contains("limit cycle"));
 }
+
+/// Random structures of one to six masses with up to three contacts of different laws, in other units of mass, length and
+/// time: multipliers are numbers without a unit.
+#[test]
+fn multipliers_have_no_unit() {
+    let mut state = 7_u64;
+    let mut random = move || {
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for n in 1..=6 {
+        let mut matrices = [vec![0.0; n * n], vec![0.0; n * n], vec![0.0; n * n]];
+        for (a, (own, other)) in matrices.iter_mut().zip([(1.0, 0.0), (0.05, 0.02), (1.0, 0.4)]) {
+            for i in 0..n {
+                a[i * n + i] += own * (0.7 + 0.6 * random());
+                if i > 0 {
+                    let k = other * (0.5 + random());
+                    for (r, c, sign) in [(i, i, 1.0), (i - 1, i - 1, 1.0), (i, i - 1, -1.0), (i - 1, i, -1.0)] {
+                        a[r * n + c] += sign * k;
+                    }
+                }
+            }
+        }
+        let (omega, force) = (0.9 + 0.5 * random(), 0.3 + 0.2 * random());
+        let mut radii = Vec::new();
+        for (mass, length, time) in [(1.0, 1.0, 1.0), (1e-3, 1e3, 1.0), (1e4, 1e-2, 1e-3)] {
+            let stiffness = mass / (time * time);
+            let unit_force = stiffness * length;
+            let mut model = Model::new(n).unwrap();
+            for ((kind, a), unit) in [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness]
+                .into_iter()
+                .zip(&matrices)
+                .zip([mass, mass / time, stiffness])
+            {
+                let a: Vec<f64> = a.iter().map(|x| x * unit).collect();
+                model.set_matrix(kind, &MatrixView::dense(n, &a)).unwrap();
+            }
+            let last = n - 1;
+            let mut contacts = vec![Contact::jenkins(last, None, 0.8 * stiffness, 0.5, 0.3 * unit_force)];
+            if n > 1 {
+                contacts.push(Contact::unilateral(Some(0), None, 2.0 * stiffness, 0.2 * length));
+            }
+            if n > 3 {
+                contacts.push(Contact::cubic(
+                    1,
+                    Some(2),
+                    0.1 * stiffness,
+                    0.2 * stiffness / length.powi(2),
+                ));
+            }
+            for contact in &contacts {
+                model.add_contact(contact).unwrap();
+            }
+            model.add_force(0, 1, (force * unit_force).into()).unwrap();
+            let branch = solve_at(&model, &harmonics(21), omega / time);
+            radii.push(multipliers(&model, &branch, 0, Waves::Wave).radius);
+        }
+        println!("{n} masses: {radii:?}");
+        for radius in &radii {
+            assert!((radius - radii[0]).abs() < 1e-10, "{n} masses: {radii:?}");
+        }
+    }
+}
