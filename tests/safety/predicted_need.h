@@ -116,7 +116,7 @@ static double states_of(const sizes *s)
 static double need_in_time(const sizes *s, double h)
 {
     const double states = states_of(s);
-    return 40 * states * states + 64 * (h + 1) * (double)s->wheel + MIB;
+    return 80 * states * states + 64 * (h + 1) * (double)s->wheel + MIB;
 }
 
 /* Of Floquet multipliers. */
