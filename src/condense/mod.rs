@@ -24,6 +24,7 @@ mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
+mod single_contact;
 mod sweep;
 mod tied_load;
 mod under_force;

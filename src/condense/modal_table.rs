@@ -6,7 +6,8 @@
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
 use crate::condense::low_rank::{Frequency, LowRank, Plain};
-use crate::condense::wave_modes::WaveModes;
+use crate::condense::single_contact::{Denominators, SingleContact};
+use crate::condense::wave_modes::{NEAR_RESONANCE, WaveModes};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use faer::linalg::matmul::matmul;
@@ -38,6 +39,8 @@ pub struct ModalTable {
     plain: Vec<Complex64>,
     d_plain: Vec<Complex64>,
     low_rank: LowRank,
+    /// The sums written out, where one contact without springs allows it.
+    single: Option<SingleContact>,
 }
 
 impl ModalTable {
@@ -71,8 +74,14 @@ impl ModalTable {
             inputs[coordinates] = crate::linalg::inner(shape, &block.force);
         }
         let low_rank = LowRank::new(condensed, i, springs, damped)?;
+        let single = if coordinates == 1 && rows == 2 && low_rank.order() <= 1 {
+            Some(SingleContact::new(&modes.values, &left, &right)?)
+        } else {
+            None
+        };
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
         Ok(Self {
+            single,
             number: block.number as f64,
             coordinates,
             rows,
@@ -95,14 +104,24 @@ impl ModalTable {
     /// `Singular` at an undamped resonance; `StoppedByCaller`.
     pub fn evaluate(&mut self, omega: f64, slopes: bool, table: &mut Table, interrupt: &Interrupt<'_>) -> Result<bool> {
         let outputs = self.coordinates + 1;
+        let at = self.frequency(omega);
+        if let Some(single) = &self.single {
+            let (s, d_s) = self.inertia(omega);
+            let by = Denominators {
+                at,
+                s,
+                d_s,
+                nu: self.number * omega,
+                least: NEAR_RESONANCE,
+            };
+            let is_clear = single.evaluate(by, (self.low_rank.entry(0, at), self.low_rank.d_entry(0, at)), table);
+            if is_clear {
+                check_finite(&table.value, omega)?;
+            }
+            return Ok(is_clear);
+        }
         if !self.denominators(omega) {
             return Ok(false);
-        }
-        let at = self.frequency(omega);
-        if self.coordinates == 1 && self.rows == 2 && self.low_rank.order() == 1 {
-            self.single(at, table);
-            check_finite(&table.value, omega)?;
-            return Ok(true);
         }
         self.sum(slopes);
         let of = |plain: &[Complex64], to: &mut [Complex64]| {
@@ -126,37 +145,6 @@ impl ModalTable {
         Ok(true)
     }
 
-    /// The table of a single relative motion without springs, the same formulas written out: this is the inner loop of every
-    /// response with one contact.
-    fn single(&self, at: Frequency, table: &mut Table) {
-        // Columns: contact, excitation. Rows: contact, response.
-        let mut t = [[Complex64::ZERO; 2]; 2];
-        let mut d_t = t;
-        let factors = self.inverse.iter().zip(&self.slopes);
-        let modes = self.left.as_chunks::<2>().0.iter().zip(self.right.as_chunks::<2>().0);
-        for ((left, right), (inverse, slope)) in modes.zip(factors) {
-            for k in 0..2 {
-                let (a, b) = (right[k] * inverse, right[k] * slope);
-                for r in 0..2 {
-                    t[k][r] += left[r] * a;
-                    d_t[k][r] += left[r] * b;
-                }
-            }
-        }
-        let (e, d_e) = (self.low_rank.entry(0, at), self.low_rank.d_entry(0, at));
-        let pivot = (1.0 - t[0][0] * e).inv();
-        let d_product = d_t[0][0] * e + t[0][0] * d_e;
-        for k in 0..2 {
-            let x = pivot * t[k][0];
-            let d_x = pivot * (d_t[k][0] + d_product * x);
-            let (force, d_force) = (e * x, e * d_x + d_e * x);
-            for r in 0..2 {
-                table.value[2 * k + r] = t[k][r] + t[0][r] * force;
-                table.slope[2 * k + r] = d_t[k][r] + d_t[0][r] * force + t[0][r] * d_force;
-            }
-        }
-    }
-
     /// c and ∂c/∂ω.
     fn frequency(&self, omega: f64) -> Frequency {
         let beta = self.modes.proportional.1;
@@ -167,13 +155,19 @@ impl ModalTable {
         }
     }
 
-    /// 1/d and its derivative; `false` where a denominator is small.
-    fn denominators(&mut self, omega: f64) -> bool {
+    /// ν² − iνα and its derivative by ω.
+    fn inertia(&self, omega: f64) -> (Complex64, Complex64) {
         let alpha = self.modes.proportional.0;
         let nu = self.number * omega;
+        let by_omega = self.number * Complex64::new(2.0 * nu, -alpha);
+        (Complex64::new(nu * nu, -nu * alpha), by_omega)
+    }
+
+    /// 1/d and its derivative; `false` where a denominator is small.
+    fn denominators(&mut self, omega: f64) -> bool {
+        let nu = self.number * omega;
         let Frequency { c, d_c } = self.frequency(omega);
-        let inertia = Complex64::new(nu * nu, -nu * alpha);
-        let d_inertia = self.number * Complex64::new(2.0 * nu, -alpha);
+        let (inertia, d_inertia) = self.inertia(omega);
         let is_clear = self.modes.invert((c, inertia), nu, &mut self.inverse);
         let slopes = self.slopes.iter_mut().zip(&self.inverse).zip(&self.modes.values);
         for ((slope, inverse), mu) in slopes {

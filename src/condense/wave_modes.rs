@@ -34,7 +34,7 @@ pub struct WaveModes {
 }
 
 /// Relative size of a denominator below which a mode hides the others: a sum over modes then has so many digits less.
-const NEAR_RESONANCE: f64 = 1e-4;
+pub(super) const NEAR_RESONANCE: f64 = 1e-4;
 
 impl WaveModes {
     /// 1/(1 + c − s μ) of all modes at ν, s being ν² and what damping adds to it; `false` where a denominator is small.

@@ -2,6 +2,7 @@
 
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
+use std::f64::consts::PI;
 
 /// Value, first and second derivative of a series at one time.
 #[derive(Clone, Copy, Debug)]
@@ -39,13 +40,159 @@ pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
     j
 }
 
+/// Value and derivatives of one order more.
+#[derive(Clone, Copy)]
+pub(super) struct LongJet {
+    pub(super) x: f64,
+    pub(super) dx: f64,
+    pub(super) ddx: f64,
+    pub(super) dddx: f64,
+}
+
+/// x to x‴ of a packed signal at the time whose e^{iτ} is `turn`.
+fn long_jet(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> LongJet {
+    let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
+    let mut j = LongJet {
+        x: mean.first().copied().unwrap_or(0.0),
+        dx: 0.0,
+        ddx: 0.0,
+        dddx: 0.0,
+    };
+    let stride = set.stride();
+    let step = if stride == 2 { turn * turn } else { turn };
+    let mut p = 1.0;
+    for pair in rest.as_chunks::<2>().0 {
+        let x = pair[0] * turn.re - pair[1] * turn.im;
+        let quadrature = p * (pair[0] * turn.im + pair[1] * turn.re);
+        let square = p * p;
+        j.x += x;
+        j.dx -= quadrature;
+        j.ddx -= square * x;
+        j.dddx += square * quadrature;
+        turn *= step;
+        p += stride as f64;
+    }
+    j
+}
+
+/// The jets of a signal at times that approach one another: most e^{iτ} follow from the one before.
+struct Approach<'a> {
+    set: &'a HarmonicSet,
+    packed: &'a [f64],
+    tau: f64,
+    turn: Complex64,
+}
+
+/// Largest angle of which [`small_turn`] returns all digits.
+const SMALL_ANGLE: f64 = 0.1;
+
+/// e^{is} of a small angle, by its series up to s¹⁰.
+fn small_turn(s: f64) -> Complex64 {
+    let q = s * s;
+    let cosine = 1.0 - q / 2.0 * (1.0 - q / 12.0 * (1.0 - q / 30.0 * (1.0 - q / 56.0 * (1.0 - q / 90.0))));
+    let sine = s * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0))));
+    Complex64::new(cosine, sine)
+}
+
+impl<'a> Approach<'a> {
+    fn new(set: &'a HarmonicSet, packed: &'a [f64]) -> Self {
+        Self {
+            set,
+            packed,
+            tau: f64::INFINITY,
+            turn: Complex64::ONE,
+        }
+    }
+
+    fn at(&mut self, tau: f64) -> LongJet {
+        let step = tau - self.tau;
+        self.turn = if step.abs() <= SMALL_ANGLE {
+            self.turn * small_turn(step)
+        } else {
+            Complex64::cis(tau)
+        };
+        self.tau = tau;
+        long_jet(self.set, self.packed, self.turn)
+    }
+}
+
 /// The time in (a, b) at which a signal, monotone there, passes `level`.
 #[must_use]
 pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: f64, level: f64) -> f64 {
-    safe_newton(a, b, xa - level, xb - level, |tau| {
-        let at = jet(set, packed, tau);
-        (at.x - level, at.dx)
+    // Between two turning points a motion resembles half a wave of a cosine.
+    let guess = a + (b - a) * (1.0 - 2.0 * (level - xa) / (xb - xa)).acos() / PI;
+    let mut signal = Approach::new(set, packed);
+    safe_halley((a, b), xa - level, (guess, set.highest_reduced()), |tau| {
+        let at = signal.at(tau);
+        [at.x - level, at.dx, at.ddx]
     })
+}
+
+/// The time between two at which x′ vanishes, and x there; `slopes` are the values of x′ at both, of opposite sign.
+pub(super) fn turning_point(set: &HarmonicSet, packed: &[f64], (a, b): (f64, f64), slopes: (f64, f64)) -> (f64, f64) {
+    let guess = a - slopes.0 * (b - a) / (slopes.1 - slopes.0);
+    let mut signal = Approach::new(set, packed);
+    let mut last = (0.0, 0.0, 0.0);
+    let tau = safe_halley((a, b), slopes.0, (guess, set.highest_reduced()), |tau| {
+        let at = signal.at(tau);
+        last = (tau, at.x, at.dx);
+        [at.dx, at.ddx, at.dddx]
+    });
+    // The step from the last jet is short, and x′ falls to zero along it.
+    let (at, x, slope) = last;
+    (tau, x + 0.5 * (tau - at) * slope)
+}
+
+/// Longest step, in angles of the highest harmonic, after which the error of Halley's method is rounding: it is the
+/// cube of the step.
+const LAST_STEP: f64 = 3e-6;
+
+/// Largest error that the curvature leaves after the last step.
+const LAST_ERROR: f64 = 1e-17;
+
+/// Halley's method inside a bracket from a guess, with bisection where a step leaves it or does not converge: fewer
+/// values of the function than Newton's method needs. `f` returns a function and two derivatives.
+fn safe_halley((a, b): (f64, f64), fa: f64, (guess, highest): (f64, usize), mut f: impl FnMut(f64) -> [f64; 3]) -> f64 {
+    let (mut low, mut high) = if fa < 0.0 { (a, b) } else { (b, a) };
+    let mut tau = if guess > a && guess < b { guess } else { 0.5 * (a + b) };
+    let mut last = (b - a).abs();
+    let short = LAST_STEP / highest.max(1) as f64;
+    for _ in 0..100 {
+        let [value, slope, curvature] = f(tau);
+        if value == 0.0 {
+            return tau;
+        }
+        if value < 0.0 {
+            low = tau;
+        } else {
+            high = tau;
+        }
+        let newton = value / slope;
+        let bend = 0.5 * newton * curvature / slope;
+        let next = if bend.abs() < 0.5 {
+            tau - newton / (1.0 - bend)
+        } else {
+            tau - newton
+        };
+        let step = (next - tau).abs();
+        let inside = (next - low) * (next - high) < 0.0;
+        if inside && step <= short && bend * bend * step <= LAST_ERROR {
+            return next;
+        }
+        let next = if inside && step <= 0.5 * last {
+            next
+        } else {
+            0.5 * (low + high)
+        };
+        last = (next - tau).abs();
+        tau = next;
+        if last < EVENT_TOLERANCE {
+            // Near a tangent, or at an end of the bracket.
+            let [value, slope, _] = f(tau);
+            return polished(tau, value / slope, last);
+        }
+    }
+    tau
 }
 
 /// Width below which another Newton step no longer matters: the force is continuous at every
@@ -84,23 +231,23 @@ pub fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (
         tau = next;
         if last < EVENT_TOLERANCE {
             let (value, slope) = f(tau);
-            let polished = tau - value / slope;
-            // Factor two: bisection towards an end of the bracket that is the root but for rounding stops as far
-            // from it as its last step was long.
-            return if (polished - tau).abs() <= 2.0 * last {
-                polished
-            } else {
-                tau
-            };
+            return polished(tau, value / slope, last);
         }
     }
     tau
 }
 
+/// A root after one more step of Newton's method, if that is not longer than the last step was.
+///
+/// Twice as long at most: bisection towards an end of the bracket that is the root but for rounding stops as far from it as
+/// its last step was long.
+fn polished(tau: f64, step: f64, last: f64) -> f64 {
+    if step.abs() <= 2.0 * last { tau - step } else { tau }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
 
     #[test]
     fn a_crossing_is_found_to_rounding_wherever_its_bracket_ends() {

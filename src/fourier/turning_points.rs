@@ -2,7 +2,7 @@
 
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
-use crate::fourier::series::{jet, safe_newton};
+use crate::fourier::series::{jet, turning_point};
 use num_complex::Complex64;
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::{PI, TAU};
@@ -124,6 +124,7 @@ impl TurningPoints {
             positive: sign(self.slope[0], first),
         };
         let start = left.positive;
+        let hidden = bounds.largest_dip(self.spacing);
         for j in 1..=n {
             let value = self.slope[j];
             let right = Slope {
@@ -135,7 +136,10 @@ impl TurningPoints {
                     sign(value, left.positive)
                 },
             };
-            isolate(set, packed, [left, right], &bounds, found);
+            // Most cells hold no root, and certainly none.
+            if left.positive != right.positive || left.value.abs().min(right.value.abs()) <= hidden {
+                isolate(set, packed, [left, right], &bounds, found);
+            }
             left = right;
         }
         // Roots just past the end belong to the start of the turn.
@@ -210,6 +214,11 @@ impl Bounds {
             },
         }
     }
+
+    /// The most by which x′ departs from its chord within a cell.
+    fn largest_dip(&self, width: f64) -> f64 {
+        0.125 * self.bend * width * width
+    }
 }
 
 /// x′ at a time, with its sign; within rounding of zero it has the sign of the time before.
@@ -223,13 +232,12 @@ struct Slope {
 /// Stores every root of x′ between two times.
 fn isolate(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], bounds: &Bounds, found: &mut Vec<Extremum>) {
     let width = b.tau - a.tau;
-    let bend = bounds.bend * width * width;
     let crosses = a.positive != b.positive;
-    // x′ departs from its chord by at most bend/8, x″ from the slope of the chord by bend/(2·width).
+    // x″ departs from the slope of the chord of x′ by at most bend·width/2.
     let certain = if crosses {
-        (b.value - a.value).abs() > 0.5 * bend
+        (b.value - a.value).abs() > 0.5 * bounds.bend * width * width
     } else {
-        a.value.abs().min(b.value.abs()) > 0.125 * bend
+        a.value.abs().min(b.value.abs()) > bounds.largest_dip(width)
     };
     if certain || width < bounds.finest {
         if crosses {
@@ -258,12 +266,7 @@ fn push_root(set: &HarmonicSet, packed: &[f64], a: Slope, b: Slope, found: &mut 
         found.push(Extremum { tau, x });
         return;
     }
-    let mut x = 0.0;
-    let tau = safe_newton(a.tau, b.tau, a.value, b.value, |tau| {
-        let at = jet(set, packed, tau);
-        x = at.x;
-        (at.dx, at.ddx)
-    });
+    let (tau, x) = turning_point(set, packed, (a.tau, b.tau), (a.value, b.value));
     found.push(Extremum { tau, x });
 }
 

@@ -10,6 +10,7 @@ mod factor_reuse;
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::lu::Lu;
+use crate::linalg::small_lu::{self, SmallLu};
 
 /// The parts of the matrix [J·u, r·p; row].
 #[derive(Clone, Copy)]
@@ -26,9 +27,58 @@ pub struct Parts<'a> {
     pub row: &'a [f64],
 }
 
+/// Factors of the matrix of the active unknowns and the parameter.
+enum Factors {
+    Small(SmallLu),
+    Large(Lu<f64>),
+}
+
+impl Factors {
+    /// Memory for matrices of up to `n` rows.
+    fn new(n: usize) -> Result<Self> {
+        Ok(if n <= small_lu::LARGEST {
+            Self::Small(SmallLu::new(n)?)
+        } else {
+            Self::Large(Lu::new(n, 1)?)
+        })
+    }
+
+    fn set_order(&mut self, n: usize) {
+        match self {
+            Self::Small(lu) => lu.set_order(n),
+            Self::Large(lu) => lu.set_order(n),
+        }
+    }
+
+    /// Column to fill of a matrix of the order set last.
+    fn column(&mut self, j: usize) -> &mut [f64] {
+        match self {
+            Self::Small(lu) => lu.column(j),
+            Self::Large(lu) => {
+                let n = lu.order();
+                &mut lu.matrix()[j * n..(j + 1) * n]
+            }
+        }
+    }
+
+    fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
+        match self {
+            Self::Small(lu) => lu.factor(),
+            Self::Large(lu) => lu.factor(interrupt),
+        }
+    }
+
+    fn solve(&self, b: &mut [f64]) {
+        match self {
+            Self::Small(lu) => lu.solve(b),
+            Self::Large(lu) => lu.solve(b),
+        }
+    }
+}
+
 /// LU factors of the (n + 1) × (n + 1) matrix [J r; tᵀ].
 pub struct Bordered {
-    lu: Lu<f64>,
+    lu: Factors,
     n: usize,
     /// Unknowns that are solved for; the others have identity columns.
     active: Vec<usize>,
@@ -55,7 +105,7 @@ impl Bordered {
         // Eliminated times active unknowns is at most (n/2)·(n/2 + 1).
         let rest = (n / 2 + 1).saturating_mul(n / 2 + 2);
         let mut bordered = Self {
-            lu: Lu::new(n + 1, 1)?,
+            lu: Factors::new(n + 1)?,
             n,
             active: try_vec(n, 0, CONTEXT)?,
             eliminated: try_vec(n, 0, CONTEXT)?,
@@ -98,21 +148,27 @@ impl Bordered {
         self.u_scale = u_scale;
         let m = self.active.len() + 1;
         self.lu.set_order(m);
-        let a = self.lu.matrix();
         self.border.clear();
         self.border.extend(self.eliminated.iter().map(|&t| row[t]));
         self.rest.clear();
         for (j, &q) in self.active.iter().enumerate() {
             let from = &jacobian[q * n..(q + 1) * n];
-            let to = &mut a[j * m..(j + 1) * m];
+            let to = self.lu.column(j);
+            to[m - 1] = row[q];
+            if self.eliminated.is_empty() {
+                for (x, from) in to.iter_mut().zip(from) {
+                    *x = from * u_scale;
+                }
+                continue;
+            }
             for (x, &p) in to.iter_mut().zip(&self.active) {
                 *x = from[p] * u_scale;
             }
             let begin = self.rest.len();
             self.rest.extend(self.eliminated.iter().map(|&t| from[t] * u_scale));
-            to[m - 1] = row[q] - dot(&self.border, &self.rest[begin..]) / u_scale;
+            to[m - 1] -= dot(&self.border, &self.rest[begin..]) / u_scale;
         }
-        let to = &mut a[(m - 1) * m..];
+        let to = self.lu.column(m - 1);
         for (x, &p) in to.iter_mut().zip(&self.active) {
             *x = column[p] * p_scale;
         }
@@ -127,7 +183,10 @@ impl Bordered {
     /// With t the solution for (0, …, 0, 1), the determinant of [J r; tᵀ] has the same sign.
     #[must_use]
     pub fn is_positive(&self) -> bool {
-        self.lu.is_positive()
+        match &self.lu {
+            Factors::Small(lu) => lu.is_positive(),
+            Factors::Large(lu) => lu.is_positive(),
+        }
     }
 
     /// Solves in place for a right-hand side of n + 1 numbers.

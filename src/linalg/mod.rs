@@ -14,6 +14,7 @@ pub mod linear_system;
 pub mod lu;
 pub mod matrix_view;
 pub mod quadratic;
+pub mod small_lu;
 pub mod sparse;
 pub mod triangle;
 mod vectors;

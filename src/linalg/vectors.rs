@@ -32,9 +32,17 @@ pub fn dot(a: &[f64], b: &[f64]) -> f64 {
     sums.iter().sum::<f64>() + rest
 }
 
+/// Sum of squares above which those that are lost below the smallest number are rounding.
+const SAFE_SQUARES: f64 = 1e-280;
+
 /// Euclidean norm that neither overflows nor underflows.
 #[must_use]
 pub fn norm(v: &[f64]) -> f64 {
+    let squares = v.iter().map(|x| x * x).sum::<f64>();
+    // Neither an overflow nor squares lost below the smallest number.
+    if squares > SAFE_SQUARES && squares < f64::INFINITY {
+        return squares.sqrt();
+    }
     let largest = v.iter().fold(0.0_f64, |m, x| m.max(x.abs()));
     if largest == 0.0 || !largest.is_finite() {
         return if v.iter().any(|x| x.is_nan()) {

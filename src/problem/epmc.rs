@@ -395,13 +395,13 @@ impl Jacobian for Epmc<'_> {
         let set = self.condensed.set();
         let m = set.packed_len();
         active.fill(true);
-        for (k, column) in matrix.chunks_exact_mut(n).take(n - 2).enumerate() {
-            self.forces.interrupt().check()?;
-            column.fill(0.0);
-            column[k] = 1.0;
-            let motions = &mut column[..n - 2];
+        matrix.fill(0.0);
+        for diagonal in matrix[..n * (n - 2)].iter_mut().step_by(n + 1) {
+            *diagonal = 1.0;
+        }
+        for (motion, columns) in matrix[..n * (n - 2)].chunks_exact_mut((m * n).max(1)).enumerate() {
             self.forces
-                .couple_all((k / m, k % m), &self.flexibility, &mut self.change, motions);
+                .couple_all(motion, &self.flexibility, &mut self.change, (columns, n))?;
         }
         let fundamental = set.fundamental();
         for (c, rows) in self.gauge_rows.iter().enumerate() {

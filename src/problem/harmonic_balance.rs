@@ -299,13 +299,15 @@ impl Jacobian for HarmonicBalance<'_> {
                 }
             }
         }
-        for (k, column) in matrix.chunks_exact_mut(n.max(1)).enumerate() {
-            column.fill(0.0);
-            column[k] = 1.0;
-            if active[k] {
-                self.forces.interrupt().check()?;
+        matrix.fill(0.0);
+        for diagonal in matrix.iter_mut().step_by(n + 1) {
+            *diagonal = 1.0;
+        }
+        for (motion, columns) in matrix.chunks_exact_mut((m * n).max(1)).enumerate() {
+            // All numbers of a motion are active or none.
+            if active[motion * m] {
                 self.forces
-                    .couple_all((k / m, k % m), &self.flexibility, &mut self.change, column);
+                    .couple_all(motion, &self.flexibility, &mut self.change, (columns, n))?;
             }
         }
         Ok(())

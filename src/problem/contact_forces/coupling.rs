@@ -169,40 +169,47 @@ impl ContactForces<'_> {
         }
     }
 
-    /// Adds G (∂f/∂y − κ) in all carried harmonics to the column of a Jacobian that belongs to number `q` of the
-    /// packed motion of coordinate `motion`. `flexibility` holds G harmonic after harmonic for each coordinate, force
-    /// after force; `change` has the length of a packed signal.
+    /// Adds G (∂f/∂y − κ) in all carried harmonics to the columns of a Jacobian of `n` rows that belong to the motion of one
+    /// coordinate. `flexibility` holds G harmonic after harmonic for each coordinate, force after force; `change` has the
+    /// length of a packed signal.
     ///
     /// Where many harmonics are carried this is faster than [`Self::couple`]: reads and writes are contiguous.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
     pub fn couple_all(
         &self,
-        (motion, q): (usize, usize),
+        motion: usize,
         flexibility: &[Complex64],
         change: &mut [f64],
-        column: &mut [f64],
-    ) {
+        (columns, n): (&mut [f64], usize),
+    ) -> Result<()> {
         let set = self.condensed.set();
         let (m, harmonics) = (set.packed_len(), set.numbers().len());
         let mean = usize::from(set.has_mean());
         let counts = |(force, _): &(usize, &[f64])| !self.is_eliminated(*force);
         for (force, block) in self.jacobians.of_motion(motion).filter(counts) {
-            change.copy_from_slice(&block[q * m..(q + 1) * m]);
-            if force == motion {
-                let i = if mean == 1 { q.div_ceil(2) } else { q / 2 };
-                let at = set.offset(i);
-                let kappa = self.condensed.kappa(force, i);
-                let z = set.get(change, i) - if q == at { kappa } else { kappa * Complex64::I };
-                set.set(change, i, z);
-                if mean == 1 && q == 0 {
-                    column[motion * m] += MEAN_FLOOR;
+            let first = force * self.condensed.coordinates() * harmonics;
+            let rows = &flexibility[first..first + self.condensed.coordinates() * harmonics];
+            if force == motion && mean == 1 {
+                columns[motion * m] += MEAN_FLOOR;
+            }
+            for (q, (column, from)) in columns.chunks_exact_mut(n).zip(block.chunks_exact(m)).enumerate() {
+                self.interrupt.check()?;
+                change.copy_from_slice(from);
+                if force == motion {
+                    let i = if mean == 1 { q.div_ceil(2) } else { q / 2 };
+                    let at = set.offset(i);
+                    let kappa = self.condensed.kappa(force, i);
+                    let z = set.get(change, i) - if q == at { kappa } else { kappa * Complex64::I };
+                    set.set(change, i, z);
+                }
+                for (x, g) in column.chunks_exact_mut(m).zip(rows.chunks_exact(harmonics)) {
+                    add_products(mean, g, change, x);
                 }
             }
-            let first = force * self.condensed.coordinates() * harmonics;
-            let rows = flexibility[first..].chunks_exact(harmonics);
-            for (x, g) in column.chunks_exact_mut(m).zip(rows) {
-                add_products(mean, g, change, x);
-            }
         }
+        Ok(())
     }
 
     /// Adds G (∂f/∂y − κ), on average over the phase of the motion, to a column of complex numbers: that of a motion in

@@ -1,0 +1,118 @@
+//! Flexibility table from modes of a single relative motion without springs: the inner loop of every response with one
+//! contact. The formulas are those of [`crate::condense::modal_table`], written out for two inputs and two outputs.
+
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
+use crate::condense::flexibility::Table;
+use crate::condense::low_rank::Frequency;
+use crate::error::{Result, try_push};
+use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
+
+/// Entries of the table: of the contact and the response by the contact, of both by the excitation.
+const ENTRIES: usize = 4;
+
+/// One complex number for each entry, real parts first.
+type Entries = [[f64; ENTRIES]; 2];
+
+/// One mode.
+struct Mode {
+    /// μ
+    value: f64,
+    /// Output times input of each entry.
+    products: Entries,
+}
+
+/// The modes as one contact and the response see them.
+pub struct SingleContact {
+    arch: Arch,
+    modes: Vec<Mode>,
+}
+
+/// The numbers of a frequency: c and s of the denominators 1 + c − s μ, their derivatives by ω, and ν.
+#[derive(Clone, Copy)]
+pub struct Denominators {
+    pub at: Frequency,
+    pub s: Complex64,
+    pub d_s: Complex64,
+    pub nu: f64,
+    /// Least modulus of a denominator over 1 + ν² |μ|.
+    pub least: f64,
+}
+
+impl SingleContact {
+    /// From μ, and from outputs and inputs of each mode: two numbers a mode, of the contact and of the response or the
+    /// excitation.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(values: &[f64], left: &[Complex64], right: &[Complex64]) -> Result<Self> {
+        let mut modes = Vec::new();
+        for ((value, l), r) in values.iter().zip(left.chunks_exact(2)).zip(right.chunks_exact(2)) {
+            let products = [l[0] * r[0], l[1] * r[0], l[0] * r[1], l[1] * r[1]];
+            let mode = Mode {
+                value: *value,
+                products: [products.map(|z| z.re), products.map(|z| z.im)],
+            };
+            try_push(&mut modes, mode, "the flexibility from modes")?;
+        }
+        Ok(Self {
+            arch: Arch::new(),
+            modes,
+        })
+    }
+
+    /// The table and its slope with the low-rank term whose coefficient is e and its derivative; `false` where a denominator
+    /// is small.
+    pub fn evaluate(&self, by: Denominators, (e, d_e): (Complex64, Complex64), table: &mut Table) -> bool {
+        let Some([t, d_t]) = self.arch.dispatch(Sum(&self.modes, by)) else {
+            return false;
+        };
+        let entry = |of: &Entries, k: usize, r: usize| Complex64::new(of[0][2 * k + r], of[1][2 * k + r]);
+        let pivot = (1.0 - entry(&t, 0, 0) * e).inv();
+        let d_product = entry(&d_t, 0, 0) * e + entry(&t, 0, 0) * d_e;
+        for k in 0..2 {
+            let x = pivot * entry(&t, k, 0);
+            let d_x = pivot * (entry(&d_t, k, 0) + d_product * x);
+            let (force, d_force) = (e * x, e * d_x + d_e * x);
+            for r in 0..2 {
+                table.value[2 * k + r] = entry(&t, k, r) + entry(&t, 0, r) * force;
+                table.slope[2 * k + r] = entry(&d_t, k, r) + entry(&d_t, 0, r) * force + entry(&t, 0, r) * d_force;
+            }
+        }
+        true
+    }
+}
+
+/// The sums over the modes and their derivatives; `None` where a denominator is small.
+struct Sum<'a>(&'a [Mode], Denominators);
+
+impl WithSimd for Sum<'_> {
+    type Output = Option<[Entries; 2]>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
+        let Self(modes, by) = self;
+        let (c, d_c) = (by.at.c, by.at.d_c);
+        let mut sums = [[[0.0; ENTRIES]; 2]; 2];
+        let mut is_clear = true;
+        for mode in modes {
+            let (re, im) = (1.0 + c.re - by.s.re * mode.value, c.im - by.s.im * mode.value);
+            let squared = re * re + im * im;
+            let size = by.least * (1.0 + by.nu * by.nu * mode.value.abs());
+            is_clear &= squared > size * size;
+            let reciprocal = 1.0 / squared;
+            let inverse = Complex64::new(re * reciprocal, -im * reciprocal);
+            let slope = -(d_c - by.d_s * mode.value) * (inverse * inverse);
+            for (sum, factor) in sums.iter_mut().zip([inverse, slope]) {
+                let [p_re, p_im] = &mode.products;
+                let [re, im] = sum;
+                for i in 0..ENTRIES {
+                    re[i] += p_re[i] * factor.re - p_im[i] * factor.im;
+                    im[i] += p_re[i] * factor.im + p_im[i] * factor.re;
+                }
+            }
+        }
+        is_clear.then_some(sums)
+    }
+}

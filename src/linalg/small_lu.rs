@@ -1,0 +1,257 @@
+//! LU factorisation with partial pivoting of up to 32 unknowns, as it is repeated in every Newton iteration of a small model.
+//!
+//! Columns are padded to blocks of four rows with zeros, so that the loops over a column have no remainder, and are compiled for
+//! each number of blocks and for the vector instructions of the processor. Numbers are combined in the order of
+//! [`crate::linalg::lu`]: both give the same digits, on every processor.
+
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
+use crate::error::{Result, fail, try_vec};
+use pulp::{Arch, Simd, WithSimd};
+
+/// Blocks of a column.
+const BLOCKS: usize = 8;
+
+/// Numbers of a block.
+const WIDTH: usize = 4;
+
+/// Largest order of a matrix.
+pub const LARGEST: usize = BLOCKS * WIDTH;
+
+type Column = [[f64; WIDTH]; BLOCKS];
+
+const ZERO: Column = [[0.0; WIDTH]; BLOCKS];
+
+/// Factors P A = L U.
+pub struct SmallLu {
+    arch: Arch,
+    n: usize,
+    /// A, then U, with what remains of A below it.
+    upper: Vec<Column>,
+    /// L without its diagonal, its rows not interchanged by later pivots.
+    lower: Vec<Column>,
+    pivots: [usize; LARGEST],
+}
+
+impl SmallLu {
+    /// Memory for matrices of up to `n` rows.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(n: usize) -> Result<Self> {
+        const CONTEXT: &str = "a factorisation";
+        Ok(Self {
+            arch: Arch::new(),
+            n: 0,
+            upper: try_vec(n.min(LARGEST), ZERO, CONTEXT)?,
+            lower: try_vec(n.min(LARGEST), ZERO, CONTEXT)?,
+            pivots: [0; LARGEST],
+        })
+    }
+
+    /// Prepares a matrix of `n` rows, up to the order given to [`Self::new`], to be filled column by column.
+    pub fn set_order(&mut self, n: usize) {
+        self.n = n.min(self.upper.len());
+        let padded = self.n.next_multiple_of(WIDTH);
+        for column in &mut self.upper[..self.n] {
+            column.as_flattened_mut()[self.n..padded].fill(0.0);
+        }
+    }
+
+    /// A column to fill.
+    pub fn column(&mut self, j: usize) -> &mut [f64] {
+        &mut self.upper[j].as_flattened_mut()[..self.n]
+    }
+
+    /// Factors the matrix that was filled in.
+    ///
+    /// # Errors
+    /// `Singular` naming the pivot that is exactly zero or not finite.
+    pub fn factor(&mut self) -> Result<()> {
+        let n = self.n;
+        let (upper, lower, pivots) = (&mut self.upper[..n], &mut self.lower[..n], &mut self.pivots[..n]);
+        let arch = self.arch;
+        let broken = match n.div_ceil(WIDTH) {
+            0 | 1 => arch.dispatch(Factor::<1>(upper, lower, pivots)),
+            2 => arch.dispatch(Factor::<2>(upper, lower, pivots)),
+            3 => arch.dispatch(Factor::<3>(upper, lower, pivots)),
+            4 => arch.dispatch(Factor::<4>(upper, lower, pivots)),
+            5 => arch.dispatch(Factor::<5>(upper, lower, pivots)),
+            6 => arch.dispatch(Factor::<6>(upper, lower, pivots)),
+            7 => arch.dispatch(Factor::<7>(upper, lower, pivots)),
+            _ => arch.dispatch(Factor::<8>(upper, lower, pivots)),
+        };
+        match broken {
+            None => Ok(()),
+            Some((pivot, size)) => fail!(
+                Singular,
+                "a linear system of {n} unknowns is singular: pivot {pivot} is {size}"
+            ),
+        }
+    }
+
+    /// Solves A x = b in place.
+    pub fn solve(&self, b: &mut [f64]) {
+        let n = self.n;
+        let (upper, lower, pivots) = (&self.upper[..n], &self.lower[..n], &self.pivots[..n]);
+        let arch = self.arch;
+        match n.div_ceil(WIDTH) {
+            0 | 1 => arch.dispatch(Solve::<1>(upper, lower, pivots, b)),
+            2 => arch.dispatch(Solve::<2>(upper, lower, pivots, b)),
+            3 => arch.dispatch(Solve::<3>(upper, lower, pivots, b)),
+            4 => arch.dispatch(Solve::<4>(upper, lower, pivots, b)),
+            5 => arch.dispatch(Solve::<5>(upper, lower, pivots, b)),
+            6 => arch.dispatch(Solve::<6>(upper, lower, pivots, b)),
+            7 => arch.dispatch(Solve::<7>(upper, lower, pivots, b)),
+            _ => arch.dispatch(Solve::<8>(upper, lower, pivots, b)),
+        }
+    }
+
+    /// Whether the determinant of the factored matrix is positive.
+    #[must_use]
+    pub fn is_positive(&self) -> bool {
+        let pivots = self.pivots[..self.n].iter().enumerate();
+        let swaps = pivots.filter(|&(k, &p)| k != p).count();
+        let diagonal = self.upper[..self.n].iter().enumerate();
+        let negative = diagonal.filter(|(k, column)| column.as_flattened()[*k] < 0.0).count();
+        (swaps + negative) % 2 == 0
+    }
+}
+
+/// Factors columns of B blocks; the pivot that is zero or not finite, with its size, if there is one.
+struct Factor<'a, const B: usize>(&'a mut [Column], &'a mut [Column], &'a mut [usize]);
+
+impl<const B: usize> WithSimd for Factor<'_, B> {
+    type Output = Option<(usize, f64)>;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
+        let Self(upper, lower, pivots) = self;
+        let n = upper.len();
+        for k in 0..n {
+            let (left, right) = upper.split_at_mut(k + 1);
+            let column = &mut left[k];
+            let numbers = column.as_flattened_mut();
+            let (mut pivot, mut size) = (k, numbers[k].abs());
+            for (i, x) in numbers.iter().enumerate().take(n).skip(k + 1) {
+                if x.abs() > size {
+                    (pivot, size) = (i, x.abs());
+                }
+            }
+            if size == 0.0 || !size.is_finite() {
+                return Some((k, size));
+            }
+            pivots[k] = pivot;
+            let inverse = 1.0 / numbers[pivot];
+            numbers.swap(k, pivot);
+            let mut l = [[0.0; WIDTH]; B];
+            for (l, c) in l.iter_mut().zip(&*column) {
+                for (l, c) in l.iter_mut().zip(c) {
+                    *l = c * inverse;
+                }
+            }
+            l.as_flattened_mut()[..=k].fill(0.0);
+            lower[k][..B].copy_from_slice(&l);
+            for column in right {
+                column.as_flattened_mut().swap(k, pivot);
+                let factor = column[k / WIDTH][k % WIDTH];
+                for (c, l) in column.iter_mut().zip(&l) {
+                    for (c, l) in c.iter_mut().zip(l) {
+                        *c -= factor * l;
+                    }
+                }
+            }
+        }
+        None
+    }
+}
+
+/// Solves with the factors of B blocks a column.
+struct Solve<'a, const B: usize>(&'a [Column], &'a [Column], &'a [usize], &'a mut [f64]);
+
+impl<const B: usize> WithSimd for Solve<'_, B> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self(upper, lower, pivots, b) = self;
+        let mut x = [[0.0; WIDTH]; B];
+        for (x, b) in x.as_flattened_mut().iter_mut().zip(&*b) {
+            *x = *b;
+        }
+        for (k, (l, &pivot)) in lower.iter().zip(pivots).enumerate() {
+            x.as_flattened_mut().swap(k, pivot);
+            let value = x[k / WIDTH][k % WIDTH];
+            subtract(&mut x, l, value);
+        }
+        for (k, u) in upper.iter().enumerate().rev() {
+            let value = x[k / WIDTH][k % WIDTH] / u[k / WIDTH][k % WIDTH];
+            b[k] = value;
+            // This also changes rows from k on, which are not read again.
+            subtract(&mut x, u, value);
+        }
+    }
+}
+
+/// x −= factor·column
+#[inline(always)]
+fn subtract<const B: usize>(x: &mut [[f64; WIDTH]; B], column: &Column, factor: f64) {
+    for (x, c) in x.iter_mut().zip(column) {
+        for (x, c) in x.iter_mut().zip(c) {
+            *x -= factor * c;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::interrupt::Interrupt;
+    use crate::linalg::lu::Lu;
+
+    #[test]
+    fn factors_and_solutions_are_those_of_the_general_factorisation() {
+        for n in 1..=LARGEST {
+            let entry = |i: usize, j: usize| ((i * i + 3 * j + i * j + 2) as f64 * 0.37).sin();
+            let mut small = SmallLu::new(LARGEST).unwrap();
+            let mut general = Lu::<f64>::new(n, 1).unwrap();
+            // The second matrix finds the numbers of the first in its memory.
+            for shift in [40, 0] {
+                small.set_order(n);
+                for j in 0..n {
+                    for i in 0..n {
+                        small.column(j)[i] = entry(i + shift, j);
+                        general.matrix()[j * n + i] = entry(i + shift, j);
+                    }
+                }
+                small.factor().unwrap();
+                general.factor(&Interrupt::none()).unwrap();
+                assert_eq!(small.is_positive(), general.is_positive(), "{n}");
+                let mut a: Vec<f64> = (0..n).map(|i| (i as f64 * 2.1).cos()).collect();
+                let mut b = a.clone();
+                small.solve(&mut a);
+                general.solve(&mut b);
+                assert_eq!(a, b, "{n}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_singular_matrix_and_numbers_that_are_not_finite_are_refused() {
+        let refused = |numbers: [[f64; 3]; 3]| {
+            let mut lu = SmallLu::new(3).unwrap();
+            lu.set_order(3);
+            for (j, column) in numbers.iter().enumerate() {
+                lu.column(j).copy_from_slice(column);
+            }
+            lu.factor().unwrap_err().to_string()
+        };
+        let found = refused([[1.0, 2.0, 3.0], [2.0, 4.0, 6.0], [0.0, 1.0, 0.0]]);
+        assert!(
+            found.contains("pivot 2 is 0") || found.contains("pivot 1 is 0"),
+            "{found}"
+        );
+        let found = refused([[f64::INFINITY, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        assert!(found.contains("pivot 0 is inf"), "{found}");
+    }
+}
