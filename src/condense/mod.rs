@@ -25,6 +25,7 @@ mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
 mod single_contact;
+mod single_motion;
 mod sweep;
 mod tied_load;
 mod under_force;

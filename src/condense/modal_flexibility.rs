@@ -227,8 +227,9 @@ impl Modal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::condense::test_chains::{DAMPED, N, chain};
+    use crate::condense::test_chains::{DAMPED, N, chain, structure};
     use crate::condense::wave_cache::SharedWaves;
+    use crate::contact::Contact;
     use crate::options::{DampingForm, SolverOptions};
 
     fn off(a: &[Complex64], b: &[Complex64]) -> f64 {
@@ -247,8 +248,15 @@ mod tests {
             .into_iter()
             .flat_map(|n| [(n, DampingForm::Mass), (n, DampingForm::Stiffness)])
         {
-            for (damping, loss_factor) in DAMPED {
-                let mut model = chain(sectors, damping);
+            // With several contacts, and with one.
+            for ((damping, loss_factor), single) in DAMPED.into_iter().flat_map(|d| [(d, false), (d, true)]) {
+                let mut model = if single {
+                    let mut model = structure(sectors, damping);
+                    model.add_contact(&Contact::jenkins(1, Some(4), 9.0, 0.3, 1.0)).unwrap();
+                    model
+                } else {
+                    chain(sectors, damping)
+                };
                 model.set_loss_factor(loss_factor).unwrap();
                 let form = (form, false);
                 let (direct, _) = Condensed::for_mode(&model, &options, form, &shape, &Interrupt::none()).unwrap();

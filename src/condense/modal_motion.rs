@@ -12,10 +12,12 @@
 //! The derivatives follow from Z ∂x = −∂Z x, where Φᴴ ∂Z Φ = diag(∂d) − Eᴴ ∂e E.
 
 use crate::condense::low_rank::Coefficients;
+use crate::condense::single_motion::{Coefficient, SingleMotion};
 use crate::condense::wave_modes::WaveModes;
 use crate::condense::{Artificial, Condensed};
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::expand;
 use crate::linalg::lu::Lu;
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -32,6 +34,8 @@ pub(super) struct ModalMotion {
     columns: Vec<Complex64>,
     motion: Vec<Complex64>,
     change: Vec<Complex64>,
+    /// The same in closed form, where one contact without springs allows it.
+    single: Option<SingleMotion>,
 }
 
 /// (diag(d) − Eᴴ e E)⁻¹
@@ -49,9 +53,9 @@ struct ModalInverse {
 
 /// c and s, or their derivatives.
 #[derive(Clone, Copy)]
-struct Pair {
-    c: Complex64,
-    s: Complex64,
+pub(super) struct Pair {
+    pub c: Complex64,
+    pub s: Complex64,
 }
 
 /// Where the solution and its derivatives go: Z⁻¹ Wᴴ column after column, x, ∂x/∂ω and ∂x/∂D of all degrees of freedom, of
@@ -88,8 +92,14 @@ impl ModalMotion {
                 *to = row.along(shape);
             }
         }
+        let single = if coordinates == 1 && order == 1 {
+            Some(SingleMotion::new(&seen)?)
+        } else {
+            None
+        };
         let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
         Ok(Some(Self {
+            single,
             modes: Arc::clone(modes),
             number: block.number as f64,
             is_mass_type,
@@ -120,6 +130,13 @@ impl ModalMotion {
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let [at, by_omega, by_damping] = self.pairs(omega, damping);
+        if let (Some(single), [w]) = (&mut self.single, w) {
+            let coefficients = &self.inverse.coefficients;
+            let of = |pair: Pair, e| Coefficient { pair, e };
+            let at = of(at, coefficients.entry(0, at.c));
+            let derivatives = [by_omega, by_damping].map(|by| of(by, coefficients.d_entry(0, by.c)));
+            return Ok(single.solve(&self.modes, (at, self.number * omega), derivatives, *w, to));
+        }
         if !self.inverse.set(at, &self.modes, self.number * omega, interrupt)? {
             return Ok(false);
         }
@@ -279,16 +296,6 @@ impl ModalInverse {
             let seen = &self.seen[k * order..(k + 1) * order];
             let force: Complex64 = seen.iter().zip(&self.forces).map(|(seen, f)| seen.conj() * f).sum();
             *out = force - (slope.c - slope.s * values[k]) * xi;
-        }
-    }
-}
-
-/// Φ ξ
-fn expand(vectors: &[Complex64], xi: &[Complex64], x: &mut [Complex64]) {
-    x.fill(Complex64::ZERO);
-    for (shape, xi) in vectors.chunks_exact(xi.len().max(1)).zip(xi) {
-        for (x, shape) in x.iter_mut().zip(shape) {
-            *x += shape * xi;
         }
     }
 }

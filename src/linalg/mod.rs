@@ -20,6 +20,6 @@ pub mod triangle;
 mod vectors;
 
 pub use vectors::{
-    COPIED_UP_TO, add_outer_products, add_outer_products_to, add_product, dot, first_product, inner, norm,
+    COPIED_UP_TO, add_outer_products, add_outer_products_to, add_product, dot, expand, first_product, inner, norm,
     power_of_two, remove, transposed_products,
 };

@@ -90,6 +90,16 @@ pub fn first_product() -> Result<()> {
     Ok(())
 }
 
+/// x = Φ ξ for a column-major Φ with `x.len()` rows.
+pub fn expand(vectors: &[Complex64], xi: &[Complex64], x: &mut [Complex64]) {
+    x.fill(Complex64::ZERO);
+    for (shape, xi) in vectors.chunks_exact(x.len().max(1)).zip(xi) {
+        for (x, shape) in x.iter_mut().zip(shape) {
+            *x += shape * xi;
+        }
+    }
+}
+
 /// out += factor·A x for a column-major A with `out.len()` rows.
 pub fn add_product(factor: f64, a: &[f64], x: &[f64], out: &mut [f64]) {
     let rows = out.len();
