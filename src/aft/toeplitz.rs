@@ -73,6 +73,7 @@ impl Toeplitz {
     }
 
     /// The column of number `j` of a packed motion.
+    #[inline]
     pub(super) fn column(&self, j: usize) -> Column<'_> {
         let mean = if self.has_mean { self.row[j] } else { 0.0 };
         let Some(j) = j.checked_sub(usize::from(self.has_mean)) else {
@@ -112,6 +113,7 @@ impl Toeplitz {
 }
 
 /// Writes complex number `k` of two lists.
+#[inline]
 fn put(lists: &mut [Vec<f64>; 2], k: usize, values: [Complex64; 2]) {
     for (list, z) in lists.iter_mut().zip(values) {
         list[2 * k] = z.re;

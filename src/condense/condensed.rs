@@ -26,6 +26,7 @@ pub enum Reference {
 }
 
 impl Reference {
+    #[inline]
     pub(super) fn kappa(self, stiffness: f64, number: usize) -> Complex64 {
         match self {
             Self::Stuck => stiffness.into(),
@@ -96,6 +97,7 @@ pub struct Condensed {
 impl Condensed {
     /// The carried harmonics.
     #[must_use]
+    #[inline]
     pub fn set(&self) -> &HarmonicSet {
         &self.set
     }
@@ -103,6 +105,7 @@ impl Condensed {
     /// Coordinates of the matrices of a harmonic: the independent degrees of freedom of the structure (one sector), or
     /// those of its basis.
     #[must_use]
+    #[inline]
     pub fn ndof(&self) -> usize {
         self.order
     }
@@ -184,18 +187,21 @@ impl Condensed {
 
     /// Matrices, forces and rows per carried harmonic.
     #[must_use]
+    #[inline]
     pub fn blocks(&self) -> &[HarmonicBlock] {
         &self.blocks
     }
 
     /// The laws, in the order of the contacts.
     #[must_use]
+    #[inline]
     pub fn laws(&self) -> &[AssembledLaw] {
         &self.laws
     }
 
     /// Number of relative coordinates.
     #[must_use]
+    #[inline]
     pub fn coordinates(&self) -> usize {
         self.stiffness.len()
     }
@@ -232,6 +238,7 @@ impl Condensed {
 
     /// Reference stiffness κ of a coordinate in the i-th carried harmonic.
     #[must_use]
+    #[inline]
     pub fn kappa(&self, coordinate: usize, i: usize) -> Complex64 {
         let number = self.blocks[i].number;
         let share = if number == 1 { self.share[coordinate] } else { 1.0 };
@@ -240,12 +247,14 @@ impl Condensed {
 
     /// Stiffness of the contacts of a coordinate.
     #[must_use]
+    #[inline]
     pub fn stiffness(&self, coordinate: usize) -> f64 {
         self.stiffness[coordinate]
     }
 
     /// Rounding of the force of a coordinate over the size of its motion if its contacts are near-rigid, otherwise 0.
     #[must_use]
+    #[inline]
     pub fn rounding(&self, coordinate: usize) -> f64 {
         if self.is_near_rigid(coordinate) {
             ROUNDING * self.stiffness[coordinate]
@@ -256,6 +265,7 @@ impl Condensed {
 
     /// Whether the contacts of a coordinate are so stiff that κ is below their stiffness.
     #[must_use]
+    #[inline]
     pub fn is_near_rigid(&self, coordinate: usize) -> bool {
         self.reference_stiffness[coordinate] < self.stiffness[coordinate]
     }
@@ -264,6 +274,7 @@ impl Condensed {
     ///
     /// Its reference stiffness is then that of the contact.
     #[must_use]
+    #[inline]
     pub fn may_be_eliminated(&self, coordinate: usize) -> bool {
         self.can_stick[coordinate] && self.reference == Reference::Stuck && !self.is_near_rigid(coordinate)
     }

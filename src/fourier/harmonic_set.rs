@@ -76,6 +76,7 @@ impl HarmonicSet {
 
     /// The carried harmonic numbers, ascending.
     #[must_use]
+    #[inline]
     pub fn numbers(&self) -> &[usize] {
         &self.numbers
     }
@@ -94,36 +95,42 @@ impl HarmonicSet {
 
     /// Distance between neighbouring reduced numbers: 2 if only odd multiples are carried, else 1.
     #[must_use]
+    #[inline]
     pub fn stride(&self) -> usize {
         self.stride
     }
 
     /// Whether the mean is carried.
     #[must_use]
+    #[inline]
     pub fn has_mean(&self) -> bool {
         self.numbers.first() == Some(&0)
     }
 
     /// Whether the signal repeats with opposite sign after half a turn of τ.
     #[must_use]
+    #[inline]
     pub fn is_odd(&self) -> bool {
         self.stride == 2
     }
 
     /// Number of carried harmonics above zero.
     #[must_use]
+    #[inline]
     pub fn oscillating(&self) -> usize {
         self.numbers.len() - usize::from(self.has_mean())
     }
 
     /// Reduced number of the k-th carried harmonic above zero, counted from 0.
     #[must_use]
+    #[inline]
     pub fn reduced(&self, k: usize) -> usize {
         1 + k * self.stride
     }
 
     /// Highest reduced number.
     #[must_use]
+    #[inline]
     pub fn highest_reduced(&self) -> usize {
         match self.oscillating() {
             0 => 0,
@@ -133,12 +140,14 @@ impl HarmonicSet {
 
     /// Length of the packed form of one signal.
     #[must_use]
+    #[inline]
     pub fn packed_len(&self) -> usize {
         self.numbers.len() + self.oscillating()
     }
 
     /// Position in the packed form of the i-th carried harmonic's real part.
     #[must_use]
+    #[inline]
     pub fn offset(&self, i: usize) -> usize {
         if self.has_mean() {
             (2 * i).saturating_sub(1)
@@ -149,6 +158,7 @@ impl HarmonicSet {
 
     /// Coefficient of the i-th carried harmonic in a packed signal.
     #[must_use]
+    #[inline]
     pub fn get(&self, packed: &[f64], i: usize) -> Complex64 {
         let at = self.offset(i);
         if self.numbers[i] == 0 {
@@ -159,6 +169,7 @@ impl HarmonicSet {
     }
 
     /// Sets the coefficient of the i-th carried harmonic; the mean takes the real part.
+    #[inline]
     pub fn set(&self, packed: &mut [f64], i: usize, value: Complex64) {
         let at = self.offset(i);
         packed[at] = value.re;

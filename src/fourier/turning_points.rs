@@ -4,6 +4,7 @@ use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::fourier::series::{jet, turning_point};
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 use rustfft::{Fft, FftPlanner};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -27,6 +28,7 @@ const TABLE_LIMIT: usize = 40;
 ///
 /// For sets of odd harmonics only [0, π) is scanned: x(τ + π) = −x(τ).
 pub struct TurningPoints {
+    arch: Arch,
     points: usize,
     spacing: f64,
     slope: Vec<f64>,
@@ -72,6 +74,7 @@ impl TurningPoints {
             let plan = FftPlanner::new().plan_fft_inverse(whole);
             let scratch = try_vec(plan.get_inplace_scratch_len(), Complex64::ZERO, "a transform")?;
             return Ok(Self {
+                arch: Arch::new(),
                 points: if set.is_odd() { whole / 2 } else { whole },
                 spacing: TAU / whole as f64,
                 slope: try_vec(whole + 1, 0.0, "a scan for turning points")?,
@@ -83,6 +86,7 @@ impl TurningPoints {
             });
         };
         Ok(Self {
+            arch: Arch::new(),
             points,
             spacing,
             slope: try_vec(points + 1, 0.0, "a scan for turning points")?,
@@ -159,15 +163,7 @@ impl TurningPoints {
         let rest = &packed[usize::from(set.has_mean())..];
         let slope = &mut self.slope[..n];
         match &mut self.kind {
-            Grid::Table(table) => {
-                slope.fill(0.0);
-                for (pair, rows) in rest.chunks_exact(2).zip(table.chunks_exact(2 * n)) {
-                    let (sines, cosines) = rows.split_at(n);
-                    for ((s, &a), &b) in slope.iter_mut().zip(sines).zip(cosines) {
-                        *s += pair[0] * a + pair[1] * b;
-                    }
-                }
-            }
+            Grid::Table(table) => self.arch.dispatch(Scan { slope, rest, table }),
             Grid::Transform { plan, buffer, scratch } => {
                 buffer.fill(Complex64::ZERO);
                 for (k, pair) in rest.chunks_exact(2).enumerate() {
@@ -178,6 +174,31 @@ impl TurningPoints {
                 for (s, z) in slope.iter_mut().zip(buffer.iter()) {
                     *s = z.re;
                 }
+            }
+        }
+    }
+}
+
+/// x′ at the times of a table.
+struct Scan<'a> {
+    slope: &'a mut [f64],
+    rest: &'a [f64],
+    table: &'a [f64],
+}
+
+impl WithSimd for Scan<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    #[allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self { slope, rest, table } = self;
+        let n = slope.len();
+        slope.fill(0.0);
+        for (pair, rows) in rest.chunks_exact(2).zip(table.chunks_exact(2 * n)) {
+            let (sines, cosines) = rows.split_at(n);
+            for ((s, &a), &b) in slope.iter_mut().zip(sines).zip(cosines) {
+                *s += pair[0] * a + pair[1] * b;
             }
         }
     }

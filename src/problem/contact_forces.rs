@@ -128,6 +128,7 @@ impl<'a> ContactForces<'a> {
 
     /// The interrupt of the call.
     #[must_use]
+    #[inline]
     pub fn interrupt(&self) -> &'a Interrupt<'a> {
         self.interrupt
     }
@@ -340,6 +341,7 @@ impl<'a> ContactForces<'a> {
 
     /// w = f − κ y of a coordinate in the i-th carried harmonic.
     #[must_use]
+    #[inline]
     pub fn minus_reference(&self, motion: &[f64], coordinate: usize, i: usize) -> Complex64 {
         let set = self.condensed.set();
         let m = set.packed_len();
@@ -351,12 +353,14 @@ impl<'a> ContactForces<'a> {
     /// otherwise 0. In a stick phase the force is kt times a difference of motions that are known to their own
     /// rounding.
     #[must_use]
+    #[inline]
     pub fn rounding(&self, coordinate: usize) -> f64 {
         self.rounding[coordinate]
     }
 
     /// Packed forces, coordinate after coordinate.
     #[must_use]
+    #[inline]
     pub fn forces(&self) -> &[f64] {
         &self.force
     }
@@ -364,16 +368,19 @@ impl<'a> ContactForces<'a> {
     /// ∂f/∂ln s of a coordinate in the i-th carried harmonic, where s is the factor of
     /// [`Self::set_scale`]: for any law with force F and Jacobian J it is s·(F − J Y) at Y = y/s.
     #[must_use]
+    #[inline]
     pub fn d_ln_scale(&self, coordinate: usize, i: usize) -> Complex64 {
         self.part(&self.offset, coordinate, i)
     }
 
     /// ∂f/∂ω of a coordinate in the i-th carried harmonic.
     #[must_use]
+    #[inline]
     pub fn by_omega(&self, coordinate: usize, i: usize) -> Complex64 {
         self.part(&self.by_omega, coordinate, i)
     }
 
+    #[inline]
     fn part(&self, packed: &[f64], coordinate: usize, i: usize) -> Complex64 {
         let set = self.condensed.set();
         let m = set.packed_len();

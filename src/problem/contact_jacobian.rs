@@ -153,6 +153,7 @@ impl Blocks {
     }
 
     /// The blocks of one force coordinate, as (motion coordinate, block).
+    #[inline]
     pub fn of_force(&self, coordinate: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let size = self.order * self.order;
         let range = self.first[coordinate]..self.first[coordinate + 1];
@@ -160,6 +161,7 @@ impl Blocks {
     }
 
     /// The blocks of one motion coordinate, as (force coordinate, block).
+    #[inline]
     pub fn of_motion(&self, coordinate: usize) -> impl Iterator<Item = (usize, &[f64])> {
         let size = self.order * self.order;
         let range = self.first[coordinate]..self.first[coordinate + 1];

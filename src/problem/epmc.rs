@@ -353,7 +353,8 @@ impl<'a> Epmc<'a> {
                 .solve(self.condensed, i, (omega, damping), &self.w, interrupt)?;
             self.x[i * dofs..(i + 1) * dofs].copy_from_slice(self.modal.x());
             let share = if mean { MEAN_SHARE } else { 1.0 };
-            largest = self.modal.x().iter().fold(largest, |m, z| m.max(share * z.norm()));
+            let squared = self.modal.x().iter().fold(0.0_f64, |m, z| m.max(z.norm_sqr()));
+            largest = largest.max(share * squared.sqrt());
             for row in 0..coordinates {
                 let position = row * m + at;
                 let [x, by_omega, by_damping] = self.modal.relative(row);

@@ -15,12 +15,14 @@ impl ContactForces<'_> {
     /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the contact:
     /// then ∂f/∂y = κ, and no change couples back.
     #[must_use]
+    #[inline]
     pub fn is_eliminated(&self, coordinate: usize) -> bool {
         self.linear[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
     /// Whether in addition f = κ y, so that nothing couples back at all; a normal load at rest does.
     #[must_use]
+    #[inline]
     pub fn is_inactive(&self, coordinate: usize) -> bool {
         self.inactive[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
@@ -255,11 +257,16 @@ impl ContactForces<'_> {
 }
 
 /// x += g z in each harmonic of packed signals x and z.
+#[inline]
 fn add_products(mean: usize, g: &[Complex64], z: &[f64], x: &mut [f64]) {
     if mean == 1 {
         x[0] += g[0].re * z[0];
     }
-    let pairs = x[mean..].chunks_exact_mut(2).zip(z[mean..].chunks_exact(2));
+    let pairs = x[mean..]
+        .as_chunks_mut::<2>()
+        .0
+        .iter_mut()
+        .zip(z[mean..].as_chunks::<2>().0);
     for ((x, z), g) in pairs.zip(&g[mean..]) {
         x[0] += g.re * z[0] - g.im * z[1];
         x[1] += g.re * z[1] + g.im * z[0];
