@@ -14,6 +14,7 @@ mod low_rank;
 pub(crate) mod memory_limit;
 pub mod modal_flexibility;
 mod modal_motion;
+mod modal_solution;
 pub mod modal_table;
 mod model_cache;
 pub mod near_rigid_motion;

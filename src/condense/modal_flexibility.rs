@@ -6,7 +6,8 @@
 
 use crate::condense::Condensed;
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product};
-use crate::condense::modal_motion::{ModalMotion, Solution};
+use crate::condense::modal_motion::ModalMotion;
+use crate::condense::modal_solution::Solution;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use num_complex::Complex64;

@@ -12,6 +12,7 @@
 //! The derivatives follow from Z ∂x = −∂Z x, where Φᴴ ∂Z Φ = diag(∂d) − Eᴴ ∂e E.
 
 use crate::condense::low_rank::Coefficients;
+use crate::condense::modal_solution::{Pair, Solution};
 use crate::condense::single_motion::{Coefficient, SingleMotion};
 use crate::condense::wave_modes::WaveModes;
 use crate::condense::{Artificial, Condensed};
@@ -49,24 +50,6 @@ struct ModalInverse {
     entries: Vec<Complex64>,
     lu: Lu<Complex64>,
     forces: Vec<Complex64>,
-}
-
-/// c and s, or their derivatives.
-#[derive(Clone, Copy)]
-pub(super) struct Pair {
-    pub c: Complex64,
-    pub s: Complex64,
-}
-
-/// Where the solution and its derivatives go: Z⁻¹ Wᴴ column after column, x, ∂x/∂ω and ∂x/∂D of all degrees of freedom, of
-/// which x alone unless `is_whole`; and the relative motions of all these, in this order.
-pub(super) struct Solution<'a> {
-    pub is_whole: bool,
-    pub relative: &'a mut [Complex64],
-    pub columns: &'a mut [Complex64],
-    pub x: &'a mut [Complex64],
-    pub by_omega: &'a mut [Complex64],
-    pub by_damping: &'a mut [Complex64],
 }
 
 impl ModalMotion {

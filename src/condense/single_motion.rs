@@ -5,7 +5,7 @@
 //!
 //! > ξ = −p q*/d w,  ∂S = −Σ |q|² ∂d/d²,  ∂p = p² (∂S e + S ∂e),  ∂G = p² (∂S + S² ∂e),  ∂d = ∂c − ∂s μ.
 
-use crate::condense::modal_motion::{Pair, Solution};
+use crate::condense::modal_solution::{Pair, Solution};
 use crate::condense::wave_modes::WaveModes;
 use crate::error::{Result, try_push, try_vec};
 use crate::linalg::expand;
