@@ -47,6 +47,8 @@ pub struct Continuation {
     current: Point,
     /// Largest motion and amplitude so far.
     largest: (f64, f64),
+    /// Points accepted last whose parameters differ by rounding.
+    stationary: usize,
     row: Vec<f64>,
     scratch: Vec<f64>,
     /// Whether corners are left that it reaches along their surface. Paths of homotopies end there, and so does a branch
@@ -72,6 +74,11 @@ const ALONG: f64 = 0.9;
 /// Motions below this share of the largest so far no longer refine the metric.
 const FLOOR: f64 = 1e-2;
 
+/// Relative change of the parameter that is rounding, and the number of points in a row, no further apart, that show a branch
+/// which ends in rounding. An amplitude that grows without bound at a resonance would else be followed there by chance.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+const MOST_STATIONARY: usize = 32;
+
 /// Outcome of the corrected prediction of one step.
 enum Attempt {
     Good { point: Point, error: f64 },
@@ -96,6 +103,7 @@ impl Continuation {
             largest: (norm(first.unknowns()), first.amplitude.norm()),
             previous: None,
             current: first,
+            stationary: 0,
             row: try_vec(n + 1, 0.0, CONTEXT)?,
             scratch: try_vec(n + 1, 0.0, CONTEXT)?,
             leaves_surfaces: false,
@@ -168,6 +176,9 @@ impl Continuation {
     /// Those of the problem; `Callback` if a callback of the caller failed down to the smallest step;
     /// `StoppedByCaller`.
     pub fn advance(&mut self, problem: &mut dyn Problem, interrupt: &Interrupt<'_>) -> Result<Advance> {
+        if self.stationary >= MOST_STATIONARY {
+            return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
+        }
         let metric = self.metric();
         let n = self.row.len() - 1;
         let order = if self.previous.is_some() { 4.0 } else { 2.0 };
@@ -226,6 +237,12 @@ impl Continuation {
         self.largest.0 = self.largest.0.max(norm(point.unknowns()));
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
         self.left_surface &= point.step < GROWN;
+        let change = (point.parameter() - self.current.parameter()).abs();
+        self.stationary = if change <= ROUNDING * point.parameter().abs() {
+            self.stationary + 1
+        } else {
+            0
+        };
         self.previous = Some(core::mem::replace(&mut self.current, point.try_clone()?));
         Ok(match fixed {
             Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
