@@ -21,8 +21,7 @@ fn friction_of_one_mass_has_the_multipliers_of_its_flow() {
 }
 
 /// A third radius, 0.9166 under weak slip, is known without its parameters. Its value without friction is 0.940, so
-/// that ω is 1.007 to 1.025 at c = 0.02. The first set keeps m, k, c, kt and force of the case above: Hill's method with the
-/// tangents of the harmonic forces finds 0.9164 there, where 0.9162 is known, and 0.9184 for the second set.
+/// that ω is 1.007 to 1.025 at c = 0.02. Two of the sets that give it; the first keeps m, k, c, kt and force of the case above.
 #[test]
 fn weak_slip_has_one_radius_for_two_sets_of_parameters() {
     for (limit, force, omega, without_friction) in [(0.05, 0.2, 1.02, 0.9403), (0.3, 0.54, 1.01, 0.9397)] {
