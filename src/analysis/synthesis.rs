@@ -138,6 +138,12 @@ pub fn synthesise_with(
     if force.iter().chain(&unbalance).all(|f| *f == Complex64::ZERO) {
         return fail!(Argument, "the model has no force in the fundamental");
     }
+    if branch.points() == 0 {
+        return Ok(Synthesis {
+            points: Vec::new(),
+            peaks: Vec::new(),
+        });
+    }
     let of_model = |kind| {
         let matrix = || model.structure().wave_matrix(kind, 1);
         options.model_damping.then(matrix).transpose()

@@ -201,3 +201,28 @@ fn doubtful_resonances_are_told() {
         high.peaks
     );
 }
+
+/// A mode that its caller stops before the first point has nothing to synthesise from, with or without matrices prepared.
+#[test]
+fn a_mode_without_points_gives_a_response_without_points() {
+    for stop_at in [0, 1, 5, 20, 100] {
+        let asked = std::cell::Cell::new(0);
+        let cancelled = || {
+            asked.set(asked.get() + 1);
+            asked.get() > stop_at
+        };
+        let mut hooks = Hooks {
+            cancelled: Some(&cancelled),
+            ..Hooks::default()
+        };
+        let range = ModeOptions {
+            log10_start: -7.0,
+            log10_stop: -2.0,
+            ..ModeOptions::default()
+        };
+        let branch = nonlinear_mode(&BASE.sector(), &solver(7), &range, &mut hooks).unwrap();
+        println!("stopped at check {stop_at}: {} points", branch.points());
+        let found = synthesise(&branch, &BASE.sector(), &SynthesisOptions::default()).unwrap();
+        assert!(found.points.len() == branch.points() && found.peaks.is_empty());
+    }
+}
