@@ -79,6 +79,9 @@ const FLOOR: f64 = 1e-2;
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const MOST_STATIONARY: usize = 32;
 
+/// Length of a step that changes no parameter beyond rounding, wherever the branch leads.
+const TINY: f64 = 1e-6;
+
 /// Outcome of the corrected prediction of one step.
 enum Attempt {
     Good { point: Point, error: f64 },
@@ -238,7 +241,7 @@ impl Continuation {
         self.largest.1 = self.largest.1.max(point.amplitude.norm());
         self.left_surface &= point.step < GROWN;
         let change = (point.parameter() - self.current.parameter()).abs();
-        self.stationary = if change <= ROUNDING * point.parameter().abs() {
+        self.stationary = if change <= ROUNDING * point.parameter().abs() && point.step > TINY {
             self.stationary + 1
         } else {
             0

@@ -12,6 +12,7 @@ use crate::contact::laws::friction_3d_slip::{Solved, along_motion, first_zero, s
 use crate::contact::plane_path::{CONTEXT, PlaneForce, PlaneInstant, PlanePath, PlanePiece, SlipPanel};
 use crate::contact::radau::{POINTS, STAGES};
 use crate::error::{Error, Result, Status, try_push};
+use crate::interrupt::Interrupt;
 use std::f64::consts::TAU;
 
 /// Largest neglected part of a panel's turn, weighted by its limit against the largest limit.
@@ -45,6 +46,7 @@ pub(super) enum Phase {
 /// A path under way.
 pub(super) struct Walk<'a> {
     path: &'a mut PlanePath,
+    interrupt: &'a Interrupt<'a>,
     /// The largest limit.
     size: f64,
     /// Derivatives of the force, or in slip of the angle (first row), by the force at the start.
@@ -56,11 +58,12 @@ pub(super) struct Walk<'a> {
 }
 
 impl<'a> Walk<'a> {
-    pub fn new(path: &'a mut PlanePath) -> Self {
+    pub fn new(path: &'a mut PlanePath, interrupt: &'a Interrupt<'a>) -> Self {
         let size = path.largest_limit();
         path.pieces.clear();
         Self {
             path,
+            interrupt,
             size,
             by_start: [[1.0, 0.0], [0.0, 1.0]],
             closes: false,
@@ -124,6 +127,7 @@ impl<'a> Walk<'a> {
         let (mut tau, mut phase) = (from, begin);
         let mut events_here = 0;
         while to - tau > shortest {
+            self.interrupt.check()?;
             if self.path.pieces.len() > MOST_PIECES * self.path.panels {
                 return Err(Error::new(
                     Status::NoConvergence,

@@ -49,13 +49,13 @@ const DEEP: f64 = 0.1;
 pub(super) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
     if normal.iter().any(|piece| !piece.is_closed()) {
         path.repetition = Repetition::FromNothing;
-        return closed_times(normal, path);
+        return closed_times(normal, path, interrupt);
     }
     if path.largest_limit() <= 0.0 {
         // The sides touch without load.
         path.repetition = Repetition::FromNothing;
         let turn = path.turn;
-        return Walk::new(path).open(0.0, turn);
+        return Walk::new(path, interrupt).open(0.0, turn);
     }
     let settled = settle(path)?;
     if let Some(settled) = &settled
@@ -68,8 +68,8 @@ pub(super) fn find(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt
 }
 
 /// Follows every closed time from its closing on.
-fn closed_times(normal: &[Piece], path: &mut PlanePath) -> Result<()> {
-    let mut walk = Walk::new(path);
+fn closed_times(normal: &[Piece], path: &mut PlanePath, interrupt: &Interrupt<'_>) -> Result<()> {
+    let mut walk = Walk::new(path, interrupt);
     let closed_ends = [normal.first(), normal.last()].map(|p| p.is_some_and(Piece::is_closed));
     // The turn of the normal pieces begins anywhere; a closed time across its begin counts as one.
     let cut = closed_ends == [true, true];
@@ -309,7 +309,7 @@ fn repeat(path: &mut PlanePath, settled: Option<&StuckSlider>, interrupt: &Inter
     let (mut plain, mut between) = (1_u32, 1_u32);
     for turn in 0..TURNS {
         interrupt.check()?;
-        let mut walk = Walk::new(path);
+        let mut walk = Walk::new(path, interrupt);
         let begin = walk.begin(start, force);
         if let Phase::Slip { angle } = begin {
             let limit = walk.limit(start);
