@@ -65,8 +65,9 @@ fn a_bladed_disk_is_swept_whole_at_every_force_harmonic_and_sampling() {
                     samples,
                     response_dof: Some(0),
                     tolerance: 0.0,
-                    // So few samples for so many harmonics give maxima that differ by 3 %.
-                    step_max: if (highest, samples) == (15, 64) { 0.02 } else { 0.0 },
+                    // So few samples for so many harmonics give twenty narrow maxima, which differ by 3 %: longer steps pass by
+                    // the highest.
+                    step_max: if (highest, samples) == (15, 64) { 0.007 } else { 0.0 },
                     ..SolverOptions::default()
                 };
                 let (from, to) = RANGE;
