@@ -1,7 +1,7 @@
 //! Stability of the points of a forced response while it is followed.
 
 use crate::analysis::floquet_on_modes::{KeptModes, floquet_of};
-use crate::analysis::perturbed_motion::Motion;
+use crate::analysis::perturbed_motion::{FAR, Motion};
 use crate::condense::Resolution;
 use crate::continuation::Point;
 use crate::error::try_push;
@@ -13,9 +13,6 @@ use crate::model::speed::Speed;
 use crate::options::{FloquetOptions, Waves};
 use crate::results::{Floquet, MultiplierClass, Recovery, Verdict};
 use crate::time_integration::{State, System};
-
-/// Distance of the motion in time from a point, relative to it, above which it is another motion.
-const FAR: f64 = 0.2;
 
 /// Stability of the points of one branch.
 pub(super) struct BranchStability<'a> {

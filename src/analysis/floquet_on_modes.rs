@@ -1,6 +1,6 @@
 //! Choice between the whole structure and modes of it, and the comparison of two numbers of modes.
 
-use crate::analysis::perturbed_motion::{Found, Motion, Subject, perturbed};
+use crate::analysis::perturbed_motion::{FAR, Found, Motion, Subject, perturbed};
 use crate::error::{Result, Status, fail, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
@@ -37,10 +37,6 @@ const LEAST: f64 = 1e-7;
 
 /// Share of the radius above which multipliers of two numbers of modes are compared.
 const LARGE: f64 = 0.5;
-
-/// Distance of the motion in time from the point, relative to it, above which two numbers of modes may agree on a motion
-/// that has little to do with the point, and bound nothing.
-const FAR: f64 = 0.2;
 
 /// Shapes and small models that points of one branch share.
 #[derive(Default)]
@@ -194,7 +190,7 @@ fn agree(few: &Floquet, many: &Floquet) -> bool {
 }
 
 /// Largest distance of a large ordinary multiplier on few modes from the next one on many; NaN where the motion is far
-/// from the point.
+/// from the point: two numbers of modes may agree on a motion that has little to do with it.
 fn change(few: &Floquet, many: &Floquet) -> f64 {
     if few.orbit_change.max(many.orbit_change) > FAR {
         return f64::NAN;

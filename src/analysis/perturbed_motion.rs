@@ -15,6 +15,9 @@ use num_complex::Complex64;
 
 const CONTEXT: &str = "the motion in time";
 
+/// Distance of the motion in time from its point, relative to it, above which it may be another motion.
+pub(super) const FAR: f64 = 0.2;
+
 /// Largest difference of opposite sectors, relative to the motion, of a motion that is odd.
 const ODD: f64 = 1e-9;
 
@@ -134,25 +137,17 @@ pub(super) fn perturbed(
         let start = state.try_clone()?;
         let near = motion.difference.filter(|near| near.len() == state.len());
         let mut found = None;
-        if let Some(near) = near {
-            let mut state = start.try_clone()?;
-            state.add(1.0, near);
-            found = shoot(
-                (&mut system, &mut event_loop),
-                subject,
-                motion,
-                (&in_time, hooks),
-                state,
-            )?;
-        }
-        if found.is_none() {
-            found = shoot(
-                (&mut system, &mut event_loop),
-                subject,
-                motion,
-                (&in_time, hooks),
-                state,
-            )?;
+        // From the difference found at a neighbouring point first, then from the harmonics as they are.
+        for difference in [near, None].into_iter().skip(usize::from(near.is_none())) {
+            let mut begin = start.try_clone()?;
+            if let Some(difference) = difference {
+                begin.add(1.0, difference);
+            }
+            let in_system = (&mut system, &mut event_loop);
+            found = shoot(in_system, subject, motion, (&in_time, hooks), begin)?;
+            if found.is_some() {
+                break;
+            }
         }
         let Some(steady) = found else {
             return fail!(
