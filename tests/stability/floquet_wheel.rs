@@ -34,7 +34,6 @@ fn the_ring_damper_has_the_radii_of_its_reference() {
 }
 
 #[test]
-#[ignore = "shooting of 216 states"]
 fn the_blocks_of_the_ring_damper_are_its_full_wheel() {
     let (sector, wheel) = (BASE.sector(), BASE.full_wheel());
     let omega = TAU * 208.85;

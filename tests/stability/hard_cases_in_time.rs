@@ -1,25 +1,40 @@
 //! Stability of the motions of the hard cases: which of their solutions a machine would show.
 
+use crate::common::mode_cases::follow;
 use crate::common::{B2, BASE, Blisk, D, R, SECTORS, data, harmonics, number, one_mass, solve_at, sweep};
 use crate::{multipliers, ordinary};
 use hbvib::Floquet;
 use hbvib::analysis::floquet;
+use hbvib::analysis::forced_response::forced_response;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{FloquetOptions, Waves};
+use hbvib::options::{FloquetOptions, ForcedOptions, ModeOptions, SolverOptions, Waves};
 use hbvib::results::Branch;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
+use std::path::Path;
 
 /// A parameter of a case of `data/hardcases.json`.
 fn parameter(id: &str, name: &str) -> f64 {
     let all = data("hardcases.json");
     let mut cases = all.as_array().unwrap().iter();
     number(&cases.find(|case| case["id"] == id).unwrap()["params"][name])
+}
+
+/// Asserts that the table of the book has a radius, or its difference from another one, to the digits printed there.
+fn in_book(id: &str, radius: f64) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/stability.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let table = text.split("## Motions of hard cases").nth(1).unwrap();
+    let table = table.split("\n## ").next().unwrap();
+    assert!(
+        table.contains(&format!("{radius:.6}")),
+        "{id}: {radius:.6} is not in the book"
+    );
 }
 
 fn told(id: &str, branch: &Branch, point: usize, found: &Floquet) {
@@ -32,8 +47,11 @@ fn told(id: &str, branch: &Branch, point: usize, found: &Floquet) {
         found.neutral,
         found.orbit_change
     );
+    assert!(found.radius < 1.0 && found.unstable == 0, "{id}");
+    in_book(id, found.radius);
 }
 
+/// The multipliers of a motion that is stable and in the book.
 fn at(id: &str, model: &Model, omega: f64, highest: usize) -> Floquet {
     let branch = solve_at(model, &harmonics(highest), omega);
     let found = multipliers(model, &branch, 0, Waves::Wave);
@@ -56,14 +74,14 @@ fn linear_cases_decay_as_their_damping_says() {
         let model = one_mass(parameter(id, "c"), &slider, parameter(id, "F"));
         let found = at(id, &model, omega, 7);
         let decay = (-0.5 * parameter(id, "c") * TAU / omega).exp();
-        assert!((found.radius - decay).abs() < 1e-11 && found.unstable == 0);
+        assert!((found.radius - decay).abs() < 1e-11);
     }
     for (id, gap) in [("HC16", parameter("HC16", "gap")), ("HC17", parameter("HC17", "gap"))] {
         let omega = parameter(id, "w");
         let stop = Contact::unilateral(None, Some(0), parameter(id, "kn"), gap);
         let found = at(id, &one_mass(parameter(id, "c"), &stop, parameter(id, "F")), omega, 7);
         let decay = (-0.5 * parameter(id, "c") * TAU / omega).exp();
-        assert!((found.radius - decay).abs() < 1e-9 && found.unstable == 0);
+        assert!((found.radius - decay).abs() < 1e-9);
     }
 }
 
@@ -72,16 +90,45 @@ fn linear_cases_decay_as_their_damping_says() {
 fn sliding_cases_are_stable() {
     for (id, highest) in [("HC04a", 63), ("HC04b", 127), ("HC06", 31)] {
         let found = at(id, &sliding(id), parameter(id, "w"), highest);
-        assert!(found.radius < 1.0 && found.unstable == 0, "{id}");
-        assert_eq!(ordinary(&found).len(), 2);
+        assert_eq!(ordinary(&found).len(), 2, "{id}");
     }
     let slider = Contact::jenkins(0, None, 1.0, 1.0, 0.3);
     let mut third = one_mass(0.02, &slider, 0.0);
     third.add_force(0, 3, 0.2.into()).unwrap();
-    assert_eq!(at("HC29", &third, parameter("HC29", "w"), 9).unstable, 0);
+    at("HC29", &third, parameter("HC29", "w"), 9);
     let mut pushed = one_mass(0.02, &slider, 0.2);
     pushed.add_force(0, 0, parameter("HC21", "F0").into()).unwrap();
-    assert_eq!(at("HC21", &pushed, parameter("HC21", "w"), 31).unstable, 0);
+    at("HC21", &pushed, parameter("HC21", "w"), 31);
+    // The second force of the case holds the contact stuck.
+    let mut held = one_mass(0.02, &slider, 0.05);
+    held.add_force(0, 0, parameter("HC21", "F0").into()).unwrap();
+    assert_eq!(at("HC21", &held, 0.9, 31).neutral, 1);
+}
+
+/// Without a bounded motion there is nothing to perturb, and artificial damping is no property of a motion in time.
+#[test]
+fn cases_without_a_periodic_motion_have_no_multipliers() {
+    let omega = parameter("HC07", "w");
+    let range = ForcedOptions {
+        omega_start: omega,
+        omega_stop: omega,
+        ..ForcedOptions::default()
+    };
+    let e = forced_response(&sliding("HC07"), &harmonics(31), &range, &mut Hooks::default()).unwrap_err();
+    assert_eq!(e.status, Status::NoBoundedSolution);
+    // The model of HC38 is that of HC09 without its force and its damping.
+    let mut model = blisk("HC09", 2, 0.03);
+    model.clear_forces();
+    model.set_rayleigh(0.0, 0.0).unwrap();
+    let range = ModeOptions {
+        log10_start: -4.5,
+        log10_stop: -4.2,
+        ..ModeOptions::default()
+    };
+    let branch = follow(&model, &harmonics(7), &range);
+    let last = branch.points() - 1;
+    let e = floquet(&model, &branch, last, &FloquetOptions::default(), &mut Hooks::default()).unwrap_err();
+    assert_eq!(e.status, Status::Unsupported);
 }
 
 /// The middle one of three motions of a mass behind a gap, between the folds, is unstable.
@@ -97,7 +144,11 @@ fn the_middle_one_of_coexisting_motions_is_unstable() {
         .iter()
         .map(|s| {
             let found = multipliers(&model, &branch, s.point, Waves::Wave);
-            println!("{id} {:.6} {:.9} {}", s.amplitude, found.radius, found.unstable);
+            println!(
+                "{id} {:.6} {:.9} {} unstable",
+                s.amplitude, found.radius, found.unstable
+            );
+            in_book(id, found.radius);
             found.unstable
         })
         .collect();
@@ -144,22 +195,24 @@ fn blisk(id: &str, engine_order: i64, ring_mass: f64) -> Model {
 /// The wheel's verdict counts more perturbations than the wave's.
 #[test]
 fn waves_of_the_blisk_are_stable_over_the_wheel() {
-    let mut cases = vec![("HC09", 2, 208.5), ("HC11", 24, 91.3)];
+    let mut cases = vec![("HC09", 2, 208.5), ("HC11", 24, 91.3), ("HC40", 2, 208.5)];
     cases.extend([22, 26, 46].map(|order| ("HC12", order, 208.5)));
     cases.extend([676.5, 811.0, 850.0].map(|f| ("HC14", 3, f)));
     for (id, order, frequency) in cases {
         let model = blisk(id, order, 0.03);
-        let branch = solve_at(&model, &harmonics(31), TAU * frequency);
+        // The motion is odd, whether even harmonics are carried or not.
+        let solver = SolverOptions {
+            keep_even_harmonics: id == "HC40",
+            ..harmonics(31)
+        };
+        let branch = solve_at(&model, &solver, TAU * frequency);
         let [wave, wheel] = [Waves::Wave, Waves::Wheel].map(|waves| {
             let found = multipliers(&model, &branch, 0, waves);
             println!("engine order {order}, {waves:?}:");
             told(id, &branch, 0, &found);
             found
         });
-        assert!(
-            wave.radius <= wheel.radius + 1e-9 && wheel.unstable == 0,
-            "{id} {order}"
-        );
+        assert!(wave.radius <= wheel.radius + 1e-9, "{id} {order}");
     }
     let model = blisk("HC10", 2, 0.0);
     let branch = solve_at(&model, &harmonics(15), TAU * 208.5);
@@ -183,8 +236,8 @@ fn a_slider_at_the_onset_of_slip_is_stable() {
     let limit = kt * (parameter("HC05", "F") / stuck.norm()) * (1.0 - 1e-6);
     let model = one_mass(c, &Contact::jenkins(0, None, kt, 1.0, limit), parameter("HC05", "F"));
     let found = at("HC05", &model, omega, 15);
-    println!("{:?} {:?}", found.multipliers, found.grazing);
-    assert!(found.unstable == 0 && found.radius < 1.0);
+    println!("{:?}", found.multipliers);
+    assert!(found.grazing.is_none());
 }
 
 /// Multipliers do not depend on the unit of forces, from 1e-160 to 1e160.
@@ -210,7 +263,7 @@ fn a_static_load_is_stable_while_friction_holds_it() {
         model
     };
     let found = at("HC20", &loaded(0.5), 1.0, 1);
-    assert_eq!((found.unstable, found.neutral), (0, 1));
+    assert_eq!(found.neutral, 1);
     assert!((found.radius - (-0.01 * TAU).exp()).abs() < 1e-11);
     let model = loaded(1.0);
     let branch = solve_at(&model, &harmonics(1), 1.0);
@@ -242,10 +295,63 @@ fn uncoupled_masses_have_the_multipliers_of_one_mass() {
     }
 }
 
-/// A quasi-static period leaves little of a perturbation; one of 6e8 units of time, as in the case, takes 1e8 steps.
+/// The light mass of the case, 1e-14, vibrates 1e7 times in a period. With less light ones the multipliers tend to those of
+/// one mass.
+#[test]
+fn a_light_mass_changes_no_multiplier() {
+    let reference = at(
+        "HC27",
+        &one_mass(0.02, &Contact::jenkins(0, None, 1.0, 1.0, 0.3), 0.2),
+        1.25,
+        31,
+    )
+    .radius;
+    let mut last = f64::INFINITY;
+    for light in [1e-2, 1e-4, 1e-6] {
+        let mut model = Model::new(2).unwrap();
+        for (kind, a) in [
+            (MatrixKind::Mass, [1.0, 0.0, 0.0, light]),
+            (MatrixKind::Stiffness, [2.0, -1.0, -1.0, 1.0]),
+            (MatrixKind::Damping, [0.04, -0.02, -0.02, 0.02]),
+        ] {
+            model.set_matrix(kind, &MatrixView::dense(2, &a)).unwrap();
+        }
+        model.add_contact(&Contact::jenkins(0, None, 1.0, 1.0, 0.3)).unwrap();
+        model.add_force(0, 1, 0.2.into()).unwrap();
+        let gap = (at("HC25", &model, 1.25, 31).radius - reference).abs();
+        assert!(gap < 0.2 * last, "{light}: {gap}");
+        last = gap;
+    }
+    assert!(last < 1e-6, "{last}");
+}
+
+/// A slow period leaves nothing of a perturbation: e^{-cT/2} is below the smallest number of double precision from
+/// ω = 8e-5 downwards.
 #[test]
 fn a_slow_motion_forgets_its_perturbations() {
     let model = sliding("HC32");
-    let found = at("HC32", &model, 0.02, 31);
-    assert!(found.radius < (-0.01 * TAU / 0.02).exp() && found.unstable == 0);
+    for omega in [0.02, 0.01] {
+        let found = at("HC32", &model, omega, 31);
+        assert!(found.radius < (-0.01 * TAU / omega).exp());
+    }
+    forgets_all(&model, 1e-5);
+}
+
+/// The same at the frequency of the case, through 6e8 units of time.
+#[test]
+#[ignore = "a period of 4e8 steps takes six minutes; tests/deep.sh runs it"]
+fn the_quasi_static_case_has_no_multiplier_but_zero() {
+    forgets_all(&sliding("HC32"), parameter("HC32", "w"));
+}
+
+/// The point as it is has multipliers that are zero to rounding.
+fn forgets_all(model: &Model, omega: f64) {
+    let branch = solve_at(model, &harmonics(31), omega);
+    let options = FloquetOptions {
+        refine: false,
+        ..FloquetOptions::default()
+    };
+    let found = floquet(model, &branch, 0, &options, &mut Hooks::default()).unwrap();
+    told("HC32", &branch, 0, &found);
+    assert_eq!(found.radius, 0.0);
 }
