@@ -1,10 +1,11 @@
 //! Values of a real Fourier series over one turn, and its crossings of a level.
 
 use crate::fourier::HarmonicSet;
+use crate::fourier::roots::safe_halley;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// Value, first and second derivative of a series at one time.
+/// Value and three derivatives of a series at one time.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet {
     /// x(τ)
@@ -13,46 +14,20 @@ pub struct Jet {
     pub dx: f64,
     /// d²x/dτ²
     pub ddx: f64,
+    /// d³x/dτ³
+    pub dddx: f64,
 }
 
-/// x, x′ and x″ of a packed signal at τ.
+/// x to x‴ of a packed signal at τ.
 #[must_use]
 pub fn jet(set: &HarmonicSet, packed: &[f64], tau: f64) -> Jet {
+    at_turn(set, packed, Complex64::cis(tau))
+}
+
+/// The same at the time whose e^{iτ} is `turn`.
+fn at_turn(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> Jet {
     let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
     let mut j = Jet {
-        x: mean.first().copied().unwrap_or(0.0),
-        dx: 0.0,
-        ddx: 0.0,
-    };
-    let mut turn = Complex64::cis(tau);
-    let stride = set.stride();
-    let step = if stride == 2 { turn * turn } else { turn };
-    let mut p = 1.0;
-    for pair in rest.chunks_exact(2) {
-        let x = pair[0] * turn.re - pair[1] * turn.im;
-        let quadrature = pair[0] * turn.im + pair[1] * turn.re;
-        j.x += x;
-        j.dx -= p * quadrature;
-        j.ddx -= p * p * x;
-        turn *= step;
-        p += stride as f64;
-    }
-    j
-}
-
-/// Value and derivatives of one order more.
-#[derive(Clone, Copy)]
-pub(super) struct LongJet {
-    pub(super) x: f64,
-    pub(super) dx: f64,
-    pub(super) ddx: f64,
-    pub(super) dddx: f64,
-}
-
-/// x to x‴ of a packed signal at the time whose e^{iτ} is `turn`.
-fn long_jet(set: &HarmonicSet, packed: &[f64], mut turn: Complex64) -> LongJet {
-    let (mean, rest) = packed.split_at(usize::from(set.has_mean()));
-    let mut j = LongJet {
         x: mean.first().copied().unwrap_or(0.0),
         dx: 0.0,
         ddx: 0.0,
@@ -104,7 +79,7 @@ impl<'a> Approach<'a> {
         }
     }
 
-    fn at(&mut self, tau: f64) -> LongJet {
+    fn at(&mut self, tau: f64) -> Jet {
         let step = tau - self.tau;
         self.turn = if step.abs() <= SMALL_ANGLE {
             self.turn * small_turn(step)
@@ -112,8 +87,16 @@ impl<'a> Approach<'a> {
             Complex64::cis(tau)
         };
         self.tau = tau;
-        long_jet(self.set, self.packed, self.turn)
+        at_turn(self.set, self.packed, self.turn)
     }
+}
+
+/// Longest step, in angles of the highest harmonic, after which the error of Halley's method is rounding: it is the
+/// cube of the step.
+const LAST_STEP: f64 = 3e-6;
+
+fn last_step(set: &HarmonicSet) -> f64 {
+    LAST_STEP / set.highest_reduced().max(1) as f64
 }
 
 /// The time in (a, b) at which a signal, monotone there, passes `level`.
@@ -122,7 +105,7 @@ pub fn crossing(set: &HarmonicSet, packed: &[f64], a: f64, b: f64, xa: f64, xb: 
     // Between two turning points a motion resembles half a wave of a cosine.
     let guess = a + (b - a) * (1.0 - 2.0 * (level - xa) / (xb - xa)).acos() / PI;
     let mut signal = Approach::new(set, packed);
-    safe_halley((a, b), xa - level, (guess, set.highest_reduced()), |tau| {
+    safe_halley((a, b), xa - level, (guess, last_step(set)), |tau| {
         let at = signal.at(tau);
         [at.x - level, at.dx, at.ddx]
     })
@@ -133,7 +116,7 @@ pub(super) fn turning_point(set: &HarmonicSet, packed: &[f64], (a, b): (f64, f64
     let guess = a - slopes.0 * (b - a) / (slopes.1 - slopes.0);
     let mut signal = Approach::new(set, packed);
     let mut last = (0.0, 0.0, 0.0);
-    let tau = safe_halley((a, b), slopes.0, (guess, set.highest_reduced()), |tau| {
+    let tau = safe_halley((a, b), slopes.0, (guess, last_step(set)), |tau| {
         let at = signal.at(tau);
         last = (tau, at.x, at.dx);
         [at.dx, at.ddx, at.dddx]
@@ -141,108 +124,6 @@ pub(super) fn turning_point(set: &HarmonicSet, packed: &[f64], (a, b): (f64, f64
     // The step from the last jet is short, and x′ falls to zero along it.
     let (at, x, slope) = last;
     (tau, x + 0.5 * (tau - at) * slope)
-}
-
-/// Longest step, in angles of the highest harmonic, after which the error of Halley's method is rounding: it is the
-/// cube of the step.
-const LAST_STEP: f64 = 3e-6;
-
-/// Largest error that the curvature leaves after the last step.
-const LAST_ERROR: f64 = 1e-17;
-
-/// Halley's method inside a bracket from a guess, with bisection where a step leaves it or does not converge: fewer
-/// values of the function than Newton's method needs. `f` returns a function and two derivatives.
-fn safe_halley((a, b): (f64, f64), fa: f64, (guess, highest): (f64, usize), mut f: impl FnMut(f64) -> [f64; 3]) -> f64 {
-    let (mut low, mut high) = if fa < 0.0 { (a, b) } else { (b, a) };
-    let mut tau = if guess > a && guess < b { guess } else { 0.5 * (a + b) };
-    let mut last = (b - a).abs();
-    let short = LAST_STEP / highest.max(1) as f64;
-    for _ in 0..100 {
-        let [value, slope, curvature] = f(tau);
-        if value == 0.0 {
-            return tau;
-        }
-        if value < 0.0 {
-            low = tau;
-        } else {
-            high = tau;
-        }
-        let newton = value / slope;
-        let bend = 0.5 * newton * curvature / slope;
-        let next = if bend.abs() < 0.5 {
-            tau - newton / (1.0 - bend)
-        } else {
-            tau - newton
-        };
-        let step = (next - tau).abs();
-        let inside = (next - low) * (next - high) < 0.0;
-        if inside && step <= short && bend * bend * step <= LAST_ERROR {
-            return next;
-        }
-        let next = if inside && step <= 0.5 * last {
-            next
-        } else {
-            0.5 * (low + high)
-        };
-        last = (next - tau).abs();
-        tau = next;
-        if last < EVENT_TOLERANCE {
-            // Near a tangent, or at an end of the bracket.
-            let [value, slope, _] = f(tau);
-            return polished(tau, value / slope, last);
-        }
-    }
-    tau
-}
-
-/// Width below which another Newton step no longer matters: the force is continuous at every
-/// event, so an event misplaced by ε changes the Fourier integrals by O(ε²).
-const EVENT_TOLERANCE: f64 = 1e-9;
-
-/// Newton's method inside a bracket, with bisection where a step leaves it or does not converge.
-/// The last evaluation of `f` is within the tolerance of the returned root.
-#[must_use]
-pub fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
-    let (mut low, mut high) = if fa < 0.0 { (a, b) } else { (b, a) };
-    // The secant step; equal end values give NaN or infinity, and then the middle is taken.
-    let mut tau = a - fa * (b - a) / (fb - fa);
-    if !(tau > a && tau < b) {
-        tau = 0.5 * (a + b);
-    }
-    let mut last = (b - a).abs();
-    for _ in 0..100 {
-        let (value, slope) = f(tau);
-        if value == 0.0 {
-            return tau;
-        }
-        if value < 0.0 {
-            low = tau;
-        } else {
-            high = tau;
-        }
-        let newton = tau - value / slope;
-        let inside = (newton - low) * (newton - high) < 0.0;
-        let next = if inside && (newton - tau).abs() <= 0.5 * last {
-            newton
-        } else {
-            0.5 * (low + high)
-        };
-        last = (next - tau).abs();
-        tau = next;
-        if last < EVENT_TOLERANCE {
-            let (value, slope) = f(tau);
-            return polished(tau, value / slope, last);
-        }
-    }
-    tau
-}
-
-/// A root after one more step of Newton's method, if that is not longer than the last step was.
-///
-/// Twice as long at most: bisection towards an end of the bracket that is the root but for rounding stops as far from it as
-/// its last step was long.
-fn polished(tau: f64, step: f64, last: f64) -> f64 {
-    if step.abs() <= 2.0 * last { tau - step } else { tau }
 }
 
 #[cfg(test)]

@@ -1,0 +1,129 @@
+//! Roots of a function inside a bracket.
+
+/// Width below which another Newton step no longer matters: the force is continuous at every
+/// event, so an event misplaced by ε changes the Fourier integrals by O(ε²).
+const EVENT_TOLERANCE: f64 = 1e-9;
+
+/// Values of a function up to which a root is sought.
+const MOST_VALUES: usize = 100;
+
+/// Largest error that the curvature leaves after the last step of Halley's method.
+const LAST_ERROR: f64 = 1e-17;
+
+/// Two times between which a function changes its sign.
+struct Bracket {
+    /// The side on which it is negative, and the other one.
+    low: f64,
+    high: f64,
+    /// Length of the last step.
+    last: f64,
+}
+
+impl Bracket {
+    /// From two times and the value at the first.
+    fn new(a: f64, b: f64, fa: f64) -> Self {
+        let (low, high) = if fa < 0.0 { (a, b) } else { (b, a) };
+        Self {
+            low,
+            high,
+            last: (b - a).abs(),
+        }
+    }
+
+    /// Takes the value at a time within.
+    fn narrow(&mut self, tau: f64, value: f64) {
+        if value < 0.0 {
+            self.low = tau;
+        } else {
+            self.high = tau;
+        }
+    }
+
+    /// A guess that lies between two times, or else the middle; comparisons with NaN are false.
+    fn begin(a: f64, b: f64, guess: f64) -> f64 {
+        if guess > a && guess < b { guess } else { 0.5 * (a + b) }
+    }
+
+    fn holds(&self, tau: f64) -> bool {
+        (tau - self.low) * (tau - self.high) < 0.0
+    }
+
+    /// The next time: the proposed one where it lies within and halves the step at least, or else the middle.
+    fn step(&mut self, tau: f64, proposed: f64) -> f64 {
+        let next = if self.holds(proposed) && (proposed - tau).abs() <= 0.5 * self.last {
+            proposed
+        } else {
+            0.5 * (self.low + self.high)
+        };
+        self.last = (next - tau).abs();
+        next
+    }
+
+    /// A root after one more step of Newton's method, if that is not longer than the last step was.
+    ///
+    /// Twice as long at most: bisection towards an end of the bracket that is the root but for rounding stops as far from it
+    /// as its last step was long.
+    fn polished(&self, tau: f64, step: f64) -> f64 {
+        if step.abs() <= 2.0 * self.last { tau - step } else { tau }
+    }
+}
+
+/// Newton's method inside a bracket, with bisection where a step leaves it or does not converge.
+/// The last evaluation of `f` is within the tolerance of the returned root.
+#[must_use]
+pub fn safe_newton(a: f64, b: f64, fa: f64, fb: f64, mut f: impl FnMut(f64) -> (f64, f64)) -> f64 {
+    let mut bracket = Bracket::new(a, b, fa);
+    // The secant step; equal end values give NaN or infinity.
+    let mut tau = Bracket::begin(a, b, a - fa * (b - a) / (fb - fa));
+    for _ in 0..MOST_VALUES {
+        let (value, slope) = f(tau);
+        if value == 0.0 {
+            return tau;
+        }
+        bracket.narrow(tau, value);
+        tau = bracket.step(tau, tau - value / slope);
+        if bracket.last < EVENT_TOLERANCE {
+            let (value, slope) = f(tau);
+            return bracket.polished(tau, value / slope);
+        }
+    }
+    tau
+}
+
+/// Halley's method inside a bracket from a guess, with bisection where a step leaves it or does not converge: fewer
+/// values of the function than Newton's method needs. `f` returns a function and two derivatives; a step of the length
+/// `short` is the last one.
+pub(super) fn safe_halley(
+    (a, b): (f64, f64),
+    fa: f64,
+    (guess, short): (f64, f64),
+    mut f: impl FnMut(f64) -> [f64; 3],
+) -> f64 {
+    let mut bracket = Bracket::new(a, b, fa);
+    let mut tau = Bracket::begin(a, b, guess);
+    for _ in 0..MOST_VALUES {
+        let [value, slope, curvature] = f(tau);
+        if value == 0.0 {
+            return tau;
+        }
+        bracket.narrow(tau, value);
+        let newton = value / slope;
+        let bend = 0.5 * newton * curvature / slope;
+        let next = if bend.abs() < 0.5 {
+            tau - newton / (1.0 - bend)
+        } else {
+            tau - newton
+        };
+        let step = (next - tau).abs();
+        if bracket.holds(next) && step <= short && bend * bend * step <= LAST_ERROR {
+            return next;
+        }
+        tau = bracket.step(tau, next);
+        if bracket.last < EVENT_TOLERANCE {
+            // Near a tangent, or at an end of the bracket.
+            let [value, slope, _] = f(tau);
+            return bracket.polished(tau, value / slope);
+        }
+    }
+    tau
+}
