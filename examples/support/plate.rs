@@ -128,14 +128,18 @@ impl Plate {
 
     /// `count` sliders to the ground, transverse, at the end x = 1 and the middle in turn.
     pub fn sliders(&self, count: usize, stiffness: f64, limit: f64) -> Vec<Contact> {
+        let slider = |dof| Contact::jenkins(dof, None, stiffness, limit, 1.0);
+        self.places_of_sliders(count).into_iter().map(slider).collect()
+    }
+
+    /// Their degrees of freedom.
+    pub fn places_of_sliders(&self, count: usize) -> Vec<usize> {
         let [nx, ny, _] = self.elements;
         let place = |i: usize| {
             let x = if i.is_multiple_of(2) { nx } else { (3 * nx).div_ceil(5) };
             [x, (i / 2 * ny * 2 / count.max(1)).min(ny), 0]
         };
-        (0..count)
-            .map(|i| Contact::jenkins(self.dof(place(i), 2), None, stiffness, limit, 1.0))
-            .collect()
+        (0..count).map(|i| self.dof(place(i), 2)).collect()
     }
 
     /// The degree of freedom at a free corner that is excited and observed.

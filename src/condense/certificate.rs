@@ -6,8 +6,10 @@
 //! resonance as it is, which adds ‖Z⁻¹‖ (ρ/‖q‖)² with the inverse on the basis: near a resonance a small residual is an
 //! error that is 1/(2ζ) times larger.
 //!
-//! Rounding of the stiffness, of its factor and of the basis is an error of A of the relative size ε_A in that norm, which is
-//! measured when the basis is made, and an error (1 + ‖Z⁻¹‖) ε_A of the motion, which no larger basis makes smaller.
+//! Rounding enters in two ways, both measured when the basis is made. Solutions with the factor of A leave the basis by a share
+//! ε_s, so that images of the basis are not quite in it: ‖Z q‖, ‖s M V q‖ and so on times ε_s belong to the residual. Products
+//! of soft motions with A lose digits in the stiff ones; what is left of that, ε_p, is an error of the matrix on the basis, and
+//! an error (1 + ‖Z⁻¹‖) ε_p of the motion, which no larger basis makes smaller.
 
 use crate::condense::HarmonicBlock;
 use crate::condense::sweep::Sweep;
@@ -84,7 +86,8 @@ pub(super) fn certificate(
     }
     let mut lu = Lu::new(n, inputs.len().max(1))?;
     let mut worst = Certificate::default();
-    let rounding = view.pencil().remainder.rounding;
+    let remainder = &view.pencil().remainder;
+    let (solutions, products) = (remainder.solutions, remainder.products);
     let mut q = try_copy(&forces, CONTEXT)?;
     for nu in frequencies {
         let i_nu = Complex64::new(0.0, nu);
@@ -107,7 +110,8 @@ pub(super) fn certificate(
             }
             let share = residual(view, nu, &q[..order])? / size;
             let basis = share + inverse * share * share;
-            let total = basis + (1.0 + inverse) * rounding;
+            let whole = share + solutions * images(view, nu, &q[..order])? / size;
+            let total = whole + inverse * whole * whole + (1.0 + inverse) * products;
             worst = worst.max(Certificate { basis, total });
         }
     }
@@ -152,6 +156,36 @@ fn residual(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
         }
     }
     Ok(sum.re.max(0.0).sqrt())
+}
+
+/// Sum of the norms of the forces Z q and of the images of the basis in them, by which the rounding of solutions counts.
+fn images(view: &ReducedView, nu: f64, q: &[Complex64]) -> Result<f64> {
+    let pencil = view.pencil();
+    let size = |x: &[Complex64]| x.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt();
+    let mut moved = Vec::new();
+    for (z, value) in q.iter().zip(&pencil.values) {
+        try_push(&mut moved, z * value, CONTEXT)?;
+    }
+    let i_nu = Complex64::new(0.0, nu);
+    let (stiffness, mass, damping) = match pencil.damping {
+        WaveDamping::Proportional(alpha, beta) => {
+            let damped = 1.0 + i_nu * beta;
+            (
+                damped.norm(),
+                (nu * nu - i_nu * alpha + damped * pencil.shift).norm(),
+                0.0,
+            )
+        }
+        WaveDamping::General(_) => {
+            let mut damped = try_vec(q.len(), Complex64::ZERO, CONTEXT)?;
+            for (i, to) in damped.iter_mut().enumerate() {
+                *to = q.iter().enumerate().map(|(j, z)| view.damping(i, j) * z).sum();
+            }
+            (1.0, nu * nu + pencil.shift, nu * size(&damped))
+        }
+    };
+    // The forces are the difference of all of them.
+    Ok(stiffness * size(q) + 2.0 * (mass * size(&moved) + damping))
 }
 
 /// ‖Z⁻¹‖ by power iteration on Z⁻¹Z⁻ᴴ.
@@ -200,7 +234,7 @@ fn resonances(
     }
     let mut a = try_copy(&block.mass, CONTEXT)?;
     hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;
-    adjoint_in_place(&mut a, n);
+    hermitian::adjoint_in_place(&mut a, n);
     hermitian::solve_triangular(&l, n, false, &mut a, interrupt)?;
     let [low, _, high] = sweep.of_harmonic(block.number);
     let (found, _) = hermitian::eigen(&mut a, n, interrupt)?;
@@ -216,14 +250,4 @@ fn resonances(
         try_push(frequencies, omega, CONTEXT)?;
     }
     Ok(())
-}
-
-fn adjoint_in_place(a: &mut [Complex64], n: usize) {
-    for j in 0..n {
-        for i in 0..=j {
-            let (x, y) = (a[j * n + i], a[i * n + j]);
-            a[j * n + i] = y.conj();
-            a[i * n + j] = x.conj();
-        }
-    }
 }

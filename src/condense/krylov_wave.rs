@@ -5,7 +5,7 @@ use crate::condense::memory_limit::within;
 use crate::condense::wave_modes::proportional;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
-use crate::linalg::block_krylov::{BlockKrylov, Operator, SparseVector};
+use crate::linalg::block_krylov::{BlockKrylov, SparseVector};
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::hermitian;
 use crate::linalg::sparse::{Csc, Form};
@@ -18,8 +18,12 @@ use std::sync::Arc;
 
 const CONTEXT: &str = "the reduced structure";
 
-/// Motions of the lowest frequencies by which rounding is measured.
-const SOFTEST: usize = 3;
+/// Motions of the lowest frequencies whose products are computed in twice the precision. Rounding counts by the ratio of the
+/// largest stiffness to that of a motion, which is far smaller in the others.
+const SOFTEST: usize = 16;
+
+/// Those among them by which the rounding of solutions is measured.
+const PROBES: usize = 3;
 
 /// Shift σ over the square of the lowest frequency of the sweep. It makes a structure that can move freely definite, and is
 /// so small that the basis finds the modes near the sweep first.
@@ -173,7 +177,7 @@ fn build<T: Entry>(
     let mut wave = ReducedWave {
         key: matrices.key,
         inputs,
-        pencil: pencil(&mut krylov, &prepared, interrupt)?,
+        pencil: pencil(&krylov, &prepared, interrupt)?,
         basis: basis(krylov.take_basis()),
         n: prepared.n,
         exhausted: false,
@@ -190,21 +194,19 @@ fn build<T: Entry>(
         let order = wave.pencil.order();
         let full = order + krylov.next_columns() > most || krylov.next_columns() == 0;
         // Rounding is no reason for a larger basis.
-        if found.basis <= limit || full {
-            wave.exhausted = full && found.basis > limit;
-            return Ok(Some((Arc::new(wave), found)));
-        }
         krylov.give_basis(back(wave.basis));
-        let grown = krylov.grow(interrupt)?;
-        wave.pencil = pencil(&mut krylov, &prepared, interrupt)?;
-        wave.basis = basis(krylov.take_basis());
-        if !grown {
-            // Images and basis are the same space: there is nothing to add.
-            wave.exhausted = true;
+        let complete = found.basis <= limit || full;
+        // Where images and basis are the same space there is nothing to add.
+        if complete || !krylov.grow(interrupt)? {
+            wave.exhausted = found.basis > limit;
+            wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
+            wave.basis = basis(krylov.take_basis());
             let shared = Arc::new(wave);
             let found = error(&shared)?;
             return Ok(Some((shared, found)));
         }
+        wave.pencil = pencil(&krylov, &prepared, interrupt)?;
+        wave.basis = basis(krylov.take_basis());
     }
 }
 
@@ -248,40 +250,43 @@ fn started<T: Entry>(
             shift = SMALL * trace(&stiffness).abs() / heavy;
         }
         let a = Triangle::<T>::sum(&stiffness, (shift, &mass), interrupt)?;
-        drop(stiffness);
         let none = Csc::from_triplets(n, n, Vec::new())?;
+        let stiffness_triangle = Triangle::<T>::sum(&stiffness, (0.0, &none), interrupt)?;
+        drop(stiffness);
         let mass_triangle = Triangle::<T>::sum(&mass, (0.0, &none), interrupt)?;
         drop(mass);
         let block = inputs.len() * n * size_of::<T>();
         let beside = (USUAL_BLOCKS + 3) * block
-            + 2 * a.values.len() * (size_of::<T>() + size_of::<usize>())
+            + 3 * a.values.len() * (size_of::<T>() + size_of::<usize>())
             + matrices.model.kept().bytes();
         let allow = |factor: usize| within(matrices.memory_limit, factor + beside);
         let Some(factor) = Cholesky::new(&a, allow, interrupt)? else {
             shift *= RAISED;
             continue;
         };
-        let mut operators = Vec::new();
-        try_push(&mut operators, Operator::Hermitian(mass_triangle), CONTEXT)?;
-        let damping = match damping {
-            Damping::Proportional(alpha, beta) => Some((alpha, beta)),
-            Damping::General(c) => {
-                try_push(&mut operators, Operator::General(c), CONTEXT)?;
-                None
-            }
+        let (proportional, general) = match damping {
+            Damping::Proportional(alpha, beta) => (Some((alpha, beta)), None),
+            Damping::General(c) => (None, Some(c)),
         };
-        let prepared = Prepared { shift, damping, n };
-        return Ok(Some((BlockKrylov::new(factor, a, operators), prepared)));
+        let prepared = Prepared {
+            shift,
+            damping: proportional,
+            n,
+        };
+        let matrices = (stiffness_triangle, shift, mass_triangle);
+        return Ok(Some((BlockKrylov::new(factor, matrices, general), prepared)));
     }
     Ok(None)
 }
 
 /// The matrices on the basis, with the basis rotated so that the mass is diagonal.
-fn pencil<T: Entry>(
-    krylov: &mut BlockKrylov<T>,
-    prepared: &Prepared,
-    interrupt: &Interrupt<'_>,
-) -> Result<ReducedPencil> {
+fn pencil<T: Entry>(krylov: &BlockKrylov<T>, prepared: &Prepared, interrupt: &Interrupt<'_>) -> Result<ReducedPencil> {
+    let (values, rotation) = modes(krylov, interrupt)?;
+    of_rotation(krylov, prepared, (values, rotation), (0.0, 0.0))
+}
+
+/// μ and the rotation of the basis that makes the mass diagonal.
+fn modes<T: Entry>(krylov: &BlockKrylov<T>, interrupt: &Interrupt<'_>) -> Result<(Vec<f64>, Vec<Complex64>)> {
     let order = krylov.order();
     let mut mass = try_copy(krylov.reduced(0), CONTEXT)?;
     for j in 0..order {
@@ -291,11 +296,18 @@ fn pencil<T: Entry>(
             mass[i * order + j] = mean.conj();
         }
     }
-    let (values, rotation) = hermitian::eigen(&mut mass, order, interrupt)?;
-    let rounding = krylov.rounding(&probes(&values, &rotation)?, interrupt)?;
+    hermitian::eigen(&mut mass, order, interrupt)
+}
+
+fn of_rotation<T: Entry>(
+    krylov: &BlockKrylov<T>,
+    prepared: &Prepared,
+    (values, rotation): (Vec<f64>, Vec<Complex64>),
+    (solutions, products): (f64, f64),
+) -> Result<ReducedPencil> {
     let damping = match prepared.damping {
         Some((alpha, beta)) => WaveDamping::Proportional(alpha, beta),
-        None => WaveDamping::General(rotated(krylov.reduced(1), &rotation, order)?),
+        None => WaveDamping::General(rotated(krylov.reduced(1), &rotation, krylov.order())?),
     };
     Ok(ReducedPencil {
         shift: prepared.shift,
@@ -305,28 +317,90 @@ fn pencil<T: Entry>(
         remainder: Remainder {
             last: krylov.last(),
             gram: try_copy(krylov.gram(), CONTEXT)?,
-            rounding,
+            solutions,
+            products,
         },
     })
 }
 
-/// Motions in which rounding shows most: those of the lowest frequencies, and all of the basis at once.
-fn probes(values: &[f64], rotation: &[Complex64]) -> Result<Vec<Complex64>> {
+/// The same without the rounding of products with A = K + σM in the softest motions: with their Gram matrix G in the inner
+/// product of A, G = L Lᴴ, the basis V Q L⁻ᴴ is orthonormal, and a rotation more makes the mass diagonal again.
+fn exact_pencil<T: Entry>(
+    krylov: &mut BlockKrylov<T>,
+    prepared: &Prepared,
+    interrupt: &Interrupt<'_>,
+) -> Result<ReducedPencil> {
+    let (values, rotation) = modes(krylov, interrupt)?;
     let order = values.len();
-    let mut found = try_vec((SOFTEST + 1) * order, Complex64::ZERO, CONTEXT)?;
     let mut ranked: Vec<usize> = Vec::new();
     for k in 0..order {
         try_push(&mut ranked, k, CONTEXT)?;
     }
     ranked.sort_unstable_by(|&a, &b| values[b].total_cmp(&values[a]));
-    for (probe, k) in found
-        .chunks_exact_mut(order.max(1))
-        .zip(ranked.into_iter().take(SOFTEST))
-    {
-        probe.copy_from_slice(&rotation[k * order..(k + 1) * order]);
+    // The first motion that is left as it is shows what rounding leaves.
+    ranked.truncate(SOFTEST + 1);
+    let mut soft = Vec::new();
+    for &k in &ranked {
+        for &z in &rotation[k * order..(k + 1) * order] {
+            try_push(&mut soft, z, CONTEXT)?;
+        }
     }
-    for (k, z) in found[SOFTEST * order..].iter_mut().enumerate() {
-        *z = if k % 2 == 0 { 1.0 } else { -1.0 }.into();
+    let products = rotated_back(&krylov.products(&soft, interrupt)?, &rotation, order)?;
+    let mut l = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
+    for k in 0..order {
+        l[k * order + k] = Complex64::ONE;
+    }
+    let mut left = f64::EPSILON;
+    for (at, (&k, column)) in ranked.iter().zip(products.chunks_exact(order.max(1))).enumerate() {
+        if at == SOFTEST {
+            let others = column.iter().enumerate().filter(|(i, _)| !ranked[..at].contains(i));
+            let gap = others.map(|(i, z)| (z - f64::from(u8::from(i == k))).norm_sqr());
+            left = left.max(gap.sum::<f64>().sqrt());
+            break;
+        }
+        for (i, &z) in column.iter().enumerate() {
+            l[k * order + i] = z;
+            l[i * order + k] = z.conj();
+        }
+        l[k * order + k] = column[k].re.into();
+    }
+    soft.truncate(PROBES.min(ranked.len()) * order);
+    for k in 0..order {
+        try_push(&mut soft, if k % 2 == 0 { 1.0 } else { -1.0 }.into(), CONTEXT)?;
+    }
+    let solutions = krylov.rounding_of_solutions(&soft, interrupt)?;
+    if !hermitian::cholesky(&mut l, order, interrupt)? {
+        return of_rotation(krylov, prepared, (values, rotation), (solutions, 1.0));
+    }
+    // L⁻¹ diag(μ) L⁻ᴴ
+    let mut mass = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
+    for (k, mu) in values.iter().enumerate() {
+        mass[k * order + k] = (*mu).into();
+    }
+    for _ in 0..2 {
+        hermitian::solve_triangular(&l, order, false, &mut mass, interrupt)?;
+        hermitian::adjoint_in_place(&mut mass, order);
+    }
+    let (values, mut turn) = hermitian::eigen(&mut mass, order, interrupt)?;
+    hermitian::solve_triangular(&l, order, true, &mut turn, interrupt)?;
+    let mut new = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
+    for (to, turn) in new.chunks_exact_mut(order.max(1)).zip(turn.chunks_exact(order.max(1))) {
+        for (q, z) in rotation.chunks_exact(order.max(1)).zip(turn) {
+            for (to, q) in to.iter_mut().zip(q) {
+                *to += q * z;
+            }
+        }
+    }
+    of_rotation(krylov, prepared, (values, new), (solutions, left))
+}
+
+/// Qᴴ x for columns of coordinates.
+fn rotated_back(x: &[Complex64], q: &[Complex64], n: usize) -> Result<Vec<Complex64>> {
+    let mut found = try_vec(x.len(), Complex64::ZERO, CONTEXT)?;
+    for (to, x) in found.chunks_exact_mut(n.max(1)).zip(x.chunks_exact(n.max(1))) {
+        for (to, q) in to.iter_mut().zip(q.chunks_exact(n.max(1))) {
+            *to = crate::linalg::inner(q, x);
+        }
     }
     Ok(found)
 }
@@ -343,9 +417,7 @@ fn rotated(c: &[Complex64], q: &[Complex64], n: usize) -> Result<Vec<Complex64>>
     }
     let mut found = try_vec(n * n, Complex64::ZERO, CONTEXT)?;
     for (to, p) in found.chunks_exact_mut(n.max(1)).zip(product.chunks_exact(n.max(1))) {
-        for (to, q) in to.iter_mut().zip(q.chunks_exact(n)) {
-            *to = crate::linalg::inner(q, p);
-        }
+        to.copy_from_slice(&rotated_back(p, q, n)?);
     }
     Ok(found)
 }

@@ -12,6 +12,7 @@ use crate::error::{Error, Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::COPIED_UP_TO;
 use crate::linalg::cholesky::Cholesky;
+use crate::linalg::compensated_product::Rows;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::{Entry, Triangle};
 use faer::linalg::matmul::matmul;
@@ -26,37 +27,6 @@ const EXHAUSTED: f64 = 1e-12;
 /// A vector by its entries.
 pub type SparseVector = Vec<(usize, Complex64)>;
 
-/// A matrix whose images extend the basis.
-pub enum Operator<T> {
-    /// A Hermitian one.
-    Hermitian(Triangle<T>),
-    /// Any other.
-    General(Csc),
-}
-
-impl<T: Entry> Operator<T> {
-    fn multiply(&self, adjoint: bool, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
-        let a = match self {
-            Self::Hermitian(a) => return a.multiply(x, y, interrupt),
-            Self::General(a) => a,
-        };
-        for (x, y) in x.chunks_exact(a.rows).zip(y.chunks_exact_mut(a.rows)) {
-            interrupt.check_before(2 * a.values.len() as u64)?;
-            y.fill(T::NONE);
-            for j in 0..a.cols {
-                for (i, v) in a.column(j) {
-                    if adjoint {
-                        y[j].add_product(T::of(v.conj()), x[i]);
-                    } else {
-                        y[i].add_product(T::of(v), x[j]);
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-}
-
 /// |xᴴ y|
 fn energy<T: Entry>(x: &[T], y: &[T]) -> f64 {
     let product = |(x, y): (&T, &T)| x.complex().conj() * y.complex();
@@ -66,8 +36,13 @@ fn energy<T: Entry>(x: &[T], y: &[T]) -> f64 {
 /// A growing basis.
 pub struct BlockKrylov<T> {
     factor: Cholesky<T>,
-    a: Triangle<T>,
-    operators: Vec<Operator<T>>,
+    /// K, σ and M of A = K + σM: the sum would round what M has more of than K in the smallest motions.
+    stiffness: Triangle<T>,
+    shift: f64,
+    mass: Triangle<T>,
+    /// C, if its images extend the basis, too.
+    damping: Option<Csc>,
+    n: usize,
     /// Columns of n numbers.
     basis: Vec<T>,
     /// Start of the last block.
@@ -83,14 +58,22 @@ pub struct BlockKrylov<T> {
 }
 
 impl<T: Entry> BlockKrylov<T> {
-    /// An empty basis about `a`, whose factors are given.
+    /// An empty basis about A = K + σM, whose factors are given.
     #[must_use]
-    pub fn new(factor: Cholesky<T>, a: Triangle<T>, operators: Vec<Operator<T>>) -> Self {
-        let reduced = operators.iter().map(|_| Vec::new()).collect();
+    pub fn new(
+        factor: Cholesky<T>,
+        (stiffness, shift, mass): (Triangle<T>, f64, Triangle<T>),
+        damping: Option<Csc>,
+    ) -> Self {
+        let n = mass.n;
+        let reduced = (0..=usize::from(damping.is_some())).map(|_| Vec::new()).collect();
         Self {
             factor,
-            a,
-            operators,
+            stiffness,
+            shift,
+            mass,
+            damping,
+            n,
             basis: Vec::new(),
             last: 0,
             reduced,
@@ -103,7 +86,7 @@ impl<T: Entry> BlockKrylov<T> {
     /// Number of columns of the basis.
     #[must_use]
     pub fn order(&self) -> usize {
-        self.basis.len() / self.a.n.max(1)
+        self.basis.len() / self.n.max(1)
     }
 
     /// First column of the last block.
@@ -115,10 +98,10 @@ impl<T: Entry> BlockKrylov<T> {
     /// Columns that the next block has at most.
     #[must_use]
     pub fn next_columns(&self) -> usize {
-        self.rest.len() / self.a.n.max(1)
+        self.rest.len() / self.n.max(1)
     }
 
-    /// Vᴴ O V of an operator, column after column.
+    /// Vᴴ O V of an operator, mass or damping, column after column.
     #[must_use]
     pub fn reduced(&self, operator: usize) -> &[Complex64] {
         &self.reduced[operator]
@@ -140,32 +123,30 @@ impl<T: Entry> BlockKrylov<T> {
         self.basis = basis;
     }
 
-    /// Largest relative change, in the norm of A, of motions V z that products with A and solutions leave by rounding, over
-    /// `probes` of coordinates z, one after the other. A stiff structure loses its smallest stiffness in that of its
-    /// largest: the change is ε times the ratio of the two.
+    /// Largest part that the basis does not hold, relative and in the norm of A, of the error by rounding of solutions whose
+    /// result would be motions V z, over `probes` of coordinates z, one after the other. Errors within the basis change none
+    /// of its motions.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn rounding(&mut self, probes: &[Complex64], interrupt: &Interrupt<'_>) -> Result<f64> {
-        let (n, order) = (self.a.n.max(1), self.order().max(1));
+    pub fn rounding_of_solutions(&mut self, probes: &[Complex64], interrupt: &Interrupt<'_>) -> Result<f64> {
         let mut worst = 0.0_f64;
-        let mut motion = try_vec(n, T::NONE, CONTEXT)?;
-        let mut force = try_vec(n, T::NONE, CONTEXT)?;
-        for probe in probes.chunks_exact(order) {
-            motion.fill(T::NONE);
-            for (column, &z) in self.basis.chunks_exact(n).zip(probe) {
-                for (x, v) in motion.iter_mut().zip(column) {
-                    x.add_product(*v, T::of(z));
-                }
-            }
-            self.a.multiply(&motion, &mut force, interrupt)?;
+        let mut force = try_vec(self.n, T::NONE, CONTEXT)?;
+        for probe in probes.chunks_exact(self.order().max(1)) {
+            let motion = self.motion(probe)?;
+            self.weigh_exactly(&motion, &mut force, interrupt)?;
+            let size = energy(&motion, &force);
             let mut found = try_copy(&force, CONTEXT)?;
             self.factor.solve(&mut found, interrupt)?;
-            let size = energy(&motion, &force);
             for (x, v) in found.iter_mut().zip(&motion) {
                 x.add_product(v.scaled(-1.0), T::of(Complex64::ONE));
             }
-            self.a.multiply(&found, &mut force, interrupt)?;
+            // Twice: the error within the basis is far larger.
+            for _ in 0..2 {
+                self.weigh_exactly(&found, &mut force, interrupt)?;
+                self.project(&mut found, &force, interrupt)?;
+            }
+            self.weigh(&found, &mut force, interrupt)?;
             if size > 0.0 {
                 worst = worst.max((energy(&found, &force) / size).sqrt());
             }
@@ -173,12 +154,92 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(worst)
     }
 
+    /// y = A x for columns of n numbers.
+    fn weigh(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        const AT_ONCE: usize = 4;
+        self.stiffness.multiply(x, y, interrupt)?;
+        let mut of_mass = try_vec(AT_ONCE * self.n, T::NONE, CONTEXT)?;
+        let columns = AT_ONCE * self.n.max(1);
+        for (x, y) in x.chunks(columns).zip(y.chunks_mut(columns)) {
+            self.mass.multiply(x, &mut of_mass[..x.len()], interrupt)?;
+            for (y, m) in y.iter_mut().zip(&of_mass) {
+                *y += m.scaled(self.shift);
+            }
+        }
+        Ok(())
+    }
+
+    /// y = A x for one column, rounded once.
+    fn weigh_exactly(&self, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let mut rows = Rows::new(self.n)?;
+        rows.add(&self.stiffness, x, interrupt)?;
+        let mut shifted = try_copy(x, CONTEXT)?;
+        for x in &mut shifted {
+            *x = x.scaled(self.shift);
+        }
+        rows.add(&self.mass, &shifted, interrupt)?;
+        rows.rounded(y);
+        Ok(())
+    }
+
+    /// y = M x or C x, or with the adjoint, for columns of n numbers.
+    fn image(&self, operator: usize, adjoint: bool, x: &[T], y: &mut [T], interrupt: &Interrupt<'_>) -> Result<()> {
+        let a = match &self.damping {
+            Some(damping) if operator > 0 => damping,
+            _ => return self.mass.multiply(x, y, interrupt),
+        };
+        for (x, y) in x.chunks_exact(a.rows).zip(y.chunks_exact_mut(a.rows)) {
+            interrupt.check_before(2 * a.values.len() as u64)?;
+            y.fill(T::NONE);
+            for j in 0..a.cols {
+                for (i, v) in a.column(j) {
+                    if adjoint {
+                        y[j].add_product(T::of(v.conj()), x[i]);
+                    } else {
+                        y[i].add_product(T::of(v), x[j]);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// V z
+    fn motion(&self, z: &[Complex64]) -> Result<Vec<T>> {
+        let mut motion = try_vec(self.n, T::NONE, CONTEXT)?;
+        for (column, &z) in self.basis.chunks_exact(self.n.max(1)).zip(z) {
+            for (x, v) in motion.iter_mut().zip(column) {
+                x.add_product(*v, T::of(z));
+            }
+        }
+        Ok(motion)
+    }
+
+    /// Vᴴ A V z for coordinates z, one column after the other, in which products with A are rounded once. The basis is
+    /// orthonormal by plain products, which lose the smallest stiffness in the largest one.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn products(&self, coordinates: &[Complex64], interrupt: &Interrupt<'_>) -> Result<Vec<Complex64>> {
+        let (n, order) = (self.n.max(1), self.order());
+        let mut found = try_vec(coordinates.len(), Complex64::ZERO, CONTEXT)?;
+        let mut force = try_vec(self.n, T::NONE, CONTEXT)?;
+        let columns = found.chunks_exact_mut(order.max(1));
+        for (found, z) in columns.zip(coordinates.chunks_exact(order.max(1))) {
+            self.weigh_exactly(&self.motion(z)?, &mut force, interrupt)?;
+            for (found, v) in found.iter_mut().zip(self.basis.chunks_exact(n)) {
+                *found = dot(v, &force);
+            }
+        }
+        Ok(found)
+    }
+
     /// The first block, of A⁻¹ times the given vectors.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn start(&mut self, inputs: &[SparseVector], interrupt: &Interrupt<'_>) -> Result<()> {
-        let n = self.a.n;
+        let n = self.n;
         let mut b = try_vec(inputs.len().saturating_mul(n), T::NONE, CONTEXT)?;
         for (column, input) in b.chunks_exact_mut(n.max(1)).zip(inputs) {
             for &(p, x) in input {
@@ -207,10 +268,10 @@ impl<T: Entry> BlockKrylov<T> {
     /// Appends what is new in the candidates, which came from images of the given sizes, and computes the images of the
     /// new block.
     fn absorb(&mut self, mut block: Vec<T>, sizes: &[f64], interrupt: &Interrupt<'_>) -> Result<()> {
-        let n = self.a.n;
+        let n = self.n;
         let first = self.order();
         let mut weighted = try_vec(block.len(), T::NONE, CONTEXT)?;
-        self.a.multiply(&block, &mut weighted, interrupt)?;
+        self.weigh(&block, &mut weighted, interrupt)?;
         let orthonormal = |block: &mut Vec<T>, weighted: &mut Vec<T>, drops| -> Result<()> {
             let kept = orthonormalise((block, weighted), n, sizes, drops, interrupt)?;
             block.truncate(kept * n);
@@ -219,9 +280,9 @@ impl<T: Entry> BlockKrylov<T> {
         };
         orthonormal(&mut block, &mut weighted, true)?;
         // The rest of a small part has lost the digits by which it was small.
-        self.a.multiply(&block, &mut weighted, interrupt)?;
+        self.weigh(&block, &mut weighted, interrupt)?;
         self.project(&mut block, &weighted, interrupt)?;
-        self.a.multiply(&block, &mut weighted, interrupt)?;
+        self.weigh(&block, &mut weighted, interrupt)?;
         orthonormal(&mut block, &mut weighted, false)?;
         self.basis
             .try_reserve_exact(block.len())
@@ -233,17 +294,16 @@ impl<T: Entry> BlockKrylov<T> {
 
     /// Images of the columns from `first` on.
     fn images(&mut self, first: usize, interrupt: &Interrupt<'_>) -> Result<()> {
-        let n = self.a.n;
+        let n = self.n;
         let order = self.order();
         let new = order - first;
         let block = &self.basis[first * n..];
         self.last = first;
-        let count = self.operators.len();
+        let count = self.reduced.len();
         let mut rest = try_vec(block.len() * count, T::NONE, CONTEXT)?;
         let mut product = try_vec(order * new, T::NONE, CONTEXT)?;
         let mut coefficients = try_vec(order * new * count, T::NONE, CONTEXT)?;
         for (o, image) in rest.chunks_exact_mut(block.len().max(1)).enumerate() {
-            let operator = &self.operators[o];
             let mut reduced = try_vec(order * order, Complex64::ZERO, CONTEXT)?;
             for (to, from) in reduced
                 .chunks_exact_mut(order)
@@ -251,7 +311,7 @@ impl<T: Entry> BlockKrylov<T> {
             {
                 to[..first].copy_from_slice(from);
             }
-            operator.multiply(false, block, image, interrupt)?;
+            self.image(o, false, block, image, interrupt)?;
             adjoint_product(&self.basis, image, n, &mut product);
             for (to, from) in reduced[first * order..].iter_mut().zip(&product) {
                 *to = from.complex();
@@ -259,9 +319,9 @@ impl<T: Entry> BlockKrylov<T> {
             for (to, from) in coefficients[o * order * new..].iter_mut().zip(&product) {
                 *to = from.scaled(-1.0);
             }
-            if matches!(operator, Operator::General(_)) {
+            if o > 0 {
                 let mut back = try_vec(block.len(), T::NONE, CONTEXT)?;
-                operator.multiply(true, block, &mut back, interrupt)?;
+                self.image(o, true, block, &mut back, interrupt)?;
                 adjoint_product(&self.basis, &back, n, &mut product);
             }
             for j in 0..first {
@@ -296,7 +356,7 @@ impl<T: Entry> BlockKrylov<T> {
 
     /// block ← block − V Vᴴ A block
     fn project(&self, block: &mut [T], weighted: &[T], interrupt: &Interrupt<'_>) -> Result<()> {
-        let (n, order) = (self.a.n, self.order());
+        let (n, order) = (self.n, self.order());
         let columns = block.len() / n.max(1);
         if order == 0 || columns == 0 {
             return Ok(());

@@ -179,6 +179,17 @@ fn diagonalise((d, e): (&mut [f64], &mut [f64]), z: &mut [f64], interrupt: &Inte
     Ok(())
 }
 
+/// A ← Aᴴ of order n.
+pub fn adjoint_in_place(a: &mut [Complex64], n: usize) {
+    for j in 0..n {
+        for i in 0..=j {
+            let (x, y) = (a[j * n + i], a[i * n + j]);
+            a[j * n + i] = y.conj();
+            a[i * n + j] = x.conj();
+        }
+    }
+}
+
 /// L of A = L Lᴴ in place of the lower triangle of the Hermitian column-major A; `false` where A is not positive
 /// definite.
 ///

@@ -3,6 +3,8 @@
 pub mod block_krylov;
 pub mod bordered;
 pub mod cholesky;
+pub mod compensated_product;
+pub mod compensated_sum;
 pub mod definite;
 pub mod eigen;
 pub mod factor;

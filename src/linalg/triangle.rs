@@ -1,8 +1,11 @@
 //! Hermitian sparse matrices by their lower triangles, in real numbers where they are real: half the entries, and half
 //! the memory of each.
 
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
 use crate::error::{Error, Result, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::compensated_sum::Sum;
 use crate::linalg::sparse::Csc;
 use faer::traits::ComplexField;
 use num_complex::Complex64;
@@ -29,6 +32,11 @@ pub trait Entry:
     fn add_product(&mut self, a: Self, b: Self);
     /// self += conj(a) b
     fn add_conjugate_product(&mut self, a: Self, b: Self);
+    /// The conjugate number.
+    #[must_use]
+    fn conjugated(self) -> Self;
+    /// sum += self b, real and imaginary part, with the rounding of both kept.
+    fn add_exactly(self, b: Self, sum: &mut [Sum; 2]);
 }
 
 impl Entry for f64 {
@@ -57,6 +65,16 @@ impl Entry for f64 {
     #[inline]
     fn add_conjugate_product(&mut self, a: Self, b: Self) {
         *self += a * b;
+    }
+
+    #[inline]
+    fn conjugated(self) -> Self {
+        self
+    }
+
+    #[inline(always)]
+    fn add_exactly(self, b: Self, [re, _]: &mut [Sum; 2]) {
+        re.add(self, b);
     }
 }
 
@@ -88,6 +106,19 @@ impl Entry for Complex64 {
     fn add_conjugate_product(&mut self, a: Self, b: Self) {
         self.re += a.re * b.re + a.im * b.im;
         self.im += a.re * b.im - a.im * b.re;
+    }
+
+    #[inline]
+    fn conjugated(self) -> Self {
+        self.conj()
+    }
+
+    #[inline(always)]
+    fn add_exactly(self, b: Self, [re, im]: &mut [Sum; 2]) {
+        re.add(self.re, b.re);
+        re.add(-self.im, b.im);
+        im.add(self.re, b.im);
+        im.add(self.im, b.re);
     }
 }
 

@@ -102,8 +102,10 @@ pub struct Remainder {
     pub last: usize,
     /// Gram matrix of the parts, mass before damping.
     pub gram: Vec<Complex64>,
-    /// Relative error of a motion in the norm of A by rounding, see [`crate::linalg::block_krylov::BlockKrylov::rounding`].
-    pub rounding: f64,
+    /// Relative error of solutions in the norm of A by rounding, a part that the basis leaves out, too.
+    pub solutions: f64,
+    /// Relative error of the stiffness on the basis by rounding.
+    pub products: f64,
 }
 
 /// The structure of a wave on its basis.

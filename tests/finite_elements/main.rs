@@ -35,4 +35,5 @@ mod fe_pressed;
 mod fe_sector;
 mod fe_stops;
 mod friction_patch;
+mod large_models;
 mod large_plate;
