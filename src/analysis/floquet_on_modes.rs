@@ -107,7 +107,7 @@ pub(super) fn floquet_of(
         return perturbed(&Subject { model, on_modes: None }, motion, options, hooks, interrupt);
     }
     let at_speed = &*model.at_frequency(motion.omega)?;
-    refuse(at_speed, motion.omega)?;
+    refuse(at_speed, motion.omega, interrupt)?;
     if matches!(model.speed(), Speed::PerOmega(_)) {
         // The modes change with the frequency.
         (kept.shapes, kept.small) = (None, Vec::new());
@@ -236,7 +236,7 @@ fn first_number(
 }
 
 /// Refuses what integration in time refuses, without its equations.
-fn refuse(model: &Model, omega: f64) -> Result<()> {
+fn refuse(model: &Model, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
     let structure = model.structure();
     refuse_structural_damping(structure, omega)?;
     let highest = structure.sectors() / 2;
@@ -247,7 +247,7 @@ fn refuse(model: &Model, omega: f64) -> Result<()> {
         for which in [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness] {
             let is_real = || -> Result<bool> { Ok(structure.of_wave(which, wave)?.is_real()) };
             if is_own_mirror && !is_real()? {
-                structure.unrolled(which)?;
+                structure.unrolled(which, interrupt)?;
             }
         }
     }

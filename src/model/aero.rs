@@ -2,6 +2,7 @@
 
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::error::{Result, fail, try_push};
+use crate::interrupt::Interrupt;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
@@ -98,7 +99,7 @@ impl Structure {
     ///
     /// # Errors
     /// `Unsupported` for complex coefficients.
-    pub(super) fn aero_around(&self, form: AeroForm) -> Result<Option<Csc>> {
+    pub(super) fn aero_around(&self, form: AeroForm, interrupt: &Interrupt<'_>) -> Result<Option<Csc>> {
         let Some(influence) = &self.aero()[form as usize] else {
             return Ok(None);
         };
@@ -112,6 +113,7 @@ impl Structure {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let mut entries = Vec::new();
         influence.visit(self.wheel(), |offset, p, q, c| {
+            interrupt.check_before(sectors as u64)?;
             for s in 0..sectors {
                 let to = (s as i64 + offset).rem_euclid(sectors as i64) as usize;
                 try_push(&mut entries, (s * ndof + p, to * ndof + q, -c), CONTEXT)?;

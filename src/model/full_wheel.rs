@@ -6,6 +6,7 @@
 //! doi:10.1002/nme.1620140107.
 
 use crate::error::{Result, fail, try_push};
+use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::influence::AeroForm;
 use crate::model::speed::Speed;
@@ -13,6 +14,9 @@ use crate::model::structure::{MatrixKind, Structure};
 
 /// Entries of a transform over nodal diameters below this share of the largest are rounding.
 const ROUNDING: f64 = 1e-14;
+
+/// Operations, about, that an entry takes until it is placed and sorted.
+const OF_ONE_ENTRY: u64 = 20;
 
 impl Structure {
     /// Number of sectors after which the wave repeats, in space: N / gcd(EO, N). 1 for a plain
@@ -37,8 +41,8 @@ impl Structure {
     ///
     /// # Errors
     /// `Unsupported` for complex matrices, which have no meaning in time; `Argument` when a nodal diameter was not
-    /// given; `OutOfMemory`.
-    pub fn unrolled(&self, which: MatrixKind) -> Result<Csc> {
+    /// given; `OutOfMemory`, `StoppedByCaller`.
+    pub fn unrolled(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let (alpha, beta) = self.rayleigh;
         let mut parts = Vec::new();
         let mut add = |factor: f64, which: MatrixKind| -> Result<()> {
@@ -47,7 +51,7 @@ impl Structure {
             }
             try_push(
                 &mut parts,
-                (factor, self.given_around(which)?),
+                (factor, self.given_around(which, interrupt)?),
                 "the matrices of the wheel",
             )
         };
@@ -66,12 +70,12 @@ impl Structure {
             _ => {}
         }
         if which == MatrixKind::Damping && !self.modal_damping.is_empty() {
-            let modal = self.blocks_of_waves(Self::modal_damping_of_diameter)?;
+            let modal = self.blocks_of_waves(Self::modal_damping_of_diameter, interrupt)?;
             try_push(&mut parts, (1.0, modal), "the matrices of the wheel")?;
         }
         let aero = match which {
-            MatrixKind::Damping => self.aero_around(AeroForm::Velocity)?,
-            MatrixKind::Stiffness => self.aero_around(AeroForm::Displacement)?,
+            MatrixKind::Damping => self.aero_around(AeroForm::Velocity, interrupt)?,
+            MatrixKind::Stiffness => self.aero_around(AeroForm::Displacement, interrupt)?,
             _ => None,
         };
         if let Some(aero) = aero {
@@ -85,7 +89,9 @@ impl Structure {
                 "the matrices of the wheel",
             )?;
         }
+        interrupt.check()?;
         let own = Csc::sum(self.ndof() * self.repeating_sectors(), &terms)?;
+        interrupt.check()?;
         for j in 0..own.cols {
             if let Some((i, v)) = own.column(j).find(|(_, v)| v.im != 0.0) {
                 return fail!(
@@ -100,21 +106,22 @@ impl Structure {
     }
 
     /// One matrix as it was given.
-    fn given_around(&self, which: MatrixKind) -> Result<Csc> {
+    fn given_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         if self.blocks[which as usize].diameters.is_empty() {
-            self.sectors_around(which)
+            self.sectors_around(which, interrupt)
         } else {
-            self.blocks_of_waves(|structure, d| structure.given_of_diameter(which, d))
+            self.blocks_of_waves(|structure, d| structure.given_of_diameter(which, d), interrupt)
         }
     }
 
     /// Places the blocks of a sector around the ring.
-    fn sectors_around(&self, which: MatrixKind) -> Result<Csc> {
+    fn sectors_around(&self, which: MatrixKind, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let blocks = &self.blocks[which as usize];
         let mut entries = Vec::new();
         let mut place = |a: &Csc, offset: usize, transposed: bool| -> Result<()> {
             for s in 0..sectors {
+                interrupt.check_before(OF_ONE_ENTRY * a.values.len() as u64)?;
                 let (row, column) = (s * ndof, (s + offset) % sectors * ndof);
                 for j in 0..a.cols {
                     for (i, v) in a.column(j) {
@@ -141,12 +148,13 @@ impl Structure {
 
     /// The blocks of a ring from the matrices of its waves: with A(φ) = Σ Bⱼ e^{−ijφ} the block that
     /// couples a sector to the j-th after it is Bⱼ = 1/n Σ_d A(2πd/n) e^{+2πijd/n}.
-    fn blocks_of_waves(&self, wave: impl Fn(&Self, usize) -> Result<Csc>) -> Result<Csc> {
+    fn blocks_of_waves(&self, wave: impl Fn(&Self, usize) -> Result<Csc>, interrupt: &Interrupt<'_>) -> Result<Csc> {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let divisor = self.sectors() / sectors;
         let share = 1.0 / sectors as f64;
         let mut waves = Vec::new();
         for d in 0..sectors {
+            interrupt.check()?;
             try_push(&mut waves, wave(self, d * divisor)?, "the matrices of the wheel")?;
         }
         let largest = waves.iter().fold(0.0_f64, |m, a| m.max(a.max_abs()));
@@ -154,6 +162,7 @@ impl Structure {
         for offset in 0..sectors {
             let mut terms = Vec::new();
             for (d, a) in waves.iter().enumerate() {
+                interrupt.check_before(OF_ONE_ENTRY * a.values.len() as u64)?;
                 let turn = self.wave_phase(d * divisor, -(offset as i64));
                 try_push(&mut terms, (share * turn, a, Form::Plain), "the matrices of the wheel")?;
             }
@@ -166,6 +175,7 @@ impl Structure {
                     if v.norm() <= ROUNDING * largest {
                         continue;
                     }
+                    interrupt.check_before(sectors as u64)?;
                     for s in 0..sectors {
                         let entry = (s * ndof + i, (s + offset) % sectors * ndof + j, v);
                         try_push(&mut entries, entry, "the matrices of the wheel")?;

@@ -16,10 +16,14 @@ use crate::contact::law::{EventLaw, Form, LawInTime, Memoryless, SliderLaw, Time
 use crate::contact::time_piece::Instant;
 use crate::contact::{Contact, Role};
 use crate::error::{Result, try_push};
+use crate::interrupt::Interrupt;
 use crate::model::sector_motion::SectorMotion;
 use crate::model::structure::Structure;
 
 const CONTEXT: &str = "the contacts";
+
+/// Operations, about, that place a spring, contact or load in one sector.
+pub(super) const OF_ONE_SECTOR: u64 = 100;
 
 /// One contact of one sector.
 #[derive(Clone, Debug)]
@@ -81,6 +85,7 @@ pub(super) fn unroll(
     contacts: &[Contact],
     springs: &mut Vec<Spring>,
     elements: &mut Vec<Element>,
+    interrupt: &Interrupt<'_>,
 ) -> Result<()> {
     for (family, c) in contacts.iter().enumerate() {
         let (stiffness, law) = match c.role() {
@@ -93,6 +98,7 @@ pub(super) fn unroll(
             }
         };
         for s in 0..structure.repeating_sectors() {
+            interrupt.check_before(OF_ONE_SECTOR)?;
             if stiffness != 0.0 {
                 let motion = structure.contact_motion(c, 0);
                 try_push(springs, Spring::new(structure, motion, s, stiffness), CONTEXT)?;

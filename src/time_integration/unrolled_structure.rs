@@ -9,7 +9,7 @@ use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::degree_map::DegreeMap;
 use crate::model::structure::{MatrixKind, Structure};
-use crate::time_integration::event_law::{Element, Spring, unroll};
+use crate::time_integration::event_law::{Element, OF_ONE_SECTOR, Spring, unroll};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -128,6 +128,7 @@ impl<'s> System<'s> {
         for spring in model.springs() {
             let motion = structure.spring_motion(spring);
             for s in 0..sectors {
+                interrupt.check_before(OF_ONE_SECTOR)?;
                 try_push(
                     &mut springs,
                     Spring::new(structure, motion, s, spring.stiffness),
@@ -135,10 +136,14 @@ impl<'s> System<'s> {
                 )?;
             }
         }
-        unroll(structure, model.contacts(), &mut springs, &mut elements)?;
-        let inertia = structure.unrolled(MatrixKind::Mass)?;
-        let damping = structure.unrolled(MatrixKind::Damping)?;
-        let stiffness = with_springs(&structure.unrolled(MatrixKind::Stiffness)?, &springs)?;
+        unroll(structure, model.contacts(), &mut springs, &mut elements, interrupt)?;
+        let inertia = structure.unrolled(MatrixKind::Mass, interrupt)?;
+        let damping = structure.unrolled(MatrixKind::Damping, interrupt)?;
+        let stiffness = with_springs(
+            &structure.unrolled(MatrixKind::Stiffness, interrupt)?,
+            &springs,
+            interrupt,
+        )?;
         interrupt.check()?;
         Ok(Self {
             interrupt,
@@ -165,6 +170,7 @@ impl<'s> System<'s> {
             let (offset, terms) = structure.degrees().image(force.dof);
             for (dof, c) in terms {
                 for s in 0..self.sectors {
+                    self.interrupt.check_before(OF_ONE_SECTOR)?;
                     let load = Load {
                         dof: (s + offset as usize) % self.sectors * self.ndof + dof,
                         harmonic: force.harmonic,
@@ -183,6 +189,7 @@ impl<'s> System<'s> {
     /// `OutOfMemory`.
     pub fn add_forces(&mut self, structure: &Structure, harmonic: usize, force: &[Complex64]) -> Result<()> {
         for s in 0..self.sectors {
+            self.interrupt.check_before(OF_ONE_SECTOR)?;
             let phase = structure.phase(harmonic, s as i64);
             for (dof, &value) in force.iter().enumerate().filter(|(_, f)| **f != Complex64::ZERO) {
                 let load = Load {
@@ -320,15 +327,17 @@ impl<'s> System<'s> {
 }
 
 /// K with the springs added.
-fn with_springs(stiffness: &Csc, springs: &[Spring]) -> Result<Csc> {
+fn with_springs(stiffness: &Csc, springs: &[Spring], interrupt: &Interrupt<'_>) -> Result<Csc> {
     let n = stiffness.rows;
     let mut entries = Vec::new();
     for j in 0..n {
+        interrupt.check_before(OF_ONE_SECTOR)?;
         for (i, v) in stiffness.column(j) {
             try_push(&mut entries, (i, j, v), CONTEXT)?;
         }
     }
     for spring in springs {
+        interrupt.check_before(OF_ONE_SECTOR)?;
         for &(i, a) in spring.row.iter().flatten() {
             for &(j, b) in spring.row.iter().flatten() {
                 try_push(&mut entries, (i, j, (spring.stiffness * a * b).into()), CONTEXT)?;
