@@ -24,6 +24,10 @@ const COMPLIANT: f64 = 0.5;
 /// Degrees of freedom up to which every harmonic may be checked.
 const SMALL_UP_TO: usize = 32;
 
+/// Harmonics up to which a model carries all waves: those of a thousand sectors. The memory of a wheel of more sectors
+/// than any machine has must not follow from their number.
+const MOST_WAVES: usize = 2048;
+
 /// Ratio of neighbouring harmonics that are checked in a large structure.
 const RATIO: f64 = 1.25;
 
@@ -49,8 +53,8 @@ pub(super) fn all_waves(condensed: &Condensed) -> usize {
     if condensed.ndof() > SMALL_UP_TO {
         return 0;
     }
-    let set = condensed.set();
-    2 * condensed.in_step() * set.base()
+    let all = 2 * condensed.in_step() * condensed.set().base();
+    if all > MOST_WAVES { 0 } else { all }
 }
 
 /// Finds the cut-off harmonic of a model at one frequency after the other.
