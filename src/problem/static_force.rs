@@ -27,6 +27,10 @@ pub fn static_force(
             .iter()
             .filter(|assembled| needs_evaluation(&*assembled.law))
     };
+    // The memory of the samples is requested where a law needs it.
+    if laws().next().is_none() {
+        return Ok(None);
+    }
     let mut evaluator = Evaluator::new(&set, samples, laws().map(|assembled| &*assembled.law))?;
     let mut found: Vec<Evaluation> = Vec::new();
     for assembled in laws() {
