@@ -223,10 +223,27 @@ impl BranchTracer<'_> {
         for (i, &p) in self.course.at.iter().enumerate() {
             let inside = (pa <= p && p < pb) || (pb < p && p <= pa) || (last && p.to_bits() == pb.to_bits());
             if inside && let Some(point) = analysis.linear_at(a, p, self.interrupt)? {
-                self.record_special(analysis, SpecialKind::At(i), &point)?;
+                self.record_on_line(analysis, SpecialKind::At(i), point)?;
             }
         }
         Ok(())
+    }
+
+    /// Records a special point, with the harmonics that it requires; the stretch goes on with its own.
+    fn record_on_line(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, mut point: Point) -> Result<()> {
+        let own = analysis.resolution();
+        let mut at = own;
+        while !self.record_special(analysis, kind, &point)? {
+            let start = analysis.transfer(&point, at)?;
+            let Some(found) = analysis.linear_at(&start, point.parameter(), self.interrupt)? else {
+                // A point found with fewer harmonics is better than none.
+                analysis.select(at)?;
+                self.record_special_as_it_is(analysis, kind, &point)?;
+                break;
+            };
+            (point, at) = (found, analysis.resolution());
+        }
+        analysis.select(own)
     }
 
     /// Records the maxima of the amplitude between two neighbours. Those of the cubic through both and their derivatives
@@ -299,7 +316,7 @@ impl BranchTracer<'_> {
                 None => analysis.linear_at(&near, near.parameter(), self.interrupt)?,
             };
             match peak {
-                Some(peak) => self.record_special(analysis, SpecialKind::Peak, &peak).map(|_| ()),
+                Some(peak) => self.record_on_line(analysis, SpecialKind::Peak, peak),
                 None => Ok(()),
             }
         });
