@@ -8,7 +8,7 @@ use std::process::Command;
 
 /// Seconds of processor time after which a call is stopped, and those within which it must have ended then.
 const STOPPED_AFTER: f64 = 0.04;
-const ENDED_WITHIN: f64 = 6.0;
+const ENDED_WITHIN: f64 = 1.0;
 
 /// Runs the calls of a seed for some seconds of processor time, at most so many; the last line of the program counts them.
 fn calls(test: &str, seed: usize, seconds: usize, most: usize) {
