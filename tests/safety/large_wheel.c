@@ -1,6 +1,6 @@
 /* A wheel of as many sectors as the library takes, with three degrees of freedom each: integration in time ends within a second
  * of processor time after it was told to stop, and a response to a tolerance takes no more memory than its predicted need; nor
- * does a response without contacts, whatever the number of samples. Prints figures. */
+ * does a response without contacts, whatever the number of samples, nor a result whose samples were refined. Prints figures. */
 #include "failing_malloc.h"
 #include "predicted_need.h"
 
@@ -106,6 +106,44 @@ static hbvib_status respond(const char *name, int64_t sectors, int contact, doub
     return status < 0 ? status : hbvib_model_free(model);
 }
 
+/* The energy of a point whose samples a tolerance has refined. */
+static hbvib_status energy_of_refined(void)
+{
+    hbvib_model *model = NULL;
+    hbvib_branch *branch = NULL;
+    hbvib_contact c = law(HBVIB_REGULARISED, 0, HBVIB_GROUND, HBVIB_GROUND);
+    hbvib_solver_options s;
+    hbvib_forced_options o;
+    hbvib_energy energy;
+    sizes m;
+    double need, bytes;
+    hbvib_status status = wheel(1, &model), told = HBVIB_OK;
+    memset(&s, 0, sizeof s);
+    memset(&o, 0, sizeof o);
+    memset(&energy, 0, sizeof energy);
+    c.mu = 0.3;
+    c.preload = 1;
+    c.velocity = 1e-2;
+    STEP(hbvib_model_add_contact(model, &c, NULL));
+    STEP(hbvib_solver_options_init(&s, sizeof s));
+    STEP(hbvib_forced_options_init(&o, sizeof o));
+    STEP(hbvib_energy_init(&energy, sizeof energy));
+    s.tolerance = 1e-300;
+    s.max_harmonics = 30;
+    o.omega_start = o.omega_stop = 1.2;
+    m = sizes_of(model);
+    need = 16 * KIB + need_of_a_result(&m, highest(&s), samples_of_results(&m, &s));
+    STEP(hbvib_forced_response(model, &s, &o, NULL, &branch));
+    bytes = -(double)memory_bytes();
+    memory_arm(0, 0);
+    STEP(told = hbvib_branch_energy(branch, 0, &energy));
+    bytes += (double)memory_peak();
+    failures += told < 0 || bytes > need;
+    printf("energy, refined samples: status %d, %.0f bytes, %.0f are its need\n", (int)told, bytes, need);
+    STEP(hbvib_branch_free(branch));
+    return status < 0 ? status : hbvib_model_free(model);
+}
+
 int main(void)
 {
     hbvib_hooks h;
@@ -118,6 +156,7 @@ int main(void)
     failures += in_time() < 0;
     failures += respond("to a tolerance", 1 << 20, 1, 0.05, 0) < 0;
     failures += respond("no contact, many samples", 1, 0, 0, 1 << 20) < 0;
+    failures += energy_of_refined() < 0;
     printf("in all: %d failures\n", failures);
     return failures != 0;
 }

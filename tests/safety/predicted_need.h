@@ -59,6 +59,13 @@ static double within(int64_t value, double most) { return smaller(larger((double
 static double highest(const hbvib_solver_options *o) { return within(o->tolerance > 0 ? o->max_harmonics : o->harmonics, 1e5); }
 static double most_samples(const hbvib_solver_options *o) { return within(o->samples, 1 << 24); }
 
+/* The same for results of points: with a tolerance the samples of laws that have their own are refined up to 64 times. */
+static double samples_of_results(const sizes *s, const hbvib_solver_options *o)
+{
+    if (o->tolerance > 0 && o->samples == 0 && s->sampled) return 64 * 128 * (highest(o) + 1);
+    return most_samples(o);
+}
+
 /* Of a law with d motions, as the header tells for hbvib_contact_evaluate. */
 static double need_of_a_law(double d, double h, double samples)
 {

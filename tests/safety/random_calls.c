@@ -405,7 +405,7 @@ static void solve(void)
              (int)s->flexibility, (long long)from.model.saved);
     const int estimates = s->tolerance > 0 || s->estimate_error;
     from.harmonics = highest(s);
-    from.samples = most_samples(s);
+    from.samples = samples_of_results(&from.model, s);
     if (one_in(2)) {
         hbvib_forced_options o;
         memset(&o, 0, sizeof o);
@@ -415,7 +415,7 @@ static void solve(void)
         if (one_in(20)) {
             hbvib_solver_options_init(s, sizeof *s);
             from.harmonics = highest(s);
-            from.samples = 0;
+            from.samples = samples_of_results(&from.model, s);
             CALL_WITHIN(need_of_a_branch(&from.model, s, MOST_POINTS), hbvib_forced_response, model, NULL, &o, &h, &branch);
         } else {
             CALL_NAMED(estimates ? "hbvib_forced_response" : "hbvib_forced_response, no estimate",
