@@ -6,7 +6,7 @@
 //! one difference of exact Jacobians. In the maximum dD/dp is the derivative at a fixed amplitude.
 
 use crate::analysis::mode_equations::{Equations, LinearStart};
-use crate::analysis::static_solution::static_state;
+use crate::analysis::static_solution::{NEEDS_SPEED, static_state};
 use crate::condense::{Condensed, Resolution};
 use crate::continuation::step_control::StepControl;
 use crate::continuation::{Point, Settings};
@@ -115,8 +115,9 @@ impl<'a> TrackedDamping<'a> {
 
     fn at(&self, p: f64) -> Result<At> {
         let model = design(self.model, core::slice::from_ref(&self.parameter), &[p])?;
+        let model = model.with_separate_loss()?.into_owned();
         let linear = LinearMode {
-            rest: static_state(&model, &self.solver, self.interrupt)?,
+            rest: static_state(&model, &self.solver, NEEDS_SPEED, self.interrupt)?,
             shape: try_copy(&self.linear.shape, CONTEXT)?,
             ..*self.linear
         };

@@ -384,7 +384,9 @@ impl<'a> MatrixView<'a> {
                     .all(|(j, range)| a.row_idx[range[0]..range[1]].iter().all(|&i| i >= j));
             let plain = symmetry == Symmetry::Plain;
             let is_complex_symmetric = || a.worst_pair(Symmetry::Plain).2 <= SYMMETRY_TOLERANCE * largest;
-            let hint = if one_triangle && plain {
+            // Twice a diagonal with loss is no rounding.
+            let lossy_diagonal = || (0..a.cols).any(|j| a.get(j, j).im.abs() > SYMMETRY_TOLERANCE * largest);
+            let hint = if one_triangle && (plain || lossy_diagonal()) {
                 "; it looks like one triangle was passed: say SYMMETRIC_LOWER or SYMMETRIC_UPPER"
             } else if one_triangle {
                 "; it looks like one triangle was passed: say LOWER or UPPER"

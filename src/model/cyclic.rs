@@ -153,7 +153,7 @@ impl Structure {
             terms.push((of_mass.into(), &mass, Form::Plain));
         }
         if of_stiffness != 0.0 {
-            stiffness = self.given(MatrixKind::Stiffness, residue, real)?;
+            stiffness = self.elastic(self.given(MatrixKind::Stiffness, residue, real)?)?;
             terms.push((of_stiffness.into(), &stiffness, Form::Plain));
         }
         if speed != 0.0 {
@@ -319,13 +319,16 @@ impl Structure {
 
     /// Refuses to conjugate a stiffness that no real matrices of sectors have: of a loss K(1 + iη), where A(−d) = A(d)ᵀ,
     /// the imaginary part would drive the backward wave.
-    fn check_backward(which: MatrixKind, diameter: usize, matrix: &Csc) -> Result<()> {
-        if !matches!(which, MatrixKind::Stiffness | MatrixKind::StiffnessSpeed2)
-            || matrix.is_real()
-            || matrix.worst_hermitian_pair().2 <= HERMITIAN * matrix.max_abs()
-        {
-            return Ok(());
-        }
+    fn check_backward(&self, which: MatrixKind, diameter: usize, matrix: &Csc) -> Result<()> {
+        let which = match which {
+            MatrixKind::Structural if self.loss_of_stiffness => MatrixKind::Stiffness,
+            MatrixKind::Stiffness | MatrixKind::StiffnessSpeed2
+                if !matrix.is_real() && matrix.worst_hermitian_pair().2 > HERMITIAN * matrix.max_abs() =>
+            {
+                which
+            }
+            _ => return Ok(()),
+        };
         fail!(
             Unsupported,
             "{} of nodal diameter {diameter} is complex and not Hermitian, and a carried harmonic is the backward wave of this \
@@ -382,7 +385,7 @@ impl Structure {
                 );
             };
             if backward {
-                Self::check_backward(which, diameter, matrix)?;
+                self.check_backward(which, diameter, matrix)?;
             }
             let form = if backward { Form::Conjugated } else { Form::Plain };
             Csc::sum(n, &[(Complex64::ONE, matrix, form)])?

@@ -17,6 +17,7 @@ use crate::model::spring_stiffness::Wave;
 use crate::model::structure::MatrixKind;
 use crate::options::DampingForm;
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 /// A mode of the damped structure.
 #[derive(Clone, Debug)]
@@ -86,6 +87,9 @@ impl Model {
         interrupt: &Interrupt<'_>,
     ) -> Result<DampedMode> {
         interrupt.check()?;
+        if let Cow::Owned(separate) = self.with_separate_loss()? {
+            return separate.damped_mode_with(start, contacts, form, interrupt);
+        }
         let n = self.structure().ndof();
         if start.shape.len() != n {
             return fail!(

@@ -1,5 +1,6 @@
 //! Undamped natural modes of the structure with its contacts removed or stuck: with Ω²K₁ and gyroscopic forces at a
-//! fixed speed, with those of the own frequency where the speed is tied to that. Aerodynamic forces are left out.
+//! fixed speed, with those of the own frequency where the speed is tied to that. Aerodynamic forces are left out, and so is
+//! the loss of a complex symmetric stiffness.
 
 use crate::contact::Role;
 use crate::error::{Result, Status, check_memory, fail, try_extend, try_push, try_vec};
@@ -16,6 +17,7 @@ use crate::model::static_tangents::StaticTangents;
 use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
+use std::borrow::Cow;
 
 /// State of the contacts in a linear analysis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -187,6 +189,9 @@ impl Model {
             *in_vacuum.structure_mut().aero_mut() = Default::default();
             return in_vacuum.pencil(wave, contacts);
         }
+        if let Cow::Owned(separate) = self.with_separate_loss()? {
+            return separate.pencil(wave, contacts);
+        }
         let structure = self.structure();
         let highest = structure.sectors() / 2;
         let mass = match wave {
@@ -205,7 +210,8 @@ impl Model {
             if gap > 1e-10 * a.max_abs() {
                 return fail!(
                     NotHermitian,
-                    "natural modes need a Hermitian {name}, but {name}[{i},{j}] and its mirror differ by {gap:.3e}"
+                    "natural modes need a Hermitian {name}, or a complex symmetric stiffness with loss, but {name}[{i},{j}] and its mirror \
+                     differ by {gap:.3e}"
                 );
             }
         }
@@ -223,6 +229,11 @@ impl Model {
 }
 
 impl Pencil {
+    /// M, whatever else the inertia contains.
+    pub fn weight(&self) -> &Csc {
+        self.weight.as_ref().unwrap_or(&self.mass)
+    }
+
     /// Leaves gyroscopic forces out.
     pub fn leave_out_gyroscopic(&mut self) {
         self.gyroscopic = None;
@@ -249,6 +260,11 @@ impl Pencil {
         for (value, shape) in pairs.values.iter_mut().zip(pairs.vectors.column_iter()) {
             interrupt.check()?;
             *value = self.quotient(shape.as_slice());
+        }
+        if self.weight.is_some() {
+            for mut shape in pairs.vectors.column_iter_mut() {
+                shape /= Complex64::from(quadratic(self.weight(), shape.as_slice()).sqrt());
+            }
         }
         Ok(LinearModes::from(pairs))
     }

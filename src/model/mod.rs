@@ -2,6 +2,7 @@
 
 pub mod aero;
 mod blocks;
+mod complex_stiffness;
 pub mod contents;
 pub mod cyclic;
 pub mod damped_mode;

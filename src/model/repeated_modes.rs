@@ -69,7 +69,7 @@ pub(super) fn resolve(
             z.im = 0.0;
         }
     }
-    let size = quadratic(&pencil.mass, &shape).sqrt();
+    let size = quadratic(pencil.weight(), &shape).sqrt();
     for z in &mut shape {
         *z /= size;
     }

@@ -65,6 +65,9 @@ pub struct Structure {
     pub(crate) rayleigh: (f64, f64),
     /// Loss factor η of the stiffness of the structure.
     pub(super) loss_factor: f64,
+    /// The structural matrix has the loss of a complex stiffness, whose backward waves are unknown where it is given per
+    /// diameter.
+    pub(super) loss_of_stiffness: bool,
     /// Speed of rotation.
     pub(super) speed: Speed,
     /// Modal damping as a matrix per nodal diameter 0 ..= N/2; empty: none.
@@ -88,6 +91,7 @@ impl Structure {
             blocks: Arc::default(),
             rayleigh: (0.0, 0.0),
             loss_factor: 0.0,
+            loss_of_stiffness: false,
             speed: Speed::Fixed(0.0),
             modal_damping: Vec::new(),
             aero: Default::default(),
@@ -101,6 +105,7 @@ impl Structure {
             || self.parts(MatrixKind::Damping).any(|a| !a.is_empty())
             || !self.modal_damping.is_empty()
             || self.has_structural_damping()
+            || self.has_complex_stiffness()
             || self.has_aero()
     }
 
@@ -164,7 +169,7 @@ impl Structure {
     }
 
     /// The blocks of a matrix that were given.
-    fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &Csc> {
+    pub(super) fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &Csc> {
         let b = &self.blocks[kind as usize];
         [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters).flatten()
     }

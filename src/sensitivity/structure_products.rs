@@ -5,7 +5,7 @@
 //! matrices are set anew.
 
 use crate::condense::{Artificial, Condensed};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, fail, try_vec};
 use crate::linalg::inner;
 use crate::linalg::matrix_view::MatrixView;
 use crate::linalg::sparse::Csc;
@@ -58,6 +58,20 @@ fn sum(
     which: MatrixKind,
     mut form: impl FnMut(usize, &[Complex64], &[Complex64]) -> Result<Complex64>,
 ) -> Result<f64> {
+    let structure = model.structure();
+    let elastic_alone = structure.rayleigh.1 != 0.0
+        || structure.loss_factor() != 0.0
+        || condensed
+            .blocks()
+            .iter()
+            .any(|b| matches!(b.artificial, Artificial::Stiffness(_)));
+    if which == MatrixKind::Stiffness && elastic_alone && structure.has_complex_stiffness() {
+        return fail!(
+            Unsupported,
+            "derivatives by a complex symmetric stiffness are not provided beside a loss factor, Rayleigh damping of the \
+             stiffness or artificial damping of the stiffness type: give its loss as structural matrix"
+        );
+    }
     let mut total = 0.0;
     for (i, block) in condensed.blocks().iter().enumerate() {
         let (x, field) = adjoint.harmonic(condensed, i);

@@ -404,6 +404,13 @@ pub(crate) fn refuse_structural_damping(structure: &Structure, omega: f64) -> Re
              the structural matrix D"
         );
     }
+    if structure.has_complex_stiffness() {
+        return fail!(
+            Unsupported,
+            "{REASON}; the viscous equivalent of a complex symmetric stiffness K at angular frequency {omega} is the damping \
+             matrix Im K/{omega} beside the stiffness Re K"
+        );
+    }
     if eta != 0.0 {
         return fail!(
             Unsupported,

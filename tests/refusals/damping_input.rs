@@ -3,6 +3,8 @@
 
 use crate::common::refusal::refused;
 use crate::common::{BASE, harmonics, solve_at};
+use hbvib::analysis::floquet::floquet;
+use hbvib::analysis::forced_response::forced_response;
 use hbvib::analysis::time_response::time_response;
 use hbvib::analysis::verify;
 use hbvib::error::Status;
@@ -11,7 +13,7 @@ use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{TimeOptions, VerifyOptions};
+use hbvib::options::{FloquetOptions, ForcedOptions, SolverOptions, TimeOptions, VerifyOptions, Waves};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -59,6 +61,30 @@ fn a_triangle_of_a_complex_symmetric_matrix_is_no_hermitian_one() {
         model.set_matrix(MatrixKind::Stiffness, &view),
         Status::NotHermitian,
         &["SYMMETRIC_LOWER or SYMMETRIC_UPPER"],
+    );
+    // Without a promise of symmetry the diagonal shows which triangle is meant.
+    refused(
+        model.set_matrix(MatrixKind::Stiffness, &MatrixView::dense_complex(2, &one)),
+        Status::NotHermitian,
+        &["SYMMETRIC_LOWER or SYMMETRIC_UPPER"],
+    );
+    let mut hermitian_triangle = [2.0.into(), Complex64::new(-1.0, 0.3), Complex64::ZERO, 2.0.into()];
+    refused(
+        model.set_matrix(
+            MatrixKind::Stiffness,
+            &MatrixView::dense_complex(2, &hermitian_triangle),
+        ),
+        Status::NotHermitian,
+        &["say LOWER or UPPER"],
+    );
+    hermitian_triangle[3].im = 1e-17;
+    refused(
+        model.set_matrix(
+            MatrixKind::Stiffness,
+            &MatrixView::dense_complex(2, &hermitian_triangle),
+        ),
+        Status::NotHermitian,
+        &["say LOWER or UPPER"],
     );
     let view = MatrixView::dense_complex(2, &k).part(Part::Symmetric);
     refused(
@@ -119,23 +145,48 @@ fn numbers_of_damping_out_of_range_are_refused() {
     );
 }
 
+/// A way to give structural damping to the blisk, and words of its viscous equivalent at 208.85 Hz.
+type Way = (&'static str, fn(&mut Model), [&'static str; 3]);
+
+const WAYS: [Way; 3] = [
+    (
+        "matrix",
+        |model| {
+            let mut d = [0.0; 16];
+            d[0] = 1e3;
+            let view = MatrixView::dense(4, &d);
+            model.set_matrix(MatrixKind::Structural, &view).unwrap();
+        },
+        ["no causal law", "viscous equivalent", "D/1312"],
+    ),
+    (
+        "loss factor",
+        |model| model.set_loss_factor(0.01).unwrap(),
+        ["no causal law", "viscous equivalent", "beta_stiffness = 7.62"],
+    ),
+    (
+        "complex stiffness",
+        |model| {
+            let k: Vec<Complex64> = BASE
+                .matrices()
+                .own
+                .iter()
+                .map(|k| k * Complex64::new(1.0, 0.01))
+                .collect();
+            let view = MatrixView::dense_complex(4, &k).part(Part::Symmetric);
+            model.set_matrix(MatrixKind::Stiffness, &view).unwrap();
+        },
+        ["no causal law", "viscous equivalent", "Im K/1312"],
+    ),
+];
+
 #[test]
 fn structural_damping_is_refused_in_time_with_its_viscous_equivalent() {
     let omega = TAU * 208.85;
-    for matrix in [false, true] {
+    for (name, give, words) in WAYS {
+        println!("{name}");
         let mut model = BASE.sector();
-        let words: &[&str] = if matrix {
-            let d = [
-                1e3, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0,
-            ];
-            model
-                .set_matrix(MatrixKind::Structural, &MatrixView::dense(4, &d))
-                .unwrap();
-            &["no causal law", "viscous equivalent", "D/1312"]
-        } else {
-            model.set_loss_factor(0.01).unwrap();
-            &["no causal law", "viscous equivalent", "beta_stiffness = 7.62"]
-        };
+        give(&mut model);
         let options = TimeOptions {
             omega,
             ..TimeOptions::default()
@@ -143,13 +194,32 @@ fn structural_damping_is_refused_in_time_with_its_viscous_equivalent() {
         refused(
             time_response(&model, &options, &mut Hooks::default()),
             Status::Unsupported,
-            words,
+            &words,
         );
         let branch = solve_at(&model, &harmonics(3), omega);
         refused(
             verify::verify(&model, &branch, 0, &VerifyOptions::default(), &mut Hooks::default()),
             Status::Unsupported,
-            words,
+            &words,
+        );
+        refused(
+            floquet(&model, &branch, 0, &FloquetOptions::default(), &mut Hooks::default()),
+            Status::Unsupported,
+            &words,
+        );
+        let solver = SolverOptions {
+            stability: Some(Waves::Wheel),
+            ..harmonics(3)
+        };
+        let range = ForcedOptions {
+            omega_start: omega,
+            omega_stop: omega,
+            ..ForcedOptions::default()
+        };
+        refused(
+            forced_response(&model, &solver, &range, &mut Hooks::default()),
+            Status::Unsupported,
+            &words,
         );
     }
 }

@@ -3,11 +3,12 @@
 use crate::boundary_sector::{BoundarySector, N, dofs};
 use crate::common::refusal::refused;
 use crate::common::{all_harmonics, harmonics, relative_gap, slip, solve_at, sweep};
+use hbvib::analysis::linear_contacts::LinearContacts;
 use hbvib::analysis::{forced_residual, forced_response, nonlinear_mode, verify};
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::MatrixView;
+use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::sector_faces::SectorFrame;
@@ -372,4 +373,80 @@ fn exchanged_faces_are_the_same_wheel_under_the_other_engine_order() {
     println!("exchanged faces: gap {gap:.1e}");
     assert!(gap < 1e-9, "{gap}");
     assert!(relative_gap(&linear(&cartesian, 2, false), &linear(&cartesian, 2, true)) > 1e-3);
+}
+
+/// The model with a loss factor, then with the same loss as complex symmetric stiffness in several parts.
+fn with_loss(base: &Model, stiffness: &[f64]) -> [Model; 4] {
+    const ETA: f64 = 0.05;
+    let lossy: Vec<Complex64> = stiffness.iter().map(|k| k * Complex64::new(1.0, ETA)).collect();
+    let parts = [Part::Symmetric, Part::SymmetricUpper, Part::General].map(Some);
+    [None, parts[0], parts[1], parts[2]].map(|part| {
+        let mut model = base.try_clone().unwrap();
+        match part {
+            None => model.set_loss_factor(ETA).unwrap(),
+            Some(part) => {
+                let view = MatrixView::dense_complex(base.ndof(), &lossy).part(part);
+                model.set_matrix(MatrixKind::Stiffness, &view).unwrap();
+            }
+        }
+        model
+    })
+}
+
+#[test]
+fn a_complex_symmetric_stiffness_with_faces_has_the_modes_of_the_loss_factor() {
+    let sector = BoundarySector::read(SectorFrame::Cylindrical);
+    let mut base = sector.model(-2);
+    base.add_contact(&jenkins(3 * 27 + 1, 3 * 32 + 1, 0)).unwrap();
+    // Symmetric to the last bit, so that each part is the same matrix.
+    let k = (&sector.k + sector.k.transpose()) * 0.5;
+    base.set_matrix(MatrixKind::Stiffness, &MatrixView::dense(k.nrows(), k.as_slice()))
+        .unwrap();
+    let [known, rest @ ..] = with_loss(&base, k.as_slice());
+    let linear = |model: &Model| model.lowest_modes(2, ContactState::Stuck, 4).unwrap().omega;
+    let damped = |model: &Model| {
+        let found = hbvib::damped_modes(model, 2, LinearContacts::Stuck, 4, &mut Hooks::default()).unwrap();
+        found.eigenvalue
+    };
+    let expected = (linear(&known), damped(&known));
+    for model in rest {
+        for (a, b) in linear(&model).iter().zip(&expected.0) {
+            assert!((a / b - 1.0).abs() < 1e-12, "{a} {b}");
+        }
+        for (a, b) in damped(&model).iter().zip(&expected.1) {
+            assert!((a - b).norm() < 1e-12 * b.norm(), "{a} {b}");
+        }
+    }
+    let (base, _) = lumped(-2);
+    let stiffness = [
+        1.5, -1.0, 0.0, -0.5, -1.0, 1.9, -0.7, -0.2, 0.0, -0.7, 0.7, 0.0, -0.5, -0.2, 0.0, 0.7,
+    ];
+    let mode = |model: &Model| {
+        let at = [-0.5, -0.2];
+        let range = ModeOptions {
+            log10_start: -2.0,
+            log10_stop: 0.0,
+            at: &at,
+            ..ModeOptions::default()
+        };
+        let branch = nonlinear_mode(model, &harmonics(3), &range, &mut Hooks::default()).unwrap();
+        assert_eq!(branch.status(), Status::Ok);
+        [0, 1].map(|i| {
+            let special = branch.at(i)[0];
+            (
+                special.omega,
+                branch.mode_at(special.point).unwrap().damping_ratio,
+                slip(&branch, special.point),
+            )
+        })
+    };
+    let [known, rest @ ..] = with_loss(&base, &stiffness);
+    let expected = mode(&known);
+    assert!(expected.iter().all(|point| point.2 > 0.01), "{expected:?}");
+    for model in rest {
+        for ((omega, d, _), (known_omega, known_d, _)) in mode(&model).into_iter().zip(expected) {
+            assert!((omega / known_omega - 1.0).abs() < 1e-12, "{omega} {known_omega}");
+            assert!((d / known_d - 1.0).abs() < 1e-12, "{d} {known_d}");
+        }
+    }
 }

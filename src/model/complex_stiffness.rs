@@ -1,0 +1,183 @@
+//! Complex symmetric stiffness K(1 + iη), as finite-element programs write structural damping: its Hermitian part is the
+//! stiffness of natural modes, the rest is the structural damping iD.
+
+use crate::error::{Result, fail, try_push};
+use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::model::Model;
+use crate::model::blocks::Blocks;
+use crate::model::structure::{MatrixKind, Structure};
+use num_complex::Complex64;
+use std::borrow::Cow;
+
+/// Deviation from a symmetry, relative to the largest entry, that is rounding.
+const ROUNDING: f64 = 1e-10;
+
+impl Structure {
+    /// Whether the stiffness is complex and not Hermitian, but symmetric, so that what is not Hermitian in it dissipates. A
+    /// matrix per nodal diameter shows the symmetry in diameters that are their own mirror only.
+    #[must_use]
+    pub fn has_complex_stiffness(&self) -> bool {
+        let blocks = &self.blocks[MatrixKind::Stiffness as usize];
+        if self.parts(MatrixKind::Stiffness).all(Csc::is_real) {
+            return false;
+        }
+        let has = |a: &Csc, symmetry| a.worst_pair(symmetry).2 <= ROUNDING * a.max_abs();
+        if !blocks.diameters.is_empty() {
+            let given = blocks.diameters.iter().enumerate();
+            let mut lossy = given
+                .filter_map(|(d, a)| a.as_ref().map(|a| (d, a)))
+                .filter(|(_, a)| !has(a, Symmetry::Hermitian))
+                .peekable();
+            let own_mirror = |d: usize| (2 * d).is_multiple_of(self.sectors());
+            return lossy.peek().is_some()
+                && lossy.all(|(d, a)| !a.is_real() && (!own_mirror(d) || has(a, Symmetry::Plain)));
+        }
+        let coupled = |symmetry: Symmetry| match (&blocks.next, &blocks.previous) {
+            (Some(next), Some(previous)) => {
+                let limit = ROUNDING * next.max_abs().max(previous.max_abs());
+                let near = |a: &Csc, b: &Csc| {
+                    let entries = (0..a.cols).flat_map(|j| a.column(j).map(move |(i, v)| (i, j, v)));
+                    entries
+                        .into_iter()
+                        .all(|(i, j, v)| (v - symmetry.mirror(b.get(j, i))).norm() <= limit)
+                };
+                near(next, previous) && near(previous, next)
+            }
+            // The coupling to the previous sector is the transpose.
+            (Some(next), None) => symmetry == Symmetry::Plain || next.is_real(),
+            (None, previous) => previous.is_none(),
+        };
+        let ring = |symmetry| blocks.own.as_ref().is_none_or(|own| has(own, symmetry)) && coupled(symmetry);
+        ring(Symmetry::Plain) && !ring(Symmetry::Hermitian)
+    }
+
+    /// The stiffness of a wave without the structural damping in a complex one.
+    pub(super) fn elastic(&self, stiffness: Csc) -> Result<Csc> {
+        if stiffness.is_real() || !self.has_complex_stiffness() {
+            return Ok(stiffness);
+        }
+        hermitian_part(&stiffness, None)
+    }
+
+    /// Replaces a complex symmetric stiffness by its Hermitian part and adds the rest to the structural matrix.
+    fn separate_complex_stiffness(&mut self) -> Result<()> {
+        let stiffness = self.blocks[MatrixKind::Stiffness as usize].try_clone()?;
+        let structural = self.blocks[MatrixKind::Structural as usize].try_clone()?;
+        let is_given = self.parts(MatrixKind::Structural).next().is_some();
+        if is_given && stiffness.diameters.is_empty() != structural.diameters.is_empty() {
+            return fail!(
+                Unsupported,
+                "modes need a complex symmetric stiffness and the structural damping in one form, both as blocks of sectors or both \
+                 per nodal diameter; give all of the loss as structural damping"
+            );
+        }
+        *self.blocks_mut(MatrixKind::Stiffness)? = of_blocks(&stiffness, hermitian_part)?;
+        let loss = of_blocks(&stiffness, loss)?;
+        *self.blocks_mut(MatrixKind::Structural)? = added(self.ndof(), &loss, &structural)?;
+        self.loss_of_stiffness = true;
+        Ok(())
+    }
+}
+
+impl Model {
+    /// The model whose stiffness has natural modes: a complex symmetric stiffness as its Hermitian part and structural
+    /// damping. Its equations are the same.
+    ///
+    /// # Errors
+    /// `Unsupported` where the structural matrix has another form; `OutOfMemory`.
+    #[doc(hidden)]
+    pub fn with_separate_loss(&self) -> Result<Cow<'_, Self>> {
+        if !self.structure().has_complex_stiffness() {
+            return Ok(Cow::Borrowed(self));
+        }
+        let mut model = self.try_clone()?;
+        model.structure_mut().separate_complex_stiffness()?;
+        Ok(Cow::Owned(model))
+    }
+}
+
+/// Applies a split to the blocks; that of the coupling to the next sector has its mirror in that to the previous one.
+fn of_blocks(given: &Blocks, split: impl Fn(&Csc, Option<&Csc>) -> Result<Csc>) -> Result<Blocks> {
+    let own = given.own.as_ref().map(|own| split(own, None)).transpose()?;
+    let (mut next, mut previous) = (None, None);
+    if let Some(after) = &given.next {
+        let before = match &given.previous {
+            Some(before) => before.try_clone()?,
+            None => Csc::sum(after.rows, &[(Complex64::ONE, after, Form::Transposed)])?,
+        };
+        next = Some(split(after, Some(&before))?);
+        if given.previous.is_some() {
+            previous = Some(split(&before, Some(after))?);
+        }
+    }
+    let mut diameters = Vec::new();
+    for a in &given.diameters {
+        let a = a.as_ref().map(|a| split(a, None)).transpose()?;
+        try_push(&mut diameters, a, "the matrices per diameter")?;
+    }
+    Ok(Blocks {
+        own,
+        next,
+        previous,
+        diameters,
+    })
+}
+
+/// (A + Bᴴ)/2 with the mirror block B, which is A itself where `None`.
+fn hermitian_part(a: &Csc, mirror: Option<&Csc>) -> Result<Csc> {
+    combined(a, mirror.unwrap_or(a), 0.5.into())
+}
+
+/// (A − Bᴴ)/2i
+fn loss(a: &Csc, mirror: Option<&Csc>) -> Result<Csc> {
+    combined(a, mirror.unwrap_or(a), Complex64::new(0.0, -0.5))
+}
+
+/// cA + (cB)ᴴ
+fn combined(a: &Csc, mirror: &Csc, factor: Complex64) -> Result<Csc> {
+    let transposed = Csc::sum(a.rows, &[(Complex64::ONE, mirror, Form::Transposed)])?;
+    Csc::sum(
+        a.rows,
+        &[(factor, a, Form::Plain), (factor.conj(), &transposed, Form::Conjugated)],
+    )
+}
+
+fn added(n: usize, loss: &Blocks, given: &Blocks) -> Result<Blocks> {
+    let sum = |a: &Option<Csc>, b: &Option<Csc>| -> Result<Option<Csc>> {
+        let terms: Vec<_> = [a, b]
+            .into_iter()
+            .flatten()
+            .map(|a| (Complex64::ONE, a, Form::Plain))
+            .collect();
+        if terms.is_empty() {
+            return Ok(None);
+        }
+        Csc::sum(n, &terms).map(Some)
+    };
+    // Without a matrix of its own, the coupling to the previous sector is the transpose of that to the next.
+    let previous = if loss.previous.is_some() || given.previous.is_some() {
+        sum(&before(loss)?, &before(given)?)?
+    } else {
+        None
+    };
+    let mut diameters = Vec::new();
+    for (d, a) in loss.diameters.iter().enumerate() {
+        let b = given.diameters.get(d).unwrap_or(&None);
+        try_push(&mut diameters, sum(a, b)?, "the matrices per diameter")?;
+    }
+    Ok(Blocks {
+        own: sum(&loss.own, &given.own)?,
+        next: sum(&loss.next, &given.next)?,
+        previous,
+        diameters,
+    })
+}
+
+/// The coupling to the previous sector.
+fn before(blocks: &Blocks) -> Result<Option<Csc>> {
+    match (&blocks.previous, &blocks.next) {
+        (Some(previous), _) => previous.try_clone().map(Some),
+        (None, Some(next)) => Csc::sum(next.rows, &[(Complex64::ONE, next, Form::Transposed)]).map(Some),
+        (None, None) => Ok(None),
+    }
+}
