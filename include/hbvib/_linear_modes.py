@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import ctypes
+import warnings
 from typing import TYPE_CHECKING, Any, Optional, Sequence
 
 import numpy as np
@@ -15,6 +16,17 @@ from ._results import Campbell, Crossings, DampedModes, Modes
 
 if TYPE_CHECKING:
     from ._calls import CancelFlag, Hook
+
+
+_GROWS = -1e-12  # damping ratio below which a mode grows; above it is rounding
+
+
+def _warn_of_growth(ratio: Any, speeds: Any) -> None:
+    rows, modes = np.nonzero(ratio < _GROWS)
+    if rows.size:
+        at = "" if speeds is None else f" at the speed {speeds[rows[0]]:.9g}"
+        warnings.warn(f"mode {modes[0]} has the damping ratio {ratio[rows[0], modes[0]]:.3e}{at}: its motion grows",
+                      RuntimeWarning, stacklevel=3)
 
 
 class _LinearModes(_Matrices):
@@ -58,6 +70,7 @@ class _LinearModes(_Matrices):
         self._call("hbvib_damped_modes", diameter, _member(ContactState, contacts), count, eigenvalue, shape, direction,
                    None)
         ratio = -eigenvalue.real / np.abs(eigenvalue)
+        _warn_of_growth(ratio[None, :], None)
         return DampedModes(eigenvalue, eigenvalue.imag.copy(), ratio, shape, direction)
 
     def campbell(self, speeds: ArrayLike, count: int, engine_orders: Sequence[int] = (1,), diameter: int = 0,
@@ -84,6 +97,7 @@ class _LinearModes(_Matrices):
         orders, critical, frequencies, senses = zip(*rows) if rows else ((), (), (), ())
         crossings = Crossings(np.array(orders, np.int64), np.array(critical, float), np.array(frequencies, float),
                               np.array(senses, np.int64))
+        _warn_of_growth(ratio, speeds)
         return Campbell(speeds, omega, ratio, direction, crossings)
 
     def plot_campbell(self, speeds: ArrayLike, count: int, engine_orders: Sequence[int] = (1,), diameter: int = 0,

@@ -1,9 +1,9 @@
 //! Campbell diagram: damped modes over the speed of rotation, and the speeds at which engine orders meet them.
 
-use crate::analysis::damped_modes::{DampedModes, at_present_speed};
+use crate::analysis::damped_modes::{DampedModes, GROWS, at_present_speed};
 use crate::analysis::linear_contacts::LinearContacts;
 use crate::error::{Result, fail, try_push};
-use crate::hooks::Hooks;
+use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
 use crate::model::speed::Speed;
@@ -13,6 +13,12 @@ const TOLERANCE: f64 = 1e-13;
 
 /// Largest number of steps towards a crossing.
 const MAX_STEPS: usize = 200;
+
+/// Distance of a frequency from EO·Ω, relative, at which both are one.
+const MET: f64 = 1e-9;
+
+/// Number of halvings of the interval in which a mode ceases to oscillate.
+const MAX_HALVINGS: usize = 40;
 
 const CONTEXT: &str = "the Campbell diagram";
 
@@ -87,34 +93,24 @@ pub fn campbell(
             )?;
         }
     }
+    let mut stretches = Vec::new();
+    for i in 1..speeds.len() {
+        let end = |i: usize| known(&found, i);
+        let whole = Stretch {
+            low: end(i - 1)?,
+            high: end(i)?,
+            is_first: i == 1,
+        };
+        divide(&mut at, whole, &mut stretches, &interrupt)?;
+    }
     for &engine_order in engine_orders {
-        let order = engine_order as f64;
         let first = found.crossings.len();
-        for i in 1..speeds.len() {
-            for k in 0..count {
-                let gap = |i: usize| (speeds[i], found.omega[i * count + k] - order * speeds[i]);
-                let (low, high) = (gap(i - 1), gap(i));
-                // A crossing at a speed itself belongs to the interval that it ends.
-                let is_first = i == 1 && low.1 == 0.0;
-                let meets = low.1 * high.1 < 0.0 || (high.1 == 0.0 && low.1 != 0.0);
-                if !(is_first || meets) {
-                    continue;
-                }
-                interrupt.check()?;
-                let Some((speed, modes)) = meet(&mut at, k, order, (low, high), &interrupt)? else {
-                    continue;
-                };
-                let crossing = Crossing {
-                    engine_order,
-                    speed,
-                    omega: modes.omega(k),
-                    direction: modes.direction[k],
-                };
-                try_push(&mut found.crossings, crossing, CONTEXT)?;
-            }
+        for stretch in &stretches {
+            meetings(&mut at, stretch, engine_order, &mut found.crossings, &interrupt)?;
         }
         found.crossings[first..].sort_by(|a, b| a.speed.total_cmp(&b.speed));
     }
+    tell_growth(&found, hooks);
     Ok(found)
 }
 
@@ -141,8 +137,146 @@ fn check(speeds: &[f64], engine_orders: &[i64]) -> Result<()> {
     Ok(())
 }
 
+/// Frequencies of the modes that oscillate at one speed.
+#[derive(Clone, Debug)]
+struct Known {
+    speed: f64,
+    omega: Vec<f64>,
+}
+
+impl Known {
+    fn new(speed: f64, modes: &DampedModes) -> Result<Self> {
+        let mut omega = Vec::new();
+        for k in 0..modes.count() {
+            try_push(&mut omega, modes.omega(k), CONTEXT)?;
+        }
+        Ok(Self { speed, omega })
+    }
+
+    /// ω − EO·Ω of mode k.
+    fn gap(&self, k: usize, order: f64) -> (f64, f64) {
+        (self.speed, self.omega[k] - order * self.speed)
+    }
+}
+
+/// Two speeds at which equally many motions oscillate, so that the k-th modes belong together.
+#[derive(Debug)]
+struct Stretch {
+    low: Known,
+    high: Known,
+    /// It begins at the first speed.
+    is_first: bool,
+}
+
+/// What is known at the i-th speed of the diagram.
+fn known(found: &Campbell, i: usize) -> Result<Known> {
+    let mut omega = Vec::new();
+    let all = &found.omega[i * found.count..(i + 1) * found.count];
+    for value in all.iter().take_while(|omega| !omega.is_nan()) {
+        try_push(&mut omega, *value, CONTEXT)?;
+    }
+    Ok(Known {
+        speed: found.speeds[i],
+        omega,
+    })
+}
+
+/// Divides a stretch until equally many motions oscillate at both ends of each part. Parts that stay divided are too
+/// short to be seen.
+fn divide(
+    at: &mut impl FnMut(f64) -> Result<DampedModes>,
+    whole: Stretch,
+    parts: &mut Vec<Stretch>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let mut open = Vec::new();
+    try_push(&mut open, (whole, 0), CONTEXT)?;
+    while let Some((stretch, halvings)) = open.pop() {
+        if stretch.low.omega.len() == stretch.high.omega.len() {
+            try_push(parts, stretch, CONTEXT)?;
+            continue;
+        }
+        if halvings == MAX_HALVINGS {
+            continue;
+        }
+        interrupt.check()?;
+        let speed = 0.5 * (stretch.low.speed + stretch.high.speed);
+        let middle = Known::new(speed, &at(speed)?)?;
+        let (low, high) = stretch.halves(middle);
+        try_push(&mut open, (low, halvings + 1), CONTEXT)?;
+        try_push(&mut open, (high, halvings + 1), CONTEXT)?;
+    }
+    Ok(())
+}
+
+impl Stretch {
+    fn halves(&self, middle: Known) -> (Self, Self) {
+        let low = Self {
+            low: self.low.clone(),
+            high: middle.clone(),
+            is_first: self.is_first,
+        };
+        let high = Self {
+            low: middle,
+            high: self.high.clone(),
+            is_first: false,
+        };
+        (low, high)
+    }
+}
+
+/// The crossings of an engine order with the modes of a stretch.
+fn meetings(
+    at: &mut impl FnMut(f64) -> Result<DampedModes>,
+    stretch: &Stretch,
+    engine_order: i64,
+    crossings: &mut Vec<Crossing>,
+    interrupt: &Interrupt<'_>,
+) -> Result<()> {
+    let order = engine_order as f64;
+    for k in 0..stretch.low.omega.len() {
+        let (low, high) = (stretch.low.gap(k, order), stretch.high.gap(k, order));
+        // A crossing at a speed itself belongs to the stretch that it ends.
+        let is_first = stretch.is_first && low.1 == 0.0;
+        let meets = low.1 * high.1 < 0.0 || (high.1 == 0.0 && low.1 != 0.0);
+        if !(is_first || meets) {
+            continue;
+        }
+        let Some((speed, modes)) = meet(at, k, order, (low, high), interrupt)? else {
+            continue;
+        };
+        let crossing = Crossing {
+            engine_order,
+            speed,
+            omega: modes.omega(k),
+            direction: modes.direction[k],
+        };
+        try_push(crossings, crossing, CONTEXT)?;
+    }
+    Ok(())
+}
+
+/// Tells the first mode that grows, and at how many speeds one does.
+fn tell_growth(found: &Campbell, hooks: &mut Hooks<'_>) {
+    let grows = |row: &[f64]| row.iter().position(|ratio| *ratio < GROWS);
+    let mut growing = found
+        .damping_ratio
+        .chunks_exact(found.count)
+        .enumerate()
+        .filter_map(|(i, row)| grows(row).map(|k| (i, k)));
+    let Some((i, k)) = growing.next() else { return };
+    let text = format!(
+        "modes grow at {} of {} speeds: mode {k} at the speed {} has the damping ratio {:.3e}",
+        1 + growing.count(),
+        found.speeds.len(),
+        found.speeds[i],
+        found.damping_ratio[i * found.count + k]
+    );
+    hooks.log(LogLevel::Warn, &text);
+}
+
 /// The speed between two at which mode k has the frequency EO·Ω, by the Illinois variant of regula falsi, and the
-/// modes there; `None` where the mode is lost.
+/// modes there; `None` where the frequency jumps over EO·Ω, or the mode ceases to oscillate between the two.
 fn meet(
     at: &mut impl FnMut(f64) -> Result<DampedModes>,
     k: usize,
@@ -152,7 +286,8 @@ fn meet(
 ) -> Result<Option<(f64, DampedModes)>> {
     if a.1 == 0.0 || b.1 == 0.0 {
         let speed = if a.1 == 0.0 { a.0 } else { b.0 };
-        return Ok(Some((speed, at(speed)?)));
+        let modes = at(speed)?;
+        return Ok((k < modes.count()).then_some((speed, modes)));
     }
     let mut side = 0;
     let mut best = None;
@@ -181,5 +316,9 @@ fn meet(
         }
         side = this;
     }
-    Ok(best)
+    // The bracket also closes on a jump.
+    Ok(best.filter(|(speed, modes)| {
+        let omega = modes.omega(k);
+        (omega - order * speed).abs() <= MET * omega
+    }))
 }

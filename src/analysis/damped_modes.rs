@@ -24,7 +24,7 @@ const NO_CHANGE: f64 = 1e-9;
 const OFFSET: f64 = 1e-8;
 
 /// Damping ratio below which a mode grows; above it is rounding.
-const GROWS: f64 = -1e-12;
+pub(super) const GROWS: f64 = -1e-12;
 
 const CONTEXT: &str = "the damped modes";
 

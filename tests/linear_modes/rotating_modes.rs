@@ -357,3 +357,89 @@ fn contacts_about_the_static_state_follow_the_load_at_each_speed() {
         assert!((found - expected).abs() < 1e-9);
     }
 }
+
+#[test]
+fn a_frequency_that_jumps_over_an_engine_order_is_no_crossing() {
+    // ω = 2 with the stop closed, up to Ω = √2, then 1: EO 1 is passed by the jump, EO 2 met at Ω = 1.
+    let mut model = Model::new(1).unwrap();
+    for (kind, value) in [(MatrixKind::Mass, 1.0), (MatrixKind::Stiffness, 1.0)] {
+        model.set_matrix(kind, &MatrixView::dense(1, &[value])).unwrap();
+    }
+    let stop = Contact::unilateral(Some(0), None, 3.0, 0.0);
+    model.add_contact(&stop).unwrap();
+    model.set_preload_at_speed(0, 1.0, -0.5).unwrap();
+    let speeds: Vec<f64> = (0..7).map(|i| 0.1 + 0.3 * f64::from(i)).collect();
+    let found = campbell(
+        &model,
+        &speeds,
+        (0, LinearContacts::Static, 1),
+        &[1, 2],
+        &mut Hooks::default(),
+    )
+    .unwrap();
+    let [one] = found.crossings[..] else {
+        panic!("{:?}", found.crossings)
+    };
+    assert_eq!(one.engine_order, 2);
+    assert!(
+        (one.speed - 1.0).abs() < 1e-12 && (one.omega - 2.0).abs() < 1e-12,
+        "{one:?}"
+    );
+}
+
+#[test]
+fn a_mode_that_ceases_to_oscillate_is_crossed_where_it_does_oscillate() {
+    // λ² + 1.5 λ + 1 − Ω²/5 = 0: ω² = 0.4375 − Ω²/5 is Ω² at Ω = √(0.4375/1.2), and 0 at Ω = 1.479.
+    let mut model = Model::new(2).unwrap();
+    matrices(
+        &mut model,
+        2,
+        &[
+            (MatrixKind::Mass, &[1.0, 0.0, 0.0, 1.0]),
+            (MatrixKind::Damping, &[1.5, 0.0, 0.0, 0.0]),
+            (MatrixKind::Stiffness, &[1.0, 0.0, 0.0, 9.0]),
+            (MatrixKind::StiffnessSpeed2, &[-0.2, 0.0, 0.0, 0.0]),
+        ],
+    );
+    let expected = (0.4375_f64 / 1.2).sqrt();
+    // Between 0 and 2 the mode crosses and ceases in one interval, whose end knows nothing of it.
+    for speeds in [vec![0.0, 0.5, 1.0, 1.5, 2.0], vec![0.0, 2.0]] {
+        let found = diagram(&model, &speeds, 2, &[1]);
+        let [one] = found.crossings[..] else {
+            panic!("{:?}", found.crossings)
+        };
+        assert!((one.speed / expected - 1.0).abs() < 1e-12, "{one:?}");
+        assert!((one.omega / expected - 1.0).abs() < 1e-12, "{one:?}");
+    }
+    // Past the interval in which it ceases, the mode above is met where EO·Ω is its frequency.
+    let found = diagram(&model, &[0.0, 2.0, 4.0], 2, &[1]);
+    let speeds: Vec<f64> = found.crossings.iter().map(|c| c.speed).collect();
+    assert!(
+        speeds.len() == 2 && (speeds[0] / expected - 1.0).abs() < 1e-12 && (speeds[1] - 3.0).abs() < 1e-12,
+        "{speeds:?}"
+    );
+}
+
+#[test]
+fn modes_that_grow_with_the_speed_are_told_once() {
+    let mut model = rotor();
+    let mut damping = [0.0; 16];
+    damping[0] = -0.01;
+    matrices(&mut model, 4, &[(MatrixKind::Damping, &damping)]);
+    let mut lines = Vec::new();
+    let mut log = |_: hbvib::LogLevel, line: &str| lines.push(line.to_owned());
+    let mut hooks = Hooks {
+        log: Some(&mut log),
+        ..Hooks::default()
+    };
+    let at = (0, LinearContacts::Stuck, 4);
+    let found = campbell(&model, &[0.0, 0.5, 1.0], at, &[1], &mut hooks).unwrap();
+    assert!(found.damping_ratio.iter().any(|ratio| *ratio < -1e-3));
+    let told: Vec<&String> = lines.iter().filter(|line| line.contains("grow")).collect();
+    assert!(
+        told.len() == 1
+            && told[0].contains("at 3 of 3 speeds")
+            && told[0].contains("the speed 0 has the damping ratio -"),
+        "{lines:?}"
+    );
+}
