@@ -33,7 +33,12 @@ impl LinearContacts {
     /// `NoConvergence` or `Singular` if there is no equilibrium; those of callbacks; `OutOfMemory`; `StoppedByCaller`.
     pub(super) fn prepared(self, model: &Model, interrupt: &Interrupt<'_>) -> Result<PreparedContacts> {
         let rest = match self {
-            Self::Static => static_state(model, &SolverOptions::default(), interrupt)?,
+            Self::Static => static_state(
+                model,
+                &SolverOptions::default(),
+                "linear modes about it belong to one speed",
+                interrupt,
+            )?,
             Self::Free | Self::Stuck => StaticState::default(),
         };
         Ok(PreparedContacts { contacts: self, rest })

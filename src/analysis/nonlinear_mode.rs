@@ -8,7 +8,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::mode_discretised::ModeDiscretised;
 use crate::analysis::mode_equations::LinearStart;
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
-use crate::analysis::static_solution::static_state;
+use crate::analysis::static_solution::{NEEDS_SPEED, static_state};
 use crate::condense::Condensed;
 use crate::condense::wave_cache::SharedWaves;
 use crate::continuation::initial_point::{self, First, Way};
@@ -102,6 +102,8 @@ pub fn nonlinear_mode(
             &other_wave
         }
     };
+    let separate = model.with_separate_loss()?;
+    let model = &*separate;
     let interrupt = hooks.interrupt();
     match with_samples(solver, |solver| on_wave(model, solver, range, hooks, &interrupt)) {
         Err(e) if e.status == Status::StoppedByCaller => stopped(model, solver, range),
@@ -151,7 +153,7 @@ struct Start {
 impl Start {
     /// The mode that the options select, about the static state.
     fn new(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, interrupt: &Interrupt<'_>) -> Result<Self> {
-        let rest = static_state(model, solver, interrupt)?;
+        let rest = static_state(model, solver, NEEDS_SPEED, interrupt)?;
         let contacts = if rest.is_loaded() {
             ContactState::AboutStatic(&rest.tangents)
         } else {

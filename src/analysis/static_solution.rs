@@ -16,6 +16,7 @@ use crate::model::Model;
 use crate::model::excitation::Force;
 use crate::model::speed::Speed;
 use crate::model::static_tangents::StaticTangents;
+use crate::model::structure::MatrixKind;
 use crate::options::SolverOptions;
 use crate::problem::harmonic_balance::HarmonicBalance;
 use crate::problem::static_force::static_force;
@@ -24,6 +25,9 @@ use crate::problem::{Problem, Residual};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the static state";
+
+/// Why a nonlinear mode is refused whose static state changes with the frequency.
+pub(super) const NEEDS_SPEED: &str = "a nonlinear mode about it needs one speed";
 
 /// Tolerance of the residual: an error of the static state is one of every amplitude.
 const TOLERANCE: f64 = 1e-13;
@@ -34,23 +38,35 @@ const BALANCED: f64 = 1e-12;
 /// Angular frequency that laws are told; nothing moves, so that none has an effect.
 const OMEGA: f64 = 1.0;
 
-/// The static state of a model; that at zero if nothing loads it.
+/// The static state of a model; that at zero if nothing loads it. `needs_speed` tells which analysis needs one speed.
 ///
 /// # Errors
-/// `NoConvergence` or `Singular` if there is no equilibrium; those of callbacks; `OutOfMemory`; `StoppedByCaller`.
-pub(super) fn static_state(model: &Model, solver: &SolverOptions, interrupt: &Interrupt<'_>) -> Result<StaticState> {
+/// `Unsupported` where the state depends on a speed that follows the frequency; `NoConvergence` or `Singular` if there is no
+/// equilibrium; those of callbacks; `OutOfMemory`; `StoppedByCaller`.
+pub(super) fn static_state(
+    model: &Model,
+    solver: &SolverOptions,
+    needs_speed: &str,
+    interrupt: &Interrupt<'_>,
+) -> Result<StaticState> {
     let degrees = model.structure().degrees();
     let constant = |f: &Force| f.harmonic == 0 && f.value.re != 0.0 && !degrees.is_fixed(f.dof);
     let loaded = model.excitation().forces().iter().any(constant) || model.contacts().iter().any(Contact::is_preloaded);
     if !loaded && !needs_evaluation(model)? {
         return Ok(StaticState::default());
     }
-    let follows = matches!(model.speed(), Speed::PerOmega(p) if p != 0.0);
-    if loaded && follows && (model.structure().is_rotating() || !model.speed_loads().is_empty()) {
-        return fail!(
+    // Gyroscopic forces need a velocity, which a static state has not.
+    let follows = matches!(model.speed(), Speed::PerOmega(p) if p != 0.0)
+        && (model.structure().has(MatrixKind::StiffnessSpeed2) || !model.speed_loads().is_empty());
+    let refused = || -> Result<StaticState> {
+        fail!(
             Unsupported,
-            "the speed follows the frequency, and with it the static state: a nonlinear mode needs a fixed speed"
-        );
+            "the speed follows the frequency, and with stiffness_speed2 or the loads of contacts the static state does: \
+             {needs_speed}; set a fixed speed"
+        )
+    };
+    if loaded && follows {
+        return refused();
     }
     let condensed = Condensed::for_static(model, solver, interrupt)?;
     allow_point(solver.memory_limit, &condensed, 0, solver.samples)?;
@@ -58,6 +74,9 @@ pub(super) fn static_state(model: &Model, solver: &SolverOptions, interrupt: &In
         || (!loaded && static_force(&condensed, OMEGA, solver.samples, interrupt)?.is_none())
     {
         return Ok(StaticState::default());
+    }
+    if follows {
+        return refused();
     }
     interrupt.phase(Phase::FirstPoint, 0.0)?;
     solve(model, &condensed, solver, interrupt)

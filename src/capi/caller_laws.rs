@@ -155,8 +155,7 @@ pub unsafe extern "C" fn hbvib_user_force_init(o: *mut hbvib_user_force, size_of
 ///
 /// Put the linear stiffness and damping of the force into K and C, where they can be separated: a
 /// nonlinear mode starts from the structure without the force. A force that is not 0 at rest is a
-/// constant load: a forced response starts from its static solution, a nonlinear mode refuses it
-/// (HBVIB_E_UNSUPPORTED).
+/// constant load: a forced response and a nonlinear mode start from its static solution.
 ///
 /// o   the description.
 /// id  receives the number of the contact, counted from 0; may be NULL; untouched on error.

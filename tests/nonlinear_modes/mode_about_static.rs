@@ -1,14 +1,19 @@
 //! Nonlinear modes about the static state of pressed contacts against forced responses: an undamped structure under
 //! its constant forces and the force that does the work of the artificial damping answers with the mode itself.
 
-use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic};
+use crate::common::mode_cases::{N, Skewed, damping, follow, harmonic, only};
+use crate::common::refusal::refused;
 use crate::common::{self, Wheel, all_harmonics, harmonics, phase, relative_gap};
 use hbvib::analysis::forced_response::forced_response;
+use hbvib::analysis::linear_contacts::{LinearContacts, linear_modes};
+use hbvib::analysis::nonlinear_mode;
 use hbvib::contact::Contact;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
+use hbvib::interrupt::Interrupt;
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
+use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;
 use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions};
 use hbvib::results::Branch;
@@ -214,4 +219,109 @@ fn wheel_of(skewed: &Skewed, sectors: usize) -> Wheel {
     wheel.add_force(0, 0, 0.3.into(), 0);
     wheel.add_force(2, 0, (-0.2).into(), 0);
     wheel
+}
+
+/// Two masses that gyroscopic forces couple, the first pressed to a stop.
+fn whirling(speed: Speed) -> Model {
+    let mut model = Model::new(2).unwrap();
+    for (kind, values) in [
+        (MatrixKind::Mass, [1.0, 0.0, 0.0, 1.3]),
+        (MatrixKind::Stiffness, [2.0, 0.3, 0.3, 3.0]),
+        (MatrixKind::Gyroscopic, [0.0, 0.6, -0.6, 0.0]),
+    ] {
+        model.set_matrix(kind, &MatrixView::dense(2, &values)).unwrap();
+    }
+    model
+        .add_contact(&Contact {
+            preload: 0.4,
+            ..Contact::unilateral(Some(0), None, 1.5, 0.0)
+        })
+        .unwrap();
+    model.add_force(1, 0, 0.2.into()).unwrap();
+    model.set_speed(speed).unwrap();
+    model
+}
+
+#[test]
+fn gyroscopic_forces_at_a_tied_speed_leave_the_static_state_alone() {
+    const PER_OMEGA: f64 = 0.5;
+    let at = [-1.5, -0.5, 0.0, 0.3];
+    let mode = |model: &Model, at: &[f64]| {
+        let range = ModeOptions {
+            log10_start: -2.0,
+            log10_stop: 0.5,
+            at,
+            reference_dof: Some(0),
+            ..ModeOptions::default()
+        };
+        follow(model, &harmonics(7), &range)
+    };
+    let tied = mode(&whirling(Speed::PerOmega(PER_OMEGA)), &at);
+    let linear = |model: &Model| {
+        let modes = linear_modes(model, 0, LinearContacts::Static, 1, &Interrupt::none());
+        modes.unwrap().omega[0]
+    };
+    let lowest = linear(&whirling(Speed::PerOmega(PER_OMEGA)));
+    assert!((linear(&whirling(Speed::Fixed(PER_OMEGA * lowest))) / lowest - 1.0).abs() < 1e-12);
+    for (i, log10) in at.into_iter().enumerate() {
+        let (omega, _, point) = only(&tied, i);
+        let fixed = mode(&whirling(Speed::Fixed(PER_OMEGA * omega)), &[log10]);
+        let (known, _, known_point) = only(&fixed, 0);
+        assert!((omega / known - 1.0).abs() < 1e-9, "{omega} {known}");
+        let gap = relative_gap(&all_harmonics(&tied, point), &all_harmonics(&fixed, known_point));
+        assert!(gap < 1e-9, "{gap}");
+    }
+}
+
+#[test]
+fn a_static_state_that_changes_with_a_tied_speed_is_refused_by_the_analysis_that_needs_it() {
+    let words = ["static state", "stiffness_speed2", "set a fixed speed"];
+    let changed: [fn(&mut Model); 3] = [
+        |model| {
+            let softening = [-0.1, 0.0, 0.0, 0.0];
+            let view = MatrixView::dense(2, &softening);
+            model.set_matrix(MatrixKind::StiffnessSpeed2, &view).unwrap();
+        },
+        |model| model.set_preload_at_speed(0, 0.4, 0.1).unwrap(),
+        |model| model.set_preload_at_speed(0, 0.0, 0.1).unwrap(),
+    ];
+    for change in changed {
+        let mut model = whirling(Speed::PerOmega(0.5));
+        change(&mut model);
+        let range = ModeOptions {
+            log10_start: -2.0,
+            log10_stop: 0.5,
+            ..ModeOptions::default()
+        };
+        let mode = nonlinear_mode(&model, &harmonics(3), &range, &mut Hooks::default());
+        refused(mode, Status::Unsupported, &[&words[..], &["a nonlinear mode"]].concat());
+        let linear = linear_modes(&model, 0, LinearContacts::Static, 1, &Interrupt::none());
+        refused(linear, Status::Unsupported, &[&words[..], &["linear modes"]].concat());
+        model.set_speed(Speed::Fixed(0.5)).unwrap();
+        linear_modes(&model, 0, LinearContacts::Static, 1, &Interrupt::none()).unwrap();
+    }
+}
+
+#[test]
+fn the_onset_of_slip_counts_from_the_load_that_the_contact_carries_at_rest() {
+    // m = k = kt = 1: a constant force of 0.2 leaves 0.1 in the contact, whose limit is 0.3. It slips when the amplitude
+    // exceeds (0.3 − 0.1)/kt = 0.2; then it sticks again about a lower load, until the range 2a kt exceeds 2 · 0.3.
+    let mut model = Model::new(1).unwrap();
+    for kind in [MatrixKind::Mass, MatrixKind::Stiffness] {
+        model.set_matrix(kind, &MatrixView::dense(1, &[1.0])).unwrap();
+    }
+    model.add_contact(&Contact::jenkins(0, None, 1.0, 0.3, 1.0)).unwrap();
+    model.add_force(0, 0, 0.2.into()).unwrap();
+    let range = ModeOptions {
+        log10_start: -2.0,
+        log10_stop: 0.5,
+        ..ModeOptions::default()
+    };
+    let branch = follow(&model, &harmonics(5), &range);
+    let mode = branch.mode().unwrap();
+    let (linear_up_to, slip_from) = (mode.linear_up_to, mode.slip_from);
+    // The linear stretch ends 1e-9 below the onset.
+    assert!((linear_up_to - 0.2_f64.log10()).abs() < 1.1e-9, "{linear_up_to}");
+    // The onset of slip is located to 1e-7.
+    assert!((slip_from - 0.3_f64.log10()).abs() < 2e-7, "{slip_from}");
 }
