@@ -178,6 +178,9 @@ fn assemble(
         if h == 0 {
             for i in 0..n {
                 r[i].im = x[i].im;
+                if let Some(d) = d_omega.as_deref_mut() {
+                    d[i].im = 0.0;
+                }
                 if let Some(j) = jacobian.as_deref_mut() {
                     j[(2 * i + 1) * order + 2 * i + 1] = 1.0;
                 }

@@ -20,6 +20,7 @@ pub mod pointwise;
 pub mod programs;
 pub mod refusal;
 pub mod rest;
+pub mod rotating;
 pub mod stencil;
 pub mod stopping;
 

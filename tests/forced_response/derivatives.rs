@@ -3,13 +3,16 @@
 //! equations; no solution is needed.
 
 use crate::common;
+use crate::common::rotating::{rotate, speeds};
 use crate::common::stencil::{Checked, Stencil, config, pairs, parts};
 use hbvib::analysis::harmonic_residual::forced_residual;
 use hbvib::condense::Condensed;
+use hbvib::contact::laws::table::Table;
 use hbvib::contact::{Contact, ContactKind, Role};
 use hbvib::interrupt::Interrupt;
 use hbvib::linalg::matrix_view::{MatrixView, Part};
 use hbvib::model::Model;
+use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;
 use hbvib::problem::harmonic_balance::HarmonicBalance;
 use hbvib::problem::{InitialGuess, Problem, Residual};
@@ -69,15 +72,28 @@ enum Shape {
     Hermitian,
     /// Sectors coupled to the next and the previous one, a contact across.
     Cyclic,
+    /// The same with Hermitian matrices per nodal diameter.
+    PerDiameter,
 }
 
-fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
-    let mut model = Model::cyclic(N, if shape == Shape::Cyclic { SECTORS } else { 1 }).unwrap();
+impl Shape {
+    fn sectors(self) -> usize {
+        match self {
+            Self::Cyclic | Self::PerDiameter => SECTORS,
+            Self::General | Self::GeneralComplex | Self::Hermitian => 1,
+        }
+    }
+}
+
+fn random_model(shape: Shape, speed: Speed, engine_order: i64, feed: &mut Feed<'_>) -> Model {
+    let mut model = Model::cyclic(N, shape.sectors()).unwrap();
     let symmetric: Vec<Complex64> = feed.block(0.2).into_iter().map(Complex64::from).collect();
     let mass: Vec<f64> = hermitian(&symmetric, 1.0).iter().map(|z| z.re).collect();
-    model
-        .set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &mass))
-        .unwrap();
+    if shape != Shape::PerDiameter {
+        model
+            .set_matrix(MatrixKind::Mass, &MatrixView::dense(N, &mass))
+            .unwrap();
+    }
     for (which, diagonal) in [(MatrixKind::Damping, 0.5), (MatrixKind::Stiffness, 8.0)] {
         match shape {
             Shape::General | Shape::Cyclic => {
@@ -100,6 +116,20 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
                 let a = hermitian(&feed.complex_block(1.0), diagonal);
                 model.set_matrix(which, &MatrixView::dense_complex(N, &a)).unwrap();
             }
+            Shape::PerDiameter => {
+                for diameter in 0..=SECTORS / 2 {
+                    let a = hermitian(&feed.complex_block(1.0), diagonal);
+                    let view = MatrixView::dense_complex(N, &a);
+                    model.set_diameter(which, diameter, &view).unwrap();
+                }
+            }
+        }
+    }
+    if shape == Shape::PerDiameter {
+        for diameter in 0..=SECTORS / 2 {
+            let mass = hermitian(&feed.complex_block(0.2), 1.0);
+            let view = MatrixView::dense_complex(N, &mass);
+            model.set_diameter(MatrixKind::Mass, diameter, &view).unwrap();
         }
     }
     if shape == Shape::Hermitian {
@@ -119,11 +149,14 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
                     .unwrap();
             }
         }
+    }
+    if shape.sectors() > 1 {
         model.set_wave(engine_order);
     }
     model.set_rayleigh(0.02, 0.01).unwrap();
+    let table = Table::new(&[-0.9, -0.3, 0.2, 0.8], &[-0.9, -0.15, 0.1, 1.1]).unwrap();
     let mut across = Contact::jenkins(2, Some(0), 1.5, 0.5, 0.2 + 0.1 * feed.real());
-    across.sector_offset = i64::from(shape == Shape::Cyclic);
+    across.sector_offset = i64::from(shape.sectors() > 1);
     for contact in [
         Contact::jenkins(0, Some(1), 2.0, 0.5, 0.3 + 0.2 * feed.real()),
         across.clone(),
@@ -139,6 +172,9 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
         Contact::unilateral(Some(0), Some(2), 1.3, 0.3 + 0.1 * feed.real()),
         // Friction and a cubic spring side by side.
         Contact::cubic(0, Some(1), 0.5, 2.0),
+        // Friction in a plane.
+        Contact::friction_3d([Some(0), Some(2), None], [Some(1), None, None], (0.9, 0.0), 0.5, 0.6),
+        Contact::between(2, None, ContactKind::Table(table)),
     ] {
         model.add_contact(&contact).unwrap();
     }
@@ -146,6 +182,11 @@ fn random_model(shape: Shape, engine_order: i64, feed: &mut Feed<'_>) -> Model {
         let value = feed.complex();
         model.add_force(dof, 1, value).unwrap();
     }
+    // Modes need Hermitian matrices.
+    if matches!(shape, Shape::Hermitian | Shape::PerDiameter) {
+        model.set_modal_damping(&[0.02, 0.01, 0.03]).unwrap();
+    }
+    rotate(&mut model, speed, shape == Shape::PerDiameter, || feed.real());
     model
 }
 
@@ -155,6 +196,7 @@ fn shapes() -> impl Strategy<Value = Shape> {
         Shape::GeneralComplex,
         Shape::Hermitian,
         Shape::Cyclic,
+        Shape::PerDiameter,
     ])
 }
 
@@ -182,12 +224,13 @@ proptest! {
     fn the_jacobian_and_frequency_derivative_of_the_whole_residual(
         numbers in numbers(),
         shape in shapes(),
+        speed in speeds(),
         engine_order in -7_i64..=7,
         highest in 1_usize..=4,
         omega in 0.5..4.0_f64,
     ) {
         let mut feed = Feed { numbers: &numbers, next: 0 };
-        let model = random_model(shape, engine_order, &mut feed);
+        let model = random_model(shape, speed, engine_order, &mut feed);
         let count = (highest + 1) * N;
         let x: Vec<Complex64> = (0..count).map(|_| feed.complex()).collect();
         let order = 2 * count;
@@ -207,6 +250,11 @@ proptest! {
             stencil.check("Jacobian of the residual", column, scale)?;
         }
         let d_omega = parts(&d_omega);
+        if matches!(speed, Speed::PerOmega(_)) {
+            // The load of a slider is tied to the frequency, too.
+            let stencil = Stencil::of(1e-6, |h| residual(&model, highest, omega + h, &x));
+            return stencil.check("frequency derivative", &d_omega, size(&d_omega).max(scale));
+        }
         let stencil = Stencil::of(1e-4, |h| residual(&model, highest, omega + h, &x));
         // A parabola in ω: central differences are exact up to round-off.
         for (i, d) in d_omega.iter().enumerate() {
@@ -277,7 +325,9 @@ fn condensed_case(
         .iter()
         .filter(|contact| contact.role() == Role::Active)
         .map(|contact| match contact.kind {
-            ContactKind::Jenkins => contact.slip_limit() / contact.kt,
+            ContactKind::Jenkins | ContactKind::Friction3d => contact.slip_limit() / contact.kt,
+            // Its inner points.
+            ContactKind::Table(_) => 0.2,
             // The cubic term equals the linear one.
             ContactKind::Cubic => (contact.kt / contact.cubic.abs()).sqrt(),
             _ => contact.gap.abs(),
@@ -298,6 +348,7 @@ proptest! {
     fn the_derivatives_of_the_condensed_problem(
         numbers in numbers(),
         shape in shapes(),
+        speed in speeds(),
         engine_order in -7_i64..=7,
         highest in 1_usize..=5,
         omega in 0.5..4.0_f64,
@@ -305,7 +356,7 @@ proptest! {
         response in 0_usize..N,
     ) {
         let mut feed = Feed { numbers: &numbers, next: 0 };
-        let model = random_model(shape, engine_order, &mut feed);
+        let model = random_model(shape, speed, engine_order, &mut feed);
         let (condensed, play, u, direction) = condensed_case(&model, highest, omega, keep_even, &mut feed);
         let interrupt = Interrupt::none();
         let mut problem = HarmonicBalance::new(&condensed, response, (1.0, 1.0), 0, None, &interrupt).unwrap();
@@ -316,6 +367,7 @@ proptest! {
     fn the_derivatives_of_the_homotopies_in_amplitude_and_in_load(
         numbers in numbers(),
         shape in shapes(),
+        speed in speeds(),
         engine_order in -7_i64..=7,
         highest in 1_usize..=5,
         omega in 0.5..4.0_f64,
@@ -324,7 +376,7 @@ proptest! {
         preloaded in any::<bool>(),
     ) {
         let mut feed = Feed { numbers: &numbers, next: 0 };
-        let mut model = random_model(shape, engine_order, &mut feed);
+        let mut model = random_model(shape, speed, engine_order, &mut feed);
         if preloaded {
             model.add_contact(&Contact::unilateral(None, Some(1), 0.9, -0.2)).unwrap();
         }

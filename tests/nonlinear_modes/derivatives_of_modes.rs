@@ -3,11 +3,14 @@
 
 use crate::common::harmonics;
 use crate::common::mode_cases::{N, Skewed};
+use crate::common::rotating::{rotate, speeds};
 use crate::common::stencil::{Checked, Stencil, config};
 use hbvib::condense::Condensed;
-use hbvib::contact::Contact;
+use hbvib::contact::laws::table::Table;
+use hbvib::contact::{Contact, ContactKind};
 use hbvib::interrupt::Interrupt;
 use hbvib::linalg::linear_system::Jacobian;
+use hbvib::model::rotation::Speed;
 use hbvib::model::static_tangents::StaticTangents;
 use hbvib::options::{DampingForm, SolverOptions};
 use hbvib::problem::epmc::{Epmc, Gauge, LinearMode};
@@ -68,6 +71,7 @@ struct Case {
     keep_even: bool,
     log10: f64,
     homotopy: bool,
+    speed: Speed,
 }
 
 /// A mode about a static state, which need not be one of equilibrium for its derivatives.
@@ -80,6 +84,7 @@ struct Loaded {
     log10: f64,
     /// Share of the laws along the path from their tangents; the scale of the laws along the other path.
     share: f64,
+    speed: Speed,
 }
 
 impl Loaded {
@@ -98,7 +103,14 @@ impl Loaded {
             ..Contact::unilateral(Some(1), None, 2.0, 0.1)
         });
         skewed.contacts.push(Contact::cubic(2, None, 0.5, 1.5));
-        let model = skewed.model(true);
+        let table = Table::new(&[-0.9, -0.3, 0.2, 0.8], &[-0.9, -0.15, 0.1, 1.1]).unwrap();
+        skewed
+            .contacts
+            .push(Contact::between(1, None, ContactKind::Table(table)));
+        let mut model = skewed.model(true);
+        model.set_modal_damping(&[0.02, 0.01]).unwrap();
+        rotate(&mut model, self.speed, false, &mut real);
+        let model = model;
         let mut tangents = StaticTangents::new(model.contacts().len()).unwrap();
         for (id, contact) in model.contacts().iter().enumerate() {
             let d = contact.directions();
@@ -110,7 +122,7 @@ impl Loaded {
             damping: 0.05 * real(),
             shape: (0..N).map(|_| Complex64::new(real(), real())).collect(),
             rest: StaticState {
-                motion: (0..9).map(|_| 0.4 * real()).collect(),
+                motion: (0..12).map(|_| 0.4 * real()).collect(),
                 structure: vec![0.0; N],
                 tangents,
             },
@@ -162,10 +174,14 @@ impl Case {
             ..skewed.contacts[1].clone()
         });
         skewed.contacts.push(Contact::jenkins(1, None, 1.0, 0.4, 0.3));
+        let in_plane = Contact::friction_3d([Some(0), Some(2), None], [None; 3], (0.8, 0.0), 0.4, 0.5);
+        skewed.contacts.push(in_plane);
         let mut model = skewed.model(self.with_damping);
         if self.with_damping {
             model.set_rayleigh(0.02, 0.01).unwrap();
+            model.set_modal_damping(&[0.02, 0.01]).unwrap();
         }
+        rotate(&mut model, self.speed, false, &mut real);
         let linear = LinearMode {
             omega: 2.0 + real(),
             damping: 0.05 * real(),
@@ -225,8 +241,9 @@ proptest! {
         in_plane in any::<bool>(),
         log10 in -1.0..0.5_f64,
         share in 0.0..1.0_f64,
+        speed in speeds(),
     ) {
-        Loaded { numbers, engine_order, highest, in_plane, log10, share }.check()?;
+        Loaded { numbers, engine_order, highest, in_plane, log10, share, speed }.check()?;
     }
 
     #[test]
@@ -240,10 +257,11 @@ proptest! {
         keep_even in any::<bool>(),
         log10 in -0.5..0.5_f64,
         homotopy in any::<bool>(),
+        speed in speeds(),
     ) {
         let form = if stiffness_form { DampingForm::Stiffness } else { DampingForm::Mass };
         Case {
-            numbers, engine_order, highest, form, by_contact, with_damping, keep_even, log10, homotopy,
+            numbers, engine_order, highest, form, by_contact, with_damping, keep_even, log10, homotopy, speed,
         }
         .check()?;
     }
