@@ -168,7 +168,7 @@ struct Stretch {
     is_first: bool,
 }
 
-/// What is known at the i-th speed of the diagram.
+/// Frequencies at the i-th speed of the diagram.
 fn known(found: &Campbell, i: usize) -> Result<Known> {
     let mut omega = Vec::new();
     let all = &found.omega[i * found.count..(i + 1) * found.count];

@@ -1,4 +1,4 @@
-//! What depends on speed, and structural damping, added to random models.
+//! Terms that depend on speed, and structural damping, added to random models.
 
 use hbvib::linalg::matrix_view::MatrixView;
 use hbvib::model::Model;
