@@ -23,7 +23,8 @@ const MARGIN: f64 = 1.5;
 /// Target of the error as a share of the tolerance.
 const AIM: f64 = 0.5;
 
-/// Share of the tolerance above which the next point is refined in advance.
+/// Share of the tolerance above which the next point is refined in advance, unless each level has twice the harmonics of the
+/// one before: then a few points beyond cost less.
 const RAISE: f64 = 0.7;
 
 /// Share of the tolerance below which the next point is coarsened.
@@ -301,7 +302,8 @@ impl AdaptivityController {
         let again = self.unknown.is_some() && self.floor.1 == 0 && share < RAISE && !self.folded;
         let next = if again { next.min(below) } else { next };
         let may_fall = again || (share < DROP && (error == 0.0 || self.low >= LOW));
-        if !((share > RAISE && next > level) || (may_fall && next < level) || too_few) {
+        let rises = share > RAISE && next > level && !equations.levels().double();
+        if !(rises || (may_fall && next < level) || too_few) {
             return Ok(point);
         }
         // The parameter is kept, so that nothing lies between the recorded point and the one from which the branch

@@ -33,6 +33,8 @@ pub(crate) struct HarmonicLevels<'m> {
     models: ModelCache,
     samples: usize,
     automatic: bool,
+    /// Whether each level has about twice the harmonics of the one before.
+    double: bool,
     /// Bytes that the equations of a level may have; 0: any.
     memory_limit: usize,
     condense: Box<Condense<'m>>,
@@ -61,6 +63,7 @@ impl<'m> HarmonicLevels<'m> {
             models: ModelCache::new(numbers.into_iter())?,
             samples: options.samples,
             automatic,
+            double: model.ndof() > LARGE,
             memory_limit: options.memory_limit,
             condense: Box::new(condense),
         })
@@ -69,6 +72,11 @@ impl<'m> HarmonicLevels<'m> {
     /// Whether a tolerance selects the level.
     pub fn is_automatic(&self) -> bool {
         self.automatic
+    }
+
+    /// Whether each level has about twice the harmonics of the one before, because levels are expensive.
+    pub fn double(&self) -> bool {
+        self.double
     }
 
     /// Number of levels.
@@ -96,9 +104,9 @@ impl<'m> HarmonicLevels<'m> {
         self.models.highest(level)
     }
 
-    /// The lowest level with at least half as many harmonics as one.
+    /// The lowest level with about half as many harmonics as one: the next one below where levels double as 2H + 1.
     pub fn level_of_half(&self, level: usize) -> usize {
-        self.models.slot_with(self.models.highest(level).div_ceil(2))
+        self.models.slot_with(self.models.highest(level) / 2)
     }
 
     /// The lowest level with at least twice as many harmonics as one.

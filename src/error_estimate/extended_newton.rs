@@ -13,6 +13,9 @@ const MOST_STEPS: usize = 24;
 /// Relative size of a first step that suffices where the extended harmonics are weak.
 const SHORT: f64 = 0.1;
 
+/// Size of a first step, relative to the change, up to which a guess is as good as a point that a step has reached.
+const CLOSE: f64 = 0.3;
+
 /// Damping factor below which a step is accepted without the monotonicity test.
 const SMALLEST_DAMPING: f64 = 1.0 / 64.0;
 
@@ -50,8 +53,18 @@ fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
     Ok(sum)
 }
 
+/// change = Z + δ − W
+fn change_from(point: &[f64], (z, next): (&[f64], &[f64]), change: &mut [f64]) {
+    for (((c, z), d), w) in change.iter_mut().zip(z).zip(next).zip(point) {
+        *c = z + d - w;
+    }
+}
+
 /// Solves R(Z) = 0 from `start`, at which the system was evaluated, until `enough(problem, Z, change, δ)` accepts δ as
-/// small against the change Z + δ − start; δ has a last number 0, that of the parameter. `None` where some evaluation or matrix fails.
+/// small against the change Z + δ − W from the point `W`; δ has a last number 0, that of the parameter. `None` where some
+/// evaluation or matrix fails.
+///
+/// A start other than W is a guess: the first step from it may be δ.
 ///
 /// Where the extended harmonics are known to be `weak`, kt|G_h| < ½, and the first step is short, that step is
 /// returned as δ: the next one would be far shorter.
@@ -60,7 +73,7 @@ fn sum(a: &[f64], b: &[f64]) -> Result<Vec<f64>> {
 /// Those of the system, except for singular matrices and laws that another motion may not fail.
 pub(super) fn extend<P: Problem>(
     system: &mut ExtendedSystem<P>,
-    start: &[f64],
+    (start, point): (&[f64], &[f64]),
     enough: impl Fn(&P, &[f64], &[f64], &[f64]) -> bool,
     weak: bool,
     interrupt: &Interrupt<'_>,
@@ -71,10 +84,11 @@ pub(super) fn extend<P: Problem>(
     let mut next = try_vec(n + 1, 0.0, CONTEXT)?;
     let mut change = try_vec(n, 0.0, CONTEXT)?;
     let mut trial = try_vec(n, 0.0, CONTEXT)?;
+    let is_guess = start != point;
     let mut damping = 1.0_f64;
     for steps in 1..=MOST_STEPS {
         interrupt.part(Phase::Estimate, steps - 1, MOST_STEPS)?;
-        if !system.factor(interrupt)? || !system.step(&mut step, interrupt)? {
+        if !system.factor(interrupt)? || !system.step(&mut step, is_guess && steps == 1, interrupt)? {
             return Ok(None);
         }
         let size = norm(&step);
@@ -87,6 +101,19 @@ pub(super) fn extend<P: Problem>(
                 missing: SHARE,
             }));
         }
+        if is_guess && steps == 1 {
+            next[..n].copy_from_slice(&step);
+            change_from(point, (&z, &next), &mut change);
+            if size <= CLOSE * norm(&change) && enough(&system.problem, &z, &change, &next) {
+                return Ok(Some(ExtendedSolution {
+                    at: z,
+                    next,
+                    certified: true,
+                    steps,
+                    missing: 1.0,
+                }));
+            }
+        }
         damping = (4.0 * damping).min(1.0);
         loop {
             for ((t, z), d) in trial.iter_mut().zip(&z).zip(&step) {
@@ -94,7 +121,7 @@ pub(super) fn extend<P: Problem>(
             }
             let last = damping <= SMALLEST_DAMPING;
             if system.evaluate(&trial)? {
-                if !system.step(&mut next[..n], interrupt)? {
+                if !system.step(&mut next[..n], false, interrupt)? {
                     return Ok(None);
                 }
                 if last || norm(&next) <= (1.0 - 0.25 * damping) * size {
@@ -106,9 +133,7 @@ pub(super) fn extend<P: Problem>(
             damping *= 0.5;
         }
         z.copy_from_slice(&trial);
-        for (((c, z), d), s) in change.iter_mut().zip(&z).zip(&next).zip(start) {
-            *c = z + d - s;
-        }
+        change_from(point, (&z, &next), &mut change);
         if !change.iter().all(|x| x.is_finite()) {
             return Ok(None);
         }

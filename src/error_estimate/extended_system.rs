@@ -14,6 +14,9 @@ use crate::problem::{Problem, Residual};
 /// Relative residual of a step that is found by iteration: a hundredth of the share that decides.
 const TOLERANCE: f64 = 1e-3;
 
+/// The same for a step from a guess, which is a small part of the change.
+const FROM_GUESS: f64 = 1e-2;
+
 /// Unknowns up to which factoring the whole matrix is faster.
 const DENSE_UP_TO: usize = 100;
 
@@ -112,7 +115,8 @@ impl<P: Problem> ExtendedSystem<P> {
 
     /// −J⁻¹R with the matrix factored last and R as evaluated last; `false` where the iteration did not converge with
     /// the work that is left.
-    pub fn step(&mut self, step: &mut [f64], interrupt: &Interrupt<'_>) -> Result<bool> {
+    pub fn step(&mut self, step: &mut [f64], from_guess: bool, interrupt: &Interrupt<'_>) -> Result<bool> {
+        let tolerance = if from_guess { FROM_GUESS } else { TOLERANCE };
         let n = step.len();
         let (packed, pairs) = self.factored_numbers();
         let each = self.sizes.product(packed, pairs);
@@ -124,9 +128,14 @@ impl<P: Problem> ExtendedSystem<P> {
         self.b[n] = 0.0;
         let solved = self
             .system
-            .solve(&mut self.problem, TOLERANCE, &mut self.b, interrupt)?;
+            .solve(&mut self.problem, tolerance, &mut self.b, interrupt)?;
         step.copy_from_slice(&self.b[..n]);
         Ok(self.work.spend(each * self.system.products() as f64) && solved)
+    }
+
+    /// Whether its solutions take many products, because the block does not hold all compliant harmonics.
+    pub fn iterates_long(&self) -> bool {
+        self.factored.each > self.factored.block
     }
 
     /// Bytes of the system.

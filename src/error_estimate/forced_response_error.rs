@@ -11,6 +11,7 @@ use crate::error_estimate::estimate::{
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
+use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::fourier::HarmonicSet;
@@ -43,6 +44,9 @@ const SURE: f64 = 0.5;
 /// Relative change of a ratio up to which the next one serves twice as many estimates.
 const STEADY: f64 = 0.25;
 
+/// Share of the residual that a guess from another point may leave.
+const CLOSER: f64 = 0.5;
+
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
 
@@ -57,6 +61,7 @@ pub struct ForcedEstimator<'a> {
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
     ratio: Option<Ratio>,
+    changes: KeptChanges,
     /// Modes of the waves, and the flexibility tables made so far.
     waves: WaveCache,
     tables: usize,
@@ -92,6 +97,7 @@ impl<'a> ForcedEstimator<'a> {
             interrupt,
             extended: Vec::new(),
             ratio: None,
+            changes: KeptChanges::default(),
             waves: WaveCache::default(),
             tables: 0,
         }
@@ -316,8 +322,8 @@ impl<'a> ForcedEstimator<'a> {
             &mut system,
             condensed,
             (solved, from),
-            extent,
-            self.options.tol_residual,
+            (extent, slot),
+            (&mut self.changes, self.options.tol_residual),
             self.interrupt,
         );
         let left = system.work();
@@ -362,8 +368,8 @@ fn on(
     system: &mut ExtendedSystem<HarmonicBalance<'_>>,
     condensed: &Condensed,
     (solved, from): (&Solved<'_>, Option<&Corrected>),
-    extent: Extent,
-    tolerance: f64,
+    (extent, slot): (Extent, usize),
+    (changes, tolerance): (&mut KeptChanges, f64),
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<Estimate>> {
     let (omega, set) = (solved.omega, condensed.set());
@@ -373,11 +379,11 @@ fn on(
     }
     let n = system.problem.unknowns();
     let point = solved.extended(condensed, n, 1.0)?;
-    let mut start = try_copy(&point, CONTEXT)?;
+    let mut before = try_copy(&point, CONTEXT)?;
     if let Some(from) = from {
-        set.transfer(&from.set, &from.motion, 1.0 / condensed.length(), &mut start);
+        set.transfer(&from.set, &from.motion, 1.0 / condensed.length(), &mut before);
     }
-    if !system.evaluate(&start)? {
+    if !system.evaluate(&before)? {
         return Ok(None);
     }
     let residual = (&system.at.values[..], system.at.scale);
@@ -388,15 +394,39 @@ fn on(
     let enough = |problem: &HarmonicBalance<'_>, at: &[f64], change: &[f64], next: &[f64]| {
         if !extent.by_doubling {
             let next = norm(&next[..n]);
-            return next <= SHARE * norm(change) || next <= ROUNDING * norm(&start);
+            return next <= SHARE * norm(change) || next <= ROUNDING * norm(&before);
         }
         let (x, dx) = problem.observe(at, next);
         dx.norm() <= SHARE * (x + dx - solved.response / length).norm() || dx.norm() <= ROUNDING * x.norm()
     };
-    let Some(extended) = extend(system, &start, enough, extent.weak, interrupt)? else {
+    let below = from.map_or(solved.condensed.set(), |from| &from.set);
+    let extension = Extension {
+        highest: below.numbers().last().copied().unwrap_or(0),
+        slot,
+    };
+    let mut start = try_copy(&before, CONTEXT)?;
+    let mut extended = None;
+    let residual = norm(&system.at.values);
+    // Elsewhere a step costs less than the evaluation of a guess.
+    if system.iterates_long() && changes.add_guess(extension, set, &mut start) {
+        if system.evaluate(&start)? && norm(&system.at.values) <= CLOSER * residual {
+            let found = extend(system, (&start, &before), enough, extent.weak, interrupt)?;
+            extended = found.filter(|found| found.certified);
+        }
+        if extended.is_none() && !system.evaluate(&before)? {
+            return Ok(None);
+        }
+    }
+    if extended.is_none() {
+        extended = extend(system, (&before, &before), enough, extent.weak, interrupt)?;
+    }
+    let Some(extended) = extended else {
         return Ok(None);
     };
     let mut z = extended.corrected()?;
+    if extended.certified && system.iterates_long() {
+        changes.keep(extension, set, (&before, &z))?;
+    }
     let size = norm(&z);
     let mut change = try_vec(n, 0.0, CONTEXT)?;
     for ((c, z), s) in change.iter_mut().zip(&z).zip(&point) {

@@ -6,6 +6,7 @@ mod estimate;
 mod extended_newton;
 mod extended_system;
 pub mod forced_response_error;
+mod kept_changes;
 pub mod mode_error;
 mod work;
 

@@ -161,7 +161,7 @@ impl<'a> ModeEstimator<'a> {
             (last <= SHARE * moved || last <= ROUNDING * norm(&start))
                 && (left <= SHARE * changed || left <= SHARE * NEGLIGIBLE * damping.abs().max(NO_DAMPING))
         };
-        let Some(extended) = extend(&mut system, &start, enough, false, self.interrupt)? else {
+        let Some(extended) = extend(&mut system, (&start, &start), enough, false, self.interrupt)? else {
             return Ok(None);
         };
         let z = extended.corrected()?;
