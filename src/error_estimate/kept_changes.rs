@@ -33,7 +33,7 @@ struct Change {
     /// Lowest harmonic of each coordinate before.
     lowest: Vec<Complex64>,
     /// Packed in the extended harmonics, in the unit of the extended model.
-    change: Vec<f64>,
+    moved: Vec<f64>,
 }
 
 impl KeptChanges {
@@ -58,7 +58,7 @@ impl KeptChanges {
         let angle = turn.arg() / set.numbers()[lowest] as f64;
         for (i, &h) in set.numbers().iter().enumerate() {
             let factor = Complex64::from_polar(size, h as f64 * angle);
-            for (y, change) in motion.chunks_exact_mut(m).zip(known.change.chunks_exact(m)) {
+            for (y, change) in motion.chunks_exact_mut(m).zip(known.moved.chunks_exact(m)) {
                 let moved = set.get(y, i) + factor * set.get(change, i);
                 set.set(y, i, moved);
             }
@@ -77,13 +77,13 @@ impl KeptChanges {
             None => Change {
                 extension,
                 lowest: try_vec(from.len() / set.packed_len().max(1), Complex64::ZERO, CONTEXT)?,
-                change: try_copy(from, CONTEXT)?,
+                moved: try_copy(from, CONTEXT)?,
             },
         };
         for (kept, y) in known.lowest.iter_mut().zip(from.chunks_exact(set.packed_len())) {
             *kept = set.get(y, lowest);
         }
-        for ((kept, to), from) in known.change.iter_mut().zip(to).zip(from) {
+        for ((kept, to), from) in known.moved.iter_mut().zip(to).zip(from) {
             *kept = to - from;
         }
         if self.changes.len() == MOST {
