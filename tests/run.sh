@@ -30,7 +30,8 @@ need make make --version
 need cmake cmake --version
 need pkg-config pkg-config --version
 need openmpi-bin mpirun --version
-need libopenmpi-dev mpicc --version
+# mpicc itself comes with openmpi-bin.
+need libopenmpi-dev sh -c 'echo "#include <mpi.h>" | mpicc -E -'
 need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
 need bsdutils script --version
