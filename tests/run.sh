@@ -31,7 +31,7 @@ need cmake cmake --version
 need pkg-config pkg-config --version
 need openmpi-bin mpirun --version
 # mpicc itself comes with openmpi-bin.
-need libopenmpi-dev sh -c 'echo "#include <mpi.h>" | mpicc -E -'
+need libopenmpi-dev sh -c 'echo "#include <mpi.h>" | mpicc -E -x c -'
 need libeigen3-dev pkg-config --exists eigen3
 need python3 python3 --version
 need bsdutils script --version
