@@ -126,7 +126,20 @@ fn motions_without_mass_and_complex_matrices_are_refused() {
     refused(
         try_on(&model),
         Status::Unsupported,
-        &["stiffness[0,0]", "imaginary part 0.02"],
+        &["structural damping has no causal law in time", "viscous equivalent"],
+    );
+    let turning = [
+        2.0.into(),
+        Complex64::new(0.0, 0.02),
+        Complex64::new(0.0, -0.02),
+        2.0.into(),
+    ];
+    let view = MatrixView::dense_complex(2, &turning).part(Part::General);
+    model.set_matrix(MatrixKind::Stiffness, &view).unwrap();
+    refused(
+        try_on(&model),
+        Status::Unsupported,
+        &["imaginary part 0.02", "complex matrices mean nothing in time"],
     );
 }
 
