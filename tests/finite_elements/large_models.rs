@@ -30,8 +30,10 @@ fn seconds() -> f64 {
     processor_time(Instant::now()).as_secs_f64()
 }
 
-/// Begins to measure the largest resident memory anew.
+/// Begins to measure the largest resident memory anew, without what earlier tests have freed.
 fn forget_the_peak() {
+    // SAFETY: it takes a number and no pointer.
+    unsafe { libc::malloc_trim(0) };
     std::fs::write("/proc/self/clear_refs", "5").unwrap();
 }
 
@@ -171,7 +173,8 @@ fn a_sector_of_89_000_degrees_of_freedom_agrees_with_direct_factors() {
     agrees_with_direct_factors([90, 82, 3], 6.0, 1.5e9);
 }
 
-/// A sweep in one go; the memory counts with the matrices, and the factor is L of L Lᵀ.
+/// A sweep in one go; the memory counts with the matrices, and the factor is L of L Lᵀ. Matrices and basis are about as
+/// large as two factors.
 #[test]
 #[ignore = "a minute; tests/deep.sh runs it"]
 fn plates_are_swept_within_the_memory_of_a_few_factors() {
@@ -182,8 +185,8 @@ fn plates_are_swept_within_the_memory_of_a_few_factors() {
             let k = model.structure().wave_matrix(MatrixKind::Stiffness, 1).unwrap();
             8.0 * entries_of_factor(&k).unwrap() as f64
         };
-        let before = memory("VmRSS");
         forget_the_peak();
+        let before = memory("VmRSS");
         let model = plate.with_sliders(20, 2e5, 0.05).unwrap();
         let solver = SolverOptions {
             tolerance: 0.0,
@@ -205,6 +208,6 @@ fn plates_are_swept_within_the_memory_of_a_few_factors() {
             most / factor
         );
         assert!(branch.points() >= 40 && branch.reduction().basis > 0);
-        assert!(most < 2.5 * factor, "{:.2}", most / factor);
+        assert!(most < 3.0 * factor, "{:.2}", most / factor);
     }
 }
