@@ -18,21 +18,22 @@ watch=
 export ASAN_OPTIONS=allocator_may_return_null=1 TSAN_OPTIONS=allocator_may_return_null=1
 
 # The stable compiler has the sanitisers of a nightly one.
-instrumented() { # symbol that shows it, options of rustc
+instrumented() { # symbol that shows it, options of rustc, those of cargo
     symbol=$1
-    shift
-    RUSTC_BOOTSTRAP=1 RUSTFLAGS="$*" cargo build --release --quiet -p hbvib-c --target "$host" --target-dir "$target/$tool"
+    RUSTC_BOOTSTRAP=1 RUSTFLAGS=$2 cargo build --release --quiet ${3:-} -p hbvib-c --target "$host" --target-dir "$target/$tool"
     cp "$target/$tool/$host/release/libhbvib.so" "$work/libhbvib.so"
     nm "$work/libhbvib.so" | grep -q "$symbol"
 }
 case $tool in
 address)
-    instrumented __asan_init -Zsanitizer=address -Cforce-frame-pointers=yes
+    instrumented __asan_init "-Zsanitizer=address -Cforce-frame-pointers=yes"
     flags="-fsanitize=address,undefined -fno-sanitize-recover=all"
     faults="address leak"
     ;;
 thread)
-    instrumented __tsan_init -Zsanitizer=thread -Cunsafe-allow-abi-mismatch=sanitizer
+    # With the standard library: a lock that threads wait for is taken in it, and else all that it guards seems a race.
+    rustup component add rust-src
+    instrumented __tsan_init -Zsanitizer=thread -Zbuild-std
     flags="-fsanitize=thread"
     faults=race
     ;;
