@@ -2,7 +2,7 @@
 
 use crate::analysis::damped_modes::{DampedModes, GROWS, at_present_speed};
 use crate::analysis::linear_contacts::LinearContacts;
-use crate::error::{Result, fail, try_push};
+use crate::error::{Result, fail, try_copy, try_push};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::{Interrupt, Phase};
 use crate::model::Model;
@@ -138,7 +138,7 @@ fn check(speeds: &[f64], engine_orders: &[i64]) -> Result<()> {
 }
 
 /// Frequencies of the modes that oscillate at one speed.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 struct Known {
     speed: f64,
     omega: Vec<f64>,
@@ -151,6 +151,13 @@ impl Known {
             try_push(&mut omega, modes.omega(k), CONTEXT)?;
         }
         Ok(Self { speed, omega })
+    }
+
+    fn try_clone(&self) -> Result<Self> {
+        Ok(Self {
+            speed: self.speed,
+            omega: try_copy(&self.omega, CONTEXT)?,
+        })
     }
 
     /// ω − EO·Ω of mode k.
@@ -202,26 +209,26 @@ fn divide(
         interrupt.check()?;
         let speed = 0.5 * (stretch.low.speed + stretch.high.speed);
         let middle = Known::new(speed, &at(speed)?)?;
-        let (low, high) = stretch.halves(middle);
-        try_push(&mut open, (low, halvings + 1), CONTEXT)?;
-        try_push(&mut open, (high, halvings + 1), CONTEXT)?;
+        for half in stretch.halves(middle)? {
+            try_push(&mut open, (half, halvings + 1), CONTEXT)?;
+        }
     }
     Ok(())
 }
 
 impl Stretch {
-    fn halves(&self, middle: Known) -> (Self, Self) {
+    fn halves(self, middle: Known) -> Result<[Self; 2]> {
         let low = Self {
-            low: self.low.clone(),
-            high: middle.clone(),
+            low: self.low,
+            high: middle.try_clone()?,
             is_first: self.is_first,
         };
         let high = Self {
             low: middle,
-            high: self.high.clone(),
+            high: self.high,
             is_first: false,
         };
-        (low, high)
+        Ok([low, high])
     }
 }
 

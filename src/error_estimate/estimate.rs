@@ -198,6 +198,30 @@ pub(super) fn has_converged_tail(tail: &[(usize, f64)], change: f64) -> bool {
     beyond <= CONVERGED_TAIL * change
 }
 
+/// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem
+/// as well: no force acts above them, and below them more samples change nothing.
+pub(super) fn omits_nothing(
+    (residual, scale): (&[f64], f64),
+    set: &HarmonicSet,
+    below: &HarmonicSet,
+    tolerance: f64,
+) -> bool {
+    above(set, below, residual) <= ROUNDING * scale && norm(residual) <= 10.0 * tolerance * scale
+}
+
+/// Norm of the part of packed signals of `set` above the harmonics of `below`.
+fn above(set: &HarmonicSet, below: &HarmonicSet, packed: &[f64]) -> f64 {
+    let highest = below.numbers().last().copied().unwrap_or(0);
+    let first = set.numbers().partition_point(|&h| h <= highest);
+    let from = if first < set.numbers().len() {
+        set.offset(first)
+    } else {
+        set.packed_len()
+    };
+    let signals = packed.chunks_exact(set.packed_len());
+    signals.map(|y| norm(&y[from..])).fold(0.0, f64::hypot)
+}
+
 /// Error of the structure on a basis that an estimate of an error may have.
 const CERTIFICATE: f64 = 1e-3;
 

@@ -7,14 +7,13 @@ use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::doubling::Doubling;
 use crate::error_estimate::estimate::{
-    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, relative, tail,
+    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
 use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
-use crate::fourier::HarmonicSet;
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
 use crate::model::Model;
@@ -404,13 +403,17 @@ fn on(
         highest: below.numbers().last().copied().unwrap_or(0),
         slot,
     };
-    let mut start = try_copy(&before, CONTEXT)?;
-    let mut extended = None;
-    let residual = norm(&system.at.values);
     // Elsewhere a step costs less than the evaluation of a guess.
-    if system.iterates_long() && changes.add_guess(extension, set, &mut start) {
-        if system.evaluate(&start)? && norm(&system.at.values) <= CLOSER * residual {
-            let found = extend(system, (&start, &before), enough, extent.weak, interrupt)?;
+    let guess = if system.iterates_long() {
+        changes.guess(extension, set, &before)?
+    } else {
+        None
+    };
+    let mut extended = None;
+    if let Some(guess) = guess {
+        let residual = norm(&system.at.values);
+        if system.evaluate(&guess)? && norm(&system.at.values) <= CLOSER * residual {
+            let found = extend(system, (&guess, &before), enough, extent.weak, interrupt)?;
             extended = found.filter(|found| found.certified);
         }
         if extended.is_none() && !system.evaluate(&before)? {
@@ -477,28 +480,4 @@ struct Extent {
     short: bool,
     /// Whether this is one of several extensions, each of which ends as soon as the response has converged.
     by_doubling: bool,
-}
-
-/// Whether a solution with the harmonics of `below`, of this relative residual at most, solves the extended problem
-/// as well: no force acts above them, and below them more samples change nothing.
-pub(super) fn omits_nothing(
-    (residual, scale): (&[f64], f64),
-    set: &HarmonicSet,
-    below: &HarmonicSet,
-    tolerance: f64,
-) -> bool {
-    above(set, below, residual) <= ROUNDING * scale && norm(residual) <= 10.0 * tolerance * scale
-}
-
-/// Norm of the part of packed signals of `set` above the harmonics of `below`.
-pub(super) fn above(set: &HarmonicSet, below: &HarmonicSet, packed: &[f64]) -> f64 {
-    let highest = below.numbers().last().copied().unwrap_or(0);
-    let first = set.numbers().partition_point(|&h| h <= highest);
-    let from = if first < set.numbers().len() {
-        set.offset(first)
-    } else {
-        set.packed_len()
-    };
-    let signals = packed.chunks_exact(set.packed_len());
-    signals.map(|y| norm(&y[from..])).fold(0.0, f64::hypot)
 }

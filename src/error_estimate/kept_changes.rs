@@ -37,12 +37,15 @@ struct Change {
 }
 
 impl KeptChanges {
-    /// Adds the guess for the change of a packed motion to it; `false` where none is known.
-    pub fn add_guess(&self, extension: Extension, set: &HarmonicSet, motion: &mut [f64]) -> bool {
+    /// A packed motion with the guess for its change; `None` where none is known.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn guess(&self, extension: Extension, set: &HarmonicSet, motion: &[f64]) -> Result<Option<Vec<f64>>> {
         let Some(known) = self.changes.iter().find(|known| known.extension == extension) else {
-            return false;
+            return Ok(None);
         };
-        let Some(lowest) = lowest(set) else { return false };
+        let Some(lowest) = lowest(set) else { return Ok(None) };
         let m = set.packed_len();
         let mut product = Complex64::ZERO;
         let mut square = 0.0;
@@ -53,17 +56,18 @@ impl KeptChanges {
         let turn = product / square;
         let size = turn.norm();
         if !(ALIKE.0..=ALIKE.1).contains(&size) {
-            return false;
+            return Ok(None);
         }
+        let mut guess = try_copy(motion, CONTEXT)?;
         let angle = turn.arg() / set.numbers()[lowest] as f64;
         for (i, &h) in set.numbers().iter().enumerate() {
             let factor = Complex64::from_polar(size, h as f64 * angle);
-            for (y, change) in motion.chunks_exact_mut(m).zip(known.moved.chunks_exact(m)) {
+            for (y, change) in guess.chunks_exact_mut(m).zip(known.moved.chunks_exact(m)) {
                 let moved = set.get(y, i) + factor * set.get(change, i);
                 set.set(y, i, moved);
             }
         }
-        true
+        Ok(Some(guess))
     }
 
     /// Keeps the change from one packed motion to another.
@@ -121,13 +125,13 @@ mod tests {
         let mut kept = KeptChanges::default();
         kept.keep(extension, &set, (&signal(1.0, 0.0, 1), &signal(1.0, 0.0, 3)))
             .unwrap();
-        let mut guess = signal(1.3, 0.4, 1);
-        assert!(kept.add_guess(extension, &set, &mut guess));
-        for (guess, exact) in guess.iter().zip(signal(1.3, 0.4, 3)) {
+        let guess = |extension, motion: &[f64]| kept.guess(extension, &set, motion).unwrap();
+        let point = signal(1.3, 0.4, 1);
+        for (guess, exact) in guess(extension, &point).unwrap().iter().zip(signal(1.3, 0.4, 3)) {
             assert!((guess - exact).abs() < 1e-14);
         }
         let other = Extension { highest: 1, slot: 5 };
-        assert!(!kept.add_guess(other, &set, &mut guess));
-        assert!(!kept.add_guess(extension, &set, &mut signal(5.0, 0.0, 1)));
+        assert!(guess(other, &point).is_none());
+        assert!(guess(extension, &signal(5.0, 0.0, 1)).is_none());
     }
 }

@@ -4,11 +4,10 @@ use crate::condense::Condensed;
 use crate::error::{Result, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
 use crate::error_estimate::estimate::{
-    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, or_unknown, relative, tail,
+    CONTEXT, ROUNDING, SHARE, extended_options, has_converged_tail, omits_nothing, or_unknown, relative, tail,
 };
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::ExtendedSystem;
-use crate::error_estimate::forced_response_error::omits_nothing;
 use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};

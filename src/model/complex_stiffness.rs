@@ -144,15 +144,14 @@ fn combined(a: &Csc, mirror: &Csc, factor: Complex64) -> Result<Csc> {
 
 fn added(n: usize, loss: &Blocks, given: &Blocks) -> Result<Blocks> {
     let sum = |a: &Option<Csc>, b: &Option<Csc>| -> Result<Option<Csc>> {
-        let terms: Vec<_> = [a, b]
-            .into_iter()
-            .flatten()
-            .map(|a| (Complex64::ONE, a, Form::Plain))
-            .collect();
-        if terms.is_empty() {
-            return Ok(None);
+        match (a, b) {
+            (None, None) => Ok(None),
+            (Some(a), None) | (None, Some(a)) => a.try_clone().map(Some),
+            (Some(a), Some(b)) => {
+                let terms = [a, b].map(|a| (Complex64::ONE, a, Form::Plain));
+                Csc::sum(n, &terms).map(Some)
+            }
         }
-        Csc::sum(n, &terms).map(Some)
     };
     // Without a matrix of its own, the coupling to the previous sector is the transpose of that to the next.
     let previous = if loss.previous.is_some() || given.previous.is_some() {
