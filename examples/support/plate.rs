@@ -105,8 +105,18 @@ impl Plate {
     /// # Errors
     /// Those of the model.
     pub fn model(&self, beta: f64) -> Result<Model> {
+        let mut model = Model::new(self.ndof())?;
+        self.give_matrices(&mut model)?;
+        model.set_rayleigh(0.0, beta)?;
+        Ok(model)
+    }
+
+    /// Gives stiffness and mass to a model of as many degrees of freedom.
+    ///
+    /// # Errors
+    /// Those of the model.
+    pub fn give_matrices(&self, model: &mut Model) -> Result<()> {
         let n = self.ndof();
-        let mut model = Model::new(n)?;
         let (offsets, rows, [k, m]) = self.matrices();
         for (kind, values) in [(MatrixKind::Stiffness, &k), (MatrixKind::Mass, &m)] {
             let view = MatrixView {
@@ -122,8 +132,7 @@ impl Plate {
             };
             model.set_matrix(kind, &view)?;
         }
-        model.set_rayleigh(0.0, beta)?;
-        Ok(model)
+        Ok(())
     }
 
     /// `count` sliders to the ground, transverse, at the end x = 1 and the middle in turn.

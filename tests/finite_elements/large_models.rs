@@ -1,19 +1,15 @@
 //! Structures of 20,000 to 90,000 degrees of freedom through the public calls: motion, work and memory of a response on a basis
 //! against factors.
 
-use crate::common::processor_time;
+use crate::common::{all_harmonics, processor_time, sweep};
 use crate::plate::Plate;
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::hooks::Hooks;
 use hbvib::interrupt::Interrupt;
 use hbvib::linalg::cholesky::{Definite, entries_of_factor};
-use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
 use hbvib::model::sector_faces::{SectorDescription, SectorFrame};
 use hbvib::model::structure::MatrixKind;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 use std::time::Instant;
@@ -35,15 +31,6 @@ fn forget_the_peak() {
     // SAFETY: it takes a number and no pointer.
     unsafe { libc::malloc_trim(0) };
     std::fs::write("/proc/self/clear_refs", "5").unwrap();
-}
-
-fn solve(model: &Model, solver: &SolverOptions, range: (f64, f64)) -> Branch {
-    let range = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
-        ..ForcedOptions::default()
-    };
-    forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
 }
 
 /// A thick plate as one of 24 sectors: its edges y = 0 and y = 0.7 m are the faces.
@@ -75,21 +62,7 @@ fn sector(elements: [usize; 3]) -> (Plate, Model) {
         coordinates: None,
     })
     .unwrap();
-    let (offsets, rows, [k, m]) = plate.matrices();
-    for (kind, values) in [(MatrixKind::Stiffness, &k), (MatrixKind::Mass, &m)] {
-        let view = MatrixView {
-            rows: n,
-            cols: n,
-            storage: Storage::Csc {
-                col_ptr: &offsets,
-                row_idx: &rows,
-            },
-            values: Values::Real(values),
-            part: Part::Lower,
-            index_base: 0,
-        };
-        model.set_matrix(kind, &view).unwrap();
-    }
+    plate.give_matrices(&mut model).unwrap();
     model.set_rayleigh(0.0, 1e-6).unwrap();
     model.add_contacts(&plate.sliders(10, 2e7, 0.3)).unwrap();
     model
@@ -131,7 +104,7 @@ fn agrees_with_direct_factors(elements: [usize; 3], setup: f64, beside: f64) {
         forget_the_peak();
         let before = memory("VmRSS");
         let begin = seconds();
-        let branch = solve(&model, &reduced, (0.95 * omega, 1.05 * omega));
+        let branch = sweep(&model, &reduced, 0.95 * omega, 1.05 * omega, &[]);
         let work = (seconds() - begin) / factors;
         let most = memory("VmHWM") - before;
         let reduction = branch.reduction();
@@ -148,12 +121,8 @@ fn agrees_with_direct_factors(elements: [usize; 3], setup: f64, beside: f64) {
         assert!(reduction.basis > 0 && reduction.certificate <= 1e-8);
         assert!(work < setup && most < beside, "{work} {most}");
         for at in [0.97 * omega, 1.01 * omega] {
-            let [x, exact] = [Flexibility::Automatic, Flexibility::Direct].map(|flexibility| {
-                let branch = solve(&model, &solver(flexibility), (at, at));
-                let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * branch.ndof()];
-                branch.harmonics_at(0, &mut x).unwrap();
-                x
-            });
+            let [x, exact] = [Flexibility::Automatic, Flexibility::Direct]
+                .map(|flexibility| all_harmonics(&sweep(&model, &solver(flexibility), at, at, &[]), 0));
             let size = |x: &mut dyn Iterator<Item = Complex64>| x.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
             let off = size(&mut x.iter().zip(&exact).map(|(a, b)| a - b)) / size(&mut exact.iter().copied());
             println!("  {:.2} Hz: {off:.1e} from direct factors", at / TAU);
@@ -196,7 +165,7 @@ fn plates_are_swept_within_the_memory_of_a_few_factors() {
         };
         // The first natural frequency of either plate is 16.6 Hz.
         let omega = TAU * 16.6;
-        let branch = solve(&model, &solver, (0.8 * omega, 1.2 * omega));
+        let branch = sweep(&model, &solver, 0.8 * omega, 1.2 * omega, &[]);
         let most = memory("VmHWM") - before;
         println!(
             "{} degrees of freedom, {} points, basis {}, certificate {:.1e}: {:.0} MB at most, {:.2} times the factor",

@@ -1,12 +1,10 @@
 //! A plate of 3,060 degrees of freedom on a basis: points by factors, a sweep with a tolerance, and how little is computed.
 
+use crate::common::{all_harmonics, sweep};
 use crate::plate::Plate;
-use hbvib::analysis::forced_response::forced_response;
-use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::model::linear_modes::ContactState;
-use hbvib::options::{Flexibility, ForcedOptions, SolverOptions};
-use hbvib::results::Branch;
+use hbvib::options::{Flexibility, SolverOptions};
 use num_complex::Complex64;
 
 const PLATE: [usize; 3] = [20, 16, 2];
@@ -33,31 +31,16 @@ fn options(plate: &Plate, flexibility: Flexibility) -> SolverOptions {
     }
 }
 
-fn solve(model: &Model, solver: &SolverOptions, range: (f64, f64)) -> Branch {
-    let range = ForcedOptions {
-        omega_start: range.0,
-        omega_stop: range.1,
-        ..ForcedOptions::default()
-    };
-    forced_response(model, solver, &range, &mut Hooks::default()).unwrap()
-}
-
-fn motion(branch: &Branch, point: usize) -> Vec<Complex64> {
-    let mut x = vec![Complex64::ZERO; (branch.harmonics() + 1) * branch.ndof()];
-    branch.harmonics_at(point, &mut x).unwrap();
-    x
-}
-
 #[test]
 fn all_degrees_of_freedom_agree_with_direct_factors_within_the_limit_of_the_certificate() {
     let (plate, model, omega) = plate();
     for at in [0.8 * omega, 1.02 * omega] {
-        let reduced = solve(&model, &options(&plate, Flexibility::Automatic), (at, at));
-        let direct = solve(&model, &options(&plate, Flexibility::Direct), (at, at));
+        let reduced = sweep(&model, &options(&plate, Flexibility::Automatic), at, at, &[]);
+        let direct = sweep(&model, &options(&plate, Flexibility::Direct), at, at, &[]);
         let reduction = reduced.reduction();
         assert!(reduction.basis > 0 && reduction.basis < 150, "{}", reduction.basis);
         assert!(reduction.certificate > 0.0 && reduction.certificate < 1e-8);
-        let (x, exact) = (motion(&reduced, 0), motion(&direct, 0));
+        let (x, exact) = (all_harmonics(&reduced, 0), all_harmonics(&direct, 0));
         let size = |x: &mut dyn Iterator<Item = Complex64>| x.map(|z| z.norm_sqr()).sum::<f64>().sqrt();
         let off = size(&mut x.iter().zip(&exact).map(|(a, b)| a - b)) / size(&mut exact.iter().copied());
         println!(
@@ -144,8 +127,8 @@ fn the_certificate_bounds_the_error_where_rounding_decides() {
                     harmonics: 1,
                     ..options(&plate, flexibility)
                 };
-                let branch = solve(model, &solver, (at, at));
-                (motion(&branch, 0)[n..].to_vec(), branch.reduction().certificate)
+                let branch = sweep(model, &solver, at, at, &[]);
+                (all_harmonics(&branch, 0)[n..].to_vec(), branch.reduction().certificate)
             };
             let (reduced, certificate) = linear(&model, Flexibility::Automatic);
             let (direct, _) = linear(&model, Flexibility::Direct);
@@ -185,7 +168,7 @@ fn a_sweep_with_a_tolerance_chooses_its_harmonics_on_the_basis() {
         tolerance: 1e-3,
         ..options(&plate, Flexibility::Automatic)
     };
-    let branch = solve(&model, &solver, (0.95 * omega, 1.05 * omega));
+    let branch = sweep(&model, &solver, 0.95 * omega, 1.05 * omega, &[]);
     assert!(branch.status() as i32 == 0, "{:?}", branch.status());
     let reduction = branch.reduction();
     assert!(reduction.basis > 0 && branch.harmonics() >= 3);
@@ -203,7 +186,7 @@ fn a_sweep_with_a_tolerance_chooses_its_harmonics_on_the_basis() {
         harmonics: 31,
         ..options(&plate, Flexibility::Automatic)
     };
-    let exact = solve(&model, &many, (at, at)).amplitude()[0];
+    let exact = sweep(&model, &many, at, at, &[]).amplitude()[0];
     let error = (branch.amplitude()[middle] / exact - 1.0).abs();
     assert!(error < 1e-3, "{error:e}");
 }
