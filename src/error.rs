@@ -392,6 +392,16 @@ pub fn reserved(outcome: &core::result::Result<(), TryReserveError>, what: &str)
     Ok(())
 }
 
+/// An empty vector with room for `len` values and no more.
+///
+/// # Errors
+/// [`Status::OutOfMemory`] naming `what`.
+pub fn try_room<T>(len: usize, what: &str) -> Result<Vec<T>> {
+    let mut v = Vec::new();
+    reserved(&v.try_reserve_exact(len), what)?;
+    Ok(v)
+}
+
 /// Checks that memory for `len` values is available at this moment, before code that does not allocate fallibly
 /// itself.
 ///

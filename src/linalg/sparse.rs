@@ -1,6 +1,6 @@
 //! Compressed sparse columns with complex values: the storage of all structural matrices.
 
-use crate::error::{Error, Result, try_extend, try_push, try_vec};
+use crate::error::{Result, try_extend, try_push, try_room, try_vec};
 use num_complex::Complex64;
 
 /// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
@@ -55,32 +55,36 @@ impl Symmetry {
     }
 }
 
+/// A term of a sum, transposed where its form wants it.
+fn of_form<'a>(a: &'a Csc, form: Form, transposed: &mut impl Iterator<Item = &'a Csc>) -> &'a Csc {
+    match form {
+        Form::Transposed => transposed.next().unwrap_or(a),
+        Form::Plain | Form::Conjugated => a,
+    }
+}
+
 impl Csc {
     /// From (row, column, value) triplets; duplicates are summed, as in the assembly of finite elements.
     ///
     /// # Errors
     /// `OutOfMemory`.
     pub fn from_triplets(rows: usize, cols: usize, mut entries: Vec<(usize, usize, Complex64)>) -> Result<Self> {
+        const CONTEXT: &str = "a sparse matrix";
         entries.sort_unstable_by_key(|&(i, j, _)| (j, i));
+        // Their number first: a large matrix in vectors that grow would take up to twice its memory.
+        let stored = entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).count();
         let mut a = Self {
             rows,
             cols,
-            col_ptr: try_vec(cols + 1, 0, "a sparse matrix")?,
-            row_idx: Vec::new(),
-            values: Vec::new(),
+            col_ptr: try_vec(cols + 1, 0, CONTEXT)?,
+            row_idx: try_room(stored, CONTEXT)?,
+            values: try_room(stored, CONTEXT)?,
         };
-        let mut last = None;
-        for (i, j, v) in entries {
-            if last == Some((i, j)) {
-                if let Some(sum) = a.values.last_mut() {
-                    *sum += v;
-                }
-            } else {
-                try_push(&mut a.row_idx, i, "a sparse matrix")?;
-                try_push(&mut a.values, v, "a sparse matrix")?;
-                a.col_ptr[j + 1] += 1;
-                last = Some((i, j));
-            }
+        for same in entries.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)) {
+            let (i, j, first) = same[0];
+            a.row_idx.push(i);
+            a.values.push(same[1..].iter().fold(first, |sum, (_, _, v)| sum + v));
+            a.col_ptr[j + 1] += 1;
         }
         for j in 0..cols {
             a.col_ptr[j + 1] += a.col_ptr[j];
@@ -98,41 +102,45 @@ impl Csc {
         for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
             try_push(&mut transposed, a.transposed()?, CONTEXT)?;
         }
+        // Rows of each column by the column that had them last: first their number, for room that is not too large.
+        let mut in_column = try_vec(n, 0, CONTEXT)?;
+        let mut stored = 0;
+        for j in 0..n {
+            let mut next = transposed.iter();
+            for &(_, a, form) in terms {
+                for (i, _) in of_form(a, form, &mut next).column(j) {
+                    stored += usize::from(in_column[i] != j + 1);
+                    in_column[i] = j + 1;
+                }
+            }
+        }
         let mut sum = Self {
             rows: n,
             cols: n,
             col_ptr: try_vec(n + 1, 0, CONTEXT)?,
-            row_idx: Vec::new(),
-            values: Vec::new(),
+            row_idx: try_room(stored, CONTEXT)?,
+            values: try_room(stored, CONTEXT)?,
         };
         // One column after the other: its entries by their rows, and the rows that it has.
         let mut column = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        let mut in_column = try_vec(n, 0, CONTEXT)?;
         let mut rows = try_vec(n, 0, CONTEXT)?;
+        in_column.fill(0);
         for j in 0..n {
             // At most n rows, for which there is memory.
             rows.clear();
             let mut next = transposed.iter();
-            for (c, a, form) in terms {
-                let a = if *form == Form::Transposed {
-                    next.next().unwrap_or(a)
-                } else {
-                    a
-                };
-                for (i, v) in a.column(j) {
+            for &(c, a, form) in terms {
+                for (i, v) in of_form(a, form, &mut next).column(j) {
                     if in_column[i] != j + 1 {
                         in_column[i] = j + 1;
                         column[i] = Complex64::ZERO;
                         rows.push(i);
                     }
-                    column[i] += c * if *form == Form::Conjugated { v.conj() } else { v };
+                    column[i] += c * if form == Form::Conjugated { v.conj() } else { v };
                 }
             }
             rows.sort_unstable();
-            try_extend(&mut sum.row_idx, &rows, CONTEXT)?;
-            sum.values
-                .try_reserve(rows.len())
-                .map_err(|_| Error::out_of_memory(CONTEXT))?;
+            sum.row_idx.extend_from_slice(&rows);
             sum.values.extend(rows.iter().map(|&i| column[i]));
             sum.col_ptr[j + 1] = sum.row_idx.len();
         }
