@@ -40,6 +40,7 @@ thread)
 valgrind)
     cargo build --release --quiet --lib
     cp "$target/release/libhbvib.so" "$work/libhbvib.so"
+    flags="-DONE_REFUSAL_IN=20"
     leaks=definite,indirect
     watch="valgrind -q --error-exitcode=99 --leak-check=full --show-leak-kinds=$leaks --errors-for-leak-kinds=$leaks"
     faults="address leak"

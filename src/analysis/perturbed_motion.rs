@@ -10,7 +10,7 @@ use crate::options::{FloquetOptions, TimeOptions};
 use crate::results::Floquet;
 use crate::stability::{Blocks, Closure, Known, closures, multipliers_of};
 use crate::time_integration::{EventLoop, HarmonicAnalysis, Observers, Search, State, Steady, System};
-use crate::time_integration::{state_of, state_of_sector};
+use crate::time_integration::{check_shooting, state_of, state_of_sector};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "the motion in time";
@@ -123,6 +123,11 @@ pub(super) fn perturbed(
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<Found> {
+    if options.refine {
+        // Half the sectors may do.
+        let structure = subject.structure();
+        check_shooting(structure.ndof() * structure.repeating_sectors().div_ceil(2))?;
+    }
     let mut system = subject.system(motion, interrupt)?;
     let mut event_loop = EventLoop::new(&system, options.tolerance)?;
     let mut state = subject.state(&system, motion.harmonics)?;

@@ -85,12 +85,16 @@ fn grains(layout: Layout) -> usize {
     layout.size().div_ceil(GRAIN).max(1)
 }
 
-/// A part of the reserve, or NULL, noted.
+/// Memory that was set aside for such a request, a part of the reserve, noted, or NULL.
 #[cold]
 fn take(layout: Layout) -> *mut u8 {
+    let aside = take_aside(layout);
+    if !aside.is_null() {
+        return aside;
+    }
     let (count, step) = (grains(layout), layout.align().div_ceil(GRAIN));
     if count > GRAINS || layout.align() > 4096 {
-        return take_aside(layout);
+        return core::ptr::null_mut();
     }
     let found = locked(|map| {
         let first = find(map, count, step)?;

@@ -12,11 +12,11 @@ use crate::error::{Result, Status, try_vec};
 use crate::hooks::{Hooks, LogLevel};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
-use crate::options::TimeOptions;
+use crate::options::{SteadyMethod, TimeOptions};
 use crate::time_integration::event_loop::{EventLoop, Observers, State};
 use crate::time_integration::harmonic_analysis::HarmonicAnalysis;
 use crate::time_integration::initial_state::state_of;
-use crate::time_integration::shooting::Search;
+use crate::time_integration::shooting::{Search, check_shooting};
 use crate::time_integration::unrolled_structure::System;
 use num_complex::Complex64;
 use std::f64::consts::TAU;
@@ -91,6 +91,10 @@ fn integrate(
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
 ) -> Result<TimeResponse> {
+    if options.method == SteadyMethod::Shooting {
+        let structure = model.structure();
+        check_shooting(structure.ndof() * structure.repeating_sectors())?;
+    }
     let mut system = System::new(model, options.omega, interrupt)?;
     let mut event_loop = EventLoop::new(&system, options.tolerance)?;
     let start = match options.start {

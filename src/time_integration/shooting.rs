@@ -5,7 +5,7 @@
 //! piece and is exact, since the field is continuous at events. A slider that never moves may rest anywhere: its
 //! equation is void, and it keeps its initial place.
 
-use crate::error::{Result, Status, fail, try_extend, try_push, try_vec};
+use crate::error::{Result, Status, check_memory, fail, try_extend, try_push, try_vec};
 use crate::hooks::{Hooks, Progress};
 use crate::linalg::least_squares::LeastSquares;
 use crate::options::{SteadyMethod, TimeOptions};
@@ -29,6 +29,16 @@ const NEUTRAL: f64 = 1e-9;
 
 /// Number of periods that are marched after the first failure of Newton's method; each time twice as many.
 const FIRST_MARCH: usize = 8;
+
+/// Checks that memory is available for the largest arrays of shooting, the derivatives of the state and the equations made
+/// of them, before a structure of `order` degrees of freedom is unrolled for it. Stretches of sliders come on top.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn check_shooting(order: usize) -> Result<()> {
+    let states = order.saturating_mul(2);
+    check_memory::<f64>(states.saturating_mul(states).saturating_mul(2), "shooting in time")
+}
 
 /// Result of a search.
 pub(crate) struct Steady {

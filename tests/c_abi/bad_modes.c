@@ -1,4 +1,4 @@
-/* Bad options of a nonlinear mode, and models that have none: refused, and the out handle untouched. */
+/* Rows 77 to 79: bad options of a nonlinear mode, and models that have none: refused, and the out handle untouched. */
 #include "common.h"
 
 static hbvib_branch *const KEPT = (hbvib_branch *)&the_solution;

@@ -167,11 +167,17 @@ static inline int same_solution(const hbvib_model *model, const solution *refere
 
 /* Where set, the model that every refused call must leave as it was. */
 static hbvib_model *the_model = NULL;
+
+/* It is solved again after each refused call; under a tool that makes solving slow, after one in some. */
+#ifndef ONE_REFUSAL_IN
+#define ONE_REFUSAL_IN 1
+#endif
 static solution the_solution;
 
 static inline void refused(const char *file, int line, const char *row, const char *call, hbvib_status status,
                            hbvib_status wanted, int32_t argument, const char *words)
 {
+    static int refusals = 0;
     const char *text = hbvib_last_error();
     checks++;
     if (status != wanted || hbvib_last_error_argument() != argument || text[0] == '\0' || strstr(text, words) == NULL) {
@@ -180,7 +186,7 @@ static inline void refused(const char *file, int line, const char *row, const ch
                 file, line, row, call, hbvib_status_name(status), (int)hbvib_last_error_argument(), text,
                 hbvib_status_name(wanted), (int)argument, words);
     }
-    if (the_model != NULL && !same_solution(the_model, &the_solution)) {
+    if (the_model != NULL && refusals++ % ONE_REFUSAL_IN == 0 && !same_solution(the_model, &the_solution)) {
         failures++;
         fprintf(stderr, "%s:%d: row %s: %s changed the model\n", file, line, row, call);
     }

@@ -1,4 +1,4 @@
-/* Saved models: in memory and through a file, and what is refused. */
+/* Row 118: saved models in memory and through a file, cut at each byte, and with any bit flipped. */
 #include "common.h"
 
 static int32_t refuses(void *user, const hbvib_force_call *call)
@@ -48,6 +48,16 @@ int main(void)
     REFUSED("none", hbvib_model_load(0, NULL, &loaded), HBVIB_E_ARGUMENT, 2, "mark");
     REFUSED("short", hbvib_model_load(size - 1, bytes, &loaded), HBVIB_E_ARGUMENT, 2, "incomplete");
     REFUSED("negative", hbvib_model_load(-1, bytes, &loaded), HBVIB_E_DIMENSION, 1, "length = -1");
+    { /* 118: cut at each byte, one bit flipped at each */
+        int64_t i, taken = 0;
+        for (i = 0; i < size; i++) {
+            taken += hbvib_model_load(i, bytes, &loaded) >= 0;
+            memcpy(again, bytes, (size_t)size);
+            again[i] ^= (unsigned char)(1 << i % 8);
+            taken += hbvib_model_load(size, again, &loaded) >= 0;
+        }
+        EXPECT("118", taken == 0 && loaded == NULL);
+    }
     bytes[60] ^= 4;
     REFUSED("damaged", hbvib_model_load(size, bytes, &loaded), HBVIB_E_ARGUMENT, 2, "checksum");
     bytes[8] = 9;

@@ -80,6 +80,11 @@ fn extreme_models_have_an_answer_or_a_status() {
 }
 
 #[test]
+fn unusual_input_has_the_result_that_it_says() {
+    silent("unusual", |_| vec![]);
+}
+
+#[test]
 fn bad_options_and_ranges_are_refused() {
     silent("bad_options", |_| vec![]);
 }

@@ -80,6 +80,8 @@ static hbvib_status over(const hbvib_model *model, int32_t follow, uint64_t *sum
     hbvib_branch *branch = NULL;
     s.max_points = 60;
     s.harmonics = ring ? 3 : 1;
+    /* A few points, so that each of their requests for memory can fail. */
+    s.step = s.step_max = 0.3;
     memset(&o, 0, sizeof o);
     STEP(hbvib_parameter_options_init(&o, sizeof o));
     o.follow = follow;

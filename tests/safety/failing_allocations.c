@@ -3,8 +3,9 @@
  *  - all memory is free again;
  *  - the same model then has the same results; slow analyses are repeated after one failure in eight.
  * The first analysis is also tried as the first call of a process.
- * Run under LD_PRELOAD=failing_malloc.so as: failing_allocations <share> [name], where share 1 takes every request, of
- * analyses that would take minutes one in some, and share n about one in n. Prints a line for each analysis and one for all. */
+ * Run under LD_PRELOAD=failing_malloc.so as: failing_allocations <share> [first] [last], where share 1 takes every request
+ * and share n about one in n, of the analyses with these numbers, from 1. Prints a line for each analysis (how many requests
+ * it has, how many failed, one in how many) and one for all. */
 #include "designs.h"
 #include "failing_malloc.h"
 
@@ -19,13 +20,13 @@
 /* Outcomes of failing requests; shared with the processes in which they are tried. */
 typedef struct outcomes {
     int64_t refused, unharmed, died, leaked, changed, other;
-    int64_t n; /* request that fails now */
+    int64_t requests[2]; /* of the analysis, of the building of its model */
+    int64_t tried[2];    /* that failed alone, with all later ones */
+    int64_t n;           /* request that fails now */
 } outcomes;
 
-static int64_t share = 1, given = 1;
-
-/* Seconds of solving above which not every request of an analysis fails. */
-enum { LONGEST = 200 };
+/* About one request in `share` fails. */
+static int64_t share = 1;
 
 /* Whether an analysis is so quick that it is repeated after each failure; others are after one in eight. */
 static int quick;
@@ -39,6 +40,7 @@ static void complain(const analysis *a, const char *phase, int32_t for_good, int
 /* Counts the outcome of a call during which requests failed. */
 static void judge(const analysis *a, const char *phase, int32_t for_good, outcomes *all, hbvib_status status, int same)
 {
+    all->tried[for_good]++;
     if (status == HBVIB_E_OUT_OF_MEMORY) {
         all->refused++;
     } else if (status < 0) {
@@ -80,6 +82,7 @@ static void try_building(const analysis *a, int32_t for_good, outcomes *all)
         if (requests >= all->n) judge(a, "model", for_good, all, status, 1);
         if (model != NULL && hbvib_model_free(model) != HBVIB_OK) abort();
         leak(a, "model", for_good, all, before);
+        all->requests[1] = requests;
         if (requests < all->n) return;
     }
 }
@@ -124,6 +127,7 @@ static void try_running(const analysis *a, int32_t for_good, outcomes *all, uint
         }
         if (hbvib_model_free(model) != HBVIB_OK) abort();
         leak(a, "analysis", for_good, all, before);
+        all->requests[0] = t.requests;
         if (t.requests < all->n) return;
     }
 }
@@ -186,22 +190,37 @@ static void survive(const analysis *a, int building, int32_t for_good, outcomes 
     }
 }
 
+/* An analysis that fails now and then: its line, and the same added to the outcomes of all. */
+static void tell(int number, const analysis *a, const outcomes *all, outcomes *sum)
+{
+    printf("%2d %-38s %lld requests, %lld of building; failed: %lld alone, %lld with all later ones, one in %lld: "
+           "%lld refused, %lld without effect, %lld deaths, %lld leaks, %lld changed, %lld other\n",
+           number, a->name, (long long)(all->requests[0] + all->requests[1]), (long long)all->requests[1],
+           (long long)all->tried[0], (long long)all->tried[1], (long long)share, (long long)all->refused,
+           (long long)all->unharmed, (long long)all->died, (long long)all->leaked, (long long)all->changed, (long long)all->other);
+    fflush(stdout);
+    sum->refused += all->refused;
+    sum->unharmed += all->unharmed;
+    sum->died += all->died;
+    sum->other += all->leaked + all->changed + all->other;
+}
+
 int main(int argc, char **argv)
 {
     outcomes *all = mmap(NULL, sizeof *all, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     task *first = mmap(NULL, sizeof *first, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-    int64_t tried = 0, bad = 0, requests, i;
+    const int64_t given = argc > 1 ? atoll(argv[1]) : 0;
+    const int from = argc > 2 ? atoi(argv[2]) : 1, to = argc > 3 ? atoi(argv[3]) : N_ALL;
     outcomes sum = {0};
-    if (all == MAP_FAILED || first == MAP_FAILED || argc < 2) return 2;
-    given = atoll(argv[1]);
-    for (i = 0; i < N_ALL; i++) {
-        const analysis *a = analysis_number((int)i);
+    int64_t tried;
+    int i;
+    if (all == MAP_FAILED || first == MAP_FAILED || given < 1 || from < 1 || to > N_ALL) return 2;
+    for (i = from - 1; i < to; i++) {
+        const analysis *a = analysis_number(i);
         hbvib_model *model = NULL;
         uint64_t reference = 1, again = 1;
         clock_t begin;
-        double seconds;
         int32_t for_good;
-        if (argc > 2 && strcmp(argv[2], a->name) != 0) continue;
         memset(all, 0, sizeof *all);
         share = given;
         for (for_good = 0; for_good < 2 && i == 0; for_good++) {
@@ -216,25 +235,16 @@ int main(int argc, char **argv)
             return 2;
         }
         if (hbvib_model_free(model) != HBVIB_OK) return 2;
-        seconds = (double)(clock() - begin) / 2 / CLOCKS_PER_SEC;
-        quick = seconds < 0.01;
-        requests = memory_disarm() / 2;
-        share = given == 1 ? 1 + (int64_t)(seconds * (double)requests / LONGEST) : given * (1 + requests / 2000);
+        quick = (double)(clock() - begin) / 2 / CLOCKS_PER_SEC < 0.01;
+        if (given > 1) share = given * (1 + memory_disarm() / 4000);
         for (for_good = 0; for_good < 2; for_good++) {
             survive(a, 1, for_good, all, reference);
             survive(a, 0, for_good, all, reference);
         }
-        printf("%-36s %lld refused, %lld without effect, %lld deaths, %lld leaks, %lld changed, %lld other\n", a->name,
-               (long long)all->refused, (long long)all->unharmed, (long long)all->died, (long long)all->leaked,
-               (long long)all->changed, (long long)all->other);
-        fflush(stdout);
-        sum.refused += all->refused;
-        sum.unharmed += all->unharmed;
-        sum.died += all->died;
-        bad += all->leaked + all->changed + all->other;
+        tell(i + 1, a, all, &sum);
     }
-    tried = sum.refused + sum.unharmed + sum.died + bad;
+    tried = sum.refused + sum.unharmed + sum.died + sum.other;
     printf("%lld failing requests: %lld refused, %lld without effect, %lld deaths, %lld others\n", (long long)tried,
-           (long long)sum.refused, (long long)sum.unharmed, (long long)sum.died, (long long)bad);
-    return sum.died + bad == 0 && tried > 0 ? 0 : 1;
+           (long long)sum.refused, (long long)sum.unharmed, (long long)sum.died, (long long)sum.other);
+    return sum.died + sum.other == 0 && tried > 0 ? 0 : 1;
 }

@@ -1,13 +1,14 @@
-/* A wheel of as many sectors as the library takes, with three degrees of freedom each: integration in time ends within a second
- * of processor time after it was told to stop, and a response to a tolerance takes no more memory than its predicted need; nor
- * does a response without contacts, whatever the number of samples, nor a result whose samples were refined. Prints figures. */
+/* A wheel of as many sectors as the library takes, with three degrees of freedom each: marching ends within a second of
+ * processor time after it was told to stop, and shooting, whose derivatives no machine can hold, is refused before the wheel is
+ * unrolled; a response to a tolerance takes no more memory than its predicted need; nor does a response without contacts,
+ * whatever the number of samples, nor a result whose samples were refined. Prints figures. */
 #include "failing_malloc.h"
 #include "predicted_need.h"
 
 #include <stdio.h>
 #include <time.h>
 
-static const double STOPPED_AFTER = 0.04, ENDED_WITHIN = 1; /* seconds of processor time */
+static const double STOPPED_AFTER = 0.04, ENDED_WITHIN = 1, REFUSED_WITHIN = 0.01; /* seconds of processor time */
 
 static clock_t started;
 static int failures;
@@ -35,7 +36,7 @@ static hbvib_status wheel(int64_t sectors, hbvib_model **model)
 }
 
 /* Integration in time with a slider in each sector. */
-static hbvib_status in_time(void)
+static hbvib_status in_time(int32_t method)
 {
     static double x[6 * 3 * 2];
     hbvib_model *model = NULL;
@@ -43,8 +44,8 @@ static hbvib_status in_time(void)
     hbvib_hooks h;
     hbvib_time_options o;
     hbvib_time_info info;
-    double seconds;
-    hbvib_status status = wheel(1 << 20, &model);
+    double seconds, bytes;
+    hbvib_status status = wheel(1 << 20, &model), integrated = HBVIB_OK;
     memset(&h, 0, sizeof h);
     memset(&o, 0, sizeof o);
     memset(&info, 0, sizeof info);
@@ -58,11 +59,18 @@ static hbvib_status in_time(void)
     h.phase = on_phase;
     o.omega = 1.2;
     o.harmonics = 5;
+    o.method = method;
+    bytes = -(double)memory_bytes();
+    memory_arm(0, 0);
     started = clock();
-    STEP(hbvib_time_response(model, &o, &h, x, 6 * 3, NULL, 0, &info));
+    if (status >= 0) integrated = hbvib_time_response(model, &o, &h, x, 6 * 3, NULL, 0, &info);
     seconds = spent();
-    failures += status != HBVIB_STOPPED_BY_CALLER || seconds > STOPPED_AFTER + ENDED_WITHIN;
-    printf("in time: status %d after %.2f s\n", (int)status, seconds);
+    bytes += (double)memory_peak();
+    if (method == HBVIB_SHOOTING)
+        failures += integrated != HBVIB_E_OUT_OF_MEMORY || seconds > REFUSED_WITHIN || bytes > 16 * KIB;
+    else
+        failures += integrated != HBVIB_STOPPED_BY_CALLER || seconds > STOPPED_AFTER + ENDED_WITHIN;
+    printf("in time, method %d: status %d after %.4f s, %.0f bytes\n", (int)method, (int)integrated, seconds, bytes);
     return status < 0 ? status : hbvib_model_free(model);
 }
 
@@ -153,7 +161,8 @@ int main(void)
     /* What a thread keeps is taken by its first call that may need it. */
     (void)!hbvib_branch_energy_with_hooks(NULL, 0, NULL, &h);
     if (status < 0) return 2;
-    failures += in_time() < 0;
+    failures += in_time(HBVIB_MARCHING) < 0;
+    failures += in_time(HBVIB_SHOOTING) < 0;
     failures += respond("to a tolerance", 1 << 20, 1, 0.05, 0) < 0;
     failures += respond("no contact, many samples", 1, 0, 0, 1 << 20) < 0;
     failures += energy_of_refined() < 0;

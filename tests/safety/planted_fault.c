@@ -1,5 +1,5 @@
-/* A fault on purpose, which a tool that watches the library must see. Run as: planted_fault address, where the library
- * writes beyond an array that is shorter than stated; planted_fault leak, where memory is lost; or planted_fault race,
+/* Row 13, and other faults on purpose, which a tool that watches the library must see. Run as: planted_fault address, where the
+ * library writes beyond an array that is shorter than stated; planted_fault leak, where memory is lost; or planted_fault race,
  * with a plain store to a cancel flag. */
 #include "analyses.h"
 

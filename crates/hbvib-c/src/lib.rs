@@ -30,9 +30,7 @@ mod loading {
         #[cfg(all(target_env = "gnu", target_arch = "x86_64"))]
         {
             super::thread_exit::at_load();
-            // SAFETY: a number of the system.
-            let cache = unsafe { libc::sysconf(libc::_SC_LEVEL3_CACHE_SIZE) };
-            engine::capi::thread_memory::set_cache_size(usize::try_from(cache).unwrap_or(0));
+            engine::capi::thread_memory::hand_over();
         }
     }
 

@@ -1,4 +1,4 @@
-/* Progress, log and cancellation; exceptions of callbacks arrive whole, whatever is nested in what. */
+/* Row 110: progress, log and cancellation; exceptions of callbacks arrive whole, whatever is nested in what. */
 #include "common.hpp"
 
 #include <atomic>

@@ -1,4 +1,4 @@
-"""Callbacks see what happens, stop what they should, and what they raise comes out whole."""
+"""Callbacks see what happens, stop what they should, and what they raise comes out whole (rows 111, 116)."""
 
 import gc
 import signal
