@@ -1,6 +1,6 @@
 //! Mutations of good input without a guide: bytes, bits, numbers, lines and parts are changed, removed, repeated and
 //! exchanged. Run in this folder as: mutate <seed> <executions a target> [target]. Prints counts; a panic or an
-//! execution of more than a second ends it.
+//! execution of more than a second ends it. As: mutate corpus <folder>, it writes the good input to a folder for each target.
 
 use hbvib::{Contact, MatrixKind, MatrixView, Model, Part, Storage, Values};
 use std::fs;
@@ -176,11 +176,34 @@ fn targets() -> Vec<Target> {
     ]
 }
 
+/// Writes the input of each target to a folder of its name.
+fn write_corpus(folder: &Path) -> std::io::Result<()> {
+    for (name, _, seeds) in targets() {
+        let folder = folder.join(name);
+        fs::create_dir_all(&folder)?;
+        for (number, bytes) in seeds.iter().enumerate() {
+            fs::write(folder.join(format!("seed_{number}")), bytes)?;
+        }
+    }
+    Ok(())
+}
+
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().collect();
+    if let [_, what, folder] = &arguments[..]
+        && what == "corpus"
+    {
+        return match write_corpus(Path::new(folder)) {
+            Ok(()) => ExitCode::SUCCESS,
+            Err(e) => {
+                eprintln!("{folder}: {e}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let [seed, executions] = [1, 2].map(|k| arguments.get(k).and_then(|number| number.parse::<u64>().ok()));
     let (Some(seed), Some(executions)) = (seed, executions) else {
-        eprintln!("usage: mutate <seed> <executions a target> [target]");
+        eprintln!("usage: mutate <seed> <executions a target> [target], or mutate corpus <folder>");
         return ExitCode::FAILURE;
     };
     for (name, run, seeds) in targets() {

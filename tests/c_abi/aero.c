@@ -71,6 +71,7 @@ int main(void)
     REFUSED("n_dofs", hbvib_cyclic_set_aero(model, -1, &dof, 1, c, offsets, 0), HBVIB_E_DIMENSION, 2, "n_dofs = -1");
     REFUSED("n_offsets", hbvib_cyclic_set_aero(model, 1, &dof, -1, c, offsets, 0), HBVIB_E_DIMENSION, 4, "n_offsets");
     REFUSED("many", hbvib_cyclic_set_aero(model, 1, &dof, INT64_MAX, c, offsets, 0), HBVIB_E_DIMENSION, 6, "memory");
+    REFUSED("n_dofs", hbvib_cyclic_set_aero(model, INT64_MAX, &dof, 1, c, offsets, 0), HBVIB_E_DIMENSION, 3, "memory");
     REFUSED("dofs", hbvib_cyclic_set_aero(model, 1, offsets + 1, 1, c, offsets, 0), HBVIB_E_INDEX, 3, "dofs[0] = 1");
     REFUSED("dofs", hbvib_cyclic_set_aero(model, 2, twice, 0, c, offsets, 0), HBVIB_E_ARGUMENT, 3, "dofs[0] and dofs[1]");
     REFUSED("dofs", hbvib_cyclic_set_aero(model, 1, NULL, 1, c, offsets, 0), HBVIB_E_NULL, 3, "dofs");

@@ -51,6 +51,16 @@ static void matrices(hbvib_model *model)
     values[1] = NAN; /* the other triangle is not read */
     WORKS("34", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &a));
     EXPECT("34", same_solution(model, &the_solution));
+    /* Of a real matrix the parts with A = A^T are those of a Hermitian one. */
+    memcpy(values, STIFFNESS, sizeof STIFFNESS);
+    a = matrix(NDOF, values);
+    for (which = HBVIB_SYMMETRIC; which <= HBVIB_SYMMETRIC_UPPER; which++) {
+        a.part = which;
+        values[1] = which == HBVIB_SYMMETRIC_UPPER ? NAN : STIFFNESS[1];
+        values[4] = which == HBVIB_SYMMETRIC_LOWER ? NAN : STIFFNESS[4];
+        WORKS("34", hbvib_model_set_matrix(model, HBVIB_STIFFNESS, &a));
+        EXPECT("34", same_solution(model, &the_solution));
+    }
     a = matrix(NDOF, MASS);
     a.part = HBVIB_GENERAL;
     REFUSED("27", hbvib_model_set_matrix(model, HBVIB_MASS, &a), HBVIB_E_NOT_HERMITIAN, 3, "GENERAL");

@@ -93,7 +93,14 @@ int main(void)
     other = NULL;
     REFUSED("threads", (o.threads = 0, hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, 1, values, &other)), HBVIB_E_ARGUMENT, 3,
             "threads = 0");
+    REFUSED("threads", (o.threads = -1, hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, 1, values, &other)), HBVIB_E_ARGUMENT, 3,
+            "threads = -1");
     o.threads = 1;
+    REFUSED("keep", (o.keep = 2, hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, 1, values, &other)), HBVIB_E_ARGUMENT, 3, "keep = 2");
+    o.keep = 0;
+    p[1].struct_size += 8;
+    REFUSED("sizes", hbvib_batch_solve(model, &s, &o, NULL, p, 2, 1, values, &other), HBVIB_E_STRUCT_SIZE, 5, "parameter 1");
+    p[1].struct_size -= 8;
     REFUSED("count", hbvib_batch_solve(model, &s, &o, NULL, p, 0, 1, values, &other), HBVIB_E_DIMENSION, 6, "count = 0");
     REFUSED("designs", hbvib_batch_solve(model, &s, &o, NULL, p, 1, -1, values, &other), HBVIB_E_DIMENSION, 7, "designs = -1");
     REFUSED("null", hbvib_batch_solve(model, &s, &o, NULL, p, 1, 1, NULL, &other), HBVIB_E_NULL, 8, "values");

@@ -60,6 +60,9 @@ static void refuse(hbvib_branch *branch)
     o.refine = 2;
     REFUSED("refine", hbvib_floquet(the_model, branch, 0, &o, NULL, NULL, 0, NULL, 0, &i), HBVIB_E_ARGUMENT, 4, "refine = 2");
     o = good;
+    o.modes = -2;
+    REFUSED("modes", hbvib_floquet(the_model, branch, 0, &o, NULL, NULL, 0, NULL, 0, &i), HBVIB_E_ARGUMENT, 4, "modes = -2");
+    o = good;
     o.tolerance = 0;
     REFUSED("tolerance", hbvib_floquet(the_model, branch, 0, &o, NULL, NULL, 0, NULL, 0, &i), HBVIB_E_ARGUMENT, 4, "tolerance = 0");
     REFUSED("NULL with a length", hbvib_floquet(the_model, branch, 0, NULL, NULL, NULL, 1, NULL, 0, &i), HBVIB_E_DIMENSION, 7,

@@ -125,6 +125,14 @@ int main(void)
     REFUSED("mass", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "direction is NULL");
     q.scaling = 2;
     REFUSED("scaling", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "scaling = 2");
+    q.scaling = HBVIB_SCALING_FACTOR;
+    q.direction = &direction;
+    REFUSED("direction", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "needs NULL with");
+    q = parameter(HBVIB_PARAMETER_FORCE, -1);
+    q.direction = &direction;
+    REFUSED("direction", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "no matrix");
+    q = parameter(HBVIB_PARAMETER_KT, -2);
+    REFUSED("contact", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_INDEX, 5, "contact = -2");
     q = parameter(10, -1);
     REFUSED("kind", hbvib_sensitivity(model, branch, 0, 0, &q, 1, values, 1, NULL, NULL, NULL), HBVIB_E_ARGUMENT, 5, "kind = 10");
 
