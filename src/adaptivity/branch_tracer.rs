@@ -3,6 +3,7 @@
 
 use crate::adaptivity::controller::{AdaptivityController, PointAt, Refined};
 use crate::adaptivity::discretised::Traceable;
+use crate::adaptivity::resonance_bands::ResonanceBands;
 use crate::adaptivity::resonance_grid::LinearGrid;
 use crate::adaptivity::retracing::RecentPoints;
 use crate::continuation::special_points::{Locator, SpecialPoint};
@@ -40,6 +41,8 @@ pub(crate) struct Course<'a> {
     /// Highest harmonic of a first point that may be sought again with more of them, at the start of the range; `None`: it
     /// may not.
     pub starts_again: Option<usize>,
+    /// Bounds of the steps where the branch is followed for its special points alone.
+    pub bands: Option<ResonanceBands>,
 }
 
 /// Traces one branch.
@@ -162,6 +165,10 @@ impl<'a> BranchTracer<'a> {
             let parameter = continuation.current().parameter();
             self.interrupt
                 .phase(Phase::Continuation, self.fraction_done(parameter))?;
+            if let Some(bands) = &self.course.bands {
+                let rises = continuation.current().tangent.last().is_some_and(|t| *t > 0.0);
+                continuation.change_at_most(bands.most_change(parameter, rises));
+            }
             let (point, end) = match continuation.advance(analysis.problem(), self.interrupt)? {
                 Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),
                 Advance::LeftAtStart { point } => (point, Some(Status::StoppedLeftRange)),

@@ -4,7 +4,9 @@
 //! error and refines it until it meets the tolerance, by the harmonics of [`harmonic_levels`]; the analysis records
 //! it; peaks, folds and requested solutions between it and the point before are located; the controller selects the
 //! harmonics of the next step. Where every contact is linear, [`linear_stretch`] takes the place of the continuation, at the
-//! values of [`resonance_grid`]. A first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own points is found and turned round by [`retracing`].
+//! values of [`resonance_grid`]. Where a branch is followed for its special points alone, [`resonance_bands`] bounds the steps. A
+//! first point that leads to none within the tolerance is sought again by [`cold_start`]. A branch that comes back along its own
+//! points is found and turned round by [`retracing`].
 //! An analysis implements the two traits of [`discretised`]. [`resolutions`] stores the
 //! equations at the resolutions of a run, [`transfer`] converts points from one resolution to another, and
 //! [`branch_recorder`] stores points.
@@ -19,6 +21,7 @@ pub(crate) mod estimate_spacing;
 pub(crate) mod harmonic_levels;
 mod linear_stretch;
 pub(crate) mod resolutions;
+pub(crate) mod resonance_bands;
 pub(crate) mod resonance_grid;
 mod retracing;
 pub(crate) mod transfer;

@@ -1,19 +1,23 @@
 //! Force and Jacobian of a law on one relative motion from the pieces of its force; see [`crate::aft`].
 
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
 use crate::aft::evaluation::{Evaluation, is_whole};
-use crate::aft::jacobian_block::{add_stiffness, apply, pack};
+use crate::aft::jacobian_block::{add_stiffness, pack};
 use crate::aft::toeplitz::Toeplitz;
 use crate::contact::contact_state::State;
 use crate::contact::piece::Piece;
 use crate::error::{Result, try_vec};
 use crate::fourier::HarmonicSet;
 use num_complex::Complex64;
+use pulp::{Arch, Simd, WithSimd};
 
 /// Number of products g ⊗ c per pass over the Jacobian, which at many harmonics exceeds the caches.
 const MOST_PENDING: usize = 4;
 
 /// Collects the spectrum and the anchored pieces, then writes the [`Evaluation`].
 pub(super) struct Assembly {
+    arch: Arch,
     /// Sₙ for n = 0 ..= 2·(highest reduced harmonic).
     pub(super) spectrum: Vec<Complex64>,
     toeplitz: Toeplitz,
@@ -22,8 +26,6 @@ pub(super) struct Assembly {
     /// Packed bases c(r) at their anchors times −k.
     anchors: Vec<f64>,
     pending: usize,
-    /// Zeros in place of a product if none is pending.
-    zeros: Vec<f64>,
     /// Whether the Jacobian already holds products.
     begun: bool,
 }
@@ -33,12 +35,12 @@ impl Assembly {
         let m = set.packed_len();
         let products = || try_vec(MOST_PENDING.saturating_mul(m), 0.0, "a contact force");
         Ok(Self {
+            arch: Arch::new(),
             spectrum: try_vec(2 * set.highest_reduced() + 1, Complex64::ZERO, "a stiffness spectrum")?,
             toeplitz: Toeplitz::new(set)?,
             g: products()?,
             anchors: products()?,
             pending: 0,
-            zeros: try_vec(m, 0.0, "a contact force")?,
             begun: false,
         })
     }
@@ -95,55 +97,116 @@ impl Assembly {
         }
         let m = out.force.len().max(1);
         for (j, column) in out.jacobian.chunks_exact_mut(m).enumerate() {
-            add_products(column, self.products(m, j));
+            add_products(column, (&self.anchors, &self.g, self.pending), j);
         }
         self.begun = true;
         self.pending = 0;
     }
 
-    /// The pending products of column `j`, as (cⱼ, g).
-    fn products(&self, m: usize, j: usize) -> impl Iterator<Item = (f64, &[f64])> {
-        let pairs = self.anchors.chunks_exact(m).zip(self.g.chunks_exact(m));
-        pairs.take(self.pending).map(move |(c, g)| (c[j], g))
-    }
-
     /// Writes the Jacobian, T(S) and the products, and the force.
     pub(super) fn finish(&mut self, set: &HarmonicSet, motion: &[f64], out: &mut Evaluation) {
         self.toeplitz.set(set, &self.spectrum);
-        let m = motion.len().max(1);
-        for (j, column) in out.jacobian.chunks_exact_mut(m).enumerate() {
+        out.force.copy_from_slice(&out.offset);
+        self.arch.dispatch(Columns {
+            toeplitz: &self.toeplitz,
+            products: (&self.anchors, &self.g, self.pending),
+            begun: self.begun,
+            motion,
+            jacobian: &mut out.jacobian,
+            force: &mut out.force,
+        });
+    }
+}
+
+/// Packed anchors and g of products, one after the other, and their number.
+type Products<'a> = (&'a [f64], &'a [f64], usize);
+
+/// The columns of the Jacobian, and the sum of their products with the motion, to which the force holds the offset.
+struct Columns<'a> {
+    toeplitz: &'a Toeplitz,
+    products: Products<'a>,
+    /// Whether the Jacobian already holds products.
+    begun: bool,
+    motion: &'a [f64],
+    jacobian: &'a mut [f64],
+    force: &'a mut [f64],
+}
+
+impl WithSimd for Columns<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        // With few harmonics most of the time would be spent in what is left over by vectors.
+        match self.motion.len() {
+            2 => self.write::<2>(),
+            4 => self.write::<4>(),
+            6 => self.write::<6>(),
+            7 => self.write::<7>(),
+            8 => self.write::<8>(),
+            10 => self.write::<10>(),
+            11 => self.write::<11>(),
+            12 => self.write::<12>(),
+            14 => self.write::<14>(),
+            15 => self.write::<15>(),
+            16 => self.write::<16>(),
+            19 => self.write::<19>(),
+            _ => self.write::<0>(),
+        }
+    }
+}
+
+impl Columns<'_> {
+    /// For signals of length N; 0: of any length.
+    #[inline(always)]
+    fn write<const N: usize>(self) {
+        let m = if N > 0 { N } else { self.motion.len() };
+        let (anchors, g, count) = self.products;
+        let (motion, force) = (&self.motion[..m], &mut self.force[..m]);
+        for (j, column) in self.jacobian.chunks_exact_mut(m.max(1)).enumerate() {
             let of_stiffness = self.toeplitz.column(j);
-            let [a, b] = of_stiffness.parts;
-            let mean = m - a.len();
-            let mut products = self.products(m, j);
-            if self.begun {
-                if mean == 1 {
-                    column[0] += of_stiffness.mean;
-                }
-                for ((entry, a), b) in column[mean..].iter_mut().zip(a).zip(b) {
-                    *entry += a + b;
-                }
+            // An odd length has a mean.
+            let mean = m % 2;
+            let [a, b] = of_stiffness.parts.map(|part| &part[..m - mean]);
+            let column = &mut column[..m];
+            if !self.begun {
+                column.fill(0.0);
+            }
+            // A column of known length is summed in registers.
+            let mut registers = [0.0; N];
+            let sum = if N > 0 {
+                registers.copy_from_slice(column);
+                &mut registers[..]
             } else {
-                // Most motions stick from one turning point on in each half of the period.
-                let (c, g) = products.next().unwrap_or((0.0, &self.zeros));
-                if mean == 1 {
-                    column[0] = of_stiffness.mean + c * g[0];
-                }
-                for (((entry, a), b), g) in column[mean..].iter_mut().zip(a).zip(b).zip(&g[mean..]) {
-                    *entry = a + b + c * g;
+                &mut column[..]
+            };
+            if mean == 1 {
+                sum[0] += of_stiffness.mean;
+            }
+            for ((entry, a), b) in sum[mean..].iter_mut().zip(a).zip(b) {
+                *entry += a + b;
+            }
+            for (c, g) in anchors.chunks_exact(m.max(1)).zip(g.chunks_exact(m.max(1))).take(count) {
+                for (entry, g) in sum.iter_mut().zip(&g[..m]) {
+                    *entry += c[j] * g;
                 }
             }
-            add_products(column, products);
+            for (f, entry) in force.iter_mut().zip(&*sum) {
+                *f += motion[j] * entry;
+            }
+            if N > 0 {
+                column.copy_from_slice(&registers);
+            }
         }
-        apply(&out.jacobian, motion, &out.offset, &mut out.force);
     }
 }
 
 /// column += Σ cⱼ g
-fn add_products<'g>(column: &mut [f64], products: impl Iterator<Item = (f64, &'g [f64])>) {
-    for (c, g) in products {
+fn add_products(column: &mut [f64], (anchors, g, count): Products<'_>, j: usize) {
+    let m = column.len().max(1);
+    for (c, g) in anchors.chunks_exact(m).zip(g.chunks_exact(m)).take(count) {
         for (entry, g) in column.iter_mut().zip(g) {
-            *entry += c * g;
+            *entry += c[j] * g;
         }
     }
 }

@@ -13,6 +13,7 @@ use crate::model::Model;
 use crate::options::{BatchOptions, SolverOptions};
 use crate::results::Branch;
 use crate::sensitivity::Parameter;
+use std::cell::Cell;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
@@ -24,6 +25,9 @@ const MAY_HAVE_BASIS: usize = 100;
 
 /// Time between two looks at the caller's flag while other threads work.
 const PAUSE: Duration = Duration::from_millis(2);
+
+/// Checks of a design between two of the caller's hooks.
+const BETWEEN_CHECKS: usize = 16;
 
 /// Memory of the stack of a thread.
 const STACK: usize = 8 << 20;
@@ -127,7 +131,12 @@ impl Work<'_> {
             if self.watch(interrupt) {
                 break;
             }
-            let cancelled = || self.stop.load(Ordering::Relaxed) || interrupt.check().is_err();
+            let asked = Cell::new(0_usize);
+            let cancelled = || {
+                asked.set(asked.get() + 1);
+                self.stop.load(Ordering::Relaxed)
+                    || (asked.get().is_multiple_of(BETWEEN_CHECKS) && interrupt.check().is_err())
+            };
             let mut own = Hooks {
                 cancelled: Some(&cancelled),
                 ..Hooks::default()

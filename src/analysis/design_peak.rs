@@ -1,6 +1,6 @@
 //! The highest peak of one design.
 
-use crate::analysis::forced_response::forced_response;
+use crate::analysis::forced_response::{forced_response, special_points};
 use crate::error::{Error, Result, Status};
 use crate::hooks::Hooks;
 use crate::model::Model;
@@ -80,8 +80,10 @@ pub(super) fn solve_design(
     (parameters, values): (&[Parameter<'_>], &[f64]),
     hooks: &mut Hooks<'_>,
 ) -> Solved {
+    // A branch that is kept draws its curve.
+    let solve = if options.keep { forced_response } else { special_points };
     let solved: Result<Branch> =
-        design(model, parameters, values).and_then(|model| forced_response(&model, solver, &options.range(), hooks));
+        design(model, parameters, values).and_then(|model| solve(&model, solver, &options.range(), hooks));
     match solved {
         Ok(branch) => Solved {
             peak: DesignPeak::of(&branch),

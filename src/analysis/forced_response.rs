@@ -7,6 +7,7 @@ use crate::adaptivity::branch_recorder::Ending;
 use crate::adaptivity::branch_tracer::{BranchTracer, Course};
 use crate::adaptivity::discretised::{Discretised, Recorder};
 use crate::adaptivity::harmonic_levels::HarmonicLevels;
+use crate::adaptivity::resonance_bands::ResonanceBands;
 use crate::analysis::coarse_start::CoarseStart;
 use crate::analysis::forced_discretised::{ForcedDiscretised, relative_motion};
 use crate::analysis::sampling::{Sampled, may_refine, required, with_samples};
@@ -15,7 +16,7 @@ use crate::condense::flexibility::Workspace;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference};
 use crate::continuation::initial_point::{self, First};
-use crate::continuation::step_control::StepControl;
+use crate::continuation::step_control::{Detail, StepControl};
 use crate::continuation::{Point, Settings};
 use crate::error::{Error, Result, Status, boxed, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};
@@ -44,11 +45,37 @@ pub fn forced_response(
     range: &ForcedOptions<'_>,
     hooks: &mut Hooks<'_>,
 ) -> Result<Branch> {
+    with_detail(model, solver, range, Detail::Curve, hooks)
+}
+
+/// The same for its special points alone, which are as exact as those of [`forced_response`]. The points between are fewer and
+/// less exact: they do not draw the curve.
+///
+/// # Errors
+/// As [`forced_response`].
+pub(super) fn special_points(
+    model: &Model,
+    solver: &SolverOptions,
+    range: &ForcedOptions<'_>,
+    hooks: &mut Hooks<'_>,
+) -> Result<Branch> {
+    with_detail(model, solver, range, Detail::SpecialPoints, hooks)
+}
+
+fn with_detail(
+    model: &Model,
+    solver: &SolverOptions,
+    range: &ForcedOptions<'_>,
+    detail: Detail,
+    hooks: &mut Hooks<'_>,
+) -> Result<Branch> {
     solver.check()?;
     range.check((solver.harmonics + 1).saturating_mul(model.ndof()))?;
     model.check_response_dof(solver.response_dof)?;
     let interrupt = hooks.interrupt();
-    let outcome = with_samples(solver, |solver| follow(model, solver, range, hooks, &interrupt, trace));
+    let outcome = with_samples(solver, |solver| {
+        follow(model, solver, (range, detail), hooks, &interrupt, trace)
+    });
     match outcome {
         Err(e) if e.status == Status::StoppedByCaller => Branch::stopped(model, solver),
         outcome => outcome.map(|branch| *branch),
@@ -70,7 +97,7 @@ fn trace(
 fn follow(
     model: &Model,
     solver: &SolverOptions,
-    range: &ForcedOptions<'_>,
+    (range, detail): (&ForcedOptions<'_>, Detail),
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
     trace: impl FnOnce(&mut BranchTracer<'_>, &mut ForcedDiscretised<'_>, Point, &mut Hooks<'_>) -> Result<Status>,
@@ -106,7 +133,7 @@ fn follow(
         end: range.omega_stop,
         tolerance: solver.tol_residual,
         max_iterations: solver.max_newton,
-        steps: StepControl::new(solver.step, solver.step_min, solver.step_max),
+        steps: StepControl::with_detail(solver.step, solver.step_min, solver.step_max, detail),
     };
     let coarse = if levels.is_automatic() || range.guess.is_some() {
         None
@@ -132,6 +159,11 @@ fn follow(
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
         starts_again: range.guess.is_none().then_some(solver.harmonics),
+        bands: if detail == Detail::SpecialPoints && solver.step_max == 0.0 {
+            Some(ResonanceBands::new(model, &forced, sweep, interrupt)?)
+        } else {
+            None
+        },
     };
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {

@@ -387,6 +387,7 @@ fn course<'a>(
         may_refine: may_refine(solver),
         before: None,
         starts_again: None,
+        bands: None,
     };
     (course, settings)
 }

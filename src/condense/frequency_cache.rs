@@ -195,7 +195,7 @@ fn of_wave(
     let mut modal = ModalTable::new(condensed, i, response, Arc::clone(modes))?;
     let mut table = Table::new(condensed.coordinates())?;
     let outputs = condensed.coordinates() + 1;
-    for omega in [start, 0.5 * (start + end), end] {
+    for omega in [start, end] {
         if !modal.evaluate(omega, true, &mut table, interrupt)? {
             continue;
         }

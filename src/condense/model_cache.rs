@@ -2,7 +2,7 @@
 //! the error estimate have their own numbers of harmonics and the same cache.
 
 use crate::condense::resolution::Resolution;
-use crate::error::{Result, try_push};
+use crate::error::{Result, try_push, try_room};
 use std::cell::OnceCell;
 
 const CONTEXT: &str = "the condensed models";
@@ -27,7 +27,7 @@ impl ModelCache {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(numbers: impl Iterator<Item = usize>) -> Result<Self> {
-        let mut slots = Vec::new();
+        let mut slots = try_room(numbers.size_hint().0, CONTEXT)?;
         for number in numbers {
             try_push(&mut slots, (number, OnceCell::new()), CONTEXT)?;
         }

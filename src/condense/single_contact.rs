@@ -69,17 +69,21 @@ impl SingleContact {
             return false;
         };
         let entry = |of: &Entries, k: usize, r: usize| Complex64::new(of[0][2 * k + r], of[1][2 * k + r]);
-        let pivot = (1.0 - entry(&t, 0, 0) * e).inv();
-        let d_product = entry(&d_t, 0, 0) * e + entry(&t, 0, 0) * d_e;
-        for k in 0..2 {
-            let x = pivot * entry(&t, k, 0);
-            let d_x = pivot * (entry(&d_t, k, 0) + d_product * x);
-            let (force, d_force) = (e * x, e * d_x + d_e * x);
-            for r in 0..2 {
-                table.value[2 * k + r] = entry(&t, k, r) + entry(&t, 0, r) * force;
-                table.slope[2 * k + r] = entry(&d_t, k, r) + entry(&d_t, 0, r) * force + entry(&t, 0, r) * d_force;
-            }
-        }
+        let [[[own, to], [from, direct]], [[d_own, d_to], [d_from, d_direct]]] =
+            [&t, &d_t].map(|t| [0, 1].map(|k| [0, 1].map(|r| entry(t, k, r))));
+        // p = 1/(1 − own·e) scales all but the direct response, which gains to·e p·from.
+        let p = (1.0 - own * e).inv();
+        let d_p = p * p * (d_own * e + own * d_e);
+        let (force, d_force) = (e * p * from, (d_e * p + e * d_p) * from + e * p * d_from);
+        table
+            .value
+            .copy_from_slice(&[own * p, to * p, from * p, direct + to * force]);
+        table.slope.copy_from_slice(&[
+            d_own * p + own * d_p,
+            d_to * p + to * d_p,
+            d_from * p + from * d_p,
+            d_direct + d_to * force + to * d_force,
+        ]);
         true
     }
 }

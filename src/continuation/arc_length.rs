@@ -102,7 +102,7 @@ impl Continuation {
         Ok(Self {
             settings,
             steps: settings.steps,
-            corrector: Corrector::new(n, settings.tolerance, settings.max_iterations)?,
+            corrector: corrector(n, &settings)?,
             largest: (norm(first.unknowns()), first.amplitude.norm()),
             previous: None,
             current: first,
@@ -129,7 +129,7 @@ impl Continuation {
     pub fn go_on_from(&mut self, previous: Option<Point>, current: Point) -> Result<()> {
         let n = current.v.len() - 1;
         if n + 1 != self.row.len() {
-            self.corrector = Corrector::new(n, self.settings.tolerance, self.settings.max_iterations)?;
+            self.corrector = corrector(n, &self.settings)?;
             self.row = try_vec(n + 1, 0.0, CONTEXT)?;
             self.scratch = try_vec(n + 1, 0.0, CONTEXT)?;
         }
@@ -147,12 +147,17 @@ impl Continuation {
     /// `OutOfMemory`.
     pub fn start_at(&mut self, point: Point, change: f64) -> Result<()> {
         self.go_on_from(None, point)?;
+        self.steps = self.settings.steps;
+        self.change_at_most(change);
+        Ok(())
+    }
+
+    /// Shortens the next step where it would change the parameter by more than about `change`.
+    pub fn change_at_most(&mut self, change: f64) {
         let metric = self.metric();
         let tangent = &self.current.tangent;
         let share = tangent[tangent.len() - 1].abs() / metric.p / metric.norm(tangent);
-        self.steps = self.settings.steps;
         self.steps.at_most(change / metric.p / share);
-        Ok(())
     }
 
     /// The point that was accepted last.
@@ -375,6 +380,12 @@ impl Continuation {
         );
         motion.max(observed)
     }
+}
+
+/// The corrector of the points of a branch.
+fn corrector(n: usize, settings: &Settings) -> Result<Corrector> {
+    let tolerance = settings.steps.tolerance(settings.tolerance);
+    Corrector::new(n, tolerance, settings.max_iterations)
 }
 
 /// No step is small enough: returns the failure of a callback, or stops without a known cause.

@@ -40,6 +40,15 @@ impl SpecialPoint {
         }
     }
 
+    /// The integral of the function from one point to the next, if it is known.
+    fn integral(self, a: &Point, b: &Point) -> Option<f64> {
+        match self {
+            Self::Fold => Some(b.parameter() - a.parameter()),
+            Self::Peak => Some(b.amplitude.norm() - a.amplitude.norm()),
+            Self::Level(_) => None,
+        }
+    }
+
     /// Whether the special point lies between two neighbouring points.
     #[must_use]
     pub fn between(self, a: &Point, b: &Point) -> bool {
@@ -52,57 +61,96 @@ impl SpecialPoint {
     }
 }
 
-/// Bracket of a root on an arc from 0 to 1, narrowed by the Illinois variant of regula falsi.
+/// Bracket of a root on an arc from 0 to 1, narrowed by inverse quadratic interpolation where the last three values lie on a
+/// monotonic curve, else by halving (Chandrupatla, Adv. Eng. Software 28, 1997, doi:10.1016/S0965-9978(96)00051-8); first by
+/// the secant.
 pub struct Bracket {
-    low: (f64, f64),
-    high: (f64, f64),
-    side: i32,
+    /// The end found last, the other one, and the one that was replaced last, if there is one.
+    last: (f64, f64),
+    other: (f64, f64),
+    before: Option<(f64, f64)>,
+    /// A better first place than that of the secant.
+    first: Option<f64>,
 }
 
 impl Bracket {
     /// The whole arc with the values at its ends, of different signs.
     #[must_use]
     pub fn new(low: f64, high: f64) -> Self {
+        Self::between((0.0, low), (1.0, high))
+    }
+
+    /// The arc between two places with their values.
+    fn between(low: (f64, f64), high: (f64, f64)) -> Self {
         Self {
-            low: (0.0, low),
-            high: (1.0, high),
-            side: 0,
+            last: high,
+            other: low,
+            before: None,
+            first: None,
         }
+    }
+
+    /// Takes the first place from the quadratic on the whole arc with the values at its ends and with this integral.
+    fn with_integral(mut self, integral: f64) -> Self {
+        let (a, b) = (self.other.1, self.last.1);
+        let square = 3.0 * (a + b) - 6.0 * integral;
+        let linear = b - a - square;
+        let root = (linear * linear - 4.0 * square * a).sqrt();
+        let candidates = [-2.0 * a / (linear + root), -2.0 * a / (linear - root)];
+        self.first = candidates.into_iter().find(|s| *s > 0.0 && *s < 1.0);
+        self
     }
 
     /// Its width.
     #[must_use]
     pub fn width(&self) -> f64 {
-        self.high.0 - self.low.0
+        (self.last.0 - self.other.0).abs()
+    }
+
+    /// Whether the guess follows from interpolation and is so close to the end found last that its own error, far below its
+    /// distance, is rounding.
+    #[must_use]
+    pub fn is_last(&self) -> bool {
+        let (guess, middle) = (self.guess(), 0.5 * (self.last.0 + self.other.0));
+        self.before.is_some() && guess.to_bits() != middle.to_bits() && (guess - self.last.0).abs() < CLOSE
     }
 
     /// The place where the root is expected.
     #[must_use]
     pub fn guess(&self) -> f64 {
-        let (low, high) = (self.low, self.high);
-        let s = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
-        if s > low.0 && s < high.0 {
-            s
+        let ((a, fa), (b, fb)) = (self.last, self.other);
+        if let (None, Some(first)) = (self.before, self.first) {
+            return first;
+        }
+        let share = match self.before {
+            None => fa / (fa - fb),
+            Some((c, fc)) => {
+                let (place, value) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
+                if value * value < place && (1.0 - value).powi(2) < 1.0 - place {
+                    fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+                } else {
+                    0.5
+                }
+            }
+        };
+        let guess = a + share * (b - a);
+        if share > 0.0 && share < 1.0 {
+            guess
         } else {
-            0.5 * (low.0 + high.0)
+            0.5 * (a + b)
         }
     }
 
-    /// Takes the value at a place within over, and returns the distance to the end that it replaces.
+    /// Takes the value at a place within, and returns the distance to the end that it replaces.
     pub fn narrow(&mut self, s: f64, f: f64) -> f64 {
-        let below = (f > 0.0) == (self.low.1 > 0.0);
-        let (end, other, side) = if below {
-            (&mut self.low, &mut self.high, -1)
+        let replaces_last = (f > 0.0) == (self.last.1 > 0.0);
+        let (replaced, kept) = if replaces_last {
+            (self.last, self.other)
         } else {
-            (&mut self.high, &mut self.low, 1)
+            (self.other, self.last)
         };
-        let moved = (s - end.0).abs();
-        *end = (s, f);
-        if self.side == side {
-            other.1 *= 0.5;
-        }
-        self.side = side;
-        moved
+        (self.last, self.other, self.before) = ((s, f), kept, Some(replaced));
+        (s - replaced.0).abs()
     }
 }
 
@@ -112,6 +160,9 @@ pub struct Locator {
     settings: Settings,
     row: Vec<f64>,
     derivative: Vec<f64>,
+    /// Place of the solution found last on the same arc, and its departure from the cubic; empty: none.
+    departed_at: f64,
+    departure: Vec<f64>,
 }
 
 const CONTEXT: &str = "the search for special points";
@@ -125,6 +176,13 @@ const MAX_HALVINGS: usize = 12;
 /// Width of the bracket, as a share of the step, at which a special point counts as found.
 const WIDTH: f64 = 1e-11;
 
+/// Value of a function over the larger one at the ends that is that of a root.
+const VANISHING: f64 = 1e-6;
+
+/// Distance of a place found by interpolation from the one before it below which its error is less than [`WIDTH`]: the
+/// order of convergence is 1.8.
+const CLOSE: f64 = 1e-7;
+
 impl Locator {
     /// Memory for `n` unknowns.
     ///
@@ -136,6 +194,8 @@ impl Locator {
             settings,
             row: try_vec(n + 1, 0.0, CONTEXT)?,
             derivative: try_vec(n + 1, 0.0, CONTEXT)?,
+            departed_at: 0.0,
+            departure: try_vec(n + 1, 0.0, CONTEXT)?,
         })
     }
 
@@ -143,7 +203,7 @@ impl Locator {
         Metric::along(norm(a.unknowns()).max(norm(b.unknowns())), &self.settings)
     }
 
-    /// The special point between `a` and `b`, by the Illinois variant of regula falsi on the arc.
+    /// The special point between `a` and `b`, as a root along the arc.
     ///
     /// # Errors
     /// Those of the problem; `StoppedByCaller`.
@@ -155,25 +215,66 @@ impl Locator {
         b: &Point,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
-        let metric = self.metric(a, b);
-        let value = |point: &Point| kind.function(point, metric.norm(&point.tangent));
-        let mut bracket = Bracket::new(value(a), value(b));
-        let mut best: Option<Point> = None;
-        if bracket.high.1 == 0.0 {
-            return Ok(Some(b.try_clone()?));
-        }
-        for _ in 0..MAX_EVALUATIONS {
-            let s = bracket.guess();
-            let Some(point) = self.solve_between(problem, metric, (a, b), s, None, interrupt)? else {
-                return Ok(best);
-            };
-            let f = value(&point);
-            best = Some(point);
-            if f == 0.0 || bracket.width() < WIDTH || bracket.narrow(s, f) < WIDTH {
+        let mut found = None;
+        for &margin in self.settings.steps.margins() {
+            let (point, is_root) = self.search(problem, (kind, margin), (a, b), interrupt)?;
+            found = point.or(found);
+            if is_root {
                 break;
             }
         }
-        Ok(best)
+        Ok(found)
+    }
+
+    /// The same on an arc that is longer by `margin` at an end near the root: ends that are not exact may lie on the other
+    /// side of it. Returns also whether the function vanishes there.
+    fn search(
+        &mut self,
+        problem: &mut dyn Problem,
+        (kind, margin): (SpecialPoint, f64),
+        (a, b): (&Point, &Point),
+        interrupt: &Interrupt<'_>,
+    ) -> Result<(Option<Point>, bool)> {
+        let metric = self.metric(a, b);
+        let value = |point: &Point| kind.function(point, metric.norm(&point.tangent));
+        let mut ends = [(0.0, value(a)), (1.0, value(b))];
+        if ends[1].1 == 0.0 {
+            return Ok((Some(b.try_clone()?), true));
+        }
+        self.departure.clear();
+        let expected = Bracket::between(ends[0], ends[1]).guess();
+        for (end, s, is_near) in [
+            (0, -margin, expected < margin),
+            (1, 1.0 + margin, expected > 1.0 - margin),
+        ] {
+            if is_near && let Some(point) = self.solve_between(problem, metric, (a, b), s, None, interrupt)? {
+                let f = value(&point);
+                if (f > 0.0) == (ends[end].1 > 0.0) {
+                    ends[end] = (s, f);
+                }
+            }
+        }
+        let mut bracket = Bracket::between(ends[0], ends[1]);
+        if let Some(integral) = kind.integral(a, b)
+            && ends[0].0 == 0.0
+            && ends[1].0 == 1.0
+        {
+            bracket = bracket.with_integral(integral / metric.distance(&a.v, &b.v));
+        }
+        let (mut best, mut last) = (None, f64::INFINITY);
+        for _ in 0..MAX_EVALUATIONS {
+            let (s, is_last) = (bracket.guess(), bracket.is_last());
+            let Some(point) = self.solve_between(problem, metric, (a, b), s, None, interrupt)? else {
+                break;
+            };
+            last = value(&point);
+            best = Some(point);
+            if is_last || last == 0.0 || bracket.width() < WIDTH || bracket.narrow(s, last) < WIDTH {
+                break;
+            }
+        }
+        let is_root = last.abs() <= VANISHING * ends[0].1.abs().max(ends[1].1.abs());
+        Ok((best, is_root))
     }
 
     /// The solution at the share `s` of the arc from `a` to `b`; `None` if there is none near the cubic.
@@ -188,6 +289,7 @@ impl Locator {
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Point>> {
         let metric = self.metric(a, b);
+        self.departure.clear();
         self.solve_between(problem, metric, (a, b), s, None, interrupt)
     }
 
@@ -213,6 +315,7 @@ impl Locator {
         for _ in 0..MAX_HALVINGS {
             let (a, b) = (&arc.0, &arc.1);
             let metric = self.metric(a, b);
+            self.departure.clear();
             let s = self.where_at(a, b, metric, p)?;
             if let Some(found) = self.solve_between(problem, metric, (a, b), s, Some(p), interrupt)? {
                 return Ok(Some(found));
@@ -267,6 +370,14 @@ impl Locator {
             metric.unit(&self.derivative, &mut self.row);
         }
         let guess = try_copy(&v, CONTEXT)?;
+        // The error of a cubic with these ends grows with s²(1 − s)².
+        let error = |s: f64| (s * (1.0 - s)).powi(2);
+        let ratio = error(s) / error(self.departed_at);
+        if fixed.is_none() && ratio.is_finite() {
+            for (v, d) in v.iter_mut().zip(&self.departure) {
+                *v += ratio * d;
+            }
+        }
         let outcome = self
             .corrector
             .correct(problem, &mut v, &self.row, metric, true, interrupt)?;
@@ -279,6 +390,10 @@ impl Locator {
         if let Some(p) = fixed {
             v[n] = p;
         }
+        // At most n + 1 numbers, for which there is memory.
+        self.departed_at = s;
+        self.departure.clear();
+        self.departure.extend(v.iter().zip(&guess).map(|(v, g)| v - g));
         let mut point = Point::new(v, corrected, 0.0);
         if metric.dot(&point.tangent, &self.derivative) < 0.0 {
             point.reverse();

@@ -1,19 +1,52 @@
 //! The arc-length step, controlled by the error of the predictor.
 
+/// Purpose of the points of a branch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Detail {
+    /// A curve that is drawn.
+    Curve,
+    /// Special points alone. They are solved for between the points of the branch, which need not draw it.
+    SpecialPoints,
+}
+
+impl Detail {
+    /// Target of the relative prediction error. For a curve it is small enough for two to three Newton iterations and for a
+    /// smooth plot.
+    fn target(self) -> f64 {
+        match self {
+            Self::Curve => 0.02,
+            Self::SpecialPoints => 0.06,
+        }
+    }
+
+    /// Relative prediction error above which a prediction is rejected.
+    fn largest_error(self) -> f64 {
+        match self {
+            Self::Curve => 0.16,
+            Self::SpecialPoints => 0.24,
+        }
+    }
+
+    /// The largest step.
+    fn largest_step(self) -> f64 {
+        match self {
+            Self::Curve => 0.04,
+            Self::SpecialPoints => 0.25,
+        }
+    }
+}
+
+/// Relative residual before its last Newton step of a point that need not be exact: that step leaves about its square.
+const LOOSE: f64 = 1e-5;
+
 /// Step length and its bounds, in scaled unknowns.
 #[derive(Clone, Copy, Debug)]
 pub struct StepControl {
     step: f64,
     min: f64,
     max: f64,
+    detail: Detail,
 }
-
-/// Target of the relative prediction error: small enough for two to three Newton iterations and for a smooth curve in
-/// a plot.
-pub const TARGET: f64 = 0.02;
-
-/// Ratio of the prediction error to its target above which a prediction is rejected.
-const REJECT: f64 = 8.0;
 
 /// Iterations above which the step is reduced at any error.
 const MANY_ITERATIONS: usize = 6;
@@ -22,13 +55,39 @@ impl StepControl {
     /// Steps from `first` within `min` and `max`; zeros select defaults.
     #[must_use]
     pub fn new(first: f64, min: f64, max: f64) -> Self {
-        let max = if max > 0.0 { max } else { 0.04 };
+        Self::with_detail(first, min, max, Detail::Curve)
+    }
+
+    /// The same for another purpose.
+    #[must_use]
+    pub fn with_detail(first: f64, min: f64, max: f64, detail: Detail) -> Self {
+        let max = if max > 0.0 { max } else { detail.largest_step() };
         let min = if min > 0.0 { min } else { (1e-10_f64).min(max) };
         let first = if first > 0.0 { first } else { 0.25 * max };
         Self {
             step: first.clamp(min, max),
             min,
             max,
+            detail,
+        }
+    }
+
+    /// Relative residual to which the points are solved, where `requested` is that of exact ones.
+    #[must_use]
+    pub fn tolerance(&self, requested: f64) -> f64 {
+        match self.detail {
+            Detail::Curve => requested,
+            Detail::SpecialPoints => requested.max(LOOSE),
+        }
+    }
+
+    /// Shares of a step by which a point that is not exact may seem to lie on the other side of a special point, one tried after
+    /// the other.
+    #[must_use]
+    pub fn margins(&self) -> &'static [f64] {
+        match self.detail {
+            Detail::Curve => &[0.0],
+            Detail::SpecialPoints => &[0.05, 0.2, 0.8],
         }
     }
 
@@ -54,13 +113,13 @@ impl StepControl {
     /// Whether a predictor error can be accepted.
     #[must_use]
     pub fn accepts(&self, error: f64) -> bool {
-        error <= REJECT * TARGET || self.step <= 2.0 * self.min
+        error <= self.detail.largest_error() || self.step <= 2.0 * self.min
     }
 
     /// Chooses the next step after a point was accepted; the error of the predictor grows with the step to the power
     /// `order`.
     pub fn accepted(&mut self, used: f64, error: f64, order: f64, iterations: usize) {
-        let mut factor = (0.8 * (TARGET / error.max(1e-12)).powf(1.0 / order)).clamp(0.3, 2.5);
+        let mut factor = (0.8 * (self.detail.target() / error.max(1e-12)).powf(1.0 / order)).clamp(0.3, 2.5);
         if iterations > MANY_ITERATIONS {
             factor = factor.min(0.7);
         }
@@ -74,7 +133,8 @@ impl StepControl {
 
     /// Shortens the step after a prediction that was too poor; `false` at the smallest step.
     pub fn rejected(&mut self, error: f64, order: f64) -> bool {
-        let factor = (0.8 * (TARGET / error.max(TARGET)).powf(1.0 / order)).clamp(0.1, 0.6);
+        let target = self.detail.target();
+        let factor = (0.8 * (target / error.max(target)).powf(1.0 / order)).clamp(0.1, 0.6);
         self.shorten(factor)
     }
 

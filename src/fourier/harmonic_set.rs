@@ -160,12 +160,19 @@ impl HarmonicSet {
     #[must_use]
     #[inline]
     pub fn get(&self, packed: &[f64], i: usize) -> Complex64 {
-        let at = self.offset(i);
-        if self.numbers[i] == 0 {
-            packed[at].into()
-        } else {
-            Complex64::new(packed[at], packed[at + 1])
+        self.get_at(packed, 0, i)
+    }
+
+    /// The same in a packed signal that begins at `first`.
+    #[must_use]
+    #[inline]
+    pub fn get_at(&self, packed: &[f64], first: usize, i: usize) -> Complex64 {
+        let mean = self.has_mean();
+        if i == 0 && mean {
+            return packed[first].into();
         }
+        let at = first + 2 * i - usize::from(mean);
+        Complex64::new(packed[at], packed[at + 1])
     }
 
     /// Sets the coefficient of the i-th carried harmonic; the mean takes the real part.

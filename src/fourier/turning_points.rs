@@ -129,8 +129,15 @@ impl TurningPoints {
         };
         let start = left.positive;
         let hidden = bounds.largest_dip(self.spacing);
+        // Most cells hold no root, and certainly none: both ends are far from zero, on the same side.
+        let far = hidden.max(bounds.noise);
         for j in 1..=n {
             let value = self.slope[j];
+            if j < n && (value.min(left.value) > far || value.max(left.value) < -far) {
+                left.tau = j as f64 * self.spacing;
+                left.value = value;
+                continue;
+            }
             let right = Slope {
                 tau: j as f64 * self.spacing,
                 value,
@@ -140,7 +147,6 @@ impl TurningPoints {
                     sign(value, left.positive)
                 },
             };
-            // Most cells hold no root, and certainly none.
             if left.positive != right.positive || left.value.abs().min(right.value.abs()) <= hidden {
                 isolate(set, packed, [left, right], &bounds, found);
             }

@@ -148,6 +148,23 @@ impl Bordered {
         self.u_scale = u_scale;
         let m = self.active.len() + 1;
         self.lu.set_order(m);
+        if self.eliminated.is_empty() {
+            for (j, from) in jacobian.chunks_exact(n).enumerate() {
+                let to = self.lu.column(j);
+                for (x, from) in to.iter_mut().zip(from) {
+                    *x = from * u_scale;
+                }
+                to[n] = row[j];
+            }
+            let to = self.lu.column(n);
+            for (x, c) in to.iter_mut().zip(column) {
+                *x = c * p_scale;
+            }
+            to[n] = row[n];
+            self.border.clear();
+            self.rest.clear();
+            return self.lu.factor(interrupt);
+        }
         self.border.clear();
         self.border.extend(self.eliminated.iter().map(|&t| row[t]));
         self.rest.clear();
@@ -155,12 +172,6 @@ impl Bordered {
             let from = &jacobian[q * n..(q + 1) * n];
             let to = self.lu.column(j);
             to[m - 1] = row[q];
-            if self.eliminated.is_empty() {
-                for (x, from) in to.iter_mut().zip(from) {
-                    *x = from * u_scale;
-                }
-                continue;
-            }
             for (x, &p) in to.iter_mut().zip(&self.active) {
                 *x = from[p] * u_scale;
             }

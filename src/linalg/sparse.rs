@@ -19,6 +19,9 @@ pub struct Csc {
     pub values: Vec<Complex64>,
 }
 
+/// Entries of the terms above which those of their sum are counted before memory for them.
+const COUNTED_ABOVE: usize = 4096;
+
 /// How a matrix enters a sum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Form {
@@ -53,6 +56,14 @@ impl Symmetry {
             Self::Plain | Self::None => v,
         }
     }
+}
+
+/// Order up to which the memory of a sum is on the stack.
+const SMALL: usize = 16;
+
+/// The first n of a few numbers on the stack, or numbers on the heap.
+fn small_or_large<'a, T>(n: usize, small: &'a mut [T; SMALL], large: &'a mut [T]) -> &'a mut [T] {
+    if n <= SMALL { &mut small[..n] } else { large }
 }
 
 /// A term of a sum, transposed where its form wants it.
@@ -98,21 +109,31 @@ impl Csc {
     /// `OutOfMemory`.
     pub fn sum(n: usize, terms: &[(Complex64, &Self, Form)]) -> Result<Self> {
         const CONTEXT: &str = "a sum of sparse matrices";
+        if terms.iter().all(|(_, a, _)| a.is_empty()) {
+            return Self::from_triplets(n, n, Vec::new());
+        }
         let mut transposed = Vec::new();
         for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
             try_push(&mut transposed, a.transposed()?, CONTEXT)?;
         }
-        // Rows of each column by the column that had them last: first their number, for room that is not too large.
-        let mut in_column = try_vec(n, 0, CONTEXT)?;
-        let mut stored = 0;
-        for j in 0..n {
-            let mut next = transposed.iter();
-            for &(_, a, form) in terms {
-                for (i, _) in of_form(a, form, &mut next).column(j) {
-                    stored += usize::from(in_column[i] != j + 1);
-                    in_column[i] = j + 1;
+        // Rows of each column by the column that had them last.
+        let large = if n <= SMALL { 0 } else { n };
+        let (mut small_in_column, mut large_in_column) = ([0; SMALL], try_vec(large, 0, CONTEXT)?);
+        let in_column = small_or_large(n, &mut small_in_column, &mut large_in_column);
+        let mut stored = terms.iter().map(|(_, a, _)| a.values.len()).sum();
+        if stored > COUNTED_ABOVE {
+            // Room that is not too large.
+            stored = 0;
+            for j in 0..n {
+                let mut next = transposed.iter();
+                for &(_, a, form) in terms {
+                    for (i, _) in of_form(a, form, &mut next).column(j) {
+                        stored += usize::from(in_column[i] != j + 1);
+                        in_column[i] = j + 1;
+                    }
                 }
             }
+            in_column.fill(0);
         }
         let mut sum = Self {
             rows: n,
@@ -122,25 +143,28 @@ impl Csc {
             values: try_room(stored, CONTEXT)?,
         };
         // One column after the other: its entries by their rows, and the rows that it has.
-        let mut column = try_vec(n, Complex64::ZERO, CONTEXT)?;
-        let mut rows = try_vec(n, 0, CONTEXT)?;
-        in_column.fill(0);
+        let (mut small_column, mut large_column) =
+            ([Complex64::ZERO; SMALL], try_vec(large, Complex64::ZERO, CONTEXT)?);
+        let column = small_or_large(n, &mut small_column, &mut large_column);
+        let (mut small_rows, mut large_rows) = ([0; SMALL], try_vec(large, 0, CONTEXT)?);
+        let rows = small_or_large(n, &mut small_rows, &mut large_rows);
         for j in 0..n {
-            // At most n rows, for which there is memory.
-            rows.clear();
+            let mut count = 0;
             let mut next = transposed.iter();
             for &(c, a, form) in terms {
                 for (i, v) in of_form(a, form, &mut next).column(j) {
                     if in_column[i] != j + 1 {
                         in_column[i] = j + 1;
                         column[i] = Complex64::ZERO;
-                        rows.push(i);
+                        rows[count] = i;
+                        count += 1;
                     }
                     column[i] += c * if form == Form::Conjugated { v.conj() } else { v };
                 }
             }
+            let rows = &mut rows[..count];
             rows.sort_unstable();
-            sum.row_idx.extend_from_slice(&rows);
+            sum.row_idx.extend_from_slice(rows);
             sum.values.extend(rows.iter().map(|&i| column[i]));
             sum.col_ptr[j + 1] = sum.row_idx.len();
         }

@@ -114,6 +114,26 @@ impl Model {
         self.expanded(modes, diameter)
     }
 
+    /// Natural frequencies of harmonic `h`, ascending; `None` where they cannot be had, as where K or M is not Hermitian.
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub(crate) fn natural_frequencies(
+        &self,
+        h: usize,
+        contacts: ContactState<'_>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Vec<f64>>> {
+        let found = self
+            .pencil(Wave::Harmonic(h), contacts)
+            .and_then(|pencil| pencil.all(interrupt));
+        match found {
+            Ok(modes) => Ok(Some(modes.omega)),
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => Err(e),
+            Err(_) => Ok(None),
+        }
+    }
+
     /// The modes with their shapes on all degrees of freedom of the caller.
     fn expanded(&self, modes: LinearModes, diameter: usize) -> Result<LinearModes> {
         let degrees = self.structure().degrees();

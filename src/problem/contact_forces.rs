@@ -343,10 +343,8 @@ impl<'a> ContactForces<'a> {
     #[must_use]
     #[inline]
     pub fn minus_reference(&self, motion: &[f64], coordinate: usize, i: usize) -> Complex64 {
-        let set = self.condensed.set();
-        let m = set.packed_len();
-        let y = set.get(&motion[coordinate * m..(coordinate + 1) * m], i);
-        self.part(&self.force, coordinate, i) - self.condensed.kappa(coordinate, i) * y
+        let kappa = self.condensed.kappa(coordinate, i);
+        self.part(&self.force, coordinate, i) - kappa * self.part(motion, coordinate, i)
     }
 
     /// Rounding of the force of a coordinate if its contacts are near-rigid, or if it counts from a static one,
@@ -383,8 +381,7 @@ impl<'a> ContactForces<'a> {
     #[inline]
     fn part(&self, packed: &[f64], coordinate: usize, i: usize) -> Complex64 {
         let set = self.condensed.set();
-        let m = set.packed_len();
-        set.get(&packed[coordinate * m..(coordinate + 1) * m], i)
+        set.get_at(packed, coordinate * set.packed_len(), i)
     }
 
     /// Whether all laws state the motion below which they are (nearly) linear.

@@ -160,20 +160,23 @@ impl<'a> HarmonicBalance<'a> {
                 }
                 let w = self.forces.minus_reference(u, column, i);
                 let lost = self.forces.rounding(column);
-                let (by_scale, by_omega) = (self.forces.d_ln_scale(column, i), self.forces.by_omega(column, i));
-                for row in 0..coordinates {
-                    let r = row * m + at;
-                    let g = table.value[column * outputs + row];
-                    rounding += lost * lost * g.norm_sqr();
-                    put(&mut out.values, r, mean, g * w);
-                    match path {
-                        None => {
-                            let slope = table.slope[column * outputs + row] * w + g * by_omega;
-                            put(&mut out.d_parameter, r, mean, slope);
-                        }
-                        Some((Path::ScaledLaws, _)) => put(&mut out.d_parameter, r, mean, g * by_scale),
-                        Some((Path::GrowingLoad | Path::FromTangents, _)) => {}
+                let by_parameter = match path {
+                    None => self.forces.by_omega(column, i),
+                    Some((Path::ScaledLaws, _)) => self.forces.d_ln_scale(column, i),
+                    Some((Path::GrowingLoad | Path::FromTangents, _)) => Complex64::ZERO,
+                };
+                let rows = column * outputs..column * outputs + coordinates;
+                let rows = table.value[rows.clone()].iter().zip(&table.slope[rows]);
+                for (r, (g, slope)) in (at..).step_by(m).zip(rows) {
+                    if lost > 0.0 {
+                        rounding += lost * lost * g.norm_sqr();
                     }
+                    put(&mut out.values, r, mean, g * w);
+                    let along = match path {
+                        None => slope * w + g * by_parameter,
+                        Some(_) => g * by_parameter,
+                    };
+                    put(&mut out.d_parameter, r, mean, along);
                 }
             }
         }

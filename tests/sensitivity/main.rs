@@ -5,6 +5,7 @@ mod common;
 
 mod absent;
 mod batch;
+mod batch_of_chains;
 mod cost;
 mod design;
 mod differences;

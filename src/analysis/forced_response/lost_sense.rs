@@ -6,6 +6,7 @@ use crate::adaptivity::harmonic_levels::HarmonicLevels;
 use crate::analysis::forced_discretised::ForcedDiscretised;
 use crate::contact::Contact;
 use crate::continuation::Point;
+use crate::continuation::step_control::Detail;
 use crate::error::{Result, Status};
 use crate::error_estimate::Estimate;
 use crate::hooks::{Hooks, LogLevel};
@@ -164,7 +165,7 @@ fn misled(at: usize, found_then: usize, (from, to): (f64, f64)) -> (Branch, bool
     let branch = follow(
         &model(),
         &solver,
-        &range,
+        (&range, Detail::Curve),
         &mut hooks,
         &interrupt,
         |tracer, response, first, hooks| {

@@ -11,6 +11,9 @@ use num_complex::Complex64;
 /// matrix singular. With the floor it keeps its initial value.
 const MEAN_FLOOR: f64 = 1e-8;
 
+/// Columns of a Jacobian between two checks of the interrupt.
+const BETWEEN_CHECKS: usize = 16;
+
 impl ContactForces<'_> {
     /// Whether a coordinate sticks, or along a normal is closed, and its reference stiffness is that of the contact:
     /// then ∂f/∂y = κ, and no change couples back.
@@ -196,18 +199,27 @@ impl ContactForces<'_> {
             if force == motion && mean == 1 {
                 columns[motion * m] += MEAN_FLOOR;
             }
-            for (q, (column, from)) in columns.chunks_exact_mut(n).zip(block.chunks_exact(m)).enumerate() {
-                self.interrupt.check()?;
-                change.copy_from_slice(from);
+            let kappa = |i: usize| {
                 if force == motion {
-                    let i = if mean == 1 { q.div_ceil(2) } else { q / 2 };
-                    let at = set.offset(i);
-                    let kappa = self.condensed.kappa(force, i);
-                    let z = set.get(change, i) - if q == at { kappa } else { kappa * Complex64::I };
-                    set.set(change, i, z);
+                    self.condensed.kappa(force, i)
+                } else {
+                    Complex64::ZERO
                 }
-                for (x, g) in column.chunks_exact_mut(m).zip(rows.chunks_exact(harmonics)) {
-                    add_products(mean, g, change, x);
+            };
+            for (first, columns) in columns.chunks_mut(BETWEEN_CHECKS * n).enumerate() {
+                self.interrupt.check()?;
+                let first = first * BETWEEN_CHECKS;
+                let block = (&block[first * m..], first);
+                // With few harmonics most of the time would be spent around loops of unknown length.
+                match harmonics - mean {
+                    1 => couple_columns::<1>(mean, rows, block, kappa, change, (columns, n)),
+                    2 => couple_columns::<2>(mean, rows, block, kappa, change, (columns, n)),
+                    3 => couple_columns::<3>(mean, rows, block, kappa, change, (columns, n)),
+                    4 => couple_columns::<4>(mean, rows, block, kappa, change, (columns, n)),
+                    5 => couple_columns::<5>(mean, rows, block, kappa, change, (columns, n)),
+                    7 => couple_columns::<7>(mean, rows, block, kappa, change, (columns, n)),
+                    9 => couple_columns::<9>(mean, rows, block, kappa, change, (columns, n)),
+                    _ => couple_columns::<0>(mean, rows, block, kappa, change, (columns, n)),
                 }
             }
         }
@@ -256,19 +268,45 @@ impl ContactForces<'_> {
     }
 }
 
-/// x += g z in each harmonic of packed signals x and z.
-#[inline]
-fn add_products(mean: usize, g: &[Complex64], z: &[f64], x: &mut [f64]) {
-    if mean == 1 {
-        x[0] += g[0].re * z[0];
-    }
-    let pairs = x[mean..]
-        .as_chunks_mut::<2>()
-        .0
-        .iter_mut()
-        .zip(z[mean..].as_chunks::<2>().0);
-    for ((x, z), g) in pairs.zip(&g[mean..]) {
-        x[0] += g.re * z[0] - g.im * z[1];
-        x[1] += g.re * z[1] + g.im * z[0];
+/// Adds G (J − κ) to columns of `n` rows: J from its column `first` on, and G for each row coordinate harmonic after harmonic,
+/// of which P carry a vibration; 0: any number.
+fn couple_columns<const P: usize>(
+    mean: usize,
+    rows: &[Complex64],
+    (jacobian, first): (&[f64], usize),
+    kappa: impl Fn(usize) -> Complex64,
+    change: &mut [f64],
+    (columns, n): (&mut [f64], usize),
+) {
+    let pairs = if P > 0 { P } else { (change.len() - mean) / 2 };
+    let m = 2 * pairs + mean;
+    let change = &mut change[..m];
+    for (q, (column, from)) in columns.chunks_exact_mut(n).zip(jacobian.chunks_exact(m)).enumerate() {
+        let q = first + q;
+        change.copy_from_slice(from);
+        // Column q is that of the real or of the imaginary part of a motion z, and loses κz.
+        let kappa = kappa((q + mean) / 2);
+        if q < mean {
+            change[q] -= kappa.re;
+        } else if (q - mean) % 2 == 0 {
+            change[q] -= kappa.re;
+            change[q + 1] -= kappa.im;
+        } else {
+            change[q - 1] += kappa.im;
+            change[q] -= kappa.re;
+        }
+        let (z_mean, z) = change.split_at(mean);
+        let z = &z.as_chunks::<2>().0[..pairs];
+        for (x, g) in column.chunks_exact_mut(m).zip(rows.chunks_exact(pairs + mean)) {
+            let ((x_mean, x), (g_mean, g)) = (x.split_at_mut(mean), g.split_at(mean));
+            for ((x, z), g) in x_mean.iter_mut().zip(z_mean).zip(g_mean) {
+                *x += g.re * z;
+            }
+            let x = &mut x.as_chunks_mut::<2>().0[..pairs];
+            for ((x, z), g) in x.iter_mut().zip(z).zip(&g[..pairs]) {
+                x[0] += g.re * z[0] - g.im * z[1];
+                x[1] += g.re * z[1] + g.im * z[0];
+            }
+        }
     }
 }
