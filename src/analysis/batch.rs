@@ -5,6 +5,7 @@
 //! share the matrices of the structure, and the bases of large ones.
 
 use crate::analysis::design_peak::{DesignPeak, Solved, solve_design};
+use crate::analysis::further_threads::{Together, of_std};
 use crate::condense::Condensed;
 use crate::error::{Error, Result, Status, fail, try_push, try_vec};
 use crate::hooks::{Hooks, Progress};
@@ -14,6 +15,8 @@ use crate::options::{BatchOptions, SolverOptions};
 use crate::results::Branch;
 use crate::sensitivity::Parameter;
 use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
@@ -28,9 +31,6 @@ const PAUSE: Duration = Duration::from_millis(2);
 
 /// Checks of a design between two of the caller's hooks.
 const BETWEEN_CHECKS: usize = 16;
-
-/// Memory of the stack of a thread.
-const STACK: usize = 8 << 20;
 
 /// Runs the work of a thread in the surroundings that its caller wants; false: the thread cannot work, and others do it all.
 pub type Surroundings<'a> = dyn Fn(&mut dyn FnMut()) -> bool + Sync + 'a;
@@ -188,13 +188,21 @@ pub fn batch(
     (parameters, values): (&[Parameter<'_>], &[f64]),
     hooks: &mut Hooks<'_>,
 ) -> Result<Batch> {
-    batch_within(model, solver, options, (parameters, values), hooks, &|work| {
+    let surroundings = |work: &mut dyn FnMut()| {
         work();
         true
-    })
+    };
+    batch_within(
+        model,
+        solver,
+        options,
+        (parameters, values),
+        hooks,
+        (&surroundings, of_std),
+    )
 }
 
-/// The same, whose threads work within the surroundings of the caller.
+/// The same, whose threads are started as the caller wants, and work within its surroundings.
 ///
 /// # Errors
 /// As [`batch`].
@@ -204,7 +212,7 @@ pub fn batch_within(
     options: &BatchOptions,
     (parameters, values): (&[Parameter<'_>], &[f64]),
     hooks: &mut Hooks<'_>,
-    surroundings: &Surroundings<'_>,
+    threads: (&Surroundings<'_>, Together),
 ) -> Result<Batch> {
     solver.check()?;
     options.check()?;
@@ -268,7 +276,7 @@ pub fn batch_within(
         done: AtomicUsize::new(0),
         stop: AtomicBool::new(false),
     };
-    let outcomes = run(&work, hooks, &interrupt, surroundings);
+    let outcomes = run(&work, hooks, &interrupt, threads);
     for found in outcomes? {
         for (design, solved) in found? {
             batch.peaks[design] = solved.peak;
@@ -288,42 +296,38 @@ fn run(
     work: &Work<'_>,
     hooks: &mut Hooks<'_>,
     interrupt: &Interrupt<'_>,
-    surroundings: &Surroundings<'_>,
+    (surroundings, together): (&Surroundings<'_>, Together),
 ) -> Result<Vec<Result<Found>>> {
     let others = work.options.threads.min(work.designs).saturating_sub(1);
-    let mut outcomes = Vec::new();
-    outcomes
-        .try_reserve_exact(others + 1)
-        .map_err(|_| Error::out_of_memory("the threads"))?;
-    thread::scope(|scope| {
-        let mut handles = Vec::new();
-        handles
-            .try_reserve_exact(others)
-            .map_err(|_| Error::out_of_memory("the threads"))?;
-        for _ in 0..others {
-            let task = || {
-                // A thread that was lost, which no design causes, is told as such.
-                let mut outcome = fail!(Internal, "a thread of the batch ended early");
-                if surroundings(&mut || outcome = work.run()) {
-                    outcome
-                } else {
-                    Ok(Vec::new())
-                }
+    let (mut outcomes, mut places) = (Vec::new(), Vec::new());
+    for reserved in [outcomes.try_reserve_exact(others + 1), places.try_reserve_exact(others)] {
+        reserved.map_err(|_| Error::out_of_memory("the threads"))?;
+    }
+    places.extend((0..others).map(|_| Mutex::new(None)));
+    let ended = AtomicUsize::new(0);
+    let task = |number: usize| {
+        let (mut outcome, mut works) = (Ok(Vec::new()), true);
+        let lost = catch_unwind(AssertUnwindSafe(|| works = surroundings(&mut || outcome = work.run()))).is_err();
+        // A thread that was lost, which no design causes, is told as such.
+        if lost || !works {
+            outcome = if lost {
+                fail!(Internal, "a thread of the batch ended early")
+            } else {
+                Ok(Vec::new())
             };
-            match thread::Builder::new().stack_size(STACK).spawn_scoped(scope, task) {
-                Ok(handle) => handles.push(handle),
-                Err(_) => break,
-            }
         }
+        if let Ok(mut place) = places[number].lock() {
+            *place = Some(outcome);
+        }
+        ended.fetch_add(1, Ordering::Release);
+    };
+    together(others, &task, &mut |started| {
         outcomes.push(work.run_with(hooks, interrupt));
-        for handle in handles {
-            while !handle.is_finished() {
-                work.watch(interrupt);
-                thread::sleep(PAUSE);
-            }
-            let joined = handle.join();
-            outcomes.push(joined.unwrap_or_else(|_| fail!(Internal, "a thread of the batch ended early")));
+        while ended.load(Ordering::Acquire) < started {
+            work.watch(interrupt);
+            thread::sleep(PAUSE);
         }
-        Ok(outcomes)
-    })
+    });
+    outcomes.extend(places.into_iter().filter_map(|place| place.into_inner().ok().flatten()));
+    Ok(outcomes)
 }

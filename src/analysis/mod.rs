@@ -14,6 +14,7 @@ mod floquet_on_modes;
 mod followed;
 mod forced_discretised;
 pub mod forced_response;
+pub mod further_threads;
 pub mod harmonic_residual;
 pub mod linear_contacts;
 mod mode_discretised;

@@ -12,10 +12,11 @@ use super::sensitivities::{hbvib_parameter, loaded, parameter};
 use super::solve::hbvib_branch;
 use super::solve_hooks::{hbvib_hooks, load_hooks, with_hooks};
 use super::solve_options::{hbvib_solver_options, solver_options};
+use super::thread_start::together;
 use super::version_and_errors::hbvib_status;
 use super::versioned_struct::{VersionedStruct, check_reserved, init, load};
 use crate::analysis::DesignPeak;
-use crate::analysis::batch::{Batch, batch_within};
+use crate::analysis::batch::{Batch, Surroundings, batch_within};
 use crate::error::{Result, Status, fail, try_push};
 use crate::model::Model;
 use crate::options::{BatchOptions, MOST_THREADS};
@@ -149,7 +150,8 @@ pub unsafe extern "C" fn hbvib_batch_solve(
         let surroundings = |work: &mut dyn FnMut()| within(work);
         let found = unsafe {
             with_hooks(&hooks, |hooks| {
-                batch_within(&model, &solver, &options, (&described, values), hooks, &surroundings)
+                let threads = (&surroundings as &Surroundings<'_>, together());
+                batch_within(&model, &solver, &options, (&described, values), hooks, threads)
             })
         }
         .map_err(|e| match e.status {

@@ -4,7 +4,7 @@
 //! Infrastructure: `boundary` turns panics and errors into statuses, `handles` turns objects into numbers that cannot
 //! be confused, `versioned_struct` has the rules by which structs cross the boundary, `arrays`, `indices` and
 //! `stored_point` check the pointers and numbers of the caller, `reserve` is the allocator, `thread_memory` what a thread
-//! keeps, `process` is for fork and unloading, `float_environment` separates the settings of the floating-point unit. All
+//! keeps, `thread_start` how one is started, `process` is for fork and unloading, `float_environment` separates the settings of the floating-point unit. All
 //! other files are named after the sections of the header (`crates/bindings/src/header.rs` has their order), and a
 //! file lists its items in the order of the header. No file here contains numerics.
 //!
@@ -27,6 +27,7 @@ pub mod process;
 pub mod reserve;
 mod stored_point;
 pub mod thread_memory;
+pub mod thread_start;
 mod versioned_struct;
 
 mod batch;

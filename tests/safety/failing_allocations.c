@@ -4,7 +4,7 @@
  *  - the same model then has the same results; slow analyses are repeated after one failure in eight.
  * The first analysis is also tried as the first call of a process.
  * Run under LD_PRELOAD=failing_malloc.so as: failing_allocations <share> [first] [last], where share 1 takes every request
- * and share n about one in n, of the analyses with these numbers, from 1. Prints a line for each analysis (how many requests
+ * and share n the first and then about one in n, of the analyses with these numbers, from 1. Prints a line for each analysis (how many requests
  * it has, how many failed, one in how many) and one for all. */
 #include "designs.h"
 #include "failing_malloc.h"
@@ -62,10 +62,13 @@ static void leak(const analysis *a, const char *phase, int32_t for_good, outcome
     }
 }
 
+/* Requests of an analysis that fail always, those of threads and of what is set up among them. */
+enum { FIRST = 16 };
+
 static int64_t next(int64_t n)
 {
     /* Steps that differ, so that no part of a loop is always left out. */
-    return n + (share == 1 ? 1 : 1 + (n * 7919 + 12345) % (2 * share - 1));
+    return n + (share == 1 || n < FIRST ? 1 : 1 + (n * 7919 + 12345) % (2 * share - 1));
 }
 
 /* Requests of the building of a model. */

@@ -6,6 +6,8 @@ use engine::capi::reserve::ReserveAllocator;
 #[global_allocator]
 static ALLOCATOR: ReserveAllocator = ReserveAllocator;
 
+#[cfg(target_os = "linux")]
+mod further_threads;
 #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 mod thread_exit;
 
@@ -27,6 +29,7 @@ mod loading {
         // SAFETY: the functions stay until the library is unloaded, which removes them. Without memory for the entry, a
         // copy of the process that is made while another thread looks up a handle might wait for ever.
         let _ = unsafe { libc::pthread_atfork(Some(prepare), Some(copied), Some(copied)) };
+        engine::capi::thread_start::start_by(super::further_threads::together);
         #[cfg(all(target_env = "gnu", target_arch = "x86_64"))]
         {
             super::thread_exit::at_load();

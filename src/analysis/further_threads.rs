@@ -1,0 +1,31 @@
+//! Further threads of a call, which it starts and waits for.
+//!
+//! A thread of the standard library asks for memory in a way that cannot fail: without it the process ends. Where that must
+//! not be, as in the C library, the caller of an analysis brings a function of its own that starts threads.
+
+use std::thread;
+
+/// Memory of the stack of a thread.
+pub const STACK: usize = 8 << 20;
+
+/// Runs its last argument in this thread while others, at most the given number, run the task with their numbers from 0.
+/// The last argument gets how many were started, fewer where the system has no further one. Returns after all of them. The
+/// task does not panic.
+pub type Together = fn(usize, &(dyn Fn(usize) + Sync), &mut dyn FnMut(usize));
+
+/// Threads of the standard library.
+pub fn of_std(others: usize, task: &(dyn Fn(usize) + Sync), own: &mut dyn FnMut(usize)) {
+    if others == 0 {
+        return own(0);
+    }
+    thread::scope(|scope| {
+        let start = |number: &usize| {
+            let number = *number;
+            thread::Builder::new()
+                .stack_size(STACK)
+                .spawn_scoped(scope, move || task(number))
+                .is_ok()
+        };
+        own((0..others).take_while(start).count());
+    });
+}
