@@ -154,12 +154,16 @@ impl Start {
     /// The mode that the options select, about the static state.
     fn new(model: &Model, solver: &SolverOptions, range: &ModeOptions<'_>, interrupt: &Interrupt<'_>) -> Result<Self> {
         let rest = static_state(model, solver, NEEDS_SPEED, interrupt)?;
-        let contacts = if rest.is_loaded() {
-            ContactState::AboutStatic(&rest.tangents)
-        } else {
-            ContactState::Stuck
-        };
-        let chosen = model.select_mode_with(range.choice, contacts, interrupt)?;
+        // Natural modes are those of a potential; the damped mode has the other forces of laws of the caller, too.
+        let symmetric = rest.tangents.symmetric()?;
+        let [natural, contacts] = [&symmetric, &rest.tangents].map(|tangents| {
+            if rest.is_loaded() {
+                ContactState::AboutStatic(tangents)
+            } else {
+                ContactState::Stuck
+            }
+        });
+        let chosen = model.select_mode_with(range.choice, natural, interrupt)?;
         let damped = model.damped_mode_with(&chosen, contacts, range.damping_form, interrupt)?;
         let mut linear = LinearMode {
             omega: damped.omega,

@@ -33,8 +33,8 @@ pub struct DynamicStiffness {
 /// Relative error of the relative motions above which a residual summed with its rounding errors is worth its cost.
 const NOISE: f64 = 1e-12;
 
-/// Number of degrees of freedom up to which such a residual is never necessary.
-const PLAIN_UP_TO: usize = 100;
+/// Largest number of such residuals: each leaves the error of the last times that of a plain solution.
+const EXACT: usize = 3;
 
 impl DynamicStiffness {
     /// Memory for a condensed model, solving up to `columns` right-hand sides at a time.
@@ -51,13 +51,12 @@ impl DynamicStiffness {
             return fail!(Internal, "no harmonic is carried");
         };
         let n = condensed.ndof();
-        let exact = if n > PLAIN_UP_TO { n } else { 0 };
         Ok(Self {
             factor: Factor::new(&first.reference, columns)?,
             z,
             remainder: try_vec(n, Complex64::ZERO, CONTEXT)?,
-            sums: try_vec(exact, ComplexSum::default(), CONTEXT)?,
-            part: try_vec(exact, ComplexSum::default(), CONTEXT)?,
+            sums: try_vec(n, ComplexSum::default(), CONTEXT)?,
+            part: try_vec(n, ComplexSum::default(), CONTEXT)?,
         })
     }
 
@@ -119,9 +118,13 @@ impl DynamicStiffness {
         x: &mut [Complex64],
         interrupt: &Interrupt<'_>,
     ) -> Result<()> {
-        let noise = self.refinement((condensed, i), at, b, x, false, interrupt)?;
-        if noise > NOISE && !self.sums.is_empty() {
-            self.refinement((condensed, i), at, b, x, true, interrupt)?;
+        let plain = self.refinement((condensed, i), at, b, x, false, interrupt)?;
+        let mut error = plain;
+        for _ in 0..EXACT {
+            if error <= NOISE {
+                break;
+            }
+            error = plain * self.refinement((condensed, i), at, b, x, true, interrupt)?;
         }
         Ok(())
     }

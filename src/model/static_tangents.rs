@@ -35,6 +35,21 @@ impl StaticTangents {
         Ok(copy)
     }
 
+    /// The symmetric part of each tangent: forces without a potential left out.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn symmetric(&self) -> Result<Self> {
+        let mut part = self.try_clone()?;
+        for (own, tangent) in part.of_contacts.iter_mut().zip(&self.of_contacts) {
+            let directions = tangent.len().isqrt();
+            for (i, t) in own.iter_mut().enumerate() {
+                *t = 0.5 * (*t + tangent[i % directions * directions + i / directions]);
+            }
+        }
+        Ok(part)
+    }
+
     /// Sets the tangent of a contact, row-major.
     ///
     /// # Errors

@@ -14,6 +14,8 @@ mod mode_forced;
 mod mode_linear_range;
 mod mode_range;
 mod mode_reference;
+mod mode_static_energy;
+mod mode_static_laws;
 mod mode_stop;
 mod mode_structural;
 mod mode_synthesis;

@@ -21,10 +21,10 @@ use nalgebra::{DMatrix, DVector};
 use num_complex::Complex64;
 
 /// Forces per harmonic.
-type Forces = Vec<(usize, DVector<Complex64>)>;
+pub type Forces = Vec<(usize, DVector<Complex64>)>;
 
 /// F_h = 2Dω·(ihω) M X_h at a point of the mode.
-fn balancing(branch: &Branch, point: usize, mass: impl Fn(usize) -> DMatrix<Complex64>) -> Forces {
+pub fn balancing(branch: &Branch, point: usize, mass: impl Fn(usize) -> DMatrix<Complex64>) -> Forces {
     let (omega, d) = (branch.omega()[point], damping(branch)[point]);
     let force = |&h: &usize| {
         let x = harmonic(branch, point, h);
@@ -35,7 +35,13 @@ fn balancing(branch: &Branch, point: usize, mass: impl Fn(usize) -> DMatrix<Comp
 }
 
 /// The answer of a model, which has its constant forces, to more forces at one frequency, from a guess.
-fn answer(model: &Model, solver: &SolverOptions, omega: f64, forces: &Forces, guess: &[Complex64]) -> Vec<Complex64> {
+pub fn answer(
+    model: &Model,
+    solver: &SolverOptions,
+    omega: f64,
+    forces: &Forces,
+    guess: &[Complex64],
+) -> Vec<Complex64> {
     let mut model = model.try_clone().unwrap();
     for (h, force) in forces {
         for (dof, f) in force.iter().enumerate() {
@@ -54,7 +60,7 @@ fn answer(model: &Model, solver: &SolverOptions, omega: f64, forces: &Forces, gu
 }
 
 /// Three masses, of which the first touches the ground along t1 and n or along t1, t2 and n.
-fn pressed(contacts: &[Contact], constant: [f64; 3]) -> Model {
+pub fn pressed(contacts: &[Contact], constant: [f64; 3]) -> Model {
     const STIFFNESS: [f64; 9] = [2.0, -0.4, 0.3, -0.4, 3.0, -0.5, 0.3, -0.5, 2.5];
     const MASS: [f64; 9] = [1.0, 0.0, 0.0, 0.0, 1.4, 0.0, 0.0, 0.0, 0.8];
     let mut model = Model::new(3).unwrap();
@@ -70,7 +76,7 @@ fn pressed(contacts: &[Contact], constant: [f64; 3]) -> Model {
     model
 }
 
-fn mass_of_three(_: usize) -> DMatrix<Complex64> {
+pub fn mass_of_three(_: usize) -> DMatrix<Complex64> {
     DMatrix::from_diagonal(&DVector::from_column_slice(&[1.0, 1.4, 0.8].map(Complex64::from)))
 }
 
@@ -144,7 +150,7 @@ fn a_pressed_structure_under_its_balancing_force_answers_with_the_mode() {
 }
 
 /// A sector without mirror symmetry, pressed to the ground and to the next sector.
-fn pressed_sector(engine_order: i64) -> Skewed {
+pub fn pressed_sector(engine_order: i64) -> Skewed {
     let mut skewed = Skewed::new(engine_order);
     skewed.sectors = 5;
     let mut across = Contact::friction_2d([Some(2), Some(1)], [Some(0), Some(1)], (1.5, 1.0), 0.4, 0.6);

@@ -6,4 +6,5 @@ mod common;
 mod boundary_sector;
 mod sector_contacts;
 mod sector_frequencies;
+mod sector_mode_rounding;
 mod sector_refusals;
