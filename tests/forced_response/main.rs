@@ -21,6 +21,7 @@ mod reference_response;
 mod ring_damper_speeds;
 mod rotation;
 mod small_systems;
+mod structural_closed_forms;
 mod structural_damping;
 mod stuck_and_scaling;
 mod user_failures;

@@ -6,4 +6,5 @@ mod common;
 mod damped_mode;
 mod natural_frequencies;
 mod rotating_modes;
+mod rotating_wheel;
 mod start_mode;

@@ -206,7 +206,7 @@ fn everything(n: usize) -> (Model, [DMatrix<Complex64>; 3]) {
 }
 
 /// Eigenvalues of the first-order system in the upper half plane, by rising frequency.
-fn first_order(m: &DMatrix<Complex64>, c: &DMatrix<Complex64>, k: &DMatrix<Complex64>) -> Vec<Complex64> {
+pub fn first_order(m: &DMatrix<Complex64>, c: &DMatrix<Complex64>, k: &DMatrix<Complex64>) -> Vec<Complex64> {
     let n = m.nrows();
     let inverse = m.clone().try_inverse().unwrap();
     let mut a = DMatrix::<Complex64>::zeros(2 * n, 2 * n);

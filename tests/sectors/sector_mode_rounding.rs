@@ -59,9 +59,7 @@ fn modes_of_a_stiff_sector_pass_the_onset_of_slip_and_have_the_closed_form_of_th
             for eta in [0.0, 0.05] {
                 let mut model = sector.model(engine_order);
                 model.set_loss_factor(eta).unwrap();
-                model
-                    .add_contact(&Contact::jenkins(a, b, KT, 1.0, SLIP_FORCE))
-                    .unwrap();
+                model.add_contact(&Contact::jenkins(a, b, KT, 1.0, SLIP_FORCE)).unwrap();
                 let at = [-4.6, -4.2, -3.8, -3.0];
                 let range = ModeOptions {
                     log10_start: -8.0,
@@ -79,8 +77,7 @@ fn modes_of_a_stiff_sector_pass_the_onset_of_slip_and_have_the_closed_form_of_th
                     slipping += usize::from(amplitude > 1.0);
                     let stiffness =
                         &k * Complex64::new(1.0, eta) + &w * w.adjoint() * (KT * describing_function(amplitude));
-                    let dynamic =
-                        |omega: f64, d: f64| &stiffness - &m * (omega * omega * Complex64::new(1.0, 2.0 * d));
+                    let dynamic = |omega: f64, d: f64| &stiffness - &m * (omega * omega * Complex64::new(1.0, 2.0 * d));
                     let own: Vec<Complex64> = (0..t.ncols())
                         .map(|c| x[(0..t.nrows()).find(|&r| t[(r, c)] == Complex64::ONE).unwrap()])
                         .collect();
