@@ -2347,13 +2347,15 @@ contains
       real(dp), intent(in) :: m_e
       real(dp), intent(in), optional :: phase
       integer(i32) :: status
-      integer(i64) :: x, y
+      integer(i64) :: ndof, x, y
       real(dp) :: turn
       status = HBVIB_OK
       turn = 0
       if (present(phase)) turn = phase
-      call to_zero(status, 'dof_x', int(dof_x, i64), hbvib_model_dofs(self%handle), x)
-      call to_zero(status, 'dof_y', int(dof_y, i64), hbvib_model_dofs(self%handle), y)
+      ! A call that works clears the sentence of one that did not: the number is asked for before the checks.
+      ndof = hbvib_model_dofs(self%handle)
+      call to_zero(status, 'dof_x', int(dof_x, i64), ndof, x)
+      call to_zero(status, 'dof_y', int(dof_y, i64), ndof, y)
       if (status == HBVIB_OK) status = hbvib_model_add_unbalance(self%handle, x, y, m_e, turn)
    end function model_add_unbalance
 
@@ -2861,15 +2863,17 @@ contains
       real(dp), intent(in), contiguous, target, optional :: at(:)
       real(dp), intent(in), optional :: log10_amplitude(2)
       integer(i32) :: status
+      integer(i64) :: contacts
       type(hbvib_parameter_options) :: range
       type(hbvib_parameter), target :: given
       type(hbvib_solver_options), allocatable :: chosen
       status = branch%free()
       if (status == HBVIB_E_BUSY) return
       status = HBVIB_OK
+      contacts = hbvib_model_contacts(self%handle)
       call solver_from_one(status, solver, hbvib_model_dofs(self%handle), chosen)
       given = parameter
-      call to_zero(status, 'contact', parameter%contact, hbvib_model_contacts(self%handle), given%contact, -1_i32)
+      call to_zero(status, 'contact', parameter%contact, contacts, given%contact, -1_i32)
       range%parameter = c_loc(given)
       range%start = start
       range%stop = stop
@@ -2984,11 +2988,11 @@ contains
       status = HBVIB_OK
       n_harmonics = 0
       n_errors = 0
-      call point_to_zero(branch, status, point, p)
       if (present(harmonics)) then
          call same_length(status, 'harmonics(:, 0)', size(harmonics, 1, i64), hbvib_model_dofs(self%handle))
          n_harmonics = size(harmonics)
       end if
+      call point_to_zero(branch, status, point, p)
       if (present(errors)) n_errors = size(errors)
       if (status == HBVIB_OK) &
          status = hbvib_verify(self%handle, branch%handle, p, options, hooks, harmonics, n_harmonics, errors, n_errors, info)
@@ -3036,19 +3040,20 @@ contains
       integer(i32) :: status
       type(hbvib_parameter) :: given(size(parameters))
       integer(i64), allocatable :: numbers(:)
-      integer(i64) :: p, n, contact
+      integer(i64) :: p, n, contact, contacts
       integer(i32) :: quantity
       integer :: j
       status = HBVIB_OK
       derivatives = 0
       n = size(parameters, kind=i64)
+      given = parameters
+      contacts = hbvib_model_contacts(self%handle)
+      do j = 1, size(given)
+         call to_zero(status, 'contact', parameters(j)%contact, contacts, given(j)%contact, -1_i32)
+      end do
       call point_to_zero(branch, status, point, p)
       call same_length(status, 'derivatives', size(derivatives, kind=i64), n)
       if (present(reasons)) call same_length(status, 'reasons', size(reasons, kind=i64), n)
-      given = parameters
-      do j = 1, size(given)
-         call to_zero(status, 'contact', parameters(j)%contact, hbvib_model_contacts(self%handle), given(j)%contact, -1_i32)
-      end do
       if (status /= HBVIB_OK) return
       quantity = HBVIB_OF_AMPLITUDE
       if (present(of)) quantity = of

@@ -1,16 +1,17 @@
 //! The nonlinear mode of a finite-element sector whose 30 pairs of nodes press with a normal load that varies and may
 //! vanish, about its static state: one harmonic and the mean, from stuck contacts to the first that lift off.
 
-use crate::common::harmonics;
-use crate::common::processor_time;
+use crate::common::{all_harmonics, harmonics, processor_time, relative_gap};
 use crate::sector::{Interface, Sector, Size};
+use hbvib::analysis::forced_response::forced_response;
 use hbvib::analysis::{nonlinear_mode, synthesise};
 use hbvib::contact::Contact;
 use hbvib::error::{Error, Status};
 use hbvib::hooks::Hooks;
 use hbvib::model::Model;
 use hbvib::model::spring::Spring;
-use hbvib::options::{ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
+use hbvib::model::structure::MatrixKind;
+use hbvib::options::{ForcedOptions, ModeChoice, ModeOptions, SolverOptions, SynthesisOptions};
 use hbvib::results::Branch;
 use hbvib::results::mode_branch::ModeField;
 use num_complex::Complex64;
@@ -222,6 +223,93 @@ fn pressed_contacts_of_a_sector_are_followed_from_stuck_to_lift_off() {
     }
     println!(
         "synthesis in {:.1} s",
+        processor_time(Instant::now()).saturating_sub(begin).as_secs_f64()
+    );
+}
+
+/// Answer of the model to the force that does the work of the artificial damping at a point of its mode.
+fn balanced(model: &Model, solver: &SolverOptions, branch: &Branch, (omega, point): (f64, usize)) -> Vec<Complex64> {
+    let d = branch.mode_at(point).unwrap().damping_ratio;
+    let guess = all_harmonics(branch, point);
+    let n = branch.ndof();
+    let mass = model.structure().wave_matrix(MatrixKind::Mass, 1).unwrap();
+    let inertia = mass.times(&guess[n..2 * n], "the force").unwrap();
+    let mut forced = model.try_clone().unwrap();
+    for (dof, z) in inertia.iter().enumerate() {
+        forced
+            .add_force(dof, 1, z * Complex64::new(0.0, 2.0 * d * omega * omega))
+            .unwrap();
+    }
+    let range = ForcedOptions {
+        omega_start: omega,
+        omega_stop: omega,
+        at: &[],
+        guess: Some(&guess),
+    };
+    let answer = forced_response(&forced, solver, &range, &mut Hooks::default()).unwrap();
+    assert_eq!(answer.status(), Status::Ok);
+    all_harmonics(&answer, 0)
+}
+
+#[test]
+fn pressed_contacts_of_a_sector_stick_and_then_slip_as_the_forced_response_does() {
+    let sector = sector();
+    let (mut model, tip) = pressed(&sector, 0.0);
+    hold(&mut model, &sector, 1e3);
+    let begin = processor_time(Instant::now());
+    let solver = SolverOptions {
+        response_dof: Some(tip),
+        tol_residual: 1e-13,
+        ..harmonics(1)
+    };
+    let range = ModeOptions {
+        choice: ModeChoice::Near(530.0 * TAU),
+        log10_start: -6.5,
+        log10_stop: -6.35,
+        at: &[-6.5, -6.35],
+        ..ModeOptions::default()
+    };
+    let branch = nonlinear_mode(&model, &solver, &range, &mut Hooks::default()).unwrap();
+    assert_eq!(branch.status(), Status::Ok);
+    let info = branch.mode().unwrap();
+    assert!(info.slip_from > -6.5 && info.slip_from < -6.35 && info.lift_off_from == f64::INFINITY);
+    let slip = |point: usize| {
+        branch
+            .slip_fraction_at(point)
+            .unwrap()
+            .iter()
+            .fold(0.0_f64, |m, s| m.max(*s))
+    };
+    let mut damping = Vec::new();
+    for (i, slips) in [false, true].into_iter().enumerate() {
+        let (omega, point) = (branch.at(i)[0].omega, branch.at(i)[0].point);
+        assert_eq!(slip(point) > 0.0, slips);
+        let at = branch.mode_at(point).unwrap();
+        assert!((at.energy_damping_ratio() / at.damping_ratio - 1.0).abs() < 1e-8);
+        damping.push(at.damping_ratio);
+        let (x, found) = (
+            all_harmonics(&branch, point),
+            balanced(&model, &solver, &branch, (omega, point)),
+        );
+        let n = branch.ndof();
+        let gap = relative_gap(&found[n..], &x[n..]);
+        // Constant forces keep the structure where the preload acts; slip moves the mean by little.
+        let mean = x[..n].iter().fold(0.0_f64, |m, z| m.max(z.norm()));
+        let most = x[n..].iter().fold(0.0_f64, |m, z| m.max(z.norm()));
+        println!(
+            "log10 a = {}: D {:.6e}, slip {:.2}, response off by {gap:.1e}, mean over vibration {:.1e}",
+            at.log10_amplitude,
+            at.damping_ratio,
+            slip(point),
+            mean / most
+        );
+        assert!(gap < 1e-9, "{gap:e}");
+        assert!(slips || mean < 1e-12 * most);
+    }
+    assert!(damping[1] > 1.2 * damping[0], "{damping:?}");
+    println!(
+        "{} points in {:.1} s of processor time",
+        branch.points(),
         processor_time(Instant::now()).saturating_sub(begin).as_secs_f64()
     );
 }

@@ -145,7 +145,7 @@ fn wheel(sectors: usize) -> [DMatrix<Complex64>; 3] {
             }
             MatrixKind::Structural => add(2, Complex64::I),
             MatrixKind::Gyroscopic => add(1, SPEED.into()),
-            _ => add(2, (SPEED * SPEED).into()),
+            MatrixKind::StiffnessSpeed2 => add(2, (SPEED * SPEED).into()),
         }
     }
     for s in 0..sectors {

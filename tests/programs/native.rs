@@ -96,7 +96,16 @@ fn fortran_feels_native() {
     run(command.current_dir(&modules));
     let place = format!("-I{}", modules.display());
     let options = [&options[..], &[&place]].concat();
-    let names = ["aero", "batch", "misuse", "physics", "saved", "statuses", "threads"];
+    let names = [
+        "aero",
+        "batch",
+        "misuse",
+        "modes_and_damping",
+        "physics",
+        "saved",
+        "statuses",
+        "threads",
+    ];
     two_at_a_time(&names, |name| {
         let folder = workshop(&format!("fortran_tests/{name}"));
         let source = root().join(format!("tests/languages/fortran/{name}.f90"));
