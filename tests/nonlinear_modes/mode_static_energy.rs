@@ -95,15 +95,17 @@ impl Wheel {
     fn motions(&self, x: &[Complex64], omega: f64, tau: f64) -> [Vec<DVector<f64>>; 3] {
         let n = self.order();
         let mut found = [0, 1, 2].map(|_| vec![DVector::zeros(n); self.sectors]);
+        let [at, rates, turned] = &mut found;
         for (h, block) in x.chunks_exact(n).enumerate() {
-            for s in 0..self.sectors {
+            let sectors = at.iter_mut().zip(rates.iter_mut()).zip(turned.iter_mut());
+            for (s, ((at, rate), turned)) in sectors.enumerate() {
                 let turn = phase(h, self.engine_order, s, self.sectors) * Complex64::cis(h as f64 * tau);
                 for (i, z) in block.iter().enumerate() {
                     let z = z * turn;
-                    found[0][s][i] += z.re;
-                    found[1][s][i] -= omega * h as f64 * z.im;
-                    // i times the vibration, the sign of that of harmonic 0 left out.
-                    found[2][s][i] -= if h == 0 { 0.0 } else { z.im };
+                    at[i] += z.re;
+                    rate[i] -= omega * h as f64 * z.im;
+                    // i times the harmonics above 0, which structural damping takes.
+                    turned[i] -= if h == 0 { 0.0 } else { z.im };
                 }
             }
         }

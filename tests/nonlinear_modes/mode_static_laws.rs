@@ -203,17 +203,8 @@ fn joint() -> Vec<Contact> {
     iwan.elements(&rubbing(), 9).unwrap()
 }
 
-fn cases() -> Vec<Case> {
-    let place = |f: f64| [f, 0.0, 0.0];
-    let elements: Vec<(f64, f64)> = joint().iter().map(|c| (c.kt, c.slip_limit())).collect();
-    let stop = Contact {
-        preload: 0.4,
-        ..Contact::unilateral(Some(1), None, 1.5, 0.0)
-    };
-    let stopped = |x: Motion| -(0.4 - 1.5 * x[1]).max(0.0);
-    let table = Table::new(&DISPLACEMENTS, &FORCES).unwrap();
-    let series = Polynomial::scalar(&SPRING, &DAMPER).unwrap();
-    let case = |name: &'static str, contacts, constant, states, force| Case {
+fn case(name: &'static str, contacts: Vec<Contact>, constant: [f64; 3], states: usize, force: Option<Force>) -> Case {
+    Case {
         name,
         contacts,
         constant,
@@ -221,8 +212,15 @@ fn cases() -> Vec<Case> {
         samples: 0,
         states,
         force,
-    };
-    vec![
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let place = |f: f64| [f, 0.0, 0.0];
+    let elements: Vec<(f64, f64)> = joint().iter().map(|c| (c.kt, c.slip_limit())).collect();
+    let table = Table::new(&DISPLACEMENTS, &FORCES).unwrap();
+    let series = Polynomial::scalar(&SPRING, &DAMPER).unwrap();
+    let mut all = vec![
         case(
             "table",
             vec![rubbing(), Contact::between(2, None, ContactKind::Table(table))],
@@ -283,6 +281,19 @@ fn cases() -> Vec<Case> {
             3,
             None,
         ),
+    ];
+    all.extend(sampled_cases());
+    all
+}
+
+/// The laws that are sampled.
+fn sampled_cases() -> Vec<Case> {
+    let stop = Contact {
+        preload: 0.4,
+        ..Contact::unilateral(Some(1), None, 1.5, 0.0)
+    };
+    let stopped = |x: Motion| -(0.4 - 1.5 * x[1]).max(0.0);
+    vec![
         case(
             "regularised friction beside a pressed stop",
             vec![Contact::regularised(0, None, 0.3, 1.0, 0.8), stop],
@@ -360,10 +371,12 @@ fn contact_forces(case: &Case, law: &Force, x: &[Complex64], omega: f64) -> Vec<
     sums
 }
 
+/// The structure of the pressed models.
+const STIFFNESS: [f64; 9] = [2.0, -0.4, 0.3, -0.4, 3.0, -0.5, 0.3, -0.5, 2.5];
+
 /// Largest force that is not in balance at a point, over the largest of the structure in its harmonics above 0.
 fn out_of_balance(case: &Case, branch: &Branch, point: usize) -> f64 {
     let Some(law) = &case.force else { return 0.0 };
-    const STIFFNESS: [f64; 9] = [2.0, -0.4, 0.3, -0.4, 3.0, -0.5, 0.3, -0.5, 2.5];
     let stiffness = Matrix3::from_column_slice(&STIFFNESS).map(Complex64::from);
     let mass = Matrix3::from_diagonal(&Vector3::new(1.0, 1.4, 0.8)).map(Complex64::from);
     let x = all_harmonics(branch, point);
