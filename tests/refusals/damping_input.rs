@@ -9,7 +9,7 @@ use hbvib::analysis::time_response::time_response;
 use hbvib::analysis::verify;
 use hbvib::error::Status;
 use hbvib::hooks::Hooks;
-use hbvib::linalg::matrix_view::{MatrixView, Part};
+use hbvib::linalg::matrix_view::{MatrixView, Part, Storage, Values};
 use hbvib::model::Model;
 use hbvib::model::rotation::Speed;
 use hbvib::model::structure::MatrixKind;
@@ -92,6 +92,43 @@ fn a_triangle_of_a_complex_symmetric_matrix_is_no_hermitian_one() {
     rounded[3].im = 1e-16;
     let view = MatrixView::dense_complex(2, &rounded).part(Part::Lower);
     model.set_matrix(MatrixKind::Stiffness, &view).unwrap();
+}
+
+#[test]
+fn a_sparse_triangle_with_a_complex_diagonal_is_refused_in_a_sector_and_for_a_diameter() {
+    // [2, −1; −1, 2] of (1 + 0.05i) as compressed columns: the lower triangle, then the upper one.
+    let loss = Complex64::new(1.0, 0.05);
+    let values = [2.0 * loss, -loss, 2.0 * loss];
+    let lower: ([i64; 3], [i64; 3]) = ([0, 2, 3], [0, 1, 1]);
+    let upper: ([i64; 3], [i64; 3]) = ([0, 1, 3], [0, 0, 1]);
+    for ((col_ptr, row_idx), part, word, kept) in [
+        (lower, Part::Lower, "SYMMETRIC_LOWER", Part::SymmetricLower),
+        (upper, Part::Upper, "SYMMETRIC_UPPER", Part::SymmetricUpper),
+    ] {
+        let mut model = Model::cyclic(2, 6).unwrap();
+        let view = MatrixView {
+            storage: Storage::Csc {
+                col_ptr: &col_ptr,
+                row_idx: &row_idx,
+            },
+            values: Values::Complex(&values),
+            ..MatrixView::dense(2, &[])
+        };
+        let words = ["stiffness[0,0] has the imaginary part 1.000e-1", word];
+        let status = Status::NotHermitian;
+        refused(
+            model.set_matrix(MatrixKind::Stiffness, &view.part(part)),
+            status,
+            &words,
+        );
+        refused(
+            model.set_diameter(MatrixKind::Stiffness, 1, &view.part(part)),
+            status,
+            &words,
+        );
+        // As what it is it is taken.
+        model.set_matrix(MatrixKind::Stiffness, &view.part(kept)).unwrap();
+    }
 }
 
 #[test]
