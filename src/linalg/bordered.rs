@@ -149,7 +149,7 @@ impl Bordered {
         let m = self.active.len() + 1;
         self.lu.set_order(m);
         if self.eliminated.is_empty() {
-            for (j, from) in jacobian.chunks_exact(n).enumerate() {
+            for (j, from) in jacobian.chunks_exact(n.max(1)).enumerate() {
                 let to = self.lu.column(j);
                 for (x, from) in to.iter_mut().zip(from) {
                     *x = from * u_scale;

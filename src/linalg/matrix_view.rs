@@ -1,6 +1,7 @@
 //! A matrix borrowed from the caller, and its checks.
 
 use crate::error::{Error, Result, Status, fail, try_push};
+use crate::linalg::sorted_columns::GivenColumns;
 use crate::linalg::sparse::{Csc, Form, Symmetry};
 use num_complex::Complex64;
 
@@ -217,7 +218,21 @@ impl<'a> MatrixView<'a> {
         let entries = match self.storage {
             Storage::ColMajor { ld } => self.dense_entries(name, (ld, false), symmetry)?,
             Storage::RowMajor { ld } => self.dense_entries(name, (ld, true), symmetry)?,
-            Storage::Csc { col_ptr, row_idx } => self.sparse_entries(name, (col_ptr, row_idx), symmetry)?,
+            Storage::Csc { col_ptr, row_idx } => {
+                self.check_columns(name, (col_ptr, row_idx))?;
+                let columns = GivenColumns {
+                    order,
+                    col_ptr,
+                    row_idx,
+                    index_base: self.index_base as i64,
+                };
+                let one_triangle = self.part.skips_lower() || self.part.skips_upper();
+                let keep = |i, j| !self.skips(i, j);
+                if let Some(a) = columns.assembled(|k| self.values.get(k), keep, one_triangle.then_some(symmetry))? {
+                    return Ok(a);
+                }
+                self.sparse_entries(name, (col_ptr, row_idx), symmetry)?
+            }
         };
         Csc::from_triplets(order, order, entries)
     }
@@ -283,12 +298,8 @@ impl<'a> MatrixView<'a> {
         Ok(entries)
     }
 
-    fn sparse_entries(
-        &self,
-        name: &str,
-        (col_ptr, row_idx): (&[i64], &[i64]),
-        symmetry: Symmetry,
-    ) -> Result<Vec<(usize, usize, Complex64)>> {
+    /// Checks the lengths and bounds of compressed columns.
+    fn check_columns(&self, name: &str, (col_ptr, row_idx): (&[i64], &[i64])) -> Result<()> {
         let base = self.index_base as i64;
         if col_ptr.len() != self.cols + 1 {
             return fail!(
@@ -323,6 +334,16 @@ impl<'a> MatrixView<'a> {
                 self.values.len()
             );
         }
+        Ok(())
+    }
+
+    fn sparse_entries(
+        &self,
+        name: &str,
+        (col_ptr, row_idx): (&[i64], &[i64]),
+        symmetry: Symmetry,
+    ) -> Result<Vec<(usize, usize, Complex64)>> {
+        let base = self.index_base as i64;
         let mut entries = Vec::new();
         for j in 0..self.cols {
             let range = (col_ptr[j] - base) as usize..(col_ptr[j + 1] - base) as usize;
@@ -342,6 +363,11 @@ impl<'a> MatrixView<'a> {
         Ok(entries)
     }
 
+    /// Whether an entry lies in the triangle that is not read.
+    fn skips(&self, i: usize, j: usize) -> bool {
+        (self.part.skips_upper() && i < j) || (self.part.skips_lower() && i > j)
+    }
+
     /// Stores an entry, and its mirror image where one triangle represents both.
     fn take(
         &self,
@@ -350,7 +376,7 @@ impl<'a> MatrixView<'a> {
         symmetry: Symmetry,
         entries: &mut Vec<(usize, usize, Complex64)>,
     ) -> Result<()> {
-        if (self.part.skips_upper() && i < j) || (self.part.skips_lower() && i > j) {
+        if self.skips(i, j) {
             return Ok(());
         }
         if !v.is_finite() {

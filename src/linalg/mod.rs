@@ -17,6 +17,7 @@ pub mod lu;
 pub mod matrix_view;
 pub mod quadratic;
 pub mod small_lu;
+mod sorted_columns;
 pub mod sparse;
 pub mod triangle;
 mod vectors;

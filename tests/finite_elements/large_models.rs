@@ -157,6 +157,8 @@ fn plates_are_swept_within_the_memory_of_a_few_factors() {
         forget_the_peak();
         let before = memory("VmRSS");
         let model = plate.with_sliders(20, 2e5, 0.05).unwrap();
+        // Without the matrices that the caller held until the model had its own.
+        forget_the_peak();
         let solver = SolverOptions {
             tolerance: 0.0,
             harmonics: 3,
@@ -177,6 +179,6 @@ fn plates_are_swept_within_the_memory_of_a_few_factors() {
             most / factor
         );
         assert!(branch.points() >= 40 && branch.reduction().basis > 0);
-        assert!(most < 3.0 * factor, "{:.2}", most / factor);
+        assert!(most < 2.8 * factor, "{:.2}", most / factor);
     }
 }
