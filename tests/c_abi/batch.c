@@ -71,10 +71,16 @@ int main(void)
     REFUSED("overlap", hbvib_batch_peaks(batch, DESIGNS, amplitude, amplitude, NULL, NULL), HBVIB_E_ARGUMENT, 4, "overlap");
 
     o.threads = 3;
-    o.keep = 1;
     WORKS("threads", hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, DESIGNS, values, &other));
     WORKS("threads", hbvib_batch_peaks(other, DESIGNS, again, NULL, NULL, NULL));
     EXPECT("threads", memcmp(amplitude, again, sizeof again) == 0);
+    WORKS("free", hbvib_batch_free(other));
+    other = NULL;
+    /* Branches that are kept have more points, and the same peaks. */
+    o.keep = 1;
+    WORKS("keep", hbvib_batch_solve(model, &s, &o, NULL, p, PARAMETERS, DESIGNS, values, &other));
+    WORKS("keep", hbvib_batch_peaks(other, DESIGNS, again, NULL, NULL, points));
+    for (i = 0; i < DESIGNS; i++) EXPECT("keep", i == 3 || fabs(again[i] / amplitude[i] - 1) < 1e-9);
     WORKS("branch", hbvib_batch_branch(other, 1, &branch));
     EXPECT("branch", hbvib_branch_points(branch) == points[1]);
     REFUSED("twice", hbvib_batch_branch(other, 1, &branch), HBVIB_E_ARGUMENT, 2, "taken before");
