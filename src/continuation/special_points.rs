@@ -107,12 +107,17 @@ impl Bracket {
         (self.last.0 - self.other.0).abs()
     }
 
+    /// The middle.
+    fn middle(&self) -> f64 {
+        0.5 * (self.last.0 + self.other.0)
+    }
+
     /// Whether the guess follows from interpolation and is so close to the end found last that its own error, far below its
     /// distance, is rounding.
     #[must_use]
     pub fn is_last(&self) -> bool {
-        let (guess, middle) = (self.guess(), 0.5 * (self.last.0 + self.other.0));
-        self.before.is_some() && guess.to_bits() != middle.to_bits() && (guess - self.last.0).abs() < CLOSE
+        let guess = self.guess();
+        self.before.is_some() && guess.to_bits() != self.middle().to_bits() && (guess - self.last.0).abs() < CLOSE
     }
 
     /// The place where the root is expected.
@@ -137,7 +142,7 @@ impl Bracket {
         if share > 0.0 && share < 1.0 {
             guess
         } else {
-            0.5 * (a + b)
+            self.middle()
         }
     }
 
@@ -263,10 +268,15 @@ impl Locator {
         }
         let (mut best, mut last) = (None, f64::INFINITY);
         for _ in 0..MAX_EVALUATIONS {
-            let (s, is_last) = (bracket.guess(), bracket.is_last());
-            let Some(point) = self.solve_between(problem, metric, (a, b), s, None, interrupt)? else {
-                break;
-            };
+            let (mut s, mut is_last) = (bracket.guess(), bracket.is_last());
+            let mut found = self.solve_between(problem, metric, (a, b), s, None, interrupt)?;
+            if found.is_none() {
+                // Beyond a corner interpolation, and the last departure, may lead away.
+                self.departure.clear();
+                (s, is_last) = (bracket.middle(), false);
+                found = self.solve_between(problem, metric, (a, b), s, None, interrupt)?;
+            }
+            let Some(point) = found else { break };
             last = value(&point);
             best = Some(point);
             if is_last || last == 0.0 || bracket.width() < WIDTH || bracket.narrow(s, last) < WIDTH {
