@@ -166,8 +166,7 @@ impl<'a> BranchTracer<'a> {
             self.interrupt
                 .phase(Phase::Continuation, self.fraction_done(parameter))?;
             if let Some(bands) = &self.course.bands {
-                let rises = continuation.current().tangent.last().is_some_and(|t| *t > 0.0);
-                continuation.change_at_most(bands.most_change(parameter, rises));
+                bands.shorten_step(&mut continuation);
             }
             let (point, end) = match continuation.advance(analysis.problem(), self.interrupt)? {
                 Advance::Accepted { point, last } => (point, last.then_some(Status::Ok)),

@@ -4,6 +4,7 @@
 //! Prediction errors alone do not show that a step is too long which passes a resonance as a whole. Within a band steps are as
 //! short as those of a curve, about, and from outside they lead at most half way to it.
 
+use crate::continuation::Continuation;
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::Model;
@@ -63,8 +64,15 @@ impl ResonanceBands {
         })
     }
 
+    /// Shortens the next step where it is too long for the bands.
+    pub fn shorten_step(&self, continuation: &mut Continuation) {
+        let point = continuation.current();
+        let rises = point.tangent.last().is_some_and(|t| *t > 0.0);
+        continuation.change_at_most(self.most_change(point.parameter(), rises));
+    }
+
     /// The largest change of the frequency from `omega` on, in the sense in which it rises or falls.
-    pub fn most_change(&self, omega: f64, rises: bool) -> f64 {
+    fn most_change(&self, omega: f64, rises: bool) -> f64 {
         let distance = |&(low, high): &(f64, f64)| match rises {
             true if omega <= high => Some(low - omega),
             false if omega >= low => Some(omega - high),

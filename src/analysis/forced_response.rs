@@ -121,12 +121,11 @@ fn follow(
     };
     let resolution = levels.at(level)?;
     let length = resolution.condensed.length();
-    let response_dof = if let Some(dof) = solver.response_dof {
-        dof
-    } else {
-        // The lower end is used, so that both directions follow the same degree of freedom.
-        let omega = range.omega_start.min(range.omega_stop);
-        forced_dof_with_largest_motion(model, &resolution.condensed, omega, interrupt)?
+    // The lower end is used, so that both directions follow the same degree of freedom.
+    let lower = range.omega_start.min(range.omega_stop);
+    let response_dof = match solver.response_dof {
+        Some(dof) => dof,
+        None => forced_dof_with_largest_motion(model, &resolution.condensed, lower, interrupt)?,
     };
     let settings = Settings {
         start: range.omega_start,
@@ -159,11 +158,7 @@ fn follow(
         // The branch is followed before its start as far as the range is long, but not near zero frequency.
         before: Some((2.0 * range.omega_start - range.omega_stop).max(0.5 * range.omega_start)),
         starts_again: range.guess.is_none().then_some(solver.harmonics),
-        bands: if detail == Detail::SpecialPoints && solver.step_max == 0.0 {
-            Some(ResonanceBands::new(model, &forced, sweep, interrupt)?)
-        } else {
-            None
-        },
+        bands: bands(model, (solver, detail), (&forced, sweep), interrupt)?,
     };
     let mut tracer = BranchTracer::new(course, solver.tolerance, interrupt);
     let outcome = match first_point(&mut response, &settings, solver.harmonics, interrupt) {
@@ -237,6 +232,19 @@ fn first_point(
         }
     }
     Err(failure)
+}
+
+/// Bounds of the steps, where the branch is followed for its special points alone and the caller gives none.
+fn bands(
+    model: &Model,
+    (solver, detail): (&SolverOptions, Detail),
+    (forced, sweep): (&[usize], (f64, f64)),
+    interrupt: &Interrupt<'_>,
+) -> Result<Option<ResonanceBands>> {
+    if detail == Detail::Curve || solver.step_max > 0.0 {
+        return Ok(None);
+    }
+    ResonanceBands::new(model, forced, sweep, interrupt).map(Some)
 }
 
 /// The harmonics in which forces act.

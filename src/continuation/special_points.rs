@@ -260,10 +260,8 @@ impl Locator {
             }
         }
         let mut bracket = Bracket::between(ends[0], ends[1]);
-        if let Some(integral) = kind.integral(a, b)
-            && ends[0].0 == 0.0
-            && ends[1].0 == 1.0
-        {
+        let is_whole = ends.map(|end| end.0.to_bits()) == [0.0_f64, 1.0].map(f64::to_bits);
+        if let Some(integral) = kind.integral(a, b).filter(|_| is_whole) {
             bracket = bracket.with_integral(integral / metric.distance(&a.v, &b.v));
         }
         let (mut best, mut last) = (None, f64::INFINITY);

@@ -109,10 +109,10 @@ mod tests {
         let exact = Csc::from_triplets(n, n, triplets.filter(|(_, _, z)| *z != Complex64::ZERO).collect()).unwrap();
         let col_ptr: Vec<i64> = (0..=n).map(|j| (j * n + 1) as i64).collect();
         let row_idx: Vec<i64> = whole.map(|(i, _)| i as i64 + 1).collect();
-        let given = |row_idx| GivenColumns {
+        let given = GivenColumns {
             order: n,
             col_ptr: &col_ptr,
-            row_idx,
+            row_idx: &row_idx,
             index_base: 1,
         };
         let value = |k: usize| entry(k % n, k / n);
@@ -121,12 +121,17 @@ mod tests {
             .into_iter()
             .zip([None, Some(Symmetry::Hermitian), Some(Symmetry::Hermitian)])
         {
-            let found = given(&row_idx).assembled(value, keep, mirrored).unwrap().unwrap();
+            let found = given.assembled(value, keep, mirrored).unwrap().unwrap();
             assert_eq!(found, exact);
         }
-        let refused = |row_idx: &[i64], value: fn(usize) -> Complex64| {
-            let all = |_, _| true;
-            given(row_idx).assembled(value, all, None).unwrap().is_none()
+        let refused = |row_idx: &Vec<i64>, value: fn(usize) -> Complex64| {
+            let columns = GivenColumns {
+                order: n,
+                col_ptr: &col_ptr,
+                row_idx,
+                index_base: 1,
+            };
+            columns.assembled(value, |_, _| true, None).unwrap().is_none()
         };
         let one: fn(usize) -> Complex64 = |_| Complex64::ONE;
         assert!(!refused(&row_idx, one));

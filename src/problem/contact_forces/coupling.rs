@@ -285,10 +285,10 @@ fn couple_columns<const P: usize>(
         let q = first + q;
         change.copy_from_slice(from);
         // Column q is that of the real or of the imaginary part of a motion z, and loses κz.
-        let kappa = kappa((q + mean) / 2);
+        let kappa = kappa(if mean == 1 { q.div_ceil(2) } else { q / 2 });
         if q < mean {
             change[q] -= kappa.re;
-        } else if (q - mean) % 2 == 0 {
+        } else if (q - mean).is_multiple_of(2) {
             change[q] -= kappa.re;
             change[q + 1] -= kappa.im;
         } else {
