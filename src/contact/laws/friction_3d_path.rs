@@ -8,7 +8,7 @@
 //! then shorten towards the opening. At a closing the force starts from zero: in stick where |u′| < R′, else along u′, the one direction
 //! whose turn stays finite.
 
-use crate::contact::laws::friction_3d_slip::{Solved, along_motion, first_zero, solve, turn_rate};
+use crate::contact::laws::friction_3d_slip::{ROUNDING, Solved, along_motion, first_zero, solve, turn_rate};
 use crate::contact::plane_path::{CONTEXT, PlaneForce, PlaneInstant, PlanePath, PlanePiece, SlipPanel};
 use crate::contact::radau::{POINTS, STAGES};
 use crate::error::{Error, Result, Status, try_push};
@@ -32,6 +32,9 @@ const CORRECTIONS: usize = 3;
 
 /// Shortest panel, against the turn.
 const SHORTEST: f64 = 1e-13;
+
+/// Rounding of the margin of a stick, over the motion against the largest limit.
+const PULL_ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// Pieces per panel of the turn beyond which a path is given up.
 const MOST_PIECES: usize = 200;
@@ -71,12 +74,13 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// The phase of a force at τ, brought onto the limit where it lies beyond.
+    /// The phase of a force at τ, brought onto the limit where it lies beyond. At the limit but for rounding it slips: where it
+    /// does not, slip ends at once.
     pub fn begin(&mut self, tau: f64, force: [f64; 2]) -> Phase {
-        let limit = self.path.at(tau).limit;
-        let length = force[0].hypot(force[1]);
+        let at = self.path.at(tau);
+        let (limit, length) = (at.limit, force[0].hypot(force[1]));
         self.by_start = [[1.0, 0.0], [0.0, 1.0]];
-        if length >= limit {
+        if length >= limit * (1.0 - self.rounding(&at)) {
             self.by_start[0] = [-force[1] / (length * length), force[0] / (length * length)];
             return Phase::Slip {
                 angle: force[1].atan2(force[0]),
@@ -125,7 +129,7 @@ impl<'a> Walk<'a> {
     pub fn follow(&mut self, (from, to): (f64, f64), begin: Phase, opens: bool) -> Result<Phase> {
         let shortest = SHORTEST * self.path.turn;
         let (mut tau, mut phase) = (from, begin);
-        let mut events_here = 0;
+        let (mut events_here, mut after_slip) = (0, false);
         while to - tau > shortest {
             self.interrupt.check()?;
             if self.path.pieces.len() > MOST_PIECES * self.path.panels {
@@ -135,11 +139,11 @@ impl<'a> Walk<'a> {
                 )
                 .recoverable());
             }
-            let before = tau;
+            let (before, slipped) = (tau, matches!(phase, Phase::Slip { .. }));
             // Both phases claim their end at once where a motion grazes the limit: slip then goes on for a little while.
             let goes_on = events_here > 2;
             (tau, phase) = match phase {
-                Phase::Stick { force } => self.stick((tau, to), force)?,
+                Phase::Stick { force } => self.stick((tau, to), force, after_slip)?,
                 Phase::Slip { angle } => {
                     if opens && self.is_over(tau, to) {
                         break;
@@ -148,6 +152,7 @@ impl<'a> Walk<'a> {
                     self.slip((tau, end), angle, goes_on)?
                 }
             };
+            after_slip = slipped;
             events_here = if tau - before > shortest { 0 } else { events_here + 1 };
         }
         if opens {
@@ -185,8 +190,14 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// Sticks up to an onset of slip or to the end.
-    fn stick(&mut self, (from, to): (f64, f64), force: [f64; 2]) -> Result<(f64, Phase)> {
+    /// Rounding of the margin of a stick. The force is a difference of motions, which may be far larger: where a body that friction
+    /// holds has gone a long way.
+    fn rounding(&self, at: &PlaneInstant) -> f64 {
+        ROUNDING.max(PULL_ROUNDING * at.pull[0].hypot(at.pull[1]) / self.size)
+    }
+
+    /// Sticks up to an onset of slip or to the end. After slip the force begins at the limit, and rounding must not take it beyond.
+    fn stick(&mut self, (from, to): (f64, f64), force: [f64; 2], after_slip: bool) -> Result<(f64, Phase)> {
         let start = self.path.at(from);
         let scale = (self.size * self.size).recip();
         let forces =
@@ -194,6 +205,7 @@ impl<'a> Walk<'a> {
         // (R − |f|)(R + |f|) and its derivative. After a closing it rises from zero like the square of the time since; their
         // ratio starts at R′² − |u′|².
         let after_closing = self.closes;
+        let rounding = self.rounding(&start);
         let margin = |at: &PlaneInstant, tau: f64| {
             let f = forces(at);
             let length = f[0].hypot(f[1]);
@@ -220,7 +232,8 @@ impl<'a> Walk<'a> {
                 0 => margin(&first, tau).0,
                 _ => margin(&nodes[i - 1], tau + length * self.path.tables.nodes[i - 1]).0,
             });
-            let zero = first_zero(&self.path.tables, &values, |share| {
+            let is_zero = after_slip && tau <= from;
+            let zero = first_zero(&self.path.tables, &values, (is_zero, rounding), |share| {
                 let at = tau + length * share;
                 let (value, slope) = margin(&self.path.at(at), at);
                 (value, length * slope)
@@ -351,7 +364,7 @@ impl<'a> Walk<'a> {
         }
         let angles = panel.points();
         let slopes = tables.derivatives(&values);
-        let share = first_zero(tables, &values, |share| {
+        let share = first_zero(tables, &values, (false, ROUNDING), |share| {
             let at = self.path.at(from + (end - from) * share);
             let value = rate(&at, tables.interpolate(&angles, share)) / scale;
             (value, tables.interpolate(&slopes, share))

@@ -21,8 +21,12 @@ const LARGEST_GUESS: f64 = 0.3;
 /// Largest turn between two nodes.
 const LARGEST_TURN: f64 = 1.0;
 
-/// A margin this small, against its scale, is zero up to rounding.
-const ROUNDING: f64 = 1e-13;
+/// A margin this small, against its scale, is zero up to rounding, unless rounding of the motion is larger.
+pub(super) const ROUNDING: f64 = 1e-13;
+
+/// Halvings of the first interval in which a margin is sought that rises from zero before it falls. A shorter time of stick or slip is
+/// left out: its force matters by the third power of the time.
+const HALVINGS: usize = 20;
 
 /// A solved panel.
 pub(super) struct Solved {
@@ -144,10 +148,12 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 /// The share of a panel after which a margin, given at its points in units of its scale, first falls below zero. `margin` returns it
-/// and its derivative at a share.
+/// and its derivative at a share. A margin up to `rounding` counts as zero at the begin, and any where it is zero there by a previous
+/// event.
 pub(super) fn first_zero(
     tables: &RadauTables,
     values: &[f64; POINTS],
+    (is_zero, rounding): (bool, f64),
     mut margin: impl FnMut(f64) -> (f64, f64),
 ) -> Option<f64> {
     let slopes = tables.derivatives(values);
@@ -155,10 +161,10 @@ pub(super) fn first_zero(
     for i in 0..STAGES {
         let (from, to) = (tables.point(i), tables.point(i + 1));
         let (before, after) = (values[i], values[i + 1]);
-        let begins_at_zero = i == 0 && before <= ROUNDING;
+        let begins_at_zero = i == 0 && (is_zero || before <= rounding);
         if after < 0.0 {
             if begins_at_zero {
-                return Some(0.0);
+                return Some(return_to_zero((to, after), rounding, &mut margin));
             }
             return Some(safe_newton(from, to, before, after, &mut margin));
         }
@@ -174,4 +180,22 @@ pub(super) fn first_zero(
         }
     }
     None
+}
+
+/// The share at which a margin that begins at zero, and is below it at `end`, falls below zero. It may rise first: where stick begins,
+/// its slope vanishes as well, and a stick may be shorter than the first interval.
+fn return_to_zero(end: (f64, f64), rounding: f64, margin: &mut impl FnMut(f64) -> (f64, f64)) -> f64 {
+    let mut end = end;
+    for _ in 0..HALVINGS {
+        let share = 0.5 * end.0;
+        let value = margin(share).0;
+        if value > rounding {
+            return safe_newton(share, end.0, value, end.1, margin);
+        }
+        if value >= 0.0 {
+            break;
+        }
+        end = (share, value);
+    }
+    0.0
 }
