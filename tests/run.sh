@@ -56,6 +56,9 @@ if { [ -e .venv ] || ! complete python3; } && ! complete .venv/bin/python; then
     }
 fi
 
+# The crates of all platforms: a build takes those of its own, but a new project of a user is resolved with all.
+cargo fetch --quiet
+
 # The libraries first: the programs link against them; and the examples, which tests run.
 cargo build --release --lib --examples
 cargo build --release --lib --bins -p hbvib-io -p hbvib-cli
