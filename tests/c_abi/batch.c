@@ -37,10 +37,12 @@ int main(void)
     hbvib_batch_options o;
     hbvib_hooks hooks;
     hbvib_user_force force;
-    hbvib_parameter p[PARAMETERS];
+    /* One more, zero: that before it is said to be longer than it is. */
+    hbvib_parameter p[PARAMETERS + 1];
     int calls = 0, i;
 
     begin();
+    memset(&p[PARAMETERS], 0, sizeof p[0]);
     s.harmonics = 9;
     p[0] = parameter(HBVIB_PARAMETER_FORCE);
     p[1] = parameter(HBVIB_PARAMETER_PRELOAD);
