@@ -10,6 +10,7 @@ use super::matrices::matrix_kind;
 use super::model::hbvib_model;
 use super::version_and_errors::hbvib_status;
 use crate::error::{Result, Status, fail};
+use crate::linalg::sparse::Columns;
 use crate::model::Model;
 use crate::model::contents::Block;
 
@@ -80,15 +81,15 @@ pub unsafe extern "C" fn hbvib_model_matrix(
         let row = optional((row, 5), "row")?;
         let column = optional((column, 6), "column")?;
         let value = optional((value, 7), "value")?;
-        let entries = a.map_or(0, |a| a.values.len());
+        let entries = a.map_or(0, Columns::stored);
         let wanted = row.is_some() || column.is_some() || value.is_some();
         if !unsafe { fits(entries, wanted, capacity, 4, (count, 8)) }? {
             return Ok(Status::Ok);
         }
         let degrees = model.structure().degrees();
-        let columns = a.iter().flat_map(|a| {
-            (0..a.cols).flat_map(move |j| (a.col_ptr[j]..a.col_ptr[j + 1]).map(move |k| (a.row_idx[k], j, a.values[k])))
-        });
+        let columns = a
+            .iter()
+            .flat_map(|a| (0..a.order()).flat_map(move |j| a.column(j).map(move |(i, v)| (i, j, v))));
         for (k, (i, j, v)) in columns.enumerate() {
             unsafe {
                 if let Some(p) = row {

@@ -2,17 +2,17 @@
 
 use crate::condense::certificate::Certificate;
 use crate::condense::memory_limit::within;
-use crate::condense::wave_modes::proportional;
+use crate::condense::wave_matrices::{Assembled, Damping, WaveMatrices};
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::block_krylov::{BlockKrylov, SparseVector};
 use crate::linalg::cholesky::Cholesky;
 use crate::linalg::hermitian;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::row_index::Row;
+use crate::linalg::sparse::{Columns, Csc};
 use crate::linalg::triangle::{Entry, Triangle};
-use crate::model::Model;
-use crate::model::reduced_wave::{Basis, ReducedPencil, ReducedWave, Remainder, WaveDamping, WaveKey};
-use crate::model::structure::MatrixKind;
+use crate::model::reduced_wave::{Basis, ReducedPencil, ReducedWave, Remainder, WaveDamping};
+use crate::model::wave_matrix::WaveMatrix;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -40,82 +40,8 @@ const ATTEMPTS: usize = 5;
 const MOST_COLUMNS: usize = 600;
 const MOST_BLOCKS: usize = 12;
 
-/// Blocks that memory is counted for.
+/// Blocks that memory is counted and reserved for.
 const USUAL_BLOCKS: usize = 7;
-
-/// Relative deviation from a Hermitian matrix that is rounding.
-const HERMITIAN: f64 = 1e-10;
-
-/// The matrices of a wave and the reason for which they are reduced.
-pub(super) struct WaveMatrices<'a> {
-    pub model: &'a Model,
-    pub number: usize,
-    pub conjugated: bool,
-    pub key: WaveKey,
-    pub frequency: f64,
-    pub memory_limit: usize,
-}
-
-/// K, M and the damping of a wave.
-struct Assembled {
-    stiffness: Csc,
-    mass: Csc,
-    damping: Damping,
-}
-
-enum Damping {
-    Proportional(f64, f64),
-    General(Csc),
-}
-
-impl WaveMatrices<'_> {
-    fn matrix(&self, kind: MatrixKind) -> Result<Csc> {
-        let mut a = self.model.structure().wave_matrix(kind, self.number)?;
-        if self.conjugated {
-            for z in &mut a.values {
-                *z = z.conj();
-            }
-        }
-        Ok(a)
-    }
-
-    /// `None` where stiffness or mass is not Hermitian.
-    fn assembled(&self, interrupt: &Interrupt<'_>) -> Result<Option<Assembled>> {
-        let stiffness = self.matrix(MatrixKind::Stiffness)?;
-        interrupt.check()?;
-        let mass = self.matrix(MatrixKind::Mass)?;
-        for a in [&stiffness, &mass] {
-            interrupt.check()?;
-            if a.worst_hermitian_pair().2 > HERMITIAN * a.max_abs() {
-                return Ok(None);
-            }
-        }
-        let structure = self.model.structure();
-        let damping = if structure.has(MatrixKind::Damping) {
-            let c = self.matrix(MatrixKind::Damping)?;
-            let (none, n) = (Complex64::ZERO, c.rows);
-            let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));
-            let pattern = Csc::sum(n, &terms)?;
-            let aligned = [
-                mass.aligned(&pattern)?,
-                stiffness.aligned(&pattern)?,
-                c.aligned(&pattern)?,
-            ];
-            match proportional([&aligned[0], &aligned[1], &aligned[2]]) {
-                Some((alpha, beta)) => Damping::Proportional(alpha, beta),
-                None => Damping::General(c),
-            }
-        } else {
-            let (alpha, beta) = structure.rayleigh;
-            Damping::Proportional(alpha, beta)
-        };
-        Ok(Some(Assembled {
-            stiffness,
-            mass,
-            damping,
-        }))
-    }
-}
 
 /// Prepares a wave for `inputs` until its certificate, which `error` computes, is below `limit` or the basis may not grow;
 /// `None` where it has no definite matrix.
@@ -162,7 +88,7 @@ type Wrapping<T> = (fn(Vec<T>) -> Basis, fn(Basis) -> Vec<T>);
 
 fn build<T: Entry>(
     matrices: &WaveMatrices<'_>,
-    assembled: Assembled,
+    assembled: Assembled<'_>,
     inputs: Vec<SparseVector>,
     limit: f64,
     error: impl Fn(&Arc<ReducedWave>) -> Result<Certificate>,
@@ -172,7 +98,7 @@ fn build<T: Entry>(
     let Some((mut krylov, prepared)) = started::<T>(matrices, assembled, &inputs, interrupt)? else {
         return Ok(None);
     };
-    krylov.start(&inputs, interrupt)?;
+    krylov.start(&inputs, USUAL_BLOCKS, interrupt)?;
     let most = MOST_COLUMNS.max(MOST_BLOCKS * inputs.len());
     let mut wave = ReducedWave {
         key: matrices.key,
@@ -200,7 +126,9 @@ fn build<T: Entry>(
         if complete || !krylov.grow(interrupt)? {
             wave.exhausted = found.basis > limit;
             wave.pencil = exact_pencil(&mut krylov, &prepared, interrupt)?;
-            wave.basis = basis(krylov.take_basis());
+            let mut columns = krylov.take_basis();
+            columns.shrink_to_fit();
+            wave.basis = basis(columns);
             let shared = Arc::new(wave);
             let found = error(&shared)?;
             return Ok(Some((shared, found)));
@@ -217,11 +145,38 @@ struct Prepared {
     n: usize,
 }
 
+/// K and M. Those that the model keeps become triangles when the factor stands, in the memory that its preparation leaves;
+/// those that were made for the wave are freed before.
+enum Operators<'a, T> {
+    Kept([WaveMatrix<'a>; 2]),
+    Triangles([Triangle<T>; 2]),
+}
+
+impl<'a, T: Entry> Operators<'a, T> {
+    fn new(matrices: [WaveMatrix<'a>; 2], interrupt: &Interrupt<'_>) -> Result<Self> {
+        let kept = Self::Kept(matrices);
+        if let Self::Kept([WaveMatrix::Kept(_), WaveMatrix::Kept(_)]) = &kept {
+            return Ok(kept);
+        }
+        kept.triangles(interrupt).map(Self::Triangles)
+    }
+
+    fn triangles(self, interrupt: &Interrupt<'_>) -> Result<[Triangle<T>; 2]> {
+        let matrices = match self {
+            Self::Kept(matrices) => matrices,
+            Self::Triangles(triangles) => return Ok(triangles),
+        };
+        let triangle = |a: WaveMatrix<'_>| Triangle::sum(&a, (0.0, &Csc::zero(a.columns())?), interrupt);
+        let [stiffness, mass] = matrices;
+        Ok([triangle(stiffness)?, triangle(mass)?])
+    }
+}
+
 /// The factor of K + σM at the first shift that makes it definite. The assembled matrices are freed before it is made, and
 /// assembled again for another shift.
 fn started<T: Entry>(
     matrices: &WaveMatrices<'_>,
-    assembled: Assembled,
+    assembled: Assembled<'_>,
     inputs: &[SparseVector],
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<(BlockKrylov<T>, Prepared)>> {
@@ -240,8 +195,8 @@ fn started<T: Entry>(
         else {
             return Ok(None);
         };
-        let n = stiffness.rows;
-        let trace = |a: &Csc| (0..n).map(|j| a.get(j, j).re).sum::<f64>();
+        let n = stiffness.columns();
+        let trace = |a: &WaveMatrix<'_>| (0..n).map(|j| a.get(j, j).re).sum::<f64>();
         let heavy = trace(&mass);
         if heavy <= 0.0 {
             return Ok(None);
@@ -250,14 +205,10 @@ fn started<T: Entry>(
             shift = SMALL * trace(&stiffness).abs() / heavy;
         }
         let a = Triangle::<T>::sum(&stiffness, (shift, &mass), interrupt)?;
-        let none = Csc::from_triplets(n, n, Vec::new())?;
-        let stiffness_triangle = Triangle::<T>::sum(&stiffness, (0.0, &none), interrupt)?;
-        drop(stiffness);
-        let mass_triangle = Triangle::<T>::sum(&mass, (0.0, &none), interrupt)?;
-        drop(mass);
+        let operators = Operators::<T>::new([stiffness, mass], interrupt)?;
         let block = inputs.len() * n * size_of::<T>();
         let beside = (USUAL_BLOCKS + 3) * block
-            + 3 * a.values.len() * (size_of::<T>() + size_of::<usize>())
+            + 3 * a.values.len() * (size_of::<T>() + size_of::<Row>())
             + matrices.model.kept().bytes();
         let allow = |factor: usize| within(matrices.memory_limit, factor + beside);
         let Some(factor) = Cholesky::new(&a, allow, interrupt)? else {
@@ -273,7 +224,9 @@ fn started<T: Entry>(
             damping: proportional,
             n,
         };
-        let matrices = (stiffness_triangle, shift, mass_triangle);
+        drop(a);
+        let [stiffness, mass] = operators.triangles(interrupt)?;
+        let matrices = (stiffness, shift, mass);
         return Ok(Some((BlockKrylov::new(factor, matrices, general), prepared)));
     }
     Ok(None)

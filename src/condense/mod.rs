@@ -31,6 +31,7 @@ mod sweep;
 mod tied_load;
 mod under_force;
 pub mod wave_cache;
+mod wave_matrices;
 pub mod wave_modes;
 mod wave_reduction;
 

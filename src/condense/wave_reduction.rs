@@ -7,9 +7,10 @@
 use crate::condense::HarmonicBlock;
 use crate::condense::certificate::{Certificate, certificate};
 use crate::condense::contact_classes::ContactClasses;
-use crate::condense::krylov_wave::{WaveMatrices, prepare};
+use crate::condense::krylov_wave::prepare;
 use crate::condense::reduced_block::reduced_block;
 use crate::condense::sweep::Sweep;
+use crate::condense::wave_matrices::WaveMatrices;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::block_krylov::SparseVector;

@@ -234,12 +234,17 @@ impl<T: Entry> BlockKrylov<T> {
         Ok(found)
     }
 
-    /// The first block, of A⁻¹ times the given vectors.
+    /// The first block, of A⁻¹ times the given vectors. Address space for a number of `blocks` like it is reserved where that
+    /// is possible: a basis that moves when it grows leaves holes, which remain resident.
     ///
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn start(&mut self, inputs: &[SparseVector], interrupt: &Interrupt<'_>) -> Result<()> {
+    pub fn start(&mut self, inputs: &[SparseVector], blocks: usize, interrupt: &Interrupt<'_>) -> Result<()> {
         let n = self.n;
+        // Without it every block asks for its own.
+        let _not_needed = self
+            .basis
+            .try_reserve_exact(inputs.len().saturating_mul(n).saturating_mul(blocks));
         let mut b = try_vec(inputs.len().saturating_mul(n), T::NONE, CONTEXT)?;
         for (column, input) in b.chunks_exact_mut(n.max(1)).zip(inputs) {
             for &(p, x) in input {

@@ -3,10 +3,11 @@
 
 use crate::error::{Error, Result, fail, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::row_index::widened;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::{Entry, Triangle};
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
@@ -56,37 +57,48 @@ impl<T: Entry> Cholesky<T> {
         allow: impl FnOnce(usize) -> Result<()>,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Self>> {
+        Ok(Self::or_bad_pivot(a, allow, interrupt)?.ok())
+    }
+
+    /// The same; the inner error is the number of a pivot that is not positive.
+    ///
+    /// # Errors
+    /// As [`Self::new`].
+    pub fn or_bad_pivot(
+        a: &Triangle<T>,
+        allow: impl FnOnce(usize) -> Result<()>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<core::result::Result<Self, usize>> {
         let n = a.n;
         let no_memory = || Error::out_of_memory(CONTEXT);
         if a.values.iter().any(|x| !x.complex().is_finite()) {
             return fail!(Singular, "a sparse matrix of order {n} is not finite");
         }
         interrupt.announce_factorisation()?;
-        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &a.row_idx);
+        let rows = widened(&a.row_idx, CONTEXT)?;
+        let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &rows);
         let symbolic = analysed(pattern)?;
         let need = symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, faer::Spec::default());
         allow(symbolic.len_val() * size_of::<T>() + need.unaligned_bytes_required())?;
         let mut values = try_vec(symbolic.len_val(), T::NONE, CONTEXT)?;
         let mut scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
-        let factored = symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                SparseColMatRef::new(pattern, &a.values),
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut scratch),
-                faer::Spec::default(),
-            )
-            .is_ok();
+        let factored = symbolic.factorize_numeric_llt(
+            &mut values,
+            SparseColMatRef::new(pattern, &a.values),
+            Side::Lower,
+            LltRegularization::default(),
+            Par::Seq,
+            MemStack::new(&mut scratch),
+            faer::Spec::default(),
+        );
         drop(scratch);
-        if !factored {
-            return Ok(None);
+        if let Err(LltError::NonPositivePivot { index }) = factored {
+            return Ok(Err(index));
         }
         let need = symbolic.solve_in_place_scratch::<T>(AT_ONCE, Par::Seq);
         let scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
         interrupt.check()?;
-        Ok(Some(Self {
+        Ok(Ok(Self {
             n,
             symbolic,
             values,

@@ -6,6 +6,7 @@
 use crate::error::{Result, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::compensated_sum::Sum;
+use crate::linalg::row_index::wide;
 use crate::linalg::triangle::{Entry, Triangle};
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
@@ -61,6 +62,7 @@ impl<T: Entry> WithSimd for Product<'_, T> {
             let mut above = rows[j];
             let range = a.col_ptr[j]..a.col_ptr[j + 1];
             for (&i, &value) in a.row_idx[range.clone()].iter().zip(&a.values[range]) {
+                let i = wide(i);
                 if i == j {
                     value.add_exactly(xj, &mut above);
                 } else {

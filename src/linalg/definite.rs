@@ -1,14 +1,11 @@
 //! Test of a large sparse matrix for positive definiteness, by a Cholesky factorisation. Lanczos iteration would
 //! find a negative direction by chance only.
 
-use crate::error::{Error, Result, fail, try_push, try_vec};
+use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::{Csc, Form};
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
-use faer::sparse::linalg::cholesky::{CholeskySymbolicParams, SymmetricOrdering, factorize_symbolic_cholesky};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Par, Side};
+use crate::linalg::cholesky::Cholesky;
+use crate::linalg::sparse::Csc;
+use crate::linalg::triangle::{Entry, Triangle};
 use num_complex::Complex64;
 
 /// Relative addition to the diagonal, so that rounding does not make a singular matrix fail.
@@ -60,36 +57,15 @@ fn first_bad_pivot(
     interrupt.check()?;
     let n = a.rows;
     let margin = Csc::from_triplets(n, n, margin)?;
-    let a = Csc::sum(
-        n,
-        &[(Complex64::ONE, a, Form::Plain), (Complex64::ONE, &margin, Form::Plain)],
-    )?;
-    interrupt.announce_factorisation()?;
-    let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &a.row_idx);
-    let no_memory = || Error::out_of_memory(CONTEXT);
-    let symbolic = factorize_symbolic_cholesky(
-        pattern,
-        Side::Lower,
-        SymmetricOrdering::Amd,
-        CholeskySymbolicParams::default(),
-    )
-    .map_err(|_| no_memory())?;
-    let need = symbolic.factorize_numeric_llt_scratch::<Complex64>(Par::Seq, faer::Spec::default());
-    let mut scratch = MemBuffer::try_new(need).map_err(|_| no_memory())?;
-    let mut values = try_vec(symbolic.len_val(), Complex64::ZERO, CONTEXT)?;
-    let factored = symbolic.factorize_numeric_llt(
-        &mut values,
-        SparseColMatRef::new(pattern, &a.values),
-        Side::Lower,
-        LltRegularization::default(),
-        Par::Seq,
-        MemStack::new(&mut scratch),
-        faer::Spec::default(),
-    );
-    match factored {
-        Ok(_) => Ok(None),
-        Err(LltError::NonPositivePivot { index }) => Ok(Some(index)),
+    if a.is_real() {
+        return bad_pivot_of::<f64>(a, &margin, interrupt);
     }
+    bad_pivot_of::<Complex64>(a, &margin, interrupt)
+}
+
+fn bad_pivot_of<T: Entry>(a: &Csc, margin: &Csc, interrupt: &Interrupt<'_>) -> Result<Option<usize>> {
+    let a = Triangle::<T>::sum(a, (1.0, margin), interrupt)?;
+    Ok(Cholesky::or_bad_pivot(&a, |_| Ok(()), interrupt)?.err())
 }
 
 fn negative(pivot: usize) -> Result<()> {

@@ -19,6 +19,99 @@ pub struct Csc {
     pub values: Vec<Complex64>,
 }
 
+/// Reads a square matrix column by column.
+pub trait Columns {
+    /// Number of columns.
+    fn columns(&self) -> usize;
+    /// Number of stored entries.
+    fn stored(&self) -> usize;
+    /// Calls `take` with row and value of the entries of column `j`, rows ascending.
+    fn visit(&self, j: usize, take: impl FnMut(usize, Complex64));
+    /// The entry of row `i` and column `j`, zero where none is stored.
+    fn get(&self, i: usize, j: usize) -> Complex64;
+}
+
+impl Columns for Csc {
+    fn columns(&self) -> usize {
+        self.cols
+    }
+
+    fn stored(&self) -> usize {
+        self.values.len()
+    }
+
+    fn visit(&self, j: usize, mut take: impl FnMut(usize, Complex64)) {
+        self.column(j).for_each(|(i, v)| take(i, v));
+    }
+
+    fn get(&self, i: usize, j: usize) -> Complex64 {
+        Self::get(self, i, j)
+    }
+}
+
+/// The position (row, column) with the largest deviation from a symmetry, and the deviation.
+#[must_use]
+pub fn worst_pair(a: &impl Columns, symmetry: Symmetry) -> (usize, usize, f64) {
+    let mut worst = (0, 0, 0.0);
+    for j in 0..a.columns() {
+        a.visit(j, |i, v| {
+            let gap = (v - symmetry.mirror(a.get(j, i))).norm();
+            if gap > worst.2 {
+                worst = (i, j, gap);
+            }
+        });
+    }
+    worst
+}
+
+/// The values of a matrix at the entries of `pattern`, which must contain all entries of it.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn aligned(a: &impl Columns, pattern: &Csc) -> Result<Vec<Complex64>> {
+    let mut values = try_vec(pattern.values.len(), Complex64::ZERO, "a sparse matrix")?;
+    for j in 0..pattern.cols {
+        let mut at = pattern.col_ptr[j];
+        a.visit(j, |i, v| {
+            while pattern.row_idx[at] < i {
+                at += 1;
+            }
+            values[at] = v;
+        });
+    }
+    Ok(values)
+}
+
+/// Aᵀ
+fn transposed(a: &impl Columns) -> Result<Csc> {
+    const CONTEXT: &str = "a sparse matrix";
+    let n = a.columns();
+    let mut col_ptr = try_vec(n + 1, 0, CONTEXT)?;
+    for j in 0..n {
+        a.visit(j, |i, _| col_ptr[i + 1] += 1);
+    }
+    for i in 0..n {
+        col_ptr[i + 1] += col_ptr[i];
+    }
+    let mut next = try_vec(n, 0, CONTEXT)?;
+    next.copy_from_slice(&col_ptr[..n]);
+    let mut row_idx = try_vec(a.stored(), 0, CONTEXT)?;
+    let mut values = try_vec(a.stored(), Complex64::ZERO, CONTEXT)?;
+    for j in 0..n {
+        a.visit(j, |i, v| {
+            (row_idx[next[i]], values[next[i]]) = (j, v);
+            next[i] += 1;
+        });
+    }
+    Ok(Csc {
+        rows: n,
+        cols: n,
+        col_ptr,
+        row_idx,
+        values,
+    })
+}
+
 /// Entries of the terms above which those of their sum are counted before memory for them.
 const COUNTED_ABOVE: usize = 4096;
 
@@ -47,11 +140,11 @@ pub enum Symmetry {
 }
 
 impl Symmetry {
-    /// The entry that mirrors `v`.
+    /// The entry that mirrors `v`; a real one has a real mirror image, without a negative zero.
     #[must_use]
     pub fn mirror(self, v: Complex64) -> Complex64 {
         match self {
-            Self::Hermitian => v.conj(),
+            Self::Hermitian => Complex64::new(v.re, 0.0 - v.im),
             Self::Skew => -v.conj(),
             Self::Plain | Self::None => v,
         }
@@ -66,11 +159,20 @@ fn small_or_large<'a, T>(n: usize, small: &'a mut [T; SMALL], large: &'a mut [T]
     if n <= SMALL { &mut small[..n] } else { large }
 }
 
-/// A term of a sum, transposed where its form wants it.
-fn of_form<'a>(a: &'a Csc, form: Form, transposed: &mut impl Iterator<Item = &'a Csc>) -> &'a Csc {
+/// Visits column `j` of a term of a sum: of the next transposed matrix where its form wants it.
+fn visit_term<'a>(
+    (a, form): (&impl Columns, Form),
+    transposed: &mut impl Iterator<Item = &'a Csc>,
+    j: usize,
+    take: impl FnMut(usize, Complex64),
+) {
     match form {
-        Form::Transposed => transposed.next().unwrap_or(a),
-        Form::Plain | Form::Conjugated => a,
+        Form::Transposed => {
+            if let Some(a) = transposed.next() {
+                a.visit(j, take);
+            }
+        }
+        Form::Plain | Form::Conjugated => a.visit(j, take),
     }
 }
 
@@ -103,34 +205,42 @@ impl Csc {
         Ok(a)
     }
 
+    /// The zero matrix of order n.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn zero(n: usize) -> Result<Self> {
+        Self::from_triplets(n, n, Vec::new())
+    }
+
     /// Σ cᵢ·form(Aᵢ) over square matrices of one order n.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn sum(n: usize, terms: &[(Complex64, &Self, Form)]) -> Result<Self> {
+    pub fn sum<A: Columns>(n: usize, terms: &[(Complex64, &A, Form)]) -> Result<Self> {
         const CONTEXT: &str = "a sum of sparse matrices";
-        if terms.iter().all(|(_, a, _)| a.is_empty()) {
-            return Self::from_triplets(n, n, Vec::new());
+        if terms.iter().all(|(_, a, _)| a.stored() == 0) {
+            return Self::zero(n);
         }
-        let mut transposed = Vec::new();
+        let mut mirrored = Vec::new();
         for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
-            try_push(&mut transposed, a.transposed()?, CONTEXT)?;
+            try_push(&mut mirrored, transposed(*a)?, CONTEXT)?;
         }
         // Rows of each column by the column that had them last.
         let large = if n <= SMALL { 0 } else { n };
         let (mut small_in_column, mut large_in_column) = ([0; SMALL], try_vec(large, 0, CONTEXT)?);
         let in_column = small_or_large(n, &mut small_in_column, &mut large_in_column);
-        let mut stored = terms.iter().map(|(_, a, _)| a.values.len()).sum();
+        let mut stored = terms.iter().map(|(_, a, _)| a.stored()).sum();
         if stored > COUNTED_ABOVE {
             // Room that is not too large.
             stored = 0;
             for j in 0..n {
-                let mut next = transposed.iter();
+                let mut next = mirrored.iter();
                 for &(_, a, form) in terms {
-                    for (i, _) in of_form(a, form, &mut next).column(j) {
+                    visit_term((a, form), &mut next, j, |i, _| {
                         stored += usize::from(in_column[i] != j + 1);
                         in_column[i] = j + 1;
-                    }
+                    });
                 }
             }
             in_column.fill(0);
@@ -150,9 +260,9 @@ impl Csc {
         let rows = small_or_large(n, &mut small_rows, &mut large_rows);
         for j in 0..n {
             let mut count = 0;
-            let mut next = transposed.iter();
+            let mut next = mirrored.iter();
             for &(c, a, form) in terms {
-                for (i, v) in of_form(a, form, &mut next).column(j) {
+                visit_term((a, form), &mut next, j, |i, v| {
                     if in_column[i] != j + 1 {
                         in_column[i] = j + 1;
                         column[i] = Complex64::ZERO;
@@ -160,7 +270,7 @@ impl Csc {
                         count += 1;
                     }
                     column[i] += c * if form == Form::Conjugated { v.conj() } else { v };
-                }
+                });
             }
             let rows = &mut rows[..count];
             rows.sort_unstable();
@@ -169,35 +279,6 @@ impl Csc {
             sum.col_ptr[j + 1] = sum.row_idx.len();
         }
         Ok(sum)
-    }
-
-    /// Aᵀ of a square matrix.
-    fn transposed(&self) -> Result<Self> {
-        const CONTEXT: &str = "a sparse matrix";
-        let mut col_ptr = try_vec(self.rows + 1, 0, CONTEXT)?;
-        for &i in &self.row_idx {
-            col_ptr[i + 1] += 1;
-        }
-        for i in 0..self.rows {
-            col_ptr[i + 1] += col_ptr[i];
-        }
-        let mut next = try_vec(self.rows, 0, CONTEXT)?;
-        next.copy_from_slice(&col_ptr[..self.rows]);
-        let mut row_idx = try_vec(self.row_idx.len(), 0, CONTEXT)?;
-        let mut values = try_vec(self.values.len(), Complex64::ZERO, CONTEXT)?;
-        for j in 0..self.cols {
-            for (i, v) in self.column(j) {
-                (row_idx[next[i]], values[next[i]]) = (j, v);
-                next[i] += 1;
-            }
-        }
-        Ok(Self {
-            rows: self.cols,
-            cols: self.rows,
-            col_ptr,
-            row_idx,
-            values,
-        })
     }
 
     /// A copy, allocated fallibly.
@@ -260,17 +341,7 @@ impl Csc {
     /// # Errors
     /// `OutOfMemory`.
     pub fn aligned(&self, pattern: &Self) -> Result<Vec<Complex64>> {
-        let mut values = try_vec(pattern.values.len(), Complex64::ZERO, "a sparse matrix")?;
-        for j in 0..pattern.cols {
-            let mut at = pattern.col_ptr[j];
-            for (i, v) in self.column(j) {
-                while pattern.row_idx[at] < i {
-                    at += 1;
-                }
-                values[at] = v;
-            }
-        }
-        Ok(values)
+        aligned(self, pattern)
     }
 
     /// Whether no entry is stored.
@@ -309,15 +380,6 @@ impl Csc {
     /// The same for another symmetry.
     #[must_use]
     pub fn worst_pair(&self, symmetry: Symmetry) -> (usize, usize, f64) {
-        let mut worst = (0, 0, 0.0);
-        for j in 0..self.cols {
-            for (i, v) in self.column(j) {
-                let gap = (v - symmetry.mirror(self.get(j, i))).norm();
-                if gap > worst.2 {
-                    worst = (i, j, gap);
-                }
-            }
-        }
-        worst
+        worst_pair(self, symmetry)
     }
 }

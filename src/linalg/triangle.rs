@@ -3,10 +3,11 @@
 
 #![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
 
-use crate::error::{Error, Result, try_vec};
+use crate::error::{Error, Result, try_room, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::compensated_sum::Sum;
-use crate::linalg::sparse::Csc;
+use crate::linalg::row_index::{Row, check_order, narrow, wide};
+use crate::linalg::sparse::Columns;
 use faer::traits::ComplexField;
 use num_complex::Complex64;
 
@@ -130,7 +131,7 @@ pub struct Triangle<T> {
     /// Start of each column, and the end of the last.
     pub col_ptr: Vec<usize>,
     /// Row of each entry, ascending in a column.
-    pub row_idx: Vec<usize>,
+    pub row_idx: Vec<Row>,
     /// Value of each entry.
     pub values: Vec<T>,
 }
@@ -139,38 +140,30 @@ impl<T: Entry> Triangle<T> {
     /// The lower triangle of K + σM, without copies of the whole.
     ///
     /// # Errors
-    /// `OutOfMemory`; `StoppedByCaller`.
-    pub fn sum(k: &Csc, (shift, m): (f64, &Csc), interrupt: &Interrupt<'_>) -> Result<Self> {
-        let n = k.rows;
-        let below = |a: &Csc, j: usize| {
-            let column = &a.row_idx[a.col_ptr[j]..a.col_ptr[j + 1]];
-            a.col_ptr[j] + column.partition_point(|&i| i < j)
-        };
+    /// `Dimension` for 2³² rows or more; `OutOfMemory`; `StoppedByCaller`.
+    pub fn sum(k: &impl Columns, (shift, m): (f64, &impl Columns), interrupt: &Interrupt<'_>) -> Result<Self> {
+        let n = k.columns();
+        check_order(n)?;
+        let (mut of_k, mut of_m) = (Vec::new(), Vec::new());
         // First the size, so that nothing is allocated twice.
         let mut count = 0;
         let mut col_ptr = try_vec(n + 1, 0, CONTEXT)?;
         for j in 0..n {
-            merge((k, below(k, j), j), (m, below(m, j)), |_, _, _| count += 1);
+            merge(below(k, j, &mut of_k)?, below(m, j, &mut of_m)?, |_, _, _| count += 1);
             col_ptr[j + 1] = count;
         }
-        let mut row_idx = Vec::new();
-        let mut values = Vec::new();
-        row_idx
-            .try_reserve_exact(count)
-            .map_err(|_| Error::out_of_memory(CONTEXT))?;
-        values
-            .try_reserve_exact(count)
-            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        let mut row_idx = try_room(count, CONTEXT)?;
+        let mut values = try_room(count, CONTEXT)?;
         for j in 0..n {
             if j % 1024 == 0 {
                 interrupt.check()?;
             }
-            merge((k, below(k, j), j), (m, below(m, j)), |i, a, b| {
+            merge(below(k, j, &mut of_k)?, below(m, j, &mut of_m)?, |i, a, b| {
                 let mut value = a + shift * b;
                 if i == j {
                     value.im = 0.0;
                 }
-                row_idx.push(i);
+                row_idx.push(narrow(i));
                 values.push(T::of(value));
             });
         }
@@ -207,6 +200,7 @@ impl<T: Entry> Triangle<T> {
             let mut above = T::NONE;
             let range = self.col_ptr[j]..self.col_ptr[j + 1];
             for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
+                let i = wide(i);
                 y[i].add_product(a, xj);
                 if i != j {
                     above.add_conjugate_product(a, x[i]);
@@ -224,6 +218,7 @@ impl<T: Entry> Triangle<T> {
             let xj: [T; AT_ONCE] = core::array::from_fn(|c| x[c * n + j]);
             let range = self.col_ptr[j]..self.col_ptr[j + 1];
             for (&i, &a) in self.row_idx[range.clone()].iter().zip(&self.values[range]) {
+                let i = wide(i);
                 for c in 0..AT_ONCE {
                     y[c * n + i].add_product(a, xj[c]);
                 }
@@ -240,26 +235,36 @@ impl<T: Entry> Triangle<T> {
     }
 }
 
-/// Calls `take` with (row, entry of the first, entry of the second) for the rows of a column of either matrix.
-fn merge(
-    (a, mut p, column): (&Csc, usize, usize),
-    (b, mut q): (&Csc, usize),
-    mut take: impl FnMut(usize, Complex64, Complex64),
-) {
-    let (a_end, b_end) = (a.col_ptr[column + 1], b.col_ptr[column + 1]);
-    while p < a_end || q < b_end {
-        let i = if p < a_end { a.row_idx[p] } else { usize::MAX };
-        let k = if q < b_end { b.row_idx[q] } else { usize::MAX };
-        let row = i.min(k);
-        let (mut x, mut y) = (Complex64::ZERO, Complex64::ZERO);
-        if i == row {
-            x = a.values[p];
-            p += 1;
+/// Row and value of an entry.
+type RowEntry = (usize, Complex64);
+
+/// The entries of a column on and below the diagonal.
+fn below<'a>(a: &impl Columns, j: usize, column: &'a mut Vec<RowEntry>) -> Result<&'a [RowEntry]> {
+    column.clear();
+    let mut count = 0;
+    a.visit(j, |i, _| count += usize::from(i >= j));
+    column.try_reserve(count).map_err(|_| Error::out_of_memory(CONTEXT))?;
+    a.visit(j, |i, v| {
+        if i >= j {
+            column.push((i, v));
         }
-        if k == row {
-            y = b.values[q];
-            q += 1;
-        }
+    });
+    Ok(column)
+}
+
+/// Calls `take` with (row, entry of the first, entry of the second) for the rows of either column.
+fn merge(mut a: &[RowEntry], mut b: &[RowEntry], mut take: impl FnMut(usize, Complex64, Complex64)) {
+    while !(a.is_empty() && b.is_empty()) {
+        let first = |column: &[RowEntry]| column.first().map_or(usize::MAX, |&(i, _)| i);
+        let row = first(a).min(first(b));
+        let next = |column: &mut &[RowEntry]| match column.split_first() {
+            Some((&(i, v), rest)) if i == row => {
+                *column = rest;
+                v
+            }
+            _ => Complex64::ZERO,
+        };
+        let (x, y) = (next(&mut a), next(&mut b));
         take(row, x, y);
     }
 }

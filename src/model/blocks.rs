@@ -1,25 +1,25 @@
 //! A matrix of a cyclic structure as its blocks between sectors, or per nodal diameter.
 
 use crate::error::{Result, try_push};
-use crate::linalg::sparse::Csc;
+use crate::linalg::kept_matrix::KeptMatrix;
 
 /// One of M, C, K in the form in which it was given.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Blocks {
     /// Rows and columns of the same sector.
-    pub own: Option<Csc>,
+    pub own: Option<KeptMatrix>,
     /// Rows of sector s, columns of s + 1.
-    pub next: Option<Csc>,
+    pub next: Option<KeptMatrix>,
     /// Rows of sector s, columns of s − 1; `None`: the transpose of `next`.
-    pub previous: Option<Csc>,
+    pub previous: Option<KeptMatrix>,
     /// Matrices per nodal diameter 0 ..= N/2, instead of blocks.
-    pub diameters: Vec<Option<Csc>>,
+    pub diameters: Vec<Option<KeptMatrix>>,
 }
 
 impl Blocks {
     /// A copy, allocated fallibly.
     pub fn try_clone(&self) -> Result<Self> {
-        let copy = |a: &Option<Csc>| a.as_ref().map(Csc::try_clone).transpose();
+        let copy = |a: &Option<KeptMatrix>| a.as_ref().map(KeptMatrix::try_clone).transpose();
         let mut diameters = Vec::new();
         for a in &self.diameters {
             try_push(&mut diameters, copy(a)?, "the matrices per diameter")?;

@@ -2,7 +2,8 @@
 //! stiffness of natural modes, the rest is the structural damping iD.
 
 use crate::error::{Result, fail, try_push};
-use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse::{Columns, Csc, Form, Symmetry};
 use crate::model::Model;
 use crate::model::blocks::Blocks;
 use crate::model::structure::{MatrixKind, Structure};
@@ -12,16 +13,20 @@ use std::borrow::Cow;
 /// Deviation from a symmetry, relative to the largest entry, that is rounding.
 const ROUNDING: f64 = 1e-10;
 
+/// Factors c of (A + Bᴴ)/2 and (A − Bᴴ)/2i as cA + (cB)ᴴ.
+const HERMITIAN_PART: Complex64 = Complex64::new(0.5, 0.0);
+const LOSS: Complex64 = Complex64::new(0.0, -0.5);
+
 impl Structure {
     /// Whether the stiffness is complex and not Hermitian, but symmetric, so that what is not Hermitian in it dissipates. A
     /// matrix per nodal diameter shows the symmetry in diameters that are their own mirror only.
     #[must_use]
     pub fn has_complex_stiffness(&self) -> bool {
         let blocks = &self.blocks[MatrixKind::Stiffness as usize];
-        if self.parts(MatrixKind::Stiffness).all(Csc::is_real) {
+        if self.parts(MatrixKind::Stiffness).all(KeptMatrix::is_real) {
             return false;
         }
-        let has = |a: &Csc, symmetry| a.worst_pair(symmetry).2 <= ROUNDING * a.max_abs();
+        let has = |a: &KeptMatrix, symmetry| a.worst_pair(symmetry).2 <= ROUNDING * a.max_abs();
         if !blocks.diameters.is_empty() {
             let given = blocks.diameters.iter().enumerate();
             let mut lossy = given
@@ -35,8 +40,8 @@ impl Structure {
         let coupled = |symmetry: Symmetry| match (&blocks.next, &blocks.previous) {
             (Some(next), Some(previous)) => {
                 let limit = ROUNDING * next.max_abs().max(previous.max_abs());
-                let near = |a: &Csc, b: &Csc| {
-                    let entries = (0..a.cols).flat_map(|j| a.column(j).map(move |(i, v)| (i, j, v)));
+                let near = |a: &KeptMatrix, b: &KeptMatrix| {
+                    let entries = (0..a.order()).flat_map(|j| a.column(j).map(move |(i, v)| (i, j, v)));
                     entries
                         .into_iter()
                         .all(|(i, j, v)| (v - symmetry.mirror(b.get(j, i))).norm() <= limit)
@@ -56,7 +61,7 @@ impl Structure {
         if stiffness.is_real() || !self.has_complex_stiffness() {
             return Ok(stiffness);
         }
-        hermitian_part(&stiffness, None)
+        combined(&stiffness, &stiffness, HERMITIAN_PART)
     }
 
     /// Replaces a complex symmetric stiffness by its Hermitian part and adds the rest to the structural matrix.
@@ -71,8 +76,8 @@ impl Structure {
                  per nodal diameter; give all of the loss as structural damping"
             );
         }
-        *self.blocks_mut(MatrixKind::Stiffness)? = of_blocks(&stiffness, hermitian_part)?;
-        let loss = of_blocks(&stiffness, loss)?;
+        *self.blocks_mut(MatrixKind::Stiffness)? = of_blocks(&stiffness, HERMITIAN_PART)?;
+        let loss = of_blocks(&stiffness, LOSS)?;
         *self.blocks_mut(MatrixKind::Structural)? = added(self.ndof(), &loss, &structural)?;
         self.loss_of_stiffness = true;
         Ok(())
@@ -97,22 +102,23 @@ impl Model {
 }
 
 /// Applies a split to the blocks; that of the coupling to the next sector has its mirror in that to the previous one.
-fn of_blocks(given: &Blocks, split: impl Fn(&Csc, Option<&Csc>) -> Result<Csc>) -> Result<Blocks> {
-    let own = given.own.as_ref().map(|own| split(own, None)).transpose()?;
+fn of_blocks(given: &Blocks, factor: Complex64) -> Result<Blocks> {
+    let split = |a: &KeptMatrix, mirror: &KeptMatrix| KeptMatrix::new(combined(a, mirror, factor)?);
+    let own = given.own.as_ref().map(|own| split(own, own)).transpose()?;
     let (mut next, mut previous) = (None, None);
     if let Some(after) = &given.next {
         let before = match &given.previous {
             Some(before) => before.try_clone()?,
-            None => Csc::sum(after.rows, &[(Complex64::ONE, after, Form::Transposed)])?,
+            None => transposed(after)?,
         };
-        next = Some(split(after, Some(&before))?);
+        next = Some(split(after, &before)?);
         if given.previous.is_some() {
-            previous = Some(split(&before, Some(after))?);
+            previous = Some(split(&before, after)?);
         }
     }
     let mut diameters = Vec::new();
     for a in &given.diameters {
-        let a = a.as_ref().map(|a| split(a, None)).transpose()?;
+        let a = a.as_ref().map(|a| split(a, a)).transpose()?;
         try_push(&mut diameters, a, "the matrices per diameter")?;
     }
     Ok(Blocks {
@@ -123,33 +129,32 @@ fn of_blocks(given: &Blocks, split: impl Fn(&Csc, Option<&Csc>) -> Result<Csc>) 
     })
 }
 
-/// (A + Bᴴ)/2 with the mirror block B, which is A itself where `None`.
-fn hermitian_part(a: &Csc, mirror: Option<&Csc>) -> Result<Csc> {
-    combined(a, mirror.unwrap_or(a), 0.5.into())
-}
-
-/// (A − Bᴴ)/2i
-fn loss(a: &Csc, mirror: Option<&Csc>) -> Result<Csc> {
-    combined(a, mirror.unwrap_or(a), Complex64::new(0.0, -0.5))
-}
-
-/// cA + (cB)ᴴ
-fn combined(a: &Csc, mirror: &Csc, factor: Complex64) -> Result<Csc> {
-    let transposed = Csc::sum(a.rows, &[(Complex64::ONE, mirror, Form::Transposed)])?;
+/// cA + (cB)ᴴ with the mirror block B of A, which is A itself on the diagonal.
+fn combined<A: Columns>(a: &A, mirror: &A, factor: Complex64) -> Result<Csc> {
+    let n = a.columns();
+    let mirrored = Csc::sum(n, &[(Complex64::ONE, mirror, Form::Transposed)])?;
+    let scaled = Csc::sum(n, &[(factor, a, Form::Plain)])?;
     Csc::sum(
-        a.rows,
-        &[(factor, a, Form::Plain), (factor.conj(), &transposed, Form::Conjugated)],
+        n,
+        &[
+            (Complex64::ONE, &scaled, Form::Plain),
+            (factor.conj(), &mirrored, Form::Conjugated),
+        ],
     )
 }
 
+fn transposed(a: &KeptMatrix) -> Result<KeptMatrix> {
+    KeptMatrix::new(Csc::sum(a.order(), &[(Complex64::ONE, a, Form::Transposed)])?)
+}
+
 fn added(n: usize, loss: &Blocks, given: &Blocks) -> Result<Blocks> {
-    let sum = |a: &Option<Csc>, b: &Option<Csc>| -> Result<Option<Csc>> {
+    let sum = |a: &Option<KeptMatrix>, b: &Option<KeptMatrix>| -> Result<Option<KeptMatrix>> {
         match (a, b) {
             (None, None) => Ok(None),
             (Some(a), None) | (None, Some(a)) => a.try_clone().map(Some),
             (Some(a), Some(b)) => {
                 let terms = [a, b].map(|a| (Complex64::ONE, a, Form::Plain));
-                Csc::sum(n, &terms).map(Some)
+                KeptMatrix::new(Csc::sum(n, &terms)?).map(Some)
             }
         }
     };
@@ -173,10 +178,10 @@ fn added(n: usize, loss: &Blocks, given: &Blocks) -> Result<Blocks> {
 }
 
 /// The coupling to the previous sector.
-fn before(blocks: &Blocks) -> Result<Option<Csc>> {
+fn before(blocks: &Blocks) -> Result<Option<KeptMatrix>> {
     match (&blocks.previous, &blocks.next) {
         (Some(previous), _) => previous.try_clone().map(Some),
-        (None, Some(next)) => Csc::sum(next.rows, &[(Complex64::ONE, next, Form::Transposed)]).map(Some),
+        (None, Some(next)) => transposed(next).map(Some),
         (None, None) => Ok(None),
     }
 }

@@ -1,7 +1,7 @@
 //! Contents of a model, read back: blocks of its matrices, normal loads as they were given.
 
 use crate::error::{Result, fail};
-use crate::linalg::sparse::Csc;
+use crate::linalg::kept_matrix::KeptMatrix;
 use crate::model::Model;
 use crate::model::structure::MatrixKind;
 
@@ -23,7 +23,7 @@ impl Model {
     /// # Errors
     /// `Unsupported` for a matrix that was given per nodal diameter.
     #[doc(hidden)]
-    pub fn block(&self, kind: MatrixKind, block: Block) -> Result<Option<&Csc>> {
+    pub fn block(&self, kind: MatrixKind, block: Block) -> Result<Option<&KeptMatrix>> {
         let blocks = &self.structure().blocks[kind as usize];
         if !blocks.diameters.is_empty() {
             return fail!(

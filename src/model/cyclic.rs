@@ -5,7 +5,8 @@
 //! e^{+ihφ} (Thomas 1979, doi:10.1002/nme.1620140107; Wildheim 1979, doi:10.1115/1.3424673).
 
 use crate::error::{Result, fail};
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse::{Columns, Csc, Form, Symmetry};
 use crate::model::influence::AeroForm;
 use crate::model::part_of_turn::lag;
 use crate::model::reduced_wave::WaveKey;
@@ -123,7 +124,7 @@ impl Structure {
         let (of_mass, of_stiffness) = match which {
             MatrixKind::Damping => self.rayleigh,
             // No stress follows a mean strain by a phase.
-            MatrixKind::Structural if real => return Csc::sum(self.ndof(), &[]),
+            MatrixKind::Structural if real => return Csc::zero(self.ndof()),
             MatrixKind::Structural => (0.0, self.loss_factor),
             MatrixKind::Mass | MatrixKind::Stiffness | MatrixKind::Gyroscopic | MatrixKind::StiffnessSpeed2 => {
                 (0.0, 0.0)
@@ -175,7 +176,7 @@ impl Structure {
     pub(super) fn modal_damping_of_diameter(&self, diameter: usize) -> Result<Csc> {
         match self.modal_damping_of(diameter % self.sectors(), false)? {
             Some(matrix) => Ok(matrix),
-            None => Csc::sum(self.ndof(), &[]),
+            None => Csc::zero(self.ndof()),
         }
     }
 
@@ -319,11 +320,11 @@ impl Structure {
 
     /// Refuses to conjugate a stiffness that no real matrices of sectors have: of a loss K(1 + iη), where A(−d) = A(d)ᵀ,
     /// the imaginary part would drive the backward wave.
-    fn check_backward(&self, which: MatrixKind, diameter: usize, matrix: &Csc) -> Result<()> {
+    fn check_backward(&self, which: MatrixKind, diameter: usize, matrix: &KeptMatrix) -> Result<()> {
         let which = match which {
             MatrixKind::Structural if self.loss_of_stiffness => MatrixKind::Stiffness,
             MatrixKind::Stiffness | MatrixKind::StiffnessSpeed2
-                if !matrix.is_real() && matrix.worst_hermitian_pair().2 > HERMITIAN * matrix.max_abs() =>
+                if !matrix.is_real() && matrix.worst_pair(Symmetry::Hermitian).2 > HERMITIAN * matrix.max_abs() =>
             {
                 which
             }
@@ -342,7 +343,7 @@ impl Structure {
     pub fn wave_diagonal(&self, which: MatrixKind, harmonic: usize, p: usize) -> Complex64 {
         let blocks = &self.blocks[which as usize];
         let residue = self.residue(harmonic as i64);
-        let entry = |a: &Option<Csc>| a.as_ref().map_or(Complex64::ZERO, |a| a.get(p, p));
+        let entry = |a: &Option<KeptMatrix>| a.as_ref().map_or(Complex64::ZERO, |a| a.get(p, p));
         let sum = if blocks.diameters.is_empty() {
             let lag = self.lag(residue);
             let previous = if blocks.previous.is_some() {

@@ -7,7 +7,8 @@
 
 use crate::error::{Result, fail, try_push};
 use crate::interrupt::Interrupt;
-use crate::linalg::sparse::{Csc, Form};
+use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse::{Columns, Csc, Form};
 use crate::model::influence::AeroForm;
 use crate::model::speed::Speed;
 use crate::model::structure::{MatrixKind, Structure};
@@ -119,11 +120,11 @@ impl Structure {
         let (ndof, sectors) = (self.ndof(), self.repeating_sectors());
         let blocks = &self.blocks[which as usize];
         let mut entries = Vec::new();
-        let mut place = |a: &Csc, offset: usize, transposed: bool| -> Result<()> {
+        let mut place = |a: &KeptMatrix, offset: usize, transposed: bool| -> Result<()> {
             for s in 0..sectors {
-                interrupt.check_before(OF_ONE_ENTRY * a.values.len() as u64)?;
+                interrupt.check_before(OF_ONE_ENTRY * a.stored() as u64)?;
                 let (row, column) = (s * ndof, (s + offset) % sectors * ndof);
-                for j in 0..a.cols {
+                for j in 0..a.order() {
                     for (i, v) in a.column(j) {
                         let (i, j) = if transposed { (j, i) } else { (i, j) };
                         try_push(&mut entries, (row + i, column + j, v), "the matrices of the wheel")?;

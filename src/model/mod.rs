@@ -39,6 +39,7 @@ pub mod static_tangents;
 pub mod structure;
 mod stuck_shapes;
 pub mod wave;
+pub mod wave_matrix;
 
 pub use mechanical_model::Model;
 pub(crate) use mechanical_model::copy;

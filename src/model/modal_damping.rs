@@ -3,6 +3,7 @@
 
 use crate::error::{Error, Result, Status, fail, try_push};
 use crate::interrupt::Interrupt;
+use crate::linalg::kept_matrix::KeptMatrix;
 use crate::linalg::sparse::Csc;
 use crate::model::Model;
 use crate::model::linear_modes::ContactState;
@@ -73,7 +74,7 @@ impl Model {
         Ok(())
     }
 
-    fn modal_damping_matrix(&self, diameter: usize, ratios: &[f64], interrupt: &Interrupt<'_>) -> Result<Csc> {
+    fn modal_damping_matrix(&self, diameter: usize, ratios: &[f64], interrupt: &Interrupt<'_>) -> Result<KeptMatrix> {
         let pencil = self.pencil(Wave::Diameter(diameter), ContactState::Free)?;
         let modes = pencil.lowest(ratios.len(), interrupt)?;
         let found = modes.omega.len();
@@ -108,7 +109,7 @@ impl Model {
             }
         }
         entries.retain(|(.., v)| v.norm() > ROUNDING * largest);
-        Csc::from_triplets(n, n, entries)
+        KeptMatrix::new(Csc::from_triplets(n, n, entries)?)
     }
 }
 

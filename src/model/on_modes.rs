@@ -7,6 +7,7 @@
 use crate::contact::Role;
 use crate::error::{Result, fail, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::kept_matrix::KeptMatrix;
 use crate::model::Model;
 use crate::model::blocks::Blocks;
 use crate::model::excitation::Excitation;
@@ -177,7 +178,11 @@ impl OnModes {
             let to = &mut blocks[which as usize];
             for (shapes, basis) in of.shapes.iter().zip(&bases) {
                 let matrix = match (shapes, basis) {
-                    (Some(shapes), Some(basis)) => Some(basis.projected(which, shapes.matrix(which), interrupt)?),
+                    (Some(shapes), Some(basis)) => Some(KeptMatrix::new(basis.projected(
+                        which,
+                        shapes.matrix(which),
+                        interrupt,
+                    )?)?),
                     _ => None,
                 };
                 if plain {

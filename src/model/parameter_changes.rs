@@ -2,6 +2,7 @@
 
 use crate::contact::force_derivative::Constant;
 use crate::error::{Result, fail};
+use crate::linalg::kept_matrix::KeptMatrix;
 use crate::linalg::matrix_view::MatrixView;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
@@ -108,7 +109,7 @@ impl Structure {
             sector_matrices::blocks(&self.degrees, &given, direction.part.symmetry())?
         } else {
             Blocks {
-                own: Some(of_independent(&self.degrees, given)?),
+                own: Some(KeptMatrix::new(of_independent(&self.degrees, given)?)?),
                 ..Blocks::default()
             }
         };
@@ -122,7 +123,7 @@ impl Structure {
             }
             let previous = match (&added.previous, explicit) {
                 (None, true) => transposed(n, added.next.as_ref())?,
-                (given, _) => given.as_ref().map(Csc::try_clone).transpose()?,
+                (given, _) => given.as_ref().map(KeptMatrix::try_clone).transpose()?,
             };
             add(n, &mut blocks.own, added.own.as_ref(), factor)?;
             add(n, &mut blocks.next, added.next.as_ref(), factor)?;
@@ -139,38 +140,32 @@ impl Structure {
         let blocks = self.blocks_mut(which)?;
         let given = [&mut blocks.own, &mut blocks.next, &mut blocks.previous].into_iter();
         for matrix in given.chain(&mut blocks.diameters).flatten() {
-            scale(matrix, factor);
+            matrix.scale(factor);
         }
         if which == MatrixKind::Damping {
             self.rayleigh = (self.rayleigh.0 * factor, self.rayleigh.1 * factor);
             for matrix in self.modal_damping.iter_mut().flatten() {
-                scale(matrix, factor);
+                matrix.scale(factor);
             }
         }
         Ok(())
     }
 }
 
-fn scale(matrix: &mut Csc, factor: f64) {
-    for v in &mut matrix.values {
-        *v *= factor;
-    }
-}
-
-fn transposed(n: usize, matrix: Option<&Csc>) -> Result<Option<Csc>> {
+fn transposed(n: usize, matrix: Option<&KeptMatrix>) -> Result<Option<KeptMatrix>> {
     matrix
-        .map(|a| Csc::sum(n, &[(Complex64::ONE, a, Form::Transposed)]))
+        .map(|a| KeptMatrix::new(Csc::sum(n, &[(Complex64::ONE, a, Form::Transposed)])?))
         .transpose()
 }
 
 /// to += factor·a
-fn add(n: usize, to: &mut Option<Csc>, a: Option<&Csc>, factor: f64) -> Result<()> {
+fn add(n: usize, to: &mut Option<KeptMatrix>, a: Option<&KeptMatrix>, factor: f64) -> Result<()> {
     let Some(a) = a else { return Ok(()) };
     let scaled = (factor.into(), a, Form::Plain);
-    *to = Some(match to {
-        Some(to) => Csc::sum(n, &[(Complex64::ONE, to, Form::Plain), scaled])?,
+    *to = Some(KeptMatrix::new(match to {
+        Some(to) => Csc::sum(n, &[(Complex64::ONE, &*to, Form::Plain), scaled])?,
         None => Csc::sum(n, &[scaled])?,
-    });
+    })?);
     Ok(())
 }
 

@@ -2,7 +2,8 @@
 
 use crate::byte_stream::{ByteReader, ByteWriter};
 use crate::error::{Result, try_push, try_vec};
-use crate::linalg::sparse::Csc;
+use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse::{Columns, Csc};
 use num_complex::Complex64;
 
 const CONTEXT: &str = "a loaded matrix";
@@ -13,26 +14,26 @@ const REAL: u8 = 1;
 const COMPLEX: u8 = 2;
 
 /// Writes a matrix, or that there is none.
-pub(super) fn save(matrix: Option<&Csc>, out: &mut ByteWriter<'_>) {
+pub(super) fn save(matrix: Option<&KeptMatrix>, out: &mut ByteWriter<'_>) {
     let Some(a) = matrix else {
         out.u8(NONE);
         return;
     };
-    // A negative zero is an imaginary part, too: all bits come back.
-    let real = a.values.iter().all(|v| v.im.to_bits() == 0);
-    out.u8(if real { REAL } else { COMPLEX });
-    out.count(a.values.len());
-    for column in a.col_ptr.windows(2) {
-        out.u32((column[1] - column[0]) as u32);
+    let real = a.real_values();
+    out.u8(if real.is_some() { REAL } else { COMPLEX });
+    out.count(a.stored());
+    for length in a.lengths() {
+        out.u32(length as u32);
     }
-    for &row in &a.row_idx {
-        out.u32(row as u32);
+    for &row in a.rows() {
+        out.u32(row);
     }
-    for v in &a.values {
-        out.f64(v.re);
-        if !real {
+    match real {
+        Some(values) => values.iter().for_each(|&v| out.f64(v)),
+        None => (0..a.order()).flat_map(|j| a.column(j)).for_each(|(_, v)| {
+            out.f64(v.re);
             out.f64(v.im);
-        }
+        }),
     }
 }
 
@@ -40,7 +41,7 @@ pub(super) fn save(matrix: Option<&Csc>, out: &mut ByteWriter<'_>) {
 ///
 /// # Errors
 /// `Argument` where it is none of compressed sparse columns; `OutOfMemory`.
-pub(super) fn load(n: usize, input: &mut ByteReader<'_>) -> Result<Option<Csc>> {
+pub(super) fn load(n: usize, input: &mut ByteReader<'_>) -> Result<Option<KeptMatrix>> {
     let real = match input.u8()? {
         NONE => return Ok(None),
         REAL => true,
@@ -80,11 +81,11 @@ pub(super) fn load(n: usize, input: &mut ByteReader<'_>) -> Result<Option<Csc>> 
             v.im = input.finite()?;
         }
     }
-    Ok(Some(a))
+    Ok(Some(KeptMatrix::new(a)?))
 }
 
 /// Writes a list of matrices some of which may be missing.
-pub(super) fn save_list(matrices: &[Option<Csc>], out: &mut ByteWriter<'_>) {
+pub(super) fn save_list(matrices: &[Option<KeptMatrix>], out: &mut ByteWriter<'_>) {
     out.count(matrices.len());
     for matrix in matrices {
         save(matrix.as_ref(), out);
@@ -95,7 +96,7 @@ pub(super) fn save_list(matrices: &[Option<Csc>], out: &mut ByteWriter<'_>) {
 ///
 /// # Errors
 /// As [`load`]; `Argument` for another length.
-pub(super) fn load_list(n: usize, length: usize, input: &mut ByteReader<'_>) -> Result<Vec<Option<Csc>>> {
+pub(super) fn load_list(n: usize, length: usize, input: &mut ByteReader<'_>) -> Result<Vec<Option<KeptMatrix>>> {
     let count = input.entries(1)?;
     if count != 0 && count != length {
         return Err(input.damaged("the number of matrices is not that of the nodal diameters"));

@@ -1,7 +1,8 @@
 //! Matrices on the independent degrees of freedom: K₀ = T₀ᵀ K T₀ + T₁ᵀ K T₁, K₁ = T₀ᵀ K T₁, K₋₁ = T₁ᵀ K T₀.
 
 use crate::error::{Error, Result};
-use crate::linalg::sparse::{Csc, Form, Symmetry};
+use crate::linalg::kept_matrix::KeptMatrix;
+use crate::linalg::sparse::{Columns, Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
 use crate::model::degree_map::DegreeMap;
 use num_complex::Complex64;
@@ -51,10 +52,11 @@ pub(super) fn blocks(map: &DegreeMap, a: &Csc, symmetry: Symmetry) -> Result<Blo
         Symmetry::Hermitian | Symmetry::Plain => None,
     };
     let coupled = map.faces().is_some();
+    let kept = |a: Option<Csc>| a.filter(|_| coupled).map(KeptMatrix::new).transpose();
     Ok(Blocks {
-        own: Some(own),
-        next: coupled.then_some(next),
-        previous: previous.filter(|_| coupled),
+        own: Some(KeptMatrix::new(own)?),
+        next: kept(Some(next))?,
+        previous: kept(previous)?,
         diameters: Vec::new(),
     })
 }
@@ -107,16 +109,16 @@ fn adjoint(a: &Csc) -> Result<Csc> {
 ///
 /// # Errors
 /// `OutOfMemory`.
-pub(super) fn restricted(old: &DegreeMap, new: &DegreeMap, a: &Csc) -> Result<Csc> {
+pub(super) fn restricted(old: &DegreeMap, new: &DegreeMap, a: &impl Columns) -> Result<Csc> {
     let n = new.independent();
     let number = |p: usize| new.number(old.origin(p));
     let mut entries = Vec::new();
     entries
-        .try_reserve_exact(a.values.len())
+        .try_reserve_exact(a.stored())
         .map_err(|_| Error::out_of_memory(CONTEXT))?;
-    for j in 0..a.cols {
+    for j in 0..a.columns() {
         let Some(column) = number(j) else { continue };
-        entries.extend(a.column(j).filter_map(|(i, v)| number(i).map(|row| (row, column, v))));
+        a.visit(j, |i, v| entries.extend(number(i).map(|row| (row, column, v))));
     }
     Csc::from_triplets(n, n, entries)
 }

@@ -1,7 +1,8 @@
 //! The linear structure: sector blocks of mass, damping and stiffness, or their matrices per nodal
 //! diameter.
 
-use crate::error::{Result, fail, try_push, try_vec};
+use crate::error::{Result, fail, try_push};
+use crate::linalg::kept_matrix::KeptMatrix;
 use crate::linalg::matrix_view::{MatrixView, Part};
 use crate::linalg::sparse::{Csc, Form, Symmetry};
 use crate::model::blocks::Blocks;
@@ -71,7 +72,7 @@ pub struct Structure {
     /// Speed of rotation.
     pub(super) speed: Speed,
     /// Modal damping as a matrix per nodal diameter 0 ..= N/2; empty: none.
-    pub(super) modal_damping: Vec<Option<Csc>>,
+    pub(super) modal_damping: Vec<Option<KeptMatrix>>,
     /// Aerodynamic influence per displacement and per velocity.
     aero: [Option<Arc<AeroInfluence>>; FORMS],
 }
@@ -158,7 +159,10 @@ impl Structure {
     pub(super) fn is_real(&self) -> bool {
         let kinds = [MatrixKind::Mass, MatrixKind::Damping, MatrixKind::Stiffness];
         let aero = self.aero.iter().flatten();
-        kinds.into_iter().flat_map(|kind| self.parts(kind)).all(Csc::is_real)
+        kinds
+            .into_iter()
+            .flat_map(|kind| self.parts(kind))
+            .all(KeptMatrix::is_real)
             && aero.map(Arc::as_ref).all(AeroInfluence::is_real)
     }
 
@@ -169,7 +173,7 @@ impl Structure {
     }
 
     /// The blocks of a matrix that were given.
-    pub(super) fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &Csc> {
+    pub(super) fn parts(&self, kind: MatrixKind) -> impl Iterator<Item = &KeptMatrix> {
         let b = &self.blocks[kind as usize];
         [&b.own, &b.next, &b.previous].into_iter().chain(&b.diameters).flatten()
     }
@@ -181,7 +185,7 @@ impl Structure {
     pub fn try_clone(&self) -> Result<Self> {
         let mut modal_damping = Vec::new();
         for a in &self.modal_damping {
-            let copy = a.as_ref().map(Csc::try_clone).transpose()?;
+            let copy = a.as_ref().map(KeptMatrix::try_clone).transpose()?;
             try_push(&mut modal_damping, copy, "the modal damping")?;
         }
         Ok(Self {
@@ -235,7 +239,10 @@ impl Structure {
     pub(super) fn fixing(&self, dofs: &[usize]) -> Result<Self> {
         self.refuse_modal_damping("degrees of freedom are fixed")?;
         let degrees = self.degrees.fixing(dofs)?;
-        let keep = |a: &Option<Csc>| a.as_ref().map(|a| restricted(&self.degrees, &degrees, a)).transpose();
+        let keep = |a: &Option<KeptMatrix>| {
+            let kept = |a| KeptMatrix::new(restricted(&self.degrees, &degrees, a)?);
+            a.as_ref().map(kept).transpose()
+        };
         let mut blocks: [Blocks; KINDS] = Default::default();
         for (new, old) in blocks.iter_mut().zip(self.blocks.iter()) {
             (new.own, new.next, new.previous) = (keep(&old.own)?, keep(&old.next)?, keep(&old.previous)?);
@@ -344,7 +351,7 @@ impl Structure {
             let blocks = sector_matrices::blocks(&self.degrees, &own, Self::symmetry(which, a))?;
             *self.blocks_mut(which)? = blocks;
         } else {
-            let own = of_independent(&self.degrees, own)?;
+            let own = KeptMatrix::new(of_independent(&self.degrees, own)?)?;
             self.blocks_mut(which)?.own = Some(own);
         }
         Ok(())
@@ -366,10 +373,10 @@ impl Structure {
     }
 
     pub(super) fn set_coupling(&mut self, which: MatrixKind, to_next: &MatrixView<'_>) -> Result<()> {
-        let next = self.coupling(which, to_next)?;
+        let next = KeptMatrix::new(self.coupling(which, to_next)?)?;
         if which == MatrixKind::Gyroscopic {
-            let previous = Csc::sum(next.rows, &[(-Complex64::ONE, &next, Form::Transposed)])?;
-            self.blocks_mut(which)?.previous = Some(previous);
+            let previous = Csc::sum(next.order(), &[(-Complex64::ONE, &next, Form::Transposed)])?;
+            self.blocks_mut(which)?.previous = Some(KeptMatrix::new(previous)?);
         }
         self.blocks_mut(which)?.next = Some(next);
         Ok(())
@@ -383,7 +390,7 @@ impl Structure {
                 which.name()
             );
         }
-        let previous = self.coupling(which, to_previous)?;
+        let previous = KeptMatrix::new(self.coupling(which, to_previous)?)?;
         self.blocks_mut(which)?.previous = Some(previous);
         Ok(())
     }
@@ -430,10 +437,12 @@ impl Structure {
         self.refuse_faces(which)?;
         let matrix = self.copied(which, a)?;
         Self::check_mass(which, a, &matrix)?;
-        let matrix = of_independent(&self.degrees, matrix)?;
+        let matrix = KeptMatrix::new(of_independent(&self.degrees, matrix)?)?;
         let blocks = self.blocks_mut(which)?;
         if blocks.diameters.is_empty() {
-            blocks.diameters = try_vec(highest + 1, None, "the matrices per diameter")?;
+            for _ in 0..=highest {
+                try_push(&mut blocks.diameters, None, "the matrices per diameter")?;
+            }
         }
         blocks.diameters[diameter] = Some(matrix);
         Ok(())

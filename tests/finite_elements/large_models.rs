@@ -142,43 +142,60 @@ fn a_sector_of_89_000_degrees_of_freedom_agrees_with_direct_factors() {
     agrees_with_direct_factors([90, 82, 3], 6.0, 1.5e9);
 }
 
-/// A sweep in one go; the memory counts with the matrices, and the factor is L of L Lᵀ. Matrices and basis are about as
-/// large as two factors.
+/// Elements of the plate that a process of its own sweeps.
+const ALONE: &str = "HBVIB_TEST_PLATE";
+
+/// A sweep in one go; the memory counts with the matrices, and the factor is L of L Lᵀ. Every plate is swept in a process of
+/// its own: memory that earlier tests have freed and the allocator keeps would count as used before.
 #[test]
 #[ignore = "a minute; tests/deep.sh runs it"]
 fn plates_are_swept_within_the_memory_of_a_few_factors() {
-    for elements in [[58, 56, 1], [123, 121, 1]] {
-        let plate = Plate::new(elements);
-        let factor = {
-            let model = plate.model(2e-6).unwrap();
-            let k = model.structure().wave_matrix(MatrixKind::Stiffness, 1).unwrap();
-            8.0 * entries_of_factor(&k).unwrap() as f64
-        };
-        forget_the_peak();
-        let before = memory("VmRSS");
-        let model = plate.with_sliders(20, 2e5, 0.05).unwrap();
-        // Without the matrices that the caller held until the model had its own.
-        forget_the_peak();
-        let solver = SolverOptions {
-            tolerance: 0.0,
-            harmonics: 3,
-            response_dof: Some(plate.corner()),
-            ..SolverOptions::default()
-        };
-        // The first natural frequency of either plate is 16.6 Hz.
-        let omega = TAU * 16.6;
-        let branch = sweep(&model, &solver, 0.8 * omega, 1.2 * omega, &[]);
-        let most = memory("VmHWM") - before;
-        println!(
-            "{} degrees of freedom, {} points, basis {}, certificate {:.1e}: {:.0} MB at most, {:.2} times the factor",
-            plate.ndof(),
-            branch.points(),
-            branch.reduction().basis,
-            branch.reduction().certificate,
-            most / 1e6,
-            most / factor
-        );
-        assert!(branch.points() >= 40 && branch.reduction().basis > 0);
-        assert!(most < 2.8 * factor, "{:.2}", most / factor);
+    if let Ok(elements) = std::env::var(ALONE) {
+        let elements: Vec<usize> = elements.split(' ').map(|x| x.parse().unwrap()).collect();
+        return plate_is_swept([elements[0], elements[1], elements[2]]);
     }
+    for elements in ["58 56 1", "123 121 1"] {
+        let alone = std::process::Command::new(std::env::current_exe().unwrap())
+            .args([
+                "--exact",
+                "large_models::plates_are_swept_within_the_memory_of_a_few_factors",
+            ])
+            .args(["--ignored", "--nocapture", "--test-threads=1"])
+            .env(ALONE, elements)
+            .output()
+            .unwrap();
+        print!("{}", String::from_utf8_lossy(&alone.stdout));
+        assert!(alone.status.success(), "{}", String::from_utf8_lossy(&alone.stderr));
+    }
+}
+
+fn plate_is_swept(elements: [usize; 3]) {
+    let plate = Plate::new(elements);
+    let before = memory("VmRSS");
+    let model = plate.with_sliders(20, 2e5, 0.05).unwrap();
+    // Without the matrices that the caller held until the model had its own.
+    forget_the_peak();
+    let solver = SolverOptions {
+        tolerance: 0.0,
+        harmonics: 3,
+        response_dof: Some(plate.corner()),
+        ..SolverOptions::default()
+    };
+    // The first natural frequency of either plate is 16.6 Hz.
+    let omega = TAU * 16.6;
+    let branch = sweep(&model, &solver, 0.8 * omega, 1.2 * omega, &[]);
+    let most = memory("VmHWM") - before;
+    let k = model.structure().wave_matrix(MatrixKind::Stiffness, 1).unwrap();
+    let factor = 8.0 * entries_of_factor(&k).unwrap() as f64;
+    println!(
+        "{} degrees of freedom, {} points, basis {}, certificate {:.1e}: {:.0} MB at most, {:.2} times the factor",
+        plate.ndof(),
+        branch.points(),
+        branch.reduction().basis,
+        branch.reduction().certificate,
+        most / 1e6,
+        most / factor
+    );
+    assert!(branch.points() >= 40 && branch.reduction().basis > 0);
+    assert!(most < 2.5 * factor, "{:.2}", most / factor);
 }

@@ -1,0 +1,82 @@
+//! The matrices of a wave that is reduced, checked, and the form of its damping.
+
+use crate::condense::wave_modes::proportional;
+use crate::error::Result;
+use crate::interrupt::Interrupt;
+use crate::linalg::sparse::{Columns, Csc, Form, Symmetry, aligned, worst_pair};
+use crate::model::Model;
+use crate::model::reduced_wave::WaveKey;
+use crate::model::structure::MatrixKind;
+use crate::model::wave_matrix::WaveMatrix;
+use num_complex::Complex64;
+
+/// Relative deviation from a Hermitian matrix that is rounding.
+const HERMITIAN: f64 = 1e-10;
+
+/// The matrices of a wave and the reason for which they are reduced.
+pub(super) struct WaveMatrices<'a> {
+    pub model: &'a Model,
+    pub number: usize,
+    pub conjugated: bool,
+    pub key: WaveKey,
+    pub frequency: f64,
+    pub memory_limit: usize,
+}
+
+/// K, M and the damping of a wave.
+pub(super) struct Assembled<'a> {
+    pub stiffness: WaveMatrix<'a>,
+    pub mass: WaveMatrix<'a>,
+    pub damping: Damping,
+}
+
+/// Damping as αM + βK, or as a matrix.
+pub(super) enum Damping {
+    Proportional(f64, f64),
+    General(Csc),
+}
+
+impl WaveMatrices<'_> {
+    fn matrix(&self, kind: MatrixKind) -> Result<WaveMatrix<'_>> {
+        self.model
+            .structure()
+            .matrix_of_wave(kind, self.number, self.conjugated)
+    }
+
+    /// `None` where stiffness or mass is not Hermitian.
+    pub fn assembled(&self, interrupt: &Interrupt<'_>) -> Result<Option<Assembled<'_>>> {
+        let stiffness = self.matrix(MatrixKind::Stiffness)?;
+        interrupt.check()?;
+        let mass = self.matrix(MatrixKind::Mass)?;
+        for a in [&stiffness, &mass] {
+            interrupt.check()?;
+            if worst_pair(a, Symmetry::Hermitian).2 > HERMITIAN * a.max_abs() {
+                return Ok(None);
+            }
+        }
+        let structure = self.model.structure();
+        let damping = if structure.has(MatrixKind::Damping) {
+            let c = self.matrix(MatrixKind::Damping)?;
+            let (none, n) = (Complex64::ZERO, c.columns());
+            let terms = [&mass, &stiffness, &c].map(|a| (none, a, Form::Plain));
+            let pattern = Csc::sum(n, &terms)?;
+            let aligned = [
+                aligned(&mass, &pattern)?,
+                aligned(&stiffness, &pattern)?,
+                aligned(&c, &pattern)?,
+            ];
+            match proportional([&aligned[0], &aligned[1], &aligned[2]]) {
+                Some((alpha, beta)) => Damping::Proportional(alpha, beta),
+                None => Damping::General(c.into_csc()?),
+            }
+        } else {
+            let (alpha, beta) = structure.rayleigh;
+            Damping::Proportional(alpha, beta)
+        };
+        Ok(Some(Assembled {
+            stiffness,
+            mass,
+            damping,
+        }))
+    }
+}
