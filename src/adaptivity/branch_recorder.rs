@@ -78,6 +78,11 @@ const SAMPLING: f64 = 3.0;
 /// Share of the tolerance that the error of sampling may take.
 const SHARE: f64 = 0.5;
 
+/// Largest change of sampled forces with half the samples that meets a tolerance.
+pub fn largest_change(tolerance: f64) -> f64 {
+    SAMPLING * SHARE * tolerance
+}
+
 impl<'a> BranchRecorder<'a> {
     /// An empty branch whose points may miss a tolerance.
     pub fn new(branch: Box<Branch>, tolerance: f64) -> Self {
@@ -114,7 +119,7 @@ impl<'a> BranchRecorder<'a> {
     fn note_sampling(&mut self, error: f64) {
         if self.tolerance > 0.0 {
             self.missed |= !matches!(
-                error.partial_cmp(&(SAMPLING * SHARE * self.tolerance)),
+                error.partial_cmp(&largest_change(self.tolerance)),
                 Some(Ordering::Less | Ordering::Equal)
             );
             self.sampling_error = self.sampling_error.max(error);
@@ -123,10 +128,10 @@ impl<'a> BranchRecorder<'a> {
 
     /// Factor by which more samples meet the tolerance at the points so far, a power of two; 1: none are required.
     pub fn sampling_factor(&self) -> usize {
-        if self.sampling_error <= SAMPLING * SHARE * self.tolerance {
+        if self.sampling_error <= largest_change(self.tolerance) {
             return 1;
         }
-        let excess = self.sampling_error / (SAMPLING * SHARE * self.tolerance);
+        let excess = self.sampling_error / largest_change(self.tolerance);
         (excess.sqrt().min(MAX_REFINEMENT as f64).ceil() as usize)
             .next_power_of_two()
             .max(2)

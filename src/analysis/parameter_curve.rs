@@ -1,5 +1,6 @@
 //! The curve of a result over a parameter: its points, its optima, and the solutions at requested values.
 
+use crate::adaptivity::branch_recorder::largest_change;
 use crate::adaptivity::controller::AdaptivityController;
 use crate::adaptivity::discretised::Discretised;
 use crate::analysis::followed::Followed;
@@ -236,28 +237,30 @@ impl<'a> CurveRecorder<'a> {
     }
 
     fn store_with(&mut self, point: &Point, error: f64) -> Result<()> {
-        self.note(error);
         let tracked = self.followed.tracked();
-        tracked.store(point, error, self.branch, self.data, None)?;
+        let (_, sampling_error) = tracked.store(point, error, self.branch, self.data, None)?;
+        self.note(error, sampling_error);
         Ok(())
     }
 
-    /// Notes whether an error misses the tolerance; one that is not known does.
-    fn note(&mut self, error: f64) {
-        let meets = error <= self.wanted.tolerance;
-        self.missed |= self.wanted.tolerance > 0.0 && !meets;
+    /// Notes whether the error of the harmonics or that of sampled forces misses the tolerance; one that is not known does.
+    fn note(&mut self, error: f64, sampling_error: f64) {
+        let tolerance = self.wanted.tolerance;
+        let meets = error <= tolerance && sampling_error <= largest_change(tolerance);
+        self.missed |= tolerance > 0.0 && !meets;
     }
 
     /// Stores the points beside the curve.
     fn store_beside(&mut self) -> Result<()> {
         for located in core::mem::take(&mut self.beside) {
-            self.note(located.error);
             self.followed.select(located.level)?;
             let Located {
                 beside, point, error, ..
             } = &located;
             let tracked = self.followed.tracked();
-            let special = tracked.store(point, *error, self.branch, self.data, Some(beside.kind()))?;
+            let (special, sampling_error) =
+                tracked.store(point, *error, self.branch, self.data, Some(beside.kind()))?;
+            self.note(*error, sampling_error);
             if let Beside::Optimum { is_maximum } = *beside {
                 self.data.push_optimum(Optimum {
                     point: special.point,

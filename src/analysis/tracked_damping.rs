@@ -343,7 +343,7 @@ impl Tracked for TrackedDamping<'_> {
         branch: &mut Branch,
         data: &mut ParameterData,
         kind: Option<SpecialKind>,
-    ) -> Result<Special> {
+    ) -> Result<(Special, f64)> {
         let (u, p) = (point.unknowns(), point.parameter());
         let mut values = try_vec(u.len(), 0.0, CONTEXT)?;
         self.equations(u, p, true, &mut values)?;
@@ -376,6 +376,7 @@ impl Tracked for TrackedDamping<'_> {
         let mut equations = Equations::new(&resolution, &start, &settings)?;
         equations.evaluate(&at, self.response_dof)?;
         let mode = equations.measure(&at, &linear, &[]);
+        let sampling_error = equations.problem.sampling_error(&equations.motion, omega)?;
         let record = Record {
             resolution: &resolution,
             omega,
@@ -385,7 +386,7 @@ impl Tracked for TrackedDamping<'_> {
             residual: point.residual,
             iterations: point.iterations,
             slip_fractions: equations.problem.forces().slip_fractions(),
-            sampling_error: f64::NAN,
+            sampling_error,
             errors: (f64::NAN, error * self.damping.abs()),
         };
         branch.push_followed(kind, &record)?;
@@ -393,11 +394,12 @@ impl Tracked for TrackedDamping<'_> {
             modes.push(mode)?;
         }
         data.push(p, (f64::NAN, self.d_damping))?;
-        Ok(Special {
+        let special = Special {
             point: branch.stored() - 1,
             omega,
             amplitude: self.damping,
-        })
+        };
+        Ok((special, sampling_error))
     }
 
     fn set_reciprocal(&mut self, is_reciprocal: bool) {

@@ -219,6 +219,14 @@ impl<'a> ForcedPoint<'a> {
         try_copy(self.problem.slip_fractions(), CONTEXT)
     }
 
+    /// Relative change of the contact forces at `u` with the number of samples; 0 where all laws are exact.
+    ///
+    /// # Errors
+    /// Those of callbacks that give up.
+    pub fn sampling_error(&mut self, u: &[f64], omega: f64) -> Result<f64> {
+        self.problem.sampling_error(u, omega)
+    }
+
     /// Residual at the point of which the adjoint was made last.
     pub fn residual(&self) -> &[f64] {
         &self.at.values

@@ -33,7 +33,8 @@ pub(crate) trait Tracked: Problem {
     /// Replaces the unknowns of a point by those of a corrected solution.
     fn take_corrected(&self, corrected: &Corrected, set: &HarmonicSet, v: &mut [f64]);
 
-    /// Stores a point with its estimated error in a branch: on its curve, or where `kind` is given beside it.
+    /// Stores a point with its estimated error in a branch: on its curve, or where `kind` is given beside it. Returns it with
+    /// the relative change of its contact forces with the number of samples.
     fn store(
         &mut self,
         point: &Point,
@@ -41,7 +42,7 @@ pub(crate) trait Tracked: Problem {
         branch: &mut Branch,
         data: &mut ParameterData,
         kind: Option<SpecialKind>,
-    ) -> Result<Special>;
+    ) -> Result<(Special, f64)>;
 
     /// Observes the reciprocal of the result, whose maxima are the minima of the result.
     fn set_reciprocal(&mut self, is_reciprocal: bool);

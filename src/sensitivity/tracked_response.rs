@@ -374,7 +374,7 @@ impl Tracked for TrackedResponse<'_> {
         branch: &mut Branch,
         data: &mut ParameterData,
         kind: Option<SpecialKind>,
-    ) -> Result<Special> {
+    ) -> Result<(Special, f64)> {
         let (u, p) = (point.unknowns(), point.parameter());
         let mut values = try_vec(u.len(), 0.0, CONTEXT)?;
         self.equations(u, p, true, &mut values)?;
@@ -395,6 +395,7 @@ impl Tracked for TrackedResponse<'_> {
             let null = borders.condition(at.jacobian(), self.interrupt)?;
             borders.follow(&null)?;
         }
+        let sampling_error = at.sampling_error(&motion, omega)?;
         let record = Record {
             resolution: &resolution,
             omega,
@@ -404,16 +405,17 @@ impl Tracked for TrackedResponse<'_> {
             residual: point.residual,
             iterations: point.iterations,
             slip_fractions: &slip_fractions,
-            sampling_error: f64::NAN,
+            sampling_error,
             errors: (error, f64::NAN),
         };
         branch.push_followed(kind, &record)?;
         data.push(p, (self.d_amplitude, f64::NAN))?;
-        Ok(Special {
+        let special = Special {
             point: branch.stored() - 1,
             omega,
             amplitude: self.amplitude,
-        })
+        };
+        Ok((special, sampling_error))
     }
 
     fn set_reciprocal(&mut self, is_reciprocal: bool) {

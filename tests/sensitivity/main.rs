@@ -10,6 +10,7 @@ mod cost;
 mod design;
 mod differences;
 mod ring_damper_preload;
+mod sampled_curves;
 mod tracked_damping;
 mod tracked_ends;
 mod tracked_fold;
