@@ -3,7 +3,8 @@
 use crate::build::Outcome;
 use crate::counted::counted;
 use crate::figure::{bounds, draw};
-use crate::job::{CampbellPart, Job, StateName};
+use crate::job::Job;
+use crate::job_studies::{CampbellPart, StateName};
 use crate::output::place;
 use hbvib::{Campbell, Hooks, LinearContacts, Model, Speed, campbell, damped_modes};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};

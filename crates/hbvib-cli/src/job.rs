@@ -1,5 +1,6 @@
 //! A job file: its keys are the fields of these structs, and others are refused with the nearest known one.
 
+use crate::job_studies::{CampbellPart, MapPart, StudyPart, TornadoPart};
 use crate::nearest_name::hint;
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -21,6 +22,8 @@ pub struct Job {
     pub verify: Option<VerifyPart>,
     pub campbell: Option<CampbellPart>,
     pub study: Option<StudyPart>,
+    pub map: Option<MapPart>,
+    pub tornado: Option<TornadoPart>,
     #[serde(default)]
     pub output: OutputPart,
     /// Folder of the job file, on which all paths depend.
@@ -266,94 +269,6 @@ pub struct ModePart {
     pub estimate_error: bool,
 }
 
-/// Contacts of a linear analysis.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum StateName {
-    #[default]
-    Stuck,
-    Free,
-    /// About the static state under constant forces and preload.
-    Static,
-}
-
-/// Natural frequencies over the speed of rotation, and where engine orders meet them; times are seconds.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct CampbellPart {
-    pub from_rpm: f64,
-    pub to_rpm: f64,
-    #[serde(default = "speeds")]
-    pub points: usize,
-    /// Number of modes.
-    #[serde(default = "modes")]
-    pub count: usize,
-    #[serde(default = "first_order")]
-    pub engine_orders: Vec<i64>,
-    #[serde(default)]
-    pub diameter: usize,
-    #[serde(default)]
-    pub contacts: StateName,
-    pub csv: Option<PathBuf>,
-    /// SVG or, where its name ends with .png, PNG.
-    pub figure: Option<PathBuf>,
-    /// Frequencies over nodal diameter with the engine orders (SAFE diagram).
-    pub interference_figure: Option<PathBuf>,
-    /// Speed of the interference figure; that of to_rpm unless given.
-    pub interference_rpm: Option<f64>,
-}
-
-/// Quantity that is changed: constants of contacts have their own values, the others are factors, 1 in the model.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub enum ParameterName {
-    Force,
-    Preload,
-    Mu,
-    Kt,
-    Kn,
-    Gap,
-    Mass,
-    Damping,
-    Stiffness,
-}
-
-/// Result that is followed.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
-#[serde(rename_all = "snake_case")]
-pub enum FollowName {
-    /// The peak next to near_hz, within a tenth of it.
-    #[default]
-    Peak,
-    /// The amplitude at near_hz.
-    Frequency,
-    /// The fold next to near_hz, within a tenth of it.
-    Fold,
-    /// The largest damping ratio of the nonlinear mode whose linear mode with stuck contacts is next to near_hz.
-    ModeMaxDamping,
-}
-
-/// A result over a parameter of the model.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct StudyPart {
-    pub parameter: ParameterName,
-    /// Number of the contact, from 0; all contacts that have the constant unless given.
-    pub contact: Option<usize>,
-    pub from: f64,
-    pub to: f64,
-    #[serde(default)]
-    pub follow: FollowName,
-    pub near_hz: f64,
-    /// A fixed highest harmonic, instead of a tolerance.
-    pub harmonics: Option<usize>,
-    pub tolerance: Option<f64>,
-    pub response_dof: Option<DofName>,
-    pub csv: Option<PathBuf>,
-    /// SVG or, where its name ends with .png, PNG.
-    pub figure: Option<PathBuf>,
-}
-
 /// Points of a branch.
 #[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
@@ -434,18 +349,6 @@ fn z() -> [f64; 3] {
     [0.0, 0.0, 1.0]
 }
 
-fn speeds() -> usize {
-    41
-}
-
-fn modes() -> usize {
-    6
-}
-
-fn first_order() -> Vec<i64> {
-    vec![1]
-}
-
 fn samples() -> usize {
     256
 }
@@ -464,9 +367,17 @@ impl Job {
         let mut job: Self = toml::from_str(&text)
             .map_err(|e| format!("{}: {}{}", path.display(), e.to_string().trim_end(), hint(e.message())))?;
         path.parent().unwrap_or(Path::new("")).clone_into(&mut job.folder);
-        if job.forced.is_none() && job.mode.is_none() && job.campbell.is_none() && job.study.is_none() {
+        let named = [
+            job.forced.is_some(),
+            job.mode.is_some(),
+            job.campbell.is_some(),
+            job.study.is_some(),
+            job.map.is_some(),
+            job.tornado.is_some(),
+        ];
+        if !named.contains(&true) {
             return Err(format!(
-                "{}: names no analysis: needs [forced], [mode], [campbell] or [study]",
+                "{}: names no analysis: needs [forced], [mode], [campbell], [study], [map] or [tornado]",
                 path.display()
             ));
         }

@@ -17,6 +17,8 @@ mod counted;
 mod faces;
 mod figure;
 mod job;
+mod job_studies;
+mod map;
 mod mesh;
 mod nearest_name;
 mod node_match;
@@ -25,7 +27,10 @@ mod npz;
 mod output;
 mod points;
 mod progress;
+mod solver;
 mod study;
+mod tornado;
+mod varied;
 mod verification;
 
 use build::{Built, Outcome};
@@ -34,13 +39,14 @@ use hbvib::{
     Branch, ContactState, ForcedOptions, Hooks, ModeChoice, ModeOptions, Model, Progress, SolverOptions, Status, Waves,
     forced_response, nonlinear_mode,
 };
-use job::{DofName, ForcedPart, Job, ModePart, VerifyPart, WavesName};
+use job::{ForcedPart, Job, ModePart, VerifyPart, WavesName};
 use progress::Bar;
 use signal_hook::consts::SIGINT;
+use solver::solver;
 use std::f64::consts::TAU;
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -84,7 +90,17 @@ fn schema() -> Outcome<ExitCode> {
 
 fn check(path: &Path) -> Outcome<ExitCode> {
     let job = Job::read(path)?;
-    let model = build::built(&job)?.model;
+    let built = build::built(&job)?;
+    if let Some(part) = &job.study {
+        study::check(part, &built)?;
+    }
+    if let Some(part) = &job.map {
+        map::check(part, &built)?;
+    }
+    if let Some(part) = &job.tornado {
+        tornado::check(part, &built)?;
+    }
+    let model = &built.model;
     let structure = model.structure();
     let mut parts = vec![counted(model.ndof(), "degree of freedom")];
     if structure.sectors() > 1 {
@@ -127,31 +143,9 @@ fn run(path: &Path) -> Outcome<ExitCode> {
     let (model, names) = (&built.model, &built.names);
     let stop = Arc::new(AtomicBool::new(false));
     signal_hook::flag::register(SIGINT, Arc::clone(&stop)).map_err(|e| format!("Ctrl-C: {e}"))?;
-    if let Some(part) = &job.campbell {
-        let cancelled = || stop.load(Ordering::Relaxed);
-        let mut hooks = Hooks {
-            cancelled: Some(&cancelled),
-            ..Hooks::default()
-        };
-        let (text, written) = campbell::write(&job, part, model, &mut hooks)?;
-        print(&text)?;
-        for path in written {
-            print(&format!("wrote {}\n", path.display()))?;
-        }
-    }
-    if let Some(part) = &job.study {
-        let cancelled = || stop.load(Ordering::Relaxed);
-        let mut hooks = Hooks {
-            cancelled: Some(&cancelled),
-            ..Hooks::default()
-        };
-        let response_dof = response_dof(part.response_dof.as_ref(), &built).map_err(|e| format!("[study]: {e}"))?;
-        let solver = solver(part.harmonics, part.tolerance, response_dof, false);
-        let (text, written) = study::write(&job, part, (model, &solver), &mut hooks)?;
-        print(&text)?;
-        for path in written {
-            print(&format!("wrote {}\n", path.display()))?;
-        }
+    if !over_quantities(&job, &built, &stop)? {
+        let _ = writeln!(std::io::stderr(), "hbvib: the run ended early");
+        return Ok(ExitCode::from(STOPPED));
     }
     if job.forced.is_none() && job.mode.is_none() {
         return Ok(ExitCode::SUCCESS);
@@ -160,9 +154,7 @@ fn run(path: &Path) -> Outcome<ExitCode> {
     let mut written = output::write(&job, &branch)?;
     written.extend(contact_tables::write(&job, &branch, names)?);
     print(&output::summary(&branch))?;
-    for path in written {
-        print(&format!("wrote {}\n", path.display()))?;
-    }
+    told("", &written)?;
     if branch.status() == Status::Ok {
         return match &job.verify {
             Some(part) => verified(&job, part, (model, &branch), &stop),
@@ -179,6 +171,55 @@ fn run(path: &Path) -> Outcome<ExitCode> {
         branch.status()
     );
     Ok(ExitCode::from(STOPPED))
+}
+
+/// Diagrams, curves, maps and tornados; false where one was stopped early.
+fn over_quantities(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<bool> {
+    let model = &built.model;
+    let cancelled = || stop.load(Ordering::Relaxed);
+    let hooks = || Hooks {
+        cancelled: Some(&cancelled),
+        ..Hooks::default()
+    };
+    if let Some(part) = &job.campbell {
+        let (text, files) = campbell::write(job, part, model, &mut hooks())?;
+        told(&text, &files)?;
+    }
+    if let Some(part) = &job.study {
+        let (text, files) = study::write(job, part, built, &mut hooks())?;
+        told(&text, &files)?;
+    }
+    let mut complete = true;
+    if let Some(part) = &job.map {
+        let bar = Bar::new();
+        let mut progress = |progress: &Progress| {
+            bar.show(progress);
+            false
+        };
+        let mut hooks = Hooks {
+            progress: Some(&mut progress),
+            cancelled: Some(&cancelled),
+            ..Hooks::default()
+        };
+        let (text, files, stopped) = map::write(job, part, built, &mut hooks)?;
+        complete &= !stopped;
+        told(&text, &files)?;
+    }
+    if let Some(part) = job.tornado.as_ref().filter(|_| complete) {
+        let (text, files, stopped) = tornado::write(job, part, built, &mut hooks())?;
+        complete &= !stopped;
+        told(&text, &files)?;
+    }
+    Ok(complete)
+}
+
+/// Prints a summary and the names of files.
+fn told(text: &str, files: &[PathBuf]) -> Outcome<()> {
+    print(text)?;
+    for path in files {
+        print(&format!("wrote {}\n", path.display()))?;
+    }
+    Ok(())
 }
 
 /// Compares points with integration in time, and returns the code of the run.
@@ -222,29 +263,6 @@ fn solve(job: &Job, built: &Built, stop: &AtomicBool) -> Outcome<Branch> {
     }
 }
 
-/// A number of harmonics is that number and no other, unless a tolerance is named as well.
-fn solver(
-    harmonics: Option<usize>,
-    tolerance: Option<f64>,
-    response_dof: Option<usize>,
-    estimate_error: bool,
-) -> SolverOptions {
-    let defaults = SolverOptions::default();
-    let automatic = if harmonics.is_some() { 0.0 } else { defaults.tolerance };
-    SolverOptions {
-        harmonics: harmonics.unwrap_or(defaults.harmonics),
-        tolerance: tolerance.unwrap_or(automatic),
-        response_dof,
-        estimate_error,
-        ..defaults
-    }
-}
-
-fn response_dof(name: Option<&DofName>, built: &Built) -> Outcome<Option<usize>> {
-    name.map(|name| built.nodes.dof(name).map_err(|e| format!("response_dof: {e}")))
-        .transpose()
-}
-
 fn forced(part: &ForcedPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch> {
     let at: Vec<f64> = part.at_hz.iter().map(|f| TAU * f).collect();
     let range = ForcedOptions {
@@ -253,13 +271,14 @@ fn forced(part: &ForcedPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Br
         at: &at,
         guess: None,
     };
-    let response_dof = response_dof(part.response_dof.as_ref(), built).map_err(|e| format!("[forced]: {e}"))?;
+    let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
     let solver = SolverOptions {
+        estimate_error: part.estimate_error,
         stability: part.stability.map(|waves| match waves {
             WavesName::Wave => Waves::Wave,
             WavesName::Wheel => Waves::Wheel,
         }),
-        ..solver(part.harmonics, part.tolerance, response_dof, part.estimate_error)
+        ..named.map_err(|e| format!("[forced]: {e}"))?
     };
     forced_response(&built.model, &solver, &range, hooks).map_err(|e| format!("[forced]: {e}"))
 }
@@ -271,7 +290,10 @@ fn mode(part: &ModePart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<Branch
         log10_stop: part.log10_to,
         ..ModeOptions::default()
     };
-    let response_dof = response_dof(part.response_dof.as_ref(), built).map_err(|e| format!("[mode]: {e}"))?;
-    let solver = solver(part.harmonics, part.tolerance, response_dof, part.estimate_error);
+    let named = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built);
+    let solver = SolverOptions {
+        estimate_error: part.estimate_error,
+        ..named.map_err(|e| format!("[mode]: {e}"))?
+    };
     nonlinear_mode(&built.model, &solver, &range, hooks).map_err(|e| format!("[mode]: {e}"))
 }

@@ -1,14 +1,14 @@
 //! Study of a job: a result over a parameter of the model, with its optima.
 
-use crate::build::Outcome;
+use crate::build::{Built, Outcome};
 use crate::counted::counted;
 use crate::figure::{bounds, draw, scientific};
-use crate::job::{FollowName, Job, ParameterName, StudyPart};
+use crate::job::Job;
+use crate::job_studies::{FollowName, StudyPart};
 use crate::output::place;
-use hbvib::{
-    Branch, Constant, Follow, Hooks, MatrixKind, Model, Parameter, ParameterRange, SolverOptions, Status,
-    parameter_response,
-};
+use crate::solver::solver;
+use crate::varied::{Keys, Varied};
+use hbvib::{Branch, Follow, Hooks, ParameterRange, Status, parameter_response};
 use plotters::prelude::{ChartBuilder, Circle, LineSeries};
 use plotters::style::{BLUE, Color, RED};
 use std::f64::consts::TAU;
@@ -17,28 +17,6 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 impl StudyPart {
-    fn parameter(&self) -> Outcome<Parameter<'static>> {
-        let factor = |which| Ok(Parameter::Factor { which });
-        let constant = match self.parameter {
-            ParameterName::Preload => Constant::Preload,
-            ParameterName::Mu => Constant::Mu,
-            ParameterName::Kt => Constant::Kt,
-            ParameterName::Kn => Constant::Kn,
-            ParameterName::Gap => Constant::Gap,
-            _ if self.contact.is_some() => {
-                return Err("[study]: contact needs a constant of a contact as parameter".into());
-            }
-            ParameterName::Force => return Ok(Parameter::Force),
-            ParameterName::Mass => return factor(MatrixKind::Mass),
-            ParameterName::Damping => return factor(MatrixKind::Damping),
-            ParameterName::Stiffness => return factor(MatrixKind::Stiffness),
-        };
-        Ok(Parameter::Contact {
-            constant,
-            contact: self.contact,
-        })
-    }
-
     fn follow(&self) -> Follow {
         let omega = self.near_hz * TAU;
         match self.follow {
@@ -62,24 +40,38 @@ impl StudyPart {
     }
 }
 
+/// Refuses what cannot be computed.
+///
+/// # Errors
+/// A sentence.
+pub fn check(part: &StudyPart, built: &Built) -> Outcome<()> {
+    varied(part, built).map(|_| ())
+}
+
+fn varied(part: &StudyPart, built: &Built) -> Outcome<Varied> {
+    let keys = Keys {
+        parameter: part.parameter,
+        contact: part.contact,
+        dofs: &part.dofs,
+    };
+    Varied::new(&keys, built).map_err(|e| format!("[study]: {e}"))
+}
+
 /// Computes and writes the study; returns a summary and the files.
 ///
 /// # Errors
 /// A sentence.
-pub fn write(
-    job: &Job,
-    part: &StudyPart,
-    (model, solver): (&Model, &SolverOptions),
-    hooks: &mut Hooks<'_>,
-) -> Outcome<(String, Vec<PathBuf>)> {
+pub fn write(job: &Job, part: &StudyPart, built: &Built, hooks: &mut Hooks<'_>) -> Outcome<(String, Vec<PathBuf>)> {
+    let said = |e: &dyn std::fmt::Display| format!("[study]: {e}");
+    let varied = varied(part, built)?;
+    let solver = solver((part.harmonics, part.tolerance), part.response_dof.as_ref(), built).map_err(|e| said(&e))?;
     let range = ParameterRange {
         start: part.from,
         stop: part.to,
         at: &[],
         follow: part.follow(),
     };
-    let found =
-        parameter_response(model, solver, part.parameter()?, &range, hooks).map_err(|e| format!("[study]: {e}"))?;
+    let found = parameter_response(&built.model, &solver, varied.parameter(), &range, hooks).map_err(|e| said(&e))?;
     let rows = rows(&found);
     let mut written = Vec::new();
     if let Some(path) = &part.csv {
@@ -89,7 +81,7 @@ pub fn write(
     }
     if let Some(path) = &part.figure {
         let path = place(job, path)?;
-        figure(&path, part, &rows, &found)?;
+        figure(&path, (part, varied.label()), &rows, &found)?;
         written.push(path);
     }
     Ok((summary(part, &found, rows.len()), written))
@@ -165,7 +157,7 @@ fn summary(part: &StudyPart, found: &Branch, points: usize) -> String {
 }
 
 /// The result over the parameter, with a circle at each optimum.
-fn figure(path: &Path, part: &StudyPart, rows: &[Row], found: &Branch) -> Outcome<()> {
+fn figure(path: &Path, (part, label): (&StudyPart, &str), rows: &[Row], found: &Branch) -> Outcome<()> {
     let y = bounds(rows.iter().map(|r| r.value));
     draw(path, |area| {
         let mut chart = ChartBuilder::on(area)
@@ -179,7 +171,7 @@ fn figure(path: &Path, part: &StudyPart, rows: &[Row], found: &Branch) -> Outcom
             .build_cartesian_2d(bounds(rows.iter().map(|r| r.parameter)), y.clone())?;
         chart
             .configure_mesh()
-            .x_desc(format!("{:?}", part.parameter).to_lowercase())
+            .x_desc(label)
             .y_desc(part.result().replace('_', " "))
             .y_label_formatter(&scientific(&y))
             .draw()?;

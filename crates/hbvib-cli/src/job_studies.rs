@@ -1,0 +1,193 @@
+//! The parts of a job that are computed over a quantity: Campbell diagrams, curves over a parameter, maps and tornados.
+
+use crate::job::DofName;
+use schemars::JsonSchema;
+use serde::Deserialize;
+use std::path::PathBuf;
+
+/// Contacts of a linear analysis.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum StateName {
+    #[default]
+    Stuck,
+    Free,
+    /// About the static state under constant forces and preload.
+    Static,
+}
+
+/// Natural frequencies over the speed of rotation, and where engine orders meet them; times are seconds.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct CampbellPart {
+    pub from_rpm: f64,
+    pub to_rpm: f64,
+    #[serde(default = "speeds")]
+    pub points: usize,
+    /// Number of modes.
+    #[serde(default = "modes")]
+    pub count: usize,
+    #[serde(default = "first_order")]
+    pub engine_orders: Vec<i64>,
+    #[serde(default)]
+    pub diameter: usize,
+    #[serde(default)]
+    pub contacts: StateName,
+    pub csv: Option<PathBuf>,
+    /// SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
+    /// Frequencies over nodal diameter with the engine orders (SAFE diagram).
+    pub interference_figure: Option<PathBuf>,
+    /// Speed of the interference figure; that of to_rpm unless given.
+    pub interference_rpm: Option<f64>,
+}
+
+/// Quantity that is changed: constants of contacts and the speed have their own values, the others are factors, 1 in the
+/// model.
+#[derive(Clone, Copy, Debug, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "lowercase")]
+pub enum ParameterName {
+    Force,
+    Preload,
+    Mu,
+    Kt,
+    Kn,
+    Gap,
+    Mass,
+    Damping,
+    Stiffness,
+    /// The fixed speed of rotation, its own value.
+    Speed,
+}
+
+/// Result that is followed.
+#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema, PartialEq, Eq)]
+#[serde(rename_all = "snake_case")]
+pub enum FollowName {
+    /// The peak next to near_hz, within a tenth of it.
+    #[default]
+    Peak,
+    /// The amplitude at near_hz.
+    Frequency,
+    /// The fold next to near_hz, within a tenth of it.
+    Fold,
+    /// The largest damping ratio of the nonlinear mode whose linear mode with stuck contacts is next to near_hz.
+    ModeMaxDamping,
+}
+
+/// A result over a parameter of the model.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct StudyPart {
+    pub parameter: ParameterName,
+    /// Number of the contact, from 0; all contacts that have the constant unless given.
+    pub contact: Option<usize>,
+    /// A mass, stiffness or damping on each of these degrees of freedom instead of a factor: its value is added.
+    #[serde(default)]
+    pub dofs: Vec<DofName>,
+    pub from: f64,
+    pub to: f64,
+    #[serde(default)]
+    pub follow: FollowName,
+    pub near_hz: f64,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<DofName>,
+    pub csv: Option<PathBuf>,
+    /// SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
+}
+
+/// Peaks of all pairs of two quantities' values.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct MapPart {
+    pub x: AxisPart,
+    pub y: AxisPart,
+    /// Range of frequency in which each pair has its highest peak.
+    pub from_hz: f64,
+    pub to_hz: f64,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<DofName>,
+    /// All that the processor has unless given. The results do not depend on it.
+    pub threads: Option<usize>,
+    pub csv: Option<PathBuf>,
+    pub npz: Option<PathBuf>,
+    /// SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
+}
+
+/// Values of one quantity of a map.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct AxisPart {
+    pub parameter: ParameterName,
+    /// Number of the contact, from 0; all contacts that have the constant unless given.
+    pub contact: Option<usize>,
+    /// A mass, stiffness or damping on each of these degrees of freedom instead of a factor: its value is added.
+    #[serde(default)]
+    pub dofs: Vec<DofName>,
+    pub from: f64,
+    pub to: f64,
+    #[serde(default = "values")]
+    pub points: usize,
+}
+
+/// Changes of the highest peak by quantities, from its derivatives, the largest first.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TornadoPart {
+    pub parameter: Vec<SpreadPart>,
+    /// Range of frequency of the peak.
+    pub from_hz: f64,
+    pub to_hz: f64,
+    /// A fixed highest harmonic, instead of a tolerance.
+    pub harmonics: Option<usize>,
+    pub tolerance: Option<f64>,
+    pub response_dof: Option<DofName>,
+    pub csv: Option<PathBuf>,
+    /// SVG or, where its name ends with .png, PNG.
+    pub figure: Option<PathBuf>,
+}
+
+/// A quantity and how far it spreads.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct SpreadPart {
+    pub parameter: ParameterName,
+    /// Number of the contact, from 0; all contacts that have the constant, which must be equal, unless given.
+    pub contact: Option<usize>,
+    /// A mass, stiffness or damping on each of these degrees of freedom instead of a factor.
+    #[serde(default)]
+    pub dofs: Vec<DofName>,
+    /// Name for the outputs.
+    pub name: Option<String>,
+    /// Relative change.
+    #[serde(default = "tenth")]
+    pub spread: f64,
+    /// Value that changes by this share; that of the model unless given. With dofs it is needed.
+    pub value: Option<f64>,
+}
+
+fn speeds() -> usize {
+    41
+}
+
+fn modes() -> usize {
+    6
+}
+
+fn first_order() -> Vec<i64> {
+    vec![1]
+}
+
+fn values() -> usize {
+    21
+}
+
+fn tenth() -> f64 {
+    0.1
+}
