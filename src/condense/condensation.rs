@@ -103,9 +103,11 @@ impl Condensed {
         }
         let mut workspace = Workspace::new(&condensed, None)?;
         let mut motion = 0.0_f64;
-        for i in 0..condensed.blocks.len() {
-            workspace.evaluate(&condensed, i, sweep.start, false, interrupt)?;
-            motion = motion.max(condensed.largest(i, workspace.excited())?);
+        for (i, block) in condensed.blocks.iter().enumerate() {
+            if block.has_force() {
+                workspace.evaluate(&condensed, i, sweep.start, false, interrupt)?;
+                motion = motion.max(condensed.largest(i, workspace.excited())?);
+            }
         }
         let scale = power_of_two(motion);
         for block in &mut condensed.blocks {

@@ -9,14 +9,24 @@
 
 use crate::condense::flexibility::Table;
 use crate::error::{Result, try_push, try_vec};
+use faer::linalg::matmul::matmul;
+use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
 /// Samples per panel.
 const NODES: usize = 24;
 
+/// Samples with which a panel is tried first: every third of the others.
+const FEW: usize = NODES / 3;
+
+const CONTEXT: &str = "the interpolated flexibility";
+
 /// Attempts at one panel before it is accepted at the accuracy that rounding allows, or rejected.
 const MAX_ATTEMPTS: usize = 24;
+
+/// Share of the tolerance below which the last coefficients are left out.
+const NEGLIGIBLE: f64 = 1e-2;
 
 /// Largest tail at which a panel is accepted whose convergence rounding prevents.
 const NOISE: f64 = 1e-8;
@@ -25,7 +35,7 @@ const NOISE: f64 = 1e-8;
 struct Panel {
     low: f64,
     high: f64,
-    /// NODES × table size, degree by degree.
+    /// Degrees × table size, degree by degree.
     coefficients: Vec<Complex64>,
 }
 
@@ -41,10 +51,9 @@ pub struct FrequencyInterpolation {
     rising: bool,
     panels: Vec<Panel>,
     samples: Vec<Complex64>,
-    /// Relative size of the coefficients of each degree on the panel tried last.
+    /// Degrees of the series tried last, and the relative size of the coefficients of each.
+    degrees: usize,
     decay: [f64; NODES],
-    /// cos(πm/(2N)) for m in one turn.
-    cosines: [f64; 4 * NODES],
     /// Number of factorisations.
     evaluations: usize,
 }
@@ -68,9 +77,9 @@ impl FrequencyInterpolation {
             last_width: 0.0,
             rising: end >= start,
             panels: Vec::new(),
-            samples: try_vec(size, Complex64::ZERO, "the interpolated flexibility")?,
+            samples: try_vec(size, Complex64::ZERO, CONTEXT)?,
+            degrees: 0,
             decay: [0.0; NODES],
-            cosines: core::array::from_fn(|m| (PI * m as f64 / (2 * NODES) as f64).cos()),
             evaluations: 0,
         })
     }
@@ -97,7 +106,7 @@ impl FrequencyInterpolation {
             Some(index) => index,
             None => match self.add_panel(omega, &mut sample)? {
                 Some(panel) => {
-                    try_push(&mut self.panels, panel, "the interpolated flexibility")?;
+                    try_push(&mut self.panels, panel, CONTEXT)?;
                     self.panels.len() - 1
                 }
                 None => return Ok(false),
@@ -105,9 +114,10 @@ impl FrequencyInterpolation {
         };
         self.panels[index].evaluate(omega, table);
         let (d, d_slope) = self.denominator(omega);
+        let inverse = d.inv();
         for (value, slope) in table.value.iter_mut().zip(&mut table.slope) {
-            *value /= d;
-            *slope = (*slope - d_slope * *value) / d;
+            *value *= inverse;
+            *slope = (*slope - d_slope * *value) * inverse;
         }
         Ok(true)
     }
@@ -156,16 +166,15 @@ impl FrequencyInterpolation {
             if high - low <= 1e-9 * omega {
                 return Ok(None);
             }
-            self.transform(low, high, sample)?;
-            let tail = self.decay[NODES - 2].max(self.decay[NODES - 1]);
-            let stalled = tail > 0.3 * last_tail && tail < NOISE;
+            let (mut coefficients, tail) = self.series((low, high), sample)?;
+            let stalled = tail < NOISE && (tail > 0.3 * last_tail || self.is_level());
             if stalled {
                 // This is the rounding error of the factorisations: later panels cannot be better.
                 self.tolerance = self.tolerance.max(2.0 * tail);
             }
             if tail <= self.tolerance {
-                let mut coefficients = try_vec(self.samples.len(), Complex64::ZERO, "the interpolated flexibility")?;
-                coefficients.copy_from_slice(&self.samples);
+                coefficients.truncate(self.needed_degrees() * self.outputs * self.outputs);
+                coefficients.shrink_to_fit();
                 // Towards a resonance each panel is shorter than the one before.
                 let width = high - low;
                 let trend = if self.last_width > 0.0 {
@@ -188,63 +197,116 @@ impl FrequencyInterpolation {
         Ok(None)
     }
 
+    /// Largest of the last coefficients of the series tried last.
+    fn tail(&self) -> f64 {
+        let last = if self.degrees == FEW { 3 } else { 2 };
+        self.decay[self.degrees - last..self.degrees]
+            .iter()
+            .fold(0.0, |tail, d| tail.max(*d))
+    }
+
+    /// Whether the coefficients of the last half of all degrees do not fall any more.
+    fn is_level(&self) -> bool {
+        let most = |part: &[f64]| part.iter().fold(0.0_f64, |most, d| most.max(*d));
+        let (before, last) = self.decay[NODES / 2..].split_at(NODES / 4);
+        self.degrees == NODES && most(last) > 0.3 * most(before)
+    }
+
+    /// Degrees of the series tried last beyond which its coefficients are negligible.
+    fn needed_degrees(&self) -> usize {
+        let least = NEGLIGIBLE * self.tolerance;
+        let last = self.decay[..self.degrees].iter().rposition(|d| *d > least);
+        last.map_or(1, |last| last + 1)
+    }
+
     /// Factor by which a panel could have been wider. Its series reached the tolerance t at degree k, so that it
     /// converges like t^(1/k) per degree, and about as much slower as the panel is wider.
     fn possible_widening(&self) -> f64 {
-        let last = self.decay.iter().rposition(|d| *d > 3.0 * self.tolerance);
+        let last = self.decay[..self.degrees]
+            .iter()
+            .rposition(|d| *d > 3.0 * self.tolerance);
         let needed = last.unwrap_or(0) + 2;
         let spare = 1.0 / needed as f64 - 1.0 / (NODES - 2) as f64;
         0.9 * self.tolerance.powf(-spare)
     }
 
-    /// Samples a panel, turns the samples into coefficients in place, and notes their relative
-    /// size: the largest over contact flexibility, contact motion, response row and response, each
-    /// against its own largest value.
-    fn transform(
+    /// The series on a panel, degree by degree, and its tail: from few samples where these are enough, else from all.
+    fn series(
         &mut self,
-        low: f64,
-        high: f64,
+        (low, high): (f64, f64),
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<()> {
+    ) -> Result<(Vec<Complex64>, f64)> {
         let size = self.outputs * self.outputs;
-        for j in 0..NODES {
-            let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
-            let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
-            let (d, _) = self.denominator(omega);
-            let values = &mut self.samples[j * size..(j + 1) * size];
-            sample(omega, values)?;
-            for v in values {
-                *v *= d;
-            }
-            self.evaluations += 1;
-        }
-        let mut largest = [0.0_f64; 4];
-        let mut sizes = [[0.0_f64; 4]; NODES];
-        for entry in 0..size {
-            let group = usize::from(entry % self.outputs == self.outputs - 1)
-                + 2 * usize::from(entry / self.outputs == self.outputs - 1);
-            let mut values = [Complex64::ZERO; NODES];
-            for (j, v) in values.iter_mut().enumerate() {
-                *v = self.samples[j * size + entry];
-                largest[group] = largest[group].max(v.norm());
-            }
-            for (k, sizes) in sizes.iter_mut().enumerate() {
-                let mut sum = Complex64::ZERO;
-                for (j, v) in values.iter().enumerate() {
-                    // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
-                    sum += v * self.cosines[(k * (2 * j + 1)) % (4 * NODES)];
+        let is_of_few = |j: usize| j % 3 == 1;
+        for few in [true, false] {
+            for j in (0..NODES).filter(|&j| is_of_few(j) == few) {
+                let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
+                let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
+                let (d, _) = self.denominator(omega);
+                let values = &mut self.samples[j * size..(j + 1) * size];
+                sample(omega, values)?;
+                for v in values {
+                    *v *= d;
                 }
-                sum *= if k == 0 { 1.0 } else { 2.0 } / NODES as f64;
-                self.samples[k * size + entry] = sum;
-                sizes[group] = sizes[group].max(sum.norm());
+                self.evaluations += 1;
+            }
+            let coefficients = self.transform(if few { FEW } else { NODES })?;
+            let tail = self.tail();
+            if !few || tail <= self.tolerance {
+                return Ok((coefficients, tail));
             }
         }
-        for (decay, sizes) in self.decay.iter_mut().zip(sizes) {
-            *decay = (0..4)
-                .filter(|&g| largest[g] > 0.0)
-                .fold(0.0, |worst, g| worst.max(sizes[g] / largest[g]));
+        Ok((Vec::new(), f64::INFINITY))
+    }
+
+    /// Turns samples into coefficients of so many degrees, and notes their relative size: the largest over contact
+    /// flexibility, contact motion, response row and response, each against its own largest value.
+    fn transform(&mut self, degrees: usize) -> Result<Vec<Complex64>> {
+        let size = self.outputs * self.outputs;
+        let (first, stride) = if degrees == FEW { (1, 3) } else { (0, 1) };
+        let mut cosines = [Complex64::ZERO; NODES * NODES];
+        for (k, row) in cosines.chunks_exact_mut(degrees).take(degrees).enumerate() {
+            let factor = if k == 0 { 1.0 } else { 2.0 } / degrees as f64;
+            for (j, z) in row.iter_mut().enumerate() {
+                // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
+                let angle = PI * ((k * (2 * j + 1)) % (4 * degrees)) as f64 / (2 * degrees) as f64;
+                *z = (factor * angle.cos()).into();
+            }
         }
-        Ok(())
+        let mut coefficients = try_vec(degrees * size, Complex64::ZERO, CONTEXT)?;
+        matmul(
+            MatMut::from_row_major_slice_mut(&mut coefficients, degrees, size),
+            Accum::Replace,
+            MatRef::from_row_major_slice(&cosines[..degrees * degrees], degrees, degrees),
+            MatRef::from_row_major_slice_with_stride(&self.samples[first * size..], degrees, size, stride * size),
+            Complex64::ONE,
+            Par::Seq,
+        );
+        let mut largest = [0.0_f64; 4];
+        for j in (first..NODES).step_by(stride) {
+            self.squares(&self.samples[j * size..(j + 1) * size], &mut largest);
+        }
+        self.degrees = degrees;
+        for (k, of_degree) in coefficients.chunks_exact(size).enumerate() {
+            let mut sizes = [0.0_f64; 4];
+            self.squares(of_degree, &mut sizes);
+            let relative = sizes.iter().zip(&largest).filter(|(_, largest)| **largest > 0.0);
+            self.decay[k] = relative
+                .fold(0.0_f64, |worst, (size, largest)| worst.max(size / largest))
+                .sqrt();
+        }
+        Ok(coefficients)
+    }
+
+    /// Raises the largest squares of each of the four parts of a table to those of its entries.
+    fn squares(&self, table: &[Complex64], largest: &mut [f64; 4]) {
+        let most = |part: &[Complex64], least: f64| part.iter().fold(least, |most, z| most.max(z.norm_sqr()));
+        for (j, column) in table.chunks_exact(self.outputs).enumerate() {
+            let excited = 2 * usize::from(j + 1 == self.outputs);
+            let (contacts, response) = column.split_at(self.outputs - 1);
+            largest[excited] = most(contacts, largest[excited]);
+            largest[excited + 1] = most(response, largest[excited + 1]);
+        }
     }
 }
 

@@ -105,6 +105,13 @@ impl HarmonicBlock {
         Ok(own)
     }
 
+    /// Whether a force acts at any frequency.
+    #[must_use]
+    pub fn has_force(&self) -> bool {
+        let unbalance = self.unbalance.iter().flatten();
+        self.force.iter().chain(unbalance).any(|f| *f != Complex64::ZERO)
+    }
+
     /// F_h at an angular frequency.
     pub fn force_at(&self, omega: f64, force: &mut [Complex64]) {
         force.copy_from_slice(&self.force);

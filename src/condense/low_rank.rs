@@ -87,13 +87,11 @@ pub struct LowRank {
 }
 
 impl LowRank {
-    /// The term of the i-th carried harmonic; of order 0 without damping by stiffness (`damped`) and without imaginary κ.
+    /// The term with these coefficients; of order 0 without damping by stiffness (`damped`) and without imaginary κ.
     ///
     /// # Errors
     /// `OutOfMemory`.
-    pub fn new(condensed: &Condensed, i: usize, springs: &[(MotionRow, f64)], damped: bool) -> Result<Self> {
-        let coordinates = condensed.coordinates();
-        let coefficients = Coefficients::new(condensed, i, springs)?;
+    pub fn new(coordinates: usize, coefficients: Coefficients, damped: bool) -> Result<Self> {
         let order = if damped || coefficients.imaginary.iter().any(|&im| im != 0.0) {
             coefficients.len()
         } else {

@@ -5,10 +5,10 @@
 
 use crate::condense::Condensed;
 use crate::condense::flexibility::Table;
-use crate::condense::low_rank::{Frequency, LowRank, Plain};
+use crate::condense::low_rank::{Coefficients, Frequency, LowRank, Plain};
 use crate::condense::single_contact::{Denominators, SingleContact};
 use crate::condense::wave_modes::{NEAR_RESONANCE, WaveModes};
-use crate::error::{Result, try_vec};
+use crate::error::{Result, boxed, try_vec};
 use crate::interrupt::Interrupt;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -24,6 +24,18 @@ const SMALL_PRODUCT: usize = 4096;
 pub struct ModalTable {
     modes: Arc<WaveModes>,
     number: f64,
+    sums: Sums,
+}
+
+/// How the sums over the modes are made.
+enum Sums {
+    /// Written out: one contact without springs.
+    Single(SingleContact, Coefficients),
+    Any(Box<General>),
+}
+
+/// Sums for any number of contacts and springs.
+struct General {
     coordinates: usize,
     /// Rows of contacts, response and springs.
     rows: usize,
@@ -39,8 +51,6 @@ pub struct ModalTable {
     plain: Vec<Complex64>,
     d_plain: Vec<Complex64>,
     low_rank: LowRank,
-    /// The sums written out, where one contact without springs allows it.
-    single: Option<SingleContact>,
 }
 
 impl ModalTable {
@@ -73,26 +83,28 @@ impl ModalTable {
             }
             inputs[coordinates] = crate::linalg::inner(shape, &block.force);
         }
-        let low_rank = LowRank::new(condensed, i, springs, damped)?;
-        let single = if coordinates == 1 && rows == 2 && low_rank.order() <= 1 {
-            Some(SingleContact::new(&modes.values, &left, &right)?)
+        let coefficients = Coefficients::new(condensed, i, springs)?;
+        let sums = if coordinates == 1 && rows == 2 {
+            Sums::Single(SingleContact::new(&modes.values, &left, &right)?, coefficients)
         } else {
-            None
+            let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
+            let general = General {
+                coordinates,
+                rows,
+                left,
+                right,
+                inverse: zeros(n)?,
+                slopes: zeros(n)?,
+                weighted: zeros(rows * n)?,
+                plain: zeros(rows * rows)?,
+                d_plain: zeros(rows * rows)?,
+                low_rank: LowRank::new(coordinates, coefficients, damped)?,
+            };
+            Sums::Any(boxed(|| Ok(general))?)
         };
-        let zeros = |len| try_vec(len, Complex64::ZERO, CONTEXT);
         Ok(Self {
-            single,
             number: block.number as f64,
-            coordinates,
-            rows,
-            left,
-            right,
-            inverse: zeros(n)?,
-            slopes: zeros(n)?,
-            weighted: zeros(rows * n)?,
-            plain: zeros(rows * rows)?,
-            d_plain: zeros(rows * rows)?,
-            low_rank,
+            sums,
             modes,
         })
     }
@@ -103,46 +115,37 @@ impl ModalTable {
     /// # Errors
     /// `Singular` at an undamped resonance; `StoppedByCaller`.
     pub fn evaluate(&mut self, omega: f64, slopes: bool, table: &mut Table, interrupt: &Interrupt<'_>) -> Result<bool> {
-        let outputs = self.coordinates + 1;
         let at = self.frequency(omega);
-        if let Some(single) = &self.single {
-            let (s, d_s) = self.inertia(omega);
-            let by = Denominators {
-                at,
-                s,
-                d_s,
-                nu: self.number * omega,
-                least: NEAR_RESONANCE,
-            };
-            let is_clear = single.evaluate(by, (self.low_rank.entry(0, at), self.low_rank.d_entry(0, at)), table);
-            if is_clear {
-                check_finite(&table.value, omega)?;
+        let inertia = self.inertia(omega);
+        let nu = self.number * omega;
+        let is_clear = match &mut self.sums {
+            Sums::Single(single, coefficients) => {
+                let (s, d_s) = inertia;
+                let by = Denominators {
+                    at,
+                    s,
+                    d_s,
+                    nu,
+                    least: NEAR_RESONANCE,
+                };
+                single.evaluate(
+                    by,
+                    (coefficients.entry(0, at.c), coefficients.d_entry(0, at.d_c)),
+                    table,
+                )
             }
-            return Ok(is_clear);
-        }
-        if !self.denominators(omega) {
-            return Ok(false);
-        }
-        self.sum(slopes);
-        let of = |plain: &[Complex64], to: &mut [Complex64]| {
-            for (to, from) in to.chunks_exact_mut(outputs).zip(plain.chunks_exact(self.rows)) {
-                to.copy_from_slice(&from[..outputs]);
+            Sums::Any(general) => {
+                let is_clear = general.denominators(&self.modes, at, inertia, nu);
+                if is_clear {
+                    general.evaluate(at, slopes, table, interrupt)?;
+                }
+                is_clear
             }
         };
-        of(&self.plain, &mut table.value);
-        if slopes {
-            of(&self.d_plain, &mut table.slope);
-        } else {
-            table.slope.fill(Complex64::ZERO);
+        if is_clear {
+            check_finite(&table.value, omega)?;
         }
-        let plain = Plain {
-            value: &self.plain,
-            slope: &self.d_plain,
-            rows: self.rows,
-        };
-        self.low_rank.add(&plain, at, slopes, table, interrupt)?;
-        check_finite(&table.value, omega)?;
-        Ok(true)
+        Ok(is_clear)
     }
 
     /// c and ∂c/∂ω.
@@ -162,18 +165,46 @@ impl ModalTable {
         let by_omega = self.number * Complex64::new(2.0 * nu, -alpha);
         (Complex64::new(nu * nu, -nu * alpha), by_omega)
     }
+}
 
+impl General {
     /// 1/d and its derivative; `false` where a denominator is small.
-    fn denominators(&mut self, omega: f64) -> bool {
-        let nu = self.number * omega;
-        let Frequency { c, d_c } = self.frequency(omega);
-        let (inertia, d_inertia) = self.inertia(omega);
-        let is_clear = self.modes.invert((c, inertia), nu, &mut self.inverse);
-        let slopes = self.slopes.iter_mut().zip(&self.inverse).zip(&self.modes.values);
+    fn denominators(
+        &mut self,
+        modes: &WaveModes,
+        at: Frequency,
+        (inertia, d_inertia): (Complex64, Complex64),
+        nu: f64,
+    ) -> bool {
+        let is_clear = modes.invert((at.c, inertia), nu, &mut self.inverse);
+        let slopes = self.slopes.iter_mut().zip(&self.inverse).zip(&modes.values);
         for ((slope, inverse), mu) in slopes {
-            *slope = -(d_c - d_inertia * mu) * *inverse * *inverse;
+            *slope = -(at.d_c - d_inertia * mu) * *inverse * *inverse;
         }
         is_clear
+    }
+
+    /// The table from the denominators, and its slope if `slopes`.
+    fn evaluate(&mut self, at: Frequency, slopes: bool, table: &mut Table, interrupt: &Interrupt<'_>) -> Result<()> {
+        let outputs = self.coordinates + 1;
+        self.sum(slopes);
+        let of = |plain: &[Complex64], to: &mut [Complex64]| {
+            for (to, from) in to.chunks_exact_mut(outputs).zip(plain.chunks_exact(self.rows)) {
+                to.copy_from_slice(&from[..outputs]);
+            }
+        };
+        of(&self.plain, &mut table.value);
+        if slopes {
+            of(&self.d_plain, &mut table.slope);
+        } else {
+            table.slope.fill(Complex64::ZERO);
+        }
+        let plain = Plain {
+            value: &self.plain,
+            slope: &self.d_plain,
+            rows: self.rows,
+        };
+        self.low_rank.add(&plain, at, slopes, table, interrupt)
     }
 
     /// T′, and ∂T′ if `slopes`.

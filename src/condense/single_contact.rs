@@ -5,7 +5,7 @@
 
 use crate::condense::flexibility::Table;
 use crate::condense::low_rank::Frequency;
-use crate::error::{Result, try_push};
+use crate::error::{Result, try_room};
 use num_complex::Complex64;
 use pulp::{Arch, Simd, WithSimd};
 
@@ -27,6 +27,8 @@ struct Mode {
 pub struct SingleContact {
     arch: Arch,
     modes: Vec<Mode>,
+    /// Whether the excitation moves a mode.
+    is_forced: bool,
 }
 
 /// The numbers of a frequency: c and s of the denominators 1 + c − s μ, their derivatives by ω, and ν.
@@ -47,18 +49,19 @@ impl SingleContact {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(values: &[f64], left: &[Complex64], right: &[Complex64]) -> Result<Self> {
-        let mut modes = Vec::new();
+        let mut modes = try_room(values.len(), "the flexibility from modes")?;
         for ((value, l), r) in values.iter().zip(left.chunks_exact(2)).zip(right.chunks_exact(2)) {
             let products = [l[0] * r[0], l[1] * r[0], l[0] * r[1], l[1] * r[1]];
             let mode = Mode {
                 value: *value,
                 products: [products.map(|z| z.re), products.map(|z| z.im)],
             };
-            try_push(&mut modes, mode, "the flexibility from modes")?;
+            modes.push(mode);
         }
         Ok(Self {
             arch: Arch::new(),
             modes,
+            is_forced: right.chunks_exact(2).any(|r| r[1] != Complex64::ZERO),
         })
     }
 
@@ -74,6 +77,13 @@ impl SingleContact {
         // p = 1/(1 − own·e) scales all but the direct response, which gains to·e p·from.
         let p = (1.0 - own * e).inv();
         let d_p = p * p * (d_own * e + own * d_e);
+        let zero = Complex64::ZERO;
+        if !self.is_forced {
+            table.value.copy_from_slice(&[own * p, to * p, zero, zero]);
+            let slope = [d_own * p + own * d_p, d_to * p + to * d_p, zero, zero];
+            table.slope.copy_from_slice(&slope);
+            return true;
+        }
         let (force, d_force) = (e * p * from, (d_e * p + e * d_p) * from + e * p * d_from);
         table
             .value

@@ -105,11 +105,17 @@ fn modes_of(
     if n > MOST || other_terms {
         return Ok(None);
     }
-    let own = block.own_stiffness(model)?;
-    let Some(proportional) = proportional([&block.mass, &own, &block.damping]) else {
+    let Some(springs) = springs(model, condensed, block)? else {
         return Ok(None);
     };
-    let Some(springs) = springs(model, condensed, block)? else {
+    let with_springs;
+    let own = if springs.is_empty() && block.view.is_none() {
+        &block.stiffness
+    } else {
+        with_springs = block.own_stiffness(model)?;
+        &with_springs
+    };
+    let Some(proportional) = proportional([&block.mass, own, &block.damping]) else {
         return Ok(None);
     };
     interrupt.check()?;

@@ -66,7 +66,8 @@ impl WaveModes {
 /// α and β of C = αM + βK, the matrices M, K and C on one pattern, by least squares; `None` where C is not of this form.
 pub(super) fn proportional([m, k, c]: [&[Complex64]; 3]) -> Option<(f64, f64)> {
     let inner = |a: &[Complex64], b: &[Complex64]| a.iter().zip(b).map(|(a, b)| (a.conj() * b).re).sum::<f64>();
-    let largest = |a: &[Complex64]| a.iter().fold(0.0_f64, |s, z| s.max(z.norm()));
+    let size = |z: Complex64| z.re.abs().max(z.im.abs());
+    let largest = |a: &[Complex64]| a.iter().fold(0.0_f64, |s, z| s.max(size(*z)));
     let (size_m, size_k, size_c) = (largest(m), largest(k), largest(c));
     if size_c == 0.0 {
         return Some((0.0, 0.0));
@@ -82,7 +83,7 @@ pub(super) fn proportional([m, k, c]: [&[Complex64]; 3]) -> Option<(f64, f64)> {
         ((kk * mc - mk * kc) / determinant, (mm * kc - mk * mc) / determinant)
     }];
     candidates.into_iter().find(|&(alpha, beta)| {
-        let off = |((m, k), c): ((&Complex64, &Complex64), &Complex64)| (c - alpha * m - beta * k).norm();
+        let off = |((m, k), c): ((&Complex64, &Complex64), &Complex64)| size(c - alpha * m - beta * k);
         m.iter().zip(k).zip(c).map(off).fold(0.0_f64, f64::max) <= PROPORTIONAL * size_c
     })
 }

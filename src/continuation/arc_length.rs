@@ -369,10 +369,8 @@ impl Continuation {
     fn prediction_error(&self, predicted: &[f64], point: &Point, amplitude: Complex64) -> f64 {
         let relative = |difference: f64, size: f64| if difference == 0.0 { 0.0 } else { difference / size };
         let n = predicted.len() - 1;
-        let mut difference = 0.0_f64;
-        for (a, b) in predicted[..n].iter().zip(&point.v) {
-            difference = difference.hypot(a - b);
-        }
+        let squares = predicted[..n].iter().zip(&point.v).map(|(a, b)| (a - b) * (a - b));
+        let difference = squares.sum::<f64>().sqrt();
         let motion = relative(difference, norm(point.unknowns()).max(FLOOR * self.largest.0));
         let observed = relative(
             (amplitude - point.amplitude).norm(),

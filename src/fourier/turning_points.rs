@@ -58,14 +58,14 @@ impl TurningPoints {
         let points = if set.is_odd() { whole / 2 } else { whole };
         let spacing = TAU / whole as f64;
         let kind = if highest <= TABLE_LIMIT {
+            let sines = Sines::new(whole);
             let mut table = try_vec(2 * set.oscillating() * points, 0.0, "a table of sines")?;
-            for k in 0..set.oscillating() {
+            for (k, rows) in table.chunks_exact_mut(2 * points).enumerate() {
                 let p = set.reduced(k);
-                for j in 0..points {
-                    // Reduce the angle exactly: p·j modulo the number of points of a turn.
-                    let angle = ((p * j) % whole) as f64 * spacing;
-                    table[2 * k * points + j] = -(p as f64) * angle.sin();
-                    table[(2 * k + 1) * points + j] = -(p as f64) * angle.cos();
+                let (of_sine, of_cosine) = rows.split_at_mut(points);
+                for (j, (sine, cosine)) in of_sine.iter_mut().zip(of_cosine).enumerate() {
+                    *sine = -(p as f64) * sines.of(p * j);
+                    *cosine = -(p as f64) * sines.of(p * j + whole / 4);
                 }
             }
             Grid::Table(table)
@@ -181,6 +181,36 @@ impl TurningPoints {
                     *s = z.re;
                 }
             }
+        }
+    }
+}
+
+/// Sines of the angles that divide a turn into equal parts, a multiple of 4.
+struct Sines {
+    /// Those of the first quarter of the turn, and its parts.
+    first: [f64; 2 * TABLE_LIMIT + 1],
+    quarter: usize,
+}
+
+impl Sines {
+    /// For at most 8 `TABLE_LIMIT` parts.
+    fn new(parts: usize) -> Self {
+        let quarter = parts / 4;
+        let mut first = [0.0; 2 * TABLE_LIMIT + 1];
+        for (k, sine) in first[..=quarter].iter_mut().enumerate() {
+            *sine = (TAU * k as f64 / parts as f64).sin();
+        }
+        Self { first, quarter }
+    }
+
+    /// The sine of so many parts.
+    fn of(&self, parts: usize) -> f64 {
+        let rest = parts % self.quarter;
+        match (parts / self.quarter) % 4 {
+            0 => self.first[rest],
+            1 => self.first[self.quarter - rest],
+            2 => -self.first[rest],
+            _ => -self.first[self.quarter - rest],
         }
     }
 }
