@@ -272,25 +272,20 @@ impl Continuation {
         let here = &self.current;
         metric.unit(&here.tangent, &mut self.row);
         let cutoff = step / metric.norm(&here.tangent);
-        let mut tangent = try_copy(&here.v, CONTEXT)?;
-        for (v, t) in tangent.iter_mut().zip(&here.tangent) {
+        let mut v = try_copy(&here.v, CONTEXT)?;
+        for (v, t) in v.iter_mut().zip(&here.tangent) {
             *v += cutoff * t;
         }
-        let straight = (tangent, here.amplitude + here.slope * cutoff);
-        let Some(previous) = &self.previous else {
-            return Ok(straight);
-        };
-        let cubic = Cubic::new(previous, here, metric);
-        if cubic.chord == 0.0 {
-            return Ok(straight);
+        if let Some(previous) = &self.previous {
+            let cubic = Cubic::new(previous, here, metric);
+            let s = 1.0 + step / cubic.chord;
+            cubic.place(s, &mut self.scratch);
+            if cubic.chord > 0.0 && metric.distance(&self.scratch, &v) <= 0.5 * step {
+                v.copy_from_slice(&self.scratch);
+                return Ok((v, cubic.amplitude(s)));
+            }
         }
-        let s = 1.0 + step / cubic.chord;
-        let mut v = try_copy(&here.v, CONTEXT)?;
-        cubic.at(s, &mut v, &mut self.scratch);
-        if metric.distance(&v, &straight.0) > 0.5 * step {
-            return Ok(straight);
-        }
-        Ok((v, cubic.amplitude(s)))
+        Ok((v, here.amplitude + here.slope * cutoff))
     }
 
     /// The bound of the range that a parameter value lies beyond, and the share of the distance to it.
@@ -320,7 +315,7 @@ impl Continuation {
         interrupt: &Interrupt<'_>,
     ) -> Result<Attempt> {
         let n = v.len() - 1;
-        let predicted = try_copy(&v, CONTEXT)?;
+        self.scratch.copy_from_slice(&v);
         if keep_parameter {
             self.row.fill(0.0);
             self.row[n] = 1.0;
@@ -333,7 +328,7 @@ impl Continuation {
             Outcome::Failed => return Ok(Attempt::Failed),
         };
         if keep_parameter {
-            v[n] = predicted[n];
+            v[n] = self.scratch[n];
         }
         let mut point = Point::new(v, corrected, step);
         let here = &self.current;
@@ -355,7 +350,7 @@ impl Continuation {
         let jumped = point.positive != here.positive && (step > CORNER_STEP || kept < ALONG);
         let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
         let far = chord > 3.0 * step;
-        let error = self.prediction_error(&predicted, &point, amplitude);
+        let error = self.prediction_error(&self.scratch, &point, amplitude);
         if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
         }

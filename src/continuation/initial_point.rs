@@ -92,7 +92,8 @@ pub fn solve_within(
     most_points: usize,
     interrupt: &Interrupt<'_>,
 ) -> Result<First> {
-    let mut corrector = Corrector::new(problem.size(), settings.tolerance, settings.max_iterations)?;
+    let tolerance = settings.steps.tolerance(settings.tolerance);
+    let mut corrector = Corrector::new(problem.size(), tolerance, settings.max_iterations)?;
     let mut first = try_each_way(problem, (settings, most_points), &mut corrector, interrupt)?;
     first.point.iterations = corrector.steps_taken();
     Ok(first)

@@ -46,15 +46,25 @@ impl<'p> Cubic<'p> {
         )
     }
 
+    /// The point at s.
+    pub fn place(&self, s: f64, v: &mut [f64]) {
+        let (w, _) = self.weights(s);
+        let ends = self.a.v.iter().zip(&self.b.v);
+        let tangents = self.a.tangent.iter().zip(&self.b.tangent);
+        for ((v, (a, b)), (ta, tb)) in v.iter_mut().zip(ends).zip(tangents) {
+            // The sum is centred on b, so that round-off stays relative to the distance.
+            *v = b + w[0] * (a - b) + w[2] * ta + w[3] * tb;
+        }
+    }
+
     /// The point at s, and the derivative by s.
     pub fn at(&self, s: f64, v: &mut [f64], derivative: &mut [f64]) {
-        let (w, d) = self.weights(s);
-        for i in 0..v.len() {
-            let (a, b) = (self.a.v[i], self.b.v[i]);
-            let (ta, tb) = (self.a.tangent[i], self.b.tangent[i]);
-            // The sum is centred on b, so that round-off stays relative to the distance.
-            v[i] = b + w[0] * (a - b) + w[2] * ta + w[3] * tb;
-            derivative[i] = d[0] * (a - b) + d[2] * ta + d[3] * tb;
+        self.place(s, v);
+        let (_, d) = self.weights(s);
+        let ends = self.a.v.iter().zip(&self.b.v);
+        let tangents = self.a.tangent.iter().zip(&self.b.tangent);
+        for ((derivative, (a, b)), (ta, tb)) in derivative.iter_mut().zip(ends).zip(tangents) {
+            *derivative = d[0] * (a - b) + d[2] * ta + d[3] * tb;
         }
     }
 

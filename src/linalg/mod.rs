@@ -19,6 +19,7 @@ pub mod matrix_view;
 pub mod quadratic;
 pub mod row_index;
 pub mod small_lu;
+mod small_sum;
 mod sorted_columns;
 pub mod sparse;
 pub mod triangle;

@@ -1,6 +1,7 @@
 //! Compressed sparse columns with complex values: the storage of all structural matrices.
 
 use crate::error::{Result, try_extend, try_push, try_room, try_vec};
+use crate::linalg::small_sum::{self, small_sum};
 use num_complex::Complex64;
 
 /// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
@@ -151,14 +152,6 @@ impl Symmetry {
     }
 }
 
-/// Order up to which the memory of a sum is on the stack.
-const SMALL: usize = 16;
-
-/// The first n of a few numbers on the stack, or numbers on the heap.
-fn small_or_large<'a, T>(n: usize, small: &'a mut [T; SMALL], large: &'a mut [T]) -> &'a mut [T] {
-    if n <= SMALL { &mut small[..n] } else { large }
-}
-
 /// Visits column `j` of a term of a sum: of the next transposed matrix where its form wants it.
 fn visit_term<'a>(
     (a, form): (&impl Columns, Form),
@@ -222,14 +215,15 @@ impl Csc {
         if terms.iter().all(|(_, a, _)| a.stored() == 0) {
             return Self::zero(n);
         }
+        if n <= small_sum::LARGEST {
+            return small_sum(n, terms);
+        }
         let mut mirrored = Vec::new();
         for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
             try_push(&mut mirrored, transposed(*a)?, CONTEXT)?;
         }
         // Rows of each column by the column that had them last.
-        let large = if n <= SMALL { 0 } else { n };
-        let (mut small_in_column, mut large_in_column) = ([0; SMALL], try_vec(large, 0, CONTEXT)?);
-        let in_column = small_or_large(n, &mut small_in_column, &mut large_in_column);
+        let mut in_column = try_vec(n, 0, CONTEXT)?;
         let mut stored = terms.iter().map(|(_, a, _)| a.stored()).sum();
         if stored > COUNTED_ABOVE {
             // Room that is not too large.
@@ -253,11 +247,8 @@ impl Csc {
             values: try_room(stored, CONTEXT)?,
         };
         // One column after the other: its entries by their rows, and the rows that it has.
-        let (mut small_column, mut large_column) =
-            ([Complex64::ZERO; SMALL], try_vec(large, Complex64::ZERO, CONTEXT)?);
-        let column = small_or_large(n, &mut small_column, &mut large_column);
-        let (mut small_rows, mut large_rows) = ([0; SMALL], try_vec(large, 0, CONTEXT)?);
-        let rows = small_or_large(n, &mut small_rows, &mut large_rows);
+        let mut column = try_vec(n, Complex64::ZERO, CONTEXT)?;
+        let mut rows = try_vec(n, 0, CONTEXT)?;
         for j in 0..n {
             let mut count = 0;
             let mut next = mirrored.iter();
