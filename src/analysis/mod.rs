@@ -20,6 +20,8 @@ pub mod linear_contacts;
 mod mode_discretised;
 mod mode_equations;
 mod mode_onset;
+mod mode_path;
+mod mode_start;
 pub mod nonlinear_mode;
 mod parameter_curve;
 pub mod parameter_range;

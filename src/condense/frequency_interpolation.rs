@@ -8,7 +8,7 @@
 //! allows; the derivative is that of the series.
 
 use crate::condense::flexibility::Table;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use num_complex::Complex64;
@@ -166,15 +166,18 @@ impl FrequencyInterpolation {
             if high - low <= 1e-9 * omega {
                 return Ok(None);
             }
-            let (mut coefficients, tail) = self.series((low, high), sample)?;
-            let stalled = tail < NOISE && (tail > 0.3 * last_tail || self.is_level());
+            let (series, tail) = self.series((low, high), sample)?;
+            let is_level = self.is_level();
+            let stalled = tail < NOISE && (tail > 0.3 * last_tail || is_level);
             if stalled {
                 // This is the rounding error of the factorisations: later panels cannot be better.
                 self.tolerance = self.tolerance.max(2.0 * tail);
             }
             if tail <= self.tolerance {
-                coefficients.truncate(self.needed_degrees() * self.outputs * self.outputs);
-                coefficients.shrink_to_fit();
+                // Beyond them rounding, or next to nothing.
+                let least = if is_level { 1.0 } else { NEGLIGIBLE } * self.tolerance;
+                let needed = self.degrees_above(least) * self.outputs * self.outputs;
+                let coefficients = try_copy(&series[..needed], CONTEXT)?;
                 // Towards a resonance each panel is shorter than the one before.
                 let width = high - low;
                 let trend = if self.last_width > 0.0 {
@@ -212,9 +215,8 @@ impl FrequencyInterpolation {
         self.degrees == NODES && most(last) > 0.3 * most(before)
     }
 
-    /// Degrees of the series tried last beyond which its coefficients are negligible.
-    fn needed_degrees(&self) -> usize {
-        let least = NEGLIGIBLE * self.tolerance;
+    /// Degrees of the series tried last up to the last one whose coefficients are above `least`.
+    fn degrees_above(&self, least: f64) -> usize {
         let last = self.decay[..self.degrees].iter().rposition(|d| *d > least);
         last.map_or(1, |last| last + 1)
     }
@@ -264,8 +266,8 @@ impl FrequencyInterpolation {
     fn transform(&mut self, degrees: usize) -> Result<Vec<Complex64>> {
         let size = self.outputs * self.outputs;
         let (first, stride) = if degrees == FEW { (1, 3) } else { (0, 1) };
-        let mut cosines = [Complex64::ZERO; NODES * NODES];
-        for (k, row) in cosines.chunks_exact_mut(degrees).take(degrees).enumerate() {
+        let mut cosines = try_vec(degrees * degrees, Complex64::ZERO, CONTEXT)?;
+        for (k, row) in cosines.chunks_exact_mut(degrees).enumerate() {
             let factor = if k == 0 { 1.0 } else { 2.0 } / degrees as f64;
             for (j, z) in row.iter_mut().enumerate() {
                 // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
@@ -277,7 +279,7 @@ impl FrequencyInterpolation {
         matmul(
             MatMut::from_row_major_slice_mut(&mut coefficients, degrees, size),
             Accum::Replace,
-            MatRef::from_row_major_slice(&cosines[..degrees * degrees], degrees, degrees),
+            MatRef::from_row_major_slice(&cosines, degrees, degrees),
             MatRef::from_row_major_slice_with_stride(&self.samples[first * size..], degrees, size, stride * size),
             Complex64::ONE,
             Par::Seq,

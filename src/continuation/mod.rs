@@ -1,6 +1,7 @@
 //! Arc-length continuation of R(u, p) = 0: predict, correct, accept. It uses problems and algebra, and no mechanics.
 
 pub mod arc_length;
+pub mod bracket;
 pub mod corrector;
 pub mod initial_point;
 pub mod metric;

@@ -1,6 +1,7 @@
 //! Special points between two accepted points: folds, peaks and levels of the observed amplitude, and solutions at
 //! given parameter values, each solved for and not interpolated.
 
+use crate::continuation::bracket::{Bracket, WIDTH};
 use crate::continuation::corrector::{Corrector, Outcome};
 use crate::continuation::predictor::Cubic;
 use crate::continuation::{Metric, Point, Settings};
@@ -61,104 +62,6 @@ impl SpecialPoint {
     }
 }
 
-/// Bracket of a root on an arc from 0 to 1, narrowed by inverse quadratic interpolation where the last three values lie on a
-/// monotonic curve, else by halving (Chandrupatla, Adv. Eng. Software 28, 1997, doi:10.1016/S0965-9978(96)00051-8); first by
-/// the secant.
-pub struct Bracket {
-    /// The end found last, the other one, and the one that was replaced last, if there is one.
-    last: (f64, f64),
-    other: (f64, f64),
-    before: Option<(f64, f64)>,
-    /// A better first place than that of the secant.
-    first: Option<f64>,
-}
-
-impl Bracket {
-    /// The whole arc with the values at its ends, of different signs.
-    #[must_use]
-    pub fn new(low: f64, high: f64) -> Self {
-        Self::between((0.0, low), (1.0, high))
-    }
-
-    /// The arc between two places with their values.
-    fn between(low: (f64, f64), high: (f64, f64)) -> Self {
-        Self {
-            last: high,
-            other: low,
-            before: None,
-            first: None,
-        }
-    }
-
-    /// Takes the first place from the quadratic on the whole arc with the values at its ends and with this integral.
-    fn with_integral(mut self, integral: f64) -> Self {
-        let (a, b) = (self.other.1, self.last.1);
-        let square = 3.0 * (a + b) - 6.0 * integral;
-        let linear = b - a - square;
-        let root = (linear * linear - 4.0 * square * a).sqrt();
-        let candidates = [-2.0 * a / (linear + root), -2.0 * a / (linear - root)];
-        self.first = candidates.into_iter().find(|s| *s > 0.0 && *s < 1.0);
-        self
-    }
-
-    /// Its width.
-    #[must_use]
-    pub fn width(&self) -> f64 {
-        (self.last.0 - self.other.0).abs()
-    }
-
-    /// The middle.
-    fn middle(&self) -> f64 {
-        0.5 * (self.last.0 + self.other.0)
-    }
-
-    /// Whether the guess follows from interpolation and is so close to the end found last that its own error, far below its
-    /// distance, is rounding.
-    #[must_use]
-    pub fn is_last(&self) -> bool {
-        let guess = self.guess();
-        self.before.is_some() && guess.to_bits() != self.middle().to_bits() && (guess - self.last.0).abs() < CLOSE
-    }
-
-    /// The place where the root is expected.
-    #[must_use]
-    pub fn guess(&self) -> f64 {
-        let ((a, fa), (b, fb)) = (self.last, self.other);
-        if let (None, Some(first)) = (self.before, self.first) {
-            return first;
-        }
-        let share = match self.before {
-            None => fa / (fa - fb),
-            Some((c, fc)) => {
-                let (place, value) = ((a - b) / (c - b), (fa - fb) / (fc - fb));
-                if value * value < place && (1.0 - value).powi(2) < 1.0 - place {
-                    fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-                } else {
-                    0.5
-                }
-            }
-        };
-        let guess = a + share * (b - a);
-        if share > 0.0 && share < 1.0 {
-            guess
-        } else {
-            self.middle()
-        }
-    }
-
-    /// Takes the value at a place within, and returns the distance to the end that it replaces.
-    pub fn narrow(&mut self, s: f64, f: f64) -> f64 {
-        let replaces_last = (f > 0.0) == (self.last.1 > 0.0);
-        let (replaced, kept) = if replaces_last {
-            (self.last, self.other)
-        } else {
-            (self.other, self.last)
-        };
-        (self.last, self.other, self.before) = ((s, f), kept, Some(replaced));
-        (s - replaced.0).abs()
-    }
-}
-
 /// Solves for points between accepted ones.
 pub struct Locator {
     corrector: Corrector,
@@ -178,15 +81,8 @@ const MAX_EVALUATIONS: usize = 60;
 /// Maximum number of halvings of an arc in search of a parameter.
 const MAX_HALVINGS: usize = 12;
 
-/// Width of the bracket, as a share of the step, at which a special point counts as found.
-const WIDTH: f64 = 1e-11;
-
 /// Value of a function over the larger one at the ends that is that of a root.
 const VANISHING: f64 = 1e-6;
-
-/// Distance of a place found by interpolation from the one before it below which its error is less than [`WIDTH`]: the
-/// order of convergence is 1.8.
-const CLOSE: f64 = 1e-7;
 
 impl Locator {
     /// Memory for `n` unknowns.
