@@ -6,14 +6,12 @@ use crate::adaptivity::discretised::Traceable;
 use crate::adaptivity::resonance_bands::ResonanceBands;
 use crate::adaptivity::resonance_grid::LinearGrid;
 use crate::adaptivity::retracing::RecentPoints;
-use crate::continuation::special_points::{Locator, SpecialPoint};
+use crate::continuation::special_points::SpecialPoint;
 use crate::continuation::{Advance, Continuation, Metric, Point, Settings};
 use crate::error::{Result, Status, try_push};
 use crate::hooks::{Hooks, LogLevel, Progress};
 use crate::interrupt::{Interrupt, Phase};
 use crate::linalg::norm;
-use crate::problem::Problem;
-use crate::results::SpecialKind;
 
 /// Largest number of successive refinements of the last point, made if the next one is not found.
 const MOST_BACKTRACKS: usize = 2;
@@ -263,17 +261,6 @@ impl<'a> BranchTracer<'a> {
         Ok(Return::Recorded(back))
     }
 
-    /// Sharpens and records a special point; `false` if it requires more harmonics, which are then selected.
-    pub fn record_special(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<bool> {
-        let mut point = point.try_clone()?;
-        analysis.sharpen(kind, &mut point)?;
-        if !self.controller.meets_tolerance(analysis, kind, &point)? {
-            return Ok(false);
-        }
-        self.record_sharpened(analysis, kind, &point)?;
-        Ok(true)
-    }
-
     /// Reports the point recorded last to the caller; `true` if the caller stops the run, or it begins again with more
     /// samples.
     pub fn report(&self, analysis: &dyn Traceable, hooks: &mut Hooks<'_>, point: &Point) -> bool {
@@ -300,36 +287,6 @@ impl<'a> BranchTracer<'a> {
             return 1.0;
         }
         ((parameter - start) / range).clamp(0.0, 1.0)
-    }
-
-    fn record_sharpened(&mut self, analysis: &mut dyn Traceable, kind: SpecialKind, point: &Point) -> Result<()> {
-        analysis.record_special(kind, point)?;
-        self.controller.note_special(kind);
-        Ok(())
-    }
-
-    /// Records a special point with the harmonics with which it was located, whatever its error.
-    pub(super) fn record_special_as_it_is(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        kind: SpecialKind,
-        point: &Point,
-    ) -> Result<()> {
-        let mut point = point.try_clone()?;
-        analysis.sharpen(kind, &mut point)?;
-        self.record_sharpened(analysis, kind, &point)
-    }
-
-    /// A range of one point.
-    fn record_single(&mut self, analysis: &mut dyn Traceable, point: &Point) -> Result<Status> {
-        let end = self.course.settings.end;
-        for (i, p) in self.course.at.iter().enumerate() {
-            if p.to_bits() == end.to_bits() {
-                // The harmonics are those that it required, or with which it could be found.
-                self.record_special_as_it_is(analysis, SpecialKind::At(i), point)?;
-            }
-        }
-        Ok(Status::Ok)
     }
 
     /// Whether a point found with other harmonics lies behind the one recorded last, or outside the range.
@@ -390,101 +347,6 @@ impl<'a> BranchTracer<'a> {
             }
         }
         Ok(Outside::Gone)
-    }
-
-    /// Locates folds, other bifurcations, peaks, limit cycles and requested parameter values between two neighbours.
-    fn locate_special(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        a: PointAt<'_>,
-        b: PointAt<'_>,
-        last: bool,
-    ) -> Result<()> {
-        analysis.select(a.1.max(b.1))?;
-        let interrupt = self.interrupt;
-        if SpecialPoint::Peak.between(a.0, b.0) {
-            self.find(analysis, SpecialKind::Peak, a, b, |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Peak, a, b, interrupt)
-            })?;
-        }
-        if let Some(level) = analysis.level_of_limit_cycles().map(SpecialPoint::Level)
-            && level.between(a.0, b.0)
-        {
-            analysis.select(a.1.max(b.1))?;
-            let kind = SpecialKind::LimitCycle { slope: f64::NAN };
-            self.find(analysis, kind, a, b, |locator, problem, a, b| {
-                locator.locate(problem, level, a, b, interrupt)
-            })?;
-        }
-        // A peak may have required more harmonics; a fold is located with those of its neighbours.
-        analysis.select(a.1.max(b.1))?;
-        let fold = if SpecialPoint::Fold.between(a.0, b.0) {
-            self.find(analysis, SpecialKind::Fold, a, b, |locator, problem, a, b| {
-                locator.locate(problem, SpecialPoint::Fold, a, b, interrupt)
-            })?
-        } else {
-            None
-        };
-        let turn = fold.as_ref().map(|(fold, resolution)| (fold, *resolution));
-        self.find_bifurcations(analysis, a, b, turn)?;
-        if let Some((fold, resolution)) = &fold {
-            self.find_requested(analysis, a, (fold, *resolution), false)?;
-            self.find_requested(analysis, (fold, *resolution), b, last)
-        } else {
-            self.find_requested(analysis, a, b, last)
-        }
-    }
-
-    /// Solves at the requested parameter values on the arc from `a` (included) to `b` (included if it is the last
-    /// point of the branch), which has no fold inside.
-    fn find_requested(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        a: PointAt<'_>,
-        b: PointAt<'_>,
-        last: bool,
-    ) -> Result<()> {
-        let (at, interrupt) = (self.course.at, self.interrupt);
-        for (i, &p) in at.iter().enumerate() {
-            let (pa, pb) = (a.0.parameter(), b.0.parameter());
-            let inside = (pa <= p && p < pb) || (pb < p && p <= pa);
-            let inside = inside || (last && p.to_bits() == pb.to_bits());
-            if inside {
-                self.find(analysis, SpecialKind::At(i), a, b, |locator, problem, a, b| {
-                    locator.at_parameter(problem, a, b, p, interrupt)
-                })?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Searches between two neighbours and records the point that is found, with the harmonics that it requires.
-    fn find(
-        &mut self,
-        analysis: &mut dyn Traceable,
-        kind: SpecialKind,
-        a: PointAt<'_>,
-        b: PointAt<'_>,
-        search: impl Fn(&mut Locator, &mut dyn Problem, &Point, &Point) -> Result<Option<Point>>,
-    ) -> Result<Option<(Point, usize)>> {
-        let mut found: Option<(Point, usize)> = None;
-        loop {
-            let resolution = analysis.resolution();
-            let (a, b) = (analysis.transfer(a.0, a.1)?, analysis.transfer(b.0, b.1)?);
-            let mut locator = Locator::new(a.unknowns().len(), self.course.settings)?;
-            let Some(point) = search(&mut locator, analysis.problem(), &a, &b)? else {
-                // A point found with fewer harmonics is better than none.
-                if let Some((point, resolution)) = &found {
-                    analysis.select(*resolution)?;
-                    self.record_special_as_it_is(analysis, kind, point)?;
-                }
-                return Ok(found);
-            };
-            if self.record_special(analysis, kind, &point)? {
-                return Ok(Some((point, resolution)));
-            }
-            found = Some((point, resolution));
-        }
     }
 }
 

@@ -13,6 +13,7 @@
 
 mod bifurcations;
 pub(crate) mod branch_recorder;
+mod branch_special_points;
 pub(crate) mod branch_tracer;
 mod cold_start;
 pub(crate) mod controller;
