@@ -115,6 +115,10 @@ pub(super) fn safe_halley(
             tau - newton
         };
         let step = (next - tau).abs();
+        if step <= f64::EPSILON * tau.abs() {
+            // Rounding may lead out of the bracket, whose middle is farther away.
+            return tau;
+        }
         if bracket.holds(next) && step <= short && bend * bend * step <= LAST_ERROR {
             return next;
         }
@@ -126,4 +130,37 @@ pub(super) fn safe_halley(
         }
     }
     tau
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::Cell;
+
+    /// Root of sin(τ − c) and the number of values taken.
+    fn sine(bracket: (f64, f64), guess: f64, c: f64) -> (f64, usize) {
+        let taken = Cell::new(0);
+        let root = safe_halley(bracket, (bracket.0 - c).sin(), (guess, 3e-7), |tau| {
+            taken.set(taken.get() + 1);
+            let (value, slope) = (tau - c).sin_cos();
+            [value, slope, -value]
+        });
+        (root, taken.get())
+    }
+
+    #[test]
+    fn a_good_guess_is_left_by_its_own_step_alone() {
+        let mut most = 0;
+        for k in 0..500 {
+            let c = 0.3 + 0.0041 * f64::from(k);
+            for error in [0.0, 1e-17, 1e-12, 1e-8, 1e-6, 1e-4, 1e-2, 4e-2] {
+                for guess in [c - error, c + error] {
+                    let (root, taken) = sine((c - 0.05, c + 0.05), guess, c);
+                    assert!((root - c).abs() < 1e-15, "{root} for {c} from {guess}");
+                    most = most.max(taken);
+                }
+            }
+        }
+        assert!(most <= 4, "{most} values");
+    }
 }
