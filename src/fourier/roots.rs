@@ -115,8 +115,8 @@ pub(super) fn safe_halley(
             tau - newton
         };
         let step = (next - tau).abs();
-        if step <= f64::EPSILON * tau.abs() {
-            // Rounding may lead out of the bracket, whose middle is farther away.
+        if step == 0.0 {
+            // It does not lie within the bracket, whose middle is far away.
             return tau;
         }
         if bracket.holds(next) && step <= short && bend * bend * step <= LAST_ERROR {
