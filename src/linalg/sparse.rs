@@ -1,7 +1,7 @@
 //! Compressed sparse columns with complex values: the storage of all structural matrices.
 
 use crate::error::{Result, try_extend, try_push, try_room, try_vec};
-use crate::linalg::small_sum::{self, small_sum};
+use crate::linalg::small_sum::{self, SmallSum};
 use num_complex::Complex64;
 
 /// A square or rectangular matrix in compressed sparse columns, row indices ascending, no
@@ -216,7 +216,7 @@ impl Csc {
             return Self::zero(n);
         }
         if n <= small_sum::LARGEST {
-            return small_sum(n, terms);
+            return Self::small_sum(n, terms);
         }
         let mut mirrored = Vec::new();
         for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
@@ -270,6 +270,27 @@ impl Csc {
             sum.col_ptr[j + 1] = sum.row_idx.len();
         }
         Ok(sum)
+    }
+
+    /// The same up to the order of [`small_sum`].
+    fn small_sum<A: Columns>(n: usize, terms: &[(Complex64, &A, Form)]) -> Result<Self> {
+        let mut sum = SmallSum::new();
+        for &(c, a, form) in terms {
+            for j in 0..n {
+                a.visit(j, |i, v| {
+                    let (row, column) = if form == Form::Transposed { (j, i) } else { (i, j) };
+                    sum.add(row, column, c * if form == Form::Conjugated { v.conj() } else { v });
+                });
+            }
+        }
+        let (col_ptr, row_idx, values) = sum.compressed(n)?;
+        Ok(Self {
+            rows: n,
+            cols: n,
+            col_ptr,
+            row_idx,
+            values,
+        })
     }
 
     /// A copy, allocated fallibly.
@@ -372,5 +393,40 @@ impl Csc {
     #[must_use]
     pub fn worst_pair(&self, symmetry: Symmetry) -> (usize, usize, f64) {
         worst_pair(self, symmetry)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A matrix of order `n` whose entries, the same for every order, lie among the first six rows and columns.
+    fn matrix(n: usize, which: usize) -> Csc {
+        let entries = (0..36).filter(|k| (k * 5 + which * 7) % 11 < 6).map(|k| {
+            let angle = (k + 40 * which) as f64;
+            (k % 6, k / 6, Complex64::new(angle.sin(), angle.cos()))
+        });
+        Csc::from_triplets(n, n, entries.collect()).unwrap()
+    }
+
+    #[test]
+    fn small_sums_are_those_of_large_matrices() {
+        let forms = [Form::Plain, Form::Transposed, Form::Conjugated, Form::Transposed];
+        let sum = |n: usize, count: usize| {
+            let matrices: Vec<Csc> = (0..count).map(|which| matrix(n, which)).collect();
+            let factor = |i: usize| Complex64::new(i as f64, 1.0 - i as f64);
+            let terms: Vec<_> = matrices
+                .iter()
+                .enumerate()
+                .map(|(i, a)| (factor(i), a, forms[i]))
+                .collect();
+            Csc::sum(n, &terms).unwrap()
+        };
+        for count in 1..=forms.len() {
+            let (small, large) = (sum(6, count), sum(small_sum::LARGEST + 1, count));
+            assert_eq!(small.col_ptr[..], large.col_ptr[..7]);
+            assert_eq!(large.col_ptr[7..], vec![large.col_ptr[6]; small_sum::LARGEST - 5][..]);
+            assert_eq!((small.row_idx, small.values), (large.row_idx, large.values));
+        }
     }
 }
