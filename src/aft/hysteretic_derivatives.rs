@@ -36,12 +36,15 @@ impl Signals {
         let mean = usize::from(set.has_mean());
         let mut basis = memory(samples.saturating_mul(m))?;
         let mut rate = memory(if with_velocity { basis.len() } else { 0 })?;
+        let mut turn = try_vec(samples, (0.0, 0.0), "a march over samples")?;
+        for (j, z) in turn.iter_mut().enumerate() {
+            *z = (TAU * j as f64 / samples as f64).sin_cos();
+        }
         for (j, row) in basis.chunks_exact_mut(m.max(1)).enumerate() {
             row[..mean].fill(1.0);
             for k in 0..set.oscillating() {
                 // The angle is reduced exactly.
-                let turns = (set.reduced(k) * j) % samples;
-                let (sin, cos) = (TAU * turns as f64 / samples as f64).sin_cos();
+                let (sin, cos) = turn[(set.reduced(k) * j) % samples];
                 let at = mean + 2 * k;
                 row[at] = cos;
                 row[at + 1] = -sin;
