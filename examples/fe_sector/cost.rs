@@ -54,7 +54,7 @@ pub fn show(screen: &mut impl Write, read: Duration, model: &Model, response: &R
         per_iteration / lu
     )?;
     let solver = SolverOptions {
-        harmonics: reduction.harmonics_asked,
+        harmonics: response.branch.harmonics(),
         tolerance: 0.0,
         ..SolverOptions::default()
     };
@@ -65,6 +65,16 @@ pub fn show(screen: &mut impl Write, read: Duration, model: &Model, response: &R
         1e3 * direct,
         reduction.harmonics_carried
     )?;
+    let estimates = response.branch.estimates();
+    if estimates > 0 {
+        let of_points = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+        writeln!(
+            screen,
+            "  {estimates} error estimates: {:.1e} at most, with up to {} harmonics",
+            of_points(response.branch.error_estimate()),
+            of_points(response.branch.harmonics_used())
+        )?;
+    }
     if let Some(mebibytes) = peak_memory() {
         writeln!(screen, "  peak memory {mebibytes:.0} MiB")?;
     }

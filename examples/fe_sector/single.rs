@@ -15,9 +15,14 @@ use crate::response::{Point, Range, Response};
 use crate::sector::{Sector, Size};
 
 /// The flags of the program.
-pub const FLAGS: [Flag; 9] = [
+pub const FLAGS: [Flag; 10] = [
     Flag::new("--force", "N", "amplitude of the force at the blade tip (2)"),
     Flag::new("--harmonics", "H", "highest harmonic number (3)"),
+    Flag::new(
+        "--tolerance",
+        "e",
+        "relative error of the tip, from which the harmonics follow",
+    ),
     Flag::new("--model", "rom|full", "reduced or full sector (rom)"),
     Flag::new("--from", "Hz", "beginning of the range (512)"),
     Flag::new("--to", "Hz", "end of the range (548)"),
@@ -79,6 +84,10 @@ impl Request {
             solver.harmonics = highest;
         }
         solver.check().map_err(|e| format!("--harmonics: {e}"))?;
+        if let Some(tolerance) = flags.positive("--tolerance")? {
+            solver.tolerance = tolerance;
+            solver.check().map_err(|e| format!("--tolerance: {e}"))?;
+        }
         let range = Range {
             from: flags.positive("--from")?.unwrap_or(RANGE.0),
             to: flags.positive("--to")?.unwrap_or(RANGE.1),
