@@ -17,6 +17,13 @@ const MOST_POINTS: usize = 100;
 impl BranchTracer<'_> {
     /// The first point with the harmonics that its error requires.
     pub(super) fn refine_first(&mut self, analysis: &mut dyn Traceable, first: Point) -> Result<Point> {
+        let (begin, end) = self.course.range;
+        let is_curve = begin.to_bits() != end.to_bits();
+        let first = if is_curve && analysis.linear_share(&first)? >= 1.0 {
+            self.controller.begin_curve(analysis, first, self.interrupt)?
+        } else {
+            first
+        };
         let Refined { mut point, mut stuck } = self.controller.refine(analysis, first, true, self.interrupt)?;
         for _ in 0..MOST_STARTS {
             let from = analysis.resolution();

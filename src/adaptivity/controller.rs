@@ -121,6 +121,25 @@ impl AdaptivityController {
         self.estimates += usize::from(!found.estimate.certified || found.estimate.steps > 0);
     }
 
+    /// The first point of a curve, where something is nonlinear, with the fewest harmonics that the curve has there: with
+    /// fewer its error would be estimated to no avail.
+    pub fn begin_curve(
+        &mut self,
+        equations: &mut dyn Discretised,
+        point: Point,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Point> {
+        let (level, few) = (equations.resolution(), FEW.min(equations.levels().last()));
+        if !equations.levels().is_automatic() || level >= few {
+            return Ok(point);
+        }
+        let Some(better) = resolve_at(equations, (&point, level), few, true, interrupt)? else {
+            return Ok(point);
+        };
+        self.begun = true;
+        Ok(better)
+    }
+
     /// The point with the harmonics that its error requires. If it misses the tolerance at the last refinement, it is
     /// returned all the same.
     pub fn refine(
@@ -181,6 +200,9 @@ impl AdaptivityController {
             };
             let before = equations.transfer(&point, level)?;
             let same = found.error.is_nan() && self.is_same(&before, &better);
+            if same {
+                equations.share_work();
+            }
             let left = core::mem::replace(&mut point, better);
             settled = same.then_some((left, level));
             signs = Signs::of(&point, equations.share_of_highest(&point));
@@ -201,7 +223,8 @@ impl AdaptivityController {
         let found = equations.estimate(point)?;
         if let Some(found) = &found {
             self.count(found);
-            self.spacing.note(equations.resolution(), signs, found.error);
+            let may_fall = equations.resolution() > FEW;
+            self.spacing.note(equations.resolution(), signs, found.error, may_fall);
             let is_low = MARGIN * found.error < DROP * self.tolerance;
             self.low = if is_low { self.low + 1 } else { 0 };
         }
@@ -395,7 +418,8 @@ fn refine_to(
     equations.select(to)?;
     if estimate.certified {
         // Where the plane across the branch has no solution near, a fixed parameter may have one.
-        for fixed in [keep_parameter, true] {
+        let ways: &[bool] = if keep_parameter { &[true] } else { &[false, true] };
+        for &fixed in ways {
             let start = equations.transfer_corrected(point, from, estimate)?;
             if let Some(found) = equations.resolve(&start, fixed, interrupt)? {
                 return Ok(Some(found));

@@ -38,6 +38,10 @@ pub(crate) trait Discretised {
     /// Solves near a point with the current harmonics, see [`crate::continuation::resolve`].
     fn resolve(&mut self, near: &Point, keep_parameter: bool, interrupt: &Interrupt<'_>) -> Result<Option<Point>>;
 
+    /// Bounds the next estimate by the work of the last one: that told nothing, and the next is of the same motion with more
+    /// harmonics.
+    fn share_work(&mut self) {}
+
     /// Estimates the error of a solved point of the current resolution; `None` unless requested.
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>>;
 

@@ -2,10 +2,12 @@
 //!
 //! Between two estimates the error follows the share of the highest carried harmonics in the motion,
 //!
-//! > η ≈ η₀ t/t₀ · max(1, s/s₀),  t = ‖Y_{>H/2}‖/‖Y‖,  s = |dX/dp|/|X|,
+//! > η ≈ η₀ (t/t₀)^q · max(1, s/s₀),  t = ‖Y_{>H/2}‖/‖Y‖,  s = |dX/dp|/|X|,
 //!
 //! with η₀, t₀ and s₀ at the point estimated last: towards a fold, where the response X is steep against the parameter p,
-//! the error at a fixed parameter grows without bound. Each estimate checks this rule. While it holds within a factor of
+//! the error at a fixed parameter grows without bound. The exponent q is 1 at first, and then that of the last two estimates
+//! with different shares: about 1 where harmonics decay algebraically, and more where they decay exponentially, since the
+//! error then follows harmonics far above the carried ones. Each estimate checks this rule. While it holds within a factor of
 //! two, the spacing doubles; where it does not, the next point is estimated again. A point whose error is not far below
 //! the tolerance, or whose share changes much, is estimated in any case.
 
@@ -16,16 +18,22 @@ use crate::linalg::norm;
 /// Largest ratio of an error to its prediction, either way, for which the spacing grows.
 const HOLDS: f64 = 2.0;
 
-/// Largest spacing, where errors are known and where they are not.
+/// Largest spacing, where errors are known and where they are not. With the fewest harmonics of a curve nothing is missed
+/// where an error is found to be low later.
 const MOST: usize = 4;
+const MOST_WITH_FEWEST: usize = 8;
 const MOST_UNKNOWN: usize = 32;
 
-/// Factor between a predicted error and the largest for which no estimate is made: three times the factor of two within which
-/// the rule held.
-const SAFETY: f64 = 6.0;
+/// Factor between a predicted error and the largest for which no estimate is made, at the first point after an estimate and
+/// farther on: one and a half times, and three times the factor of two within which the rule held.
+const SAFETY: (f64, f64) = (3.0, 6.0);
 
 /// Ratio of the shares of two points beyond which nothing is predicted.
 const ALIKE: f64 = 5.0;
+
+/// Ratio of two shares from which on the exponent follows from them, and its range.
+const DIFFERENT: f64 = 1.05;
+const EXPONENTS: (f64, f64) = (0.5, 8.0);
 
 /// Share of the harmonics above half of the carried ones in packed motions; 0 where none is below.
 pub(crate) fn share_of_highest(set: &HarmonicSet, motion: &[f64]) -> f64 {
@@ -62,14 +70,13 @@ impl Signs {
         Self { share, steepness }
     }
 
-    /// The factor from the error of a point with other signs.
-    fn factor_from(self, other: Self) -> f64 {
-        let steeper = if self.steepness > other.steepness {
+    /// Factor by which the error grows with the steepness, from a point with other signs.
+    fn steeper_than(self, other: Self) -> f64 {
+        if self.steepness > other.steepness {
             self.steepness / other.steepness
         } else {
             1.0
-        };
-        self.share / other.share * steeper
+        }
     }
 }
 
@@ -79,6 +86,27 @@ struct Known {
     error: f64,
     signs: Signs,
     level: usize,
+    /// q
+    exponent: f64,
+}
+
+impl Known {
+    /// The factor from this error to that of a point with other signs.
+    fn factor_to(&self, signs: Signs) -> f64 {
+        (signs.share / self.signs.share).powf(self.exponent) * signs.steeper_than(self.signs)
+    }
+
+    /// The exponent that leads from this error to that of a point with other signs; as before where the shares are alike.
+    fn exponent_to(&self, signs: Signs, error: f64) -> f64 {
+        let shares = signs.share / self.signs.share;
+        let grown = error / (self.error * signs.steeper_than(self.signs));
+        let exponent = grown.ln() / shares.ln();
+        if !(1.0 / DIFFERENT..=DIFFERENT).contains(&shares) && exponent.is_finite() {
+            exponent.clamp(EXPONENTS.0, EXPONENTS.1)
+        } else {
+            self.exponent
+        }
+    }
 }
 
 /// Decides which points are estimated.
@@ -101,27 +129,30 @@ impl EstimateSpacing {
         let factor = if known.error.is_nan() {
             1.0
         } else {
-            signs.factor_from(known.signs)
+            known.factor_to(signs)
         };
-        let alike = (1.0 / ALIKE..=ALIKE).contains(&factor);
-        if !alike || SAFETY * factor * known.error > largest {
+        let changed = signs.share / known.signs.share * signs.steeper_than(known.signs);
+        let alike = known.error.is_nan() || (1.0 / ALIKE..=ALIKE).contains(&changed);
+        let safety = if self.since == 0 { SAFETY.0 } else { SAFETY.1 };
+        if !alike || safety * factor * known.error > largest {
             return None;
         }
         self.since += 1;
         Some(factor)
     }
 
-    /// Notes an estimate: its error, NaN where it is unknown.
-    pub fn note(&mut self, level: usize, signs: Signs, error: f64) {
+    /// Notes an estimate: its error, NaN where it is unknown, and whether the curve may have fewer harmonics.
+    pub fn note(&mut self, level: usize, signs: Signs, error: f64, may_fall: bool) {
+        let largest = if may_fall { MOST } else { MOST_WITH_FEWEST };
         let before = self.known.filter(|known| known.level == level);
         let (holds, most) = match before {
-            None => (false, MOST),
+            None => (false, largest),
             Some(known) if error.is_nan() || known.error.is_nan() => {
                 (error.is_nan() && known.error.is_nan(), MOST_UNKNOWN)
             }
             Some(known) => {
-                let ratio = error / (known.error * signs.factor_from(known.signs));
-                ((1.0 / HOLDS..=HOLDS).contains(&ratio), MOST)
+                let ratio = error / (known.error * known.factor_to(signs));
+                ((1.0 / HOLDS..=HOLDS).contains(&ratio), largest)
             }
         };
         self.spacing = if holds { (2 * self.spacing).min(most) } else { 1 };
@@ -130,7 +161,12 @@ impl EstimateSpacing {
         }
         self.since = 0;
         let is_known = error.is_nan() || (error > 0.0 && signs.share > 0.0);
-        self.known = is_known.then_some(Known { error, signs, level });
+        self.known = is_known.then_some(Known {
+            error,
+            signs,
+            level,
+            exponent: before.map_or(1.0, |known| known.exponent_to(signs, error)),
+        });
     }
 
     /// Forgets the estimate made last: the next point is estimated.
@@ -154,7 +190,7 @@ mod tests {
         for i in 0..count {
             if spacing.factor(3, signs(1e-3, 1.0), 1e-3).is_none() {
                 made.push(i);
-                spacing.note(3, signs(1e-3, 1.0), error(i));
+                spacing.note(3, signs(1e-3, 1.0), error(i), true);
             }
         }
         made
@@ -177,6 +213,25 @@ mod tests {
     }
 
     #[test]
+    fn a_power_of_the_share_is_learnt() {
+        // The share doubles over five points and falls again, the error follows its fourth power.
+        let shares = (0..40_i32).map(|i| 1e-3 * 2.0_f64.powf(f64::from((i % 10 - 5).abs()) / 5.0));
+        let mut spacing = EstimateSpacing::default();
+        let mut made = 0;
+        for share in shares {
+            let error = 1e-6 * (share / 1e-3).powi(4);
+            if let Some(factor) = spacing.factor(3, signs(share, 1.0), 1e-3) {
+                let known = spacing.known.unwrap().error;
+                assert!((known * factor / error - 1.0).abs() < 1e-9, "{share}");
+            } else {
+                made += 1;
+                spacing.note(3, signs(share, 1.0), error, true);
+            }
+        }
+        assert!(made < 16, "{made}");
+    }
+
+    #[test]
     fn an_unknown_error_is_not_asked_for_at_each_point() {
         assert!(estimated(100, |_| f64::NAN).len() < 10);
     }
@@ -185,7 +240,7 @@ mod tests {
     fn other_harmonics_are_estimated_anew() {
         let mut spacing = EstimateSpacing::default();
         for _ in 0..3 {
-            spacing.note(3, signs(1e-3, 1.0), 5e-5);
+            spacing.note(3, signs(1e-3, 1.0), 5e-5, true);
         }
         assert!(spacing.factor(4, signs(1e-3, 1.0), 1e-3).is_none());
         assert!(spacing.factor(3, signs(1e-2, 1.0), 1e-3).is_none());

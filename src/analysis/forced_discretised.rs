@@ -310,6 +310,12 @@ impl Discretised for ForcedDiscretised<'_> {
         Ok(found)
     }
 
+    fn share_work(&mut self) {
+        if let Some(estimator) = &mut self.estimator {
+            estimator.share_work();
+        }
+    }
+
     fn estimate(&mut self, point: &Point) -> Result<Option<Assessment>> {
         self.estimated = None;
         self.refresh(point)?;

@@ -46,6 +46,9 @@ const STEADY: f64 = 0.25;
 /// Share of the residual that a guess from another point may leave.
 const CLOSER: f64 = 0.5;
 
+/// Share of the work of an estimate that told nothing that one of the same motion with more harmonics may take.
+const SHARED: f64 = 0.5;
+
 /// Extended problems that are kept for the next point.
 const MOST_KEPT: usize = 3;
 
@@ -61,6 +64,9 @@ pub struct ForcedEstimator<'a> {
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
     ratio: Option<Ratio>,
     changes: KeptChanges,
+    /// Operations that the last estimate might take, and the most that the next one may.
+    allowed: f64,
+    most: f64,
     /// Modes of the waves, and the flexibility tables made so far.
     waves: WaveCache,
     tables: usize,
@@ -97,9 +103,16 @@ impl<'a> ForcedEstimator<'a> {
             extended: Vec::new(),
             ratio: None,
             changes: KeptChanges::default(),
+            allowed: 0.0,
+            most: f64::INFINITY,
             waves: WaveCache::default(),
             tables: 0,
         }
+    }
+
+    /// Bounds the next estimate by half of the work that the last one might take, which told nothing.
+    pub fn share_work(&mut self) {
+        self.most = SHARED * self.allowed;
     }
 
     /// The estimate at a solved point; not certified if it could not be made.
@@ -111,7 +124,11 @@ impl<'a> ForcedEstimator<'a> {
         if solved.is_linear(self.interrupt)? {
             return solved.exact(0.0);
         }
-        let found = self.extend(solved);
+        let sizes = Sizes::new(solved.condensed, self.options.samples);
+        let mut work = Work::of_point(&sizes, solved.iterations, self.options.memory_limit);
+        work.limit(core::mem::replace(&mut self.most, f64::INFINITY));
+        self.allowed = work.left();
+        let found = self.extend(solved, work);
         or_unknown(found, solved, 0.0)
     }
 
@@ -152,9 +169,7 @@ impl<'a> ForcedEstimator<'a> {
         })
     }
 
-    fn extend(&mut self, solved: &Solved<'_>) -> Result<Option<Estimate>> {
-        let sizes = Sizes::new(solved.condensed, self.options.samples);
-        let work = Work::of_point(&sizes, solved.iterations, self.options.memory_limit);
+    fn extend(&mut self, solved: &Solved<'_>, work: Work) -> Result<Option<Estimate>> {
         let Some(extent) = self.extent(solved, &work)? else {
             return solved.unknown(0.0, true).map(Some);
         };

@@ -228,6 +228,11 @@ impl Work {
         }
     }
 
+    /// Leaves at most these operations.
+    pub fn limit(&mut self, operations: f64) {
+        self.operations = self.operations.min(operations);
+    }
+
     /// Whether a problem of these bytes fits.
     pub fn fits(&self, bytes: f64) -> bool {
         bytes <= self.bytes
