@@ -99,7 +99,7 @@ class _BranchPoints(_Owner):
         >>> branch = model.forced_response((0.8, 1.6))
         >>> summary = branch.summary(branch.peaks().point[0], 0)
         >>> print("%.3f %.3f" % (summary.work, summary.slip_share))
-        0.340 0.501
+        0.340 0.502
         """
         summary = _new("hbvib_contact_summary")
         _stoppable("hbvib_branch_contact_summary", self.handle, point, contact, summary, phase=phase, cancel=cancel)
@@ -138,7 +138,7 @@ class _BranchPoints(_Owner):
         >>> model.add_force(0, 0.2)
         >>> branch = model.forced_response((0.8, 1.6))
         >>> branch.slip(branch.peaks().point[0]).round(3)
-        array([0.501])
+        array([0.502])
         """
         shares = np.empty(self.reduction.contacts)
         self._call("hbvib_branch_slip_fraction", point, shares, shares.size)
