@@ -17,7 +17,8 @@ impl Metric {
     #[must_use]
     pub fn norm(self, v: &[f64]) -> f64 {
         let (u, p) = v.split_at(v.len() - 1);
-        (norm(u) / self.u).hypot(p[0] / self.p)
+        let (u, p) = (norm(u) / self.u, p[0] / self.p);
+        (u * u + p * p).sqrt()
     }
 
     /// Distance of two points.
