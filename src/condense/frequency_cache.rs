@@ -146,10 +146,7 @@ impl FrequencyCache {
             if self.constant[i] {
                 continue;
             }
-            // With a single contact modes take less time than the check.
-            if condensed.coordinates() > 1 {
-                interrupt.check()?;
-            }
+            interrupt.check()?;
             let block = &condensed.blocks()[i];
             let is_constant = block.number == 0 && block.tied.is_none();
             let is_quick = self.way == Way::Quick;
@@ -159,7 +156,6 @@ impl FrequencyCache {
             {
                 continue;
             }
-            interrupt.check()?;
             let done = match self.interpolations.get_mut(i) {
                 Some(Some(interpolation)) if is_quick && !is_constant => {
                     interpolation.evaluate(omega, table, |w, values| {

@@ -17,8 +17,7 @@ impl Metric {
     #[must_use]
     pub fn norm(self, v: &[f64]) -> f64 {
         let (u, p) = v.split_at(v.len() - 1);
-        let (u, p) = (norm(u) / self.u, p[0] / self.p);
-        (u * u + p * p).sqrt()
+        (norm(u) / self.u).hypot(p[0] / self.p)
     }
 
     /// Distance of two points.
