@@ -166,8 +166,8 @@ impl FrequencyInterpolation {
             if high - low <= 1e-9 * omega {
                 return Ok(None);
             }
-            let (series, tail) = self.series((low, high), sample)?;
-            let is_level = self.is_level();
+            let series = self.series((low, high), sample)?;
+            let (tail, is_level) = (self.tail(), self.is_level());
             let stalled = tail < NOISE && (tail > 0.3 * last_tail || is_level);
             if stalled {
                 // This is the rounding error of the factorisations: later panels cannot be better.
@@ -224,41 +224,47 @@ impl FrequencyInterpolation {
     /// Factor by which a panel could have been wider. Its series reached the tolerance t at degree k, so that it
     /// converges like t^(1/k) per degree, and about as much slower as the panel is wider.
     fn possible_widening(&self) -> f64 {
-        let last = self.decay[..self.degrees]
-            .iter()
-            .rposition(|d| *d > 3.0 * self.tolerance);
-        let needed = last.unwrap_or(0) + 2;
+        let needed = self.degrees_above(3.0 * self.tolerance) + 1;
         let spare = 1.0 / needed as f64 - 1.0 / (NODES - 2) as f64;
         0.9 * self.tolerance.powf(-spare)
     }
 
-    /// The series on a panel, degree by degree, and its tail: from few samples where these are enough, else from all.
+    /// The series on a panel, degree by degree: from few samples where these are enough, else from all.
     fn series(
         &mut self,
+        panel: (f64, f64),
+        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<Vec<Complex64>> {
+        let is_of_few = |j: &usize| j % 3 == 1;
+        self.take_samples((0..NODES).filter(is_of_few), panel, sample)?;
+        let coefficients = self.transform(FEW)?;
+        if self.tail() <= self.tolerance {
+            return Ok(coefficients);
+        }
+        self.take_samples((0..NODES).filter(|j| !is_of_few(j)), panel, sample)?;
+        self.transform(NODES)
+    }
+
+    /// Samples d·H at some of the nodes of a panel.
+    fn take_samples(
+        &mut self,
+        nodes: impl Iterator<Item = usize>,
         (low, high): (f64, f64),
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<(Vec<Complex64>, f64)> {
+    ) -> Result<()> {
         let size = self.outputs * self.outputs;
-        let is_of_few = |j: usize| j % 3 == 1;
-        for few in [true, false] {
-            for j in (0..NODES).filter(|&j| is_of_few(j) == few) {
-                let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
-                let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
-                let (d, _) = self.denominator(omega);
-                let values = &mut self.samples[j * size..(j + 1) * size];
-                sample(omega, values)?;
-                for v in values {
-                    *v *= d;
-                }
-                self.evaluations += 1;
+        for j in nodes {
+            let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
+            let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
+            let (d, _) = self.denominator(omega);
+            let values = &mut self.samples[j * size..(j + 1) * size];
+            sample(omega, values)?;
+            for v in values {
+                *v *= d;
             }
-            let coefficients = self.transform(if few { FEW } else { NODES })?;
-            let tail = self.tail();
-            if !few || tail <= self.tolerance {
-                return Ok((coefficients, tail));
-            }
+            self.evaluations += 1;
         }
-        Ok((Vec::new(), f64::INFINITY))
+        Ok(())
     }
 
     /// Turns samples into coefficients of so many degrees, and notes their relative size: the largest over contact

@@ -166,7 +166,7 @@ fn summary(bars: &[Bar], peak: &Special) -> String {
         "changes of the peak {:.6e} at {:.6} Hz by {}: spread, amplitude, frequency, %\n",
         peak.amplitude,
         peak.omega / TAU,
-        counted(bars.len(), "quantity").replace("quantitys", "quantities")
+        counted(bars.len(), "quantity")
     );
     let width = bars.iter().map(|bar| bar.name.chars().count()).max().unwrap_or(0);
     for bar in bars {
