@@ -8,7 +8,7 @@
 
 use crate::adaptivity::controller::PointAt;
 use crate::adaptivity::discretised::Traceable;
-use crate::continuation::predictor::Cubic;
+use crate::continuation::arc_cubic::Cubic;
 use crate::continuation::{Continuation, Metric, Point, Settings};
 use crate::error::{Error, Result, Status, try_copy, try_push, try_vec};
 use crate::hooks::{Hooks, LogLevel};

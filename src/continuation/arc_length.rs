@@ -1,19 +1,19 @@
 //! Arc-length continuation of R(u, p) = 0, one accepted point after the other.
 //!
 //! The unknown v = (u, p) is measured in a metric that follows the branch: u in units of ten times its present size,
-//! p in units of the range. A step predicts by the cubic through the last two points and tangents, corrects in the
+//! p in units of the range. A step predicts by the polynomial through the last two or three points and tangents, corrects in the
 //! plane orthogonal to the tangent (Allgower & Georg, Introduction to Numerical Continuation Methods, 2003,
 //! doi:10.1137/1.9780898719154), and is accepted if the prediction was close and the direction kept.
 
 mod corners;
 
 use crate::continuation::corrector::{Corrector, Outcome};
+use crate::continuation::history::History;
 use crate::continuation::metric::Metric;
 use crate::continuation::point::Point;
-use crate::continuation::predictor::Cubic;
 use crate::continuation::settings::Settings;
 use crate::continuation::step_control::StepControl;
-use crate::error::{Error, Result, Status, try_copy, try_vec};
+use crate::error::{Error, Result, Status, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::norm;
 use crate::problem::Problem;
@@ -43,7 +43,7 @@ pub struct Continuation {
     settings: Settings,
     steps: StepControl,
     corrector: Corrector,
-    previous: Option<Point>,
+    history: History,
     current: Point,
     /// Largest motion and amplitude so far.
     largest: (f64, f64),
@@ -84,8 +84,15 @@ const TINY: f64 = 1e-6;
 
 /// Outcome of the corrected prediction of one step.
 enum Attempt {
-    Good { point: Point, error: f64 },
-    Poor { error: f64 },
+    /// With the error of the prediction and the cosine of the angle between the tangents at its ends.
+    Good {
+        point: Point,
+        error: f64,
+        kept: f64,
+    },
+    Poor {
+        error: f64,
+    },
     Failed,
 }
 
@@ -104,7 +111,7 @@ impl Continuation {
             steps: settings.steps,
             corrector: corrector(n, &settings)?,
             largest: (norm(first.unknowns()), first.amplitude.norm()),
-            previous: None,
+            history: History::new(n + 1)?,
             current: first,
             stationary: 0,
             row: try_vec(n + 1, 0.0, CONTEXT)?,
@@ -135,7 +142,10 @@ impl Continuation {
         }
         self.largest.0 = self.largest.0.max(norm(current.unknowns()));
         self.largest.1 = self.largest.1.max(current.amplitude.norm());
-        self.previous = previous;
+        self.history = History::new(n + 1)?;
+        if let Some(previous) = previous {
+            self.history.push(previous);
+        }
         self.current = current;
         Ok(())
     }
@@ -175,7 +185,7 @@ impl Continuation {
     /// The point before it.
     #[must_use]
     pub fn previous(&self) -> Option<&Point> {
-        self.previous.as_ref()
+        self.history.previous()
     }
 
     /// Finds the next point. It must not be called again once the end of the range was reported.
@@ -189,7 +199,6 @@ impl Continuation {
         }
         let metric = self.metric();
         let n = self.row.len() - 1;
-        let order = if self.previous.is_some() { 4.0 } else { 2.0 };
         loop {
             let step = self.steps.step();
             let (v, amplitude) = self.predict(metric, step)?;
@@ -206,7 +215,7 @@ impl Continuation {
                 self.try_point(problem, metric, v, amplitude, step, false, interrupt)?
             };
             match attempt {
-                Attempt::Good { point, error } => {
+                Attempt::Good { point, error, kept } => {
                     if fixed.is_none() && self.overshoot(point.parameter()).is_some() {
                         // The correction ran past the end: repeat with a shorter step.
                         if !self.steps.failed() {
@@ -214,11 +223,13 @@ impl Continuation {
                         }
                         continue;
                     }
-                    self.steps.accepted(length, error, order, point.iterations);
+                    self.steps
+                        .accepted(length, error, self.history.order(), point.iterations);
+                    self.steps.turns_at_most(kept.acos() / length);
                     return self.accept(point, fixed);
                 }
                 Attempt::Poor { error } => {
-                    if !self.steps.rejected(error, order) {
+                    if !self.steps.rejected(error, self.history.order()) {
                         return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
                     }
                 }
@@ -251,7 +262,8 @@ impl Continuation {
         } else {
             0
         };
-        self.previous = Some(core::mem::replace(&mut self.current, point.try_clone()?));
+        self.history
+            .push(core::mem::replace(&mut self.current, point.try_clone()?));
         Ok(match fixed {
             Some(bound) if bound.to_bits() == self.settings.start.to_bits() => Advance::LeftAtStart { point },
             Some(_) => Advance::Accepted { point, last: true },
@@ -269,23 +281,10 @@ impl Continuation {
 
     /// Predicted point and amplitude a step ahead; the tangent is left as the row of the plane.
     fn predict(&mut self, metric: Metric, step: f64) -> Result<(Vec<f64>, Complex64)> {
-        let here = &self.current;
-        metric.unit(&here.tangent, &mut self.row);
-        let cutoff = step / metric.norm(&here.tangent);
-        let mut v = try_copy(&here.v, CONTEXT)?;
-        for (v, t) in v.iter_mut().zip(&here.tangent) {
-            *v += cutoff * t;
-        }
-        if let Some(previous) = &self.previous {
-            let cubic = Cubic::new(previous, here, metric);
-            let s = 1.0 + step / cubic.chord;
-            cubic.place(s, &mut self.scratch);
-            if cubic.chord > 0.0 && metric.distance(&self.scratch, &v) <= 0.5 * step {
-                v.copy_from_slice(&self.scratch);
-                return Ok((v, cubic.amplitude(s)));
-            }
-        }
-        Ok((v, here.amplitude + here.slope * cutoff))
+        metric.unit(&self.current.tangent, &mut self.row);
+        let mut v = try_vec(self.row.len(), 0.0, CONTEXT)?;
+        let amplitude = self.history.predict(&self.current, metric, step, &mut v);
+        Ok((v, amplitude))
     }
 
     /// The bound of the range that a parameter value lies beyond, and the share of the distance to it.
@@ -351,13 +350,14 @@ impl Continuation {
         let back = cosine(along, chord, metric.norm(&here.tangent)) < STRAIGHT;
         let far = chord > 3.0 * step;
         let error = self.prediction_error(&self.scratch, &point, amplitude);
+        self.history.judge(&self.scratch, &point.v, &self.row, metric);
         if turned || jumped || back || far || point.skips_folds_from(here) {
             return Ok(Attempt::Failed);
         }
         if !self.steps.accepts(error) {
             return Ok(Attempt::Poor { error });
         }
-        Ok(Attempt::Good { point, error })
+        Ok(Attempt::Good { point, error, kept })
     }
 
     /// Relative error of the prediction in the motion and in the observed amplitude.

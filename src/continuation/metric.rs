@@ -32,6 +32,14 @@ impl Metric {
         self.dot_with(a, b, |x, y| x * y)
     }
 
+    /// Inner product of an unscaled vector and a scaled one.
+    #[must_use]
+    pub fn along_row(self, v: &[f64], row: &[f64]) -> f64 {
+        let n = v.len() - 1;
+        let u: f64 = v[..n].iter().zip(row).map(|(x, r)| x * r).sum();
+        u / self.u + v[n] / self.p * row[n]
+    }
+
     fn dot_with(self, a: &[f64], b: &[f64], f: impl Fn(f64, f64) -> f64) -> f64 {
         let n = a.len() - 1;
         let u: f64 = a[..n].iter().zip(&b[..n]).map(|(x, y)| f(x / self.u, y / self.u)).sum();

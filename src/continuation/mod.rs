@@ -1,8 +1,10 @@
 //! Arc-length continuation of R(u, p) = 0: predict, correct, accept. It uses problems and algebra, and no mechanics.
 
+pub mod arc_cubic;
 pub mod arc_length;
 pub mod bracket;
 pub mod corrector;
+mod history;
 pub mod initial_point;
 pub mod metric;
 pub mod newton_homotopy;

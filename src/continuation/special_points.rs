@@ -1,9 +1,9 @@
 //! Special points between two accepted points: folds, peaks and levels of the observed amplitude, and solutions at
 //! given parameter values, each solved for and not interpolated.
 
+use crate::continuation::arc_cubic::Cubic;
 use crate::continuation::bracket::{Bracket, WIDTH};
 use crate::continuation::corrector::{Corrector, Outcome};
-use crate::continuation::predictor::Cubic;
 use crate::continuation::{Metric, Point, Settings};
 use crate::error::{Result, try_copy, try_vec};
 use crate::interrupt::Interrupt;
@@ -90,8 +90,10 @@ impl Locator {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(n: usize, settings: Settings) -> Result<Self> {
+        // Points that need not be exact lead to special points that are solved once more where they are recorded.
+        let tolerance = settings.steps.tolerance(settings.tolerance);
         Ok(Self {
-            corrector: Corrector::new(n, settings.tolerance, settings.max_iterations)?,
+            corrector: Corrector::new(n, tolerance, settings.max_iterations)?,
             settings,
             row: try_vec(n + 1, 0.0, CONTEXT)?,
             derivative: try_vec(n + 1, 0.0, CONTEXT)?,

@@ -48,6 +48,9 @@ pub struct StepControl {
     detail: Detail,
 }
 
+/// Angle in radians by which the branch may turn in a step as foreseen. Steps in which it turns by more than π/3 are rejected.
+const MOST_TURN: f64 = 0.8;
+
 /// Iterations above which the step is reduced at any error.
 const MANY_ITERATIONS: usize = 6;
 
@@ -124,6 +127,13 @@ impl StepControl {
             factor = factor.min(0.7);
         }
         self.step = (used * factor).clamp(self.min, self.max);
+    }
+
+    /// Shortens the next step so that the branch, which turns by `rate` radians per length, keeps its direction, about.
+    pub fn turns_at_most(&mut self, rate: f64) {
+        if rate > 0.0 {
+            self.at_most(MOST_TURN / rate);
+        }
     }
 
     /// Continues with a step of another length.

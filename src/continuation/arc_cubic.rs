@@ -1,0 +1,72 @@
+//! Cubic Hermite interpolation of a branch between two points with their tangents.
+
+use crate::continuation::predictor::arc_length;
+use crate::continuation::{Metric, Point};
+
+/// The cubic through `a` (s = 0) and `b` (s = 1) with their tangents.
+pub struct Cubic<'p> {
+    a: &'p Point,
+    b: &'p Point,
+    /// Length of the chord in the metric.
+    pub chord: f64,
+    /// Factors that scale the stored tangents to the length of the arc.
+    tangent_scales: (f64, f64),
+}
+
+impl<'p> Cubic<'p> {
+    /// The curve in a metric.
+    #[must_use]
+    pub fn new(a: &'p Point, b: &'p Point, metric: Metric) -> Self {
+        let chord = metric.distance(&a.v, &b.v);
+        let norms = (metric.norm(&a.tangent), metric.norm(&b.tangent));
+        let arc = arc_length(chord, metric.dot(&a.tangent, &b.tangent) / (norms.0 * norms.1));
+        Self {
+            a,
+            b,
+            chord,
+            tangent_scales: (arc / norms.0, arc / norms.1),
+        }
+    }
+
+    /// Weights of a, b and of their tangents at s, and of their derivatives.
+    fn weights(&self, s: f64) -> ([f64; 4], [f64; 4]) {
+        let (ra, rb) = self.tangent_scales;
+        let (s2, s3) = (s * s, s * s * s);
+        (
+            [
+                2.0 * s3 - 3.0 * s2 + 1.0,
+                3.0 * s2 - 2.0 * s3,
+                ra * (s3 - 2.0 * s2 + s),
+                rb * (s3 - s2),
+            ],
+            [
+                6.0 * (s2 - s),
+                6.0 * (s - s2),
+                ra * (3.0 * s2 - 4.0 * s + 1.0),
+                rb * (3.0 * s2 - 2.0 * s),
+            ],
+        )
+    }
+
+    /// The point at s.
+    pub fn place(&self, s: f64, v: &mut [f64]) {
+        let (w, _) = self.weights(s);
+        let ends = self.a.v.iter().zip(&self.b.v);
+        let tangents = self.a.tangent.iter().zip(&self.b.tangent);
+        for ((v, (a, b)), (ta, tb)) in v.iter_mut().zip(ends).zip(tangents) {
+            // The sum is centred on b, so that round-off stays relative to the distance.
+            *v = b + w[0] * (a - b) + w[2] * ta + w[3] * tb;
+        }
+    }
+
+    /// The point at s, and the derivative by s.
+    pub fn at(&self, s: f64, v: &mut [f64], derivative: &mut [f64]) {
+        self.place(s, v);
+        let (_, d) = self.weights(s);
+        let ends = self.a.v.iter().zip(&self.b.v);
+        let tangents = self.a.tangent.iter().zip(&self.b.tangent);
+        for ((derivative, (a, b)), (ta, tb)) in derivative.iter_mut().zip(ends).zip(tangents) {
+            *derivative = d[0] * (a - b) + d[2] * ta + d[3] * tb;
+        }
+    }
+}
