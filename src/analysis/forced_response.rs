@@ -144,7 +144,7 @@ fn follow(
         (None, Some(coarse)) => Some(coarse.at(&resolution.condensed)?),
         (None, None) => None,
     };
-    let extended = ModelCache::for_estimates()?;
+    let extended = extended_models(solver.estimate_error || levels.is_automatic())?;
     let models = (&levels, &stuck, &extended);
     let mut response =
         boxed(|| ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt))?;
@@ -245,6 +245,15 @@ fn bands(
         return Ok(None);
     }
     ResonanceBands::new(model, forced, sweep, interrupt).map(Some)
+}
+
+/// The models of error estimates; none unless they are `wanted`.
+fn extended_models(wanted: bool) -> Result<ModelCache> {
+    if wanted {
+        ModelCache::for_estimates()
+    } else {
+        ModelCache::new(core::iter::empty())
+    }
 }
 
 /// The harmonics in which forces act.

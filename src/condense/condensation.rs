@@ -12,7 +12,7 @@
 use crate::condense::condensed::{AssembledLaw, Condensed, Reference};
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::flexibility::Workspace;
-use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block};
+use crate::condense::harmonic_block::{Artificial, HarmonicBlock, harmonic_block, of_same_wave, shared_block};
 use crate::condense::memory_limit::within_directly;
 use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffness, structural_stiffness};
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
@@ -382,7 +382,11 @@ fn direct_blocks(
     let mut blocks = Vec::new();
     for (i, &number) in numbers.iter().enumerate() {
         interrupt.part(Phase::Condensation, i, numbers.len())?;
-        let mut block = harmonic_block(model, number, request.contacts, |c| kappa(c, number), interrupt)?;
+        let kappa = |c: usize| kappa(c, number);
+        let mut block = match of_same_wave(model, number, &blocks) {
+            Some(known) => shared_block(model, number, known, request.contacts, kappa)?,
+            None => harmonic_block(model, number, request.contacts, kappa, interrupt)?,
+        };
         block.artificial = match mode {
             None => Artificial::None,
             Some(DampingForm::Mass) => Artificial::Mass,

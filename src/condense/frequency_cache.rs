@@ -1,11 +1,11 @@
 //! The flexibility tables of all carried harmonics at a frequency: by factorisation for small structures or a
 //! single frequency; along a sweep from modes for small structures, interpolated for others.
 
-use crate::condense::Condensed;
 use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles;
+use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use num_complex::Complex64;
@@ -146,7 +146,10 @@ impl FrequencyCache {
             if self.constant[i] {
                 continue;
             }
-            interrupt.check()?;
+            // With a single contact modes take less time than the check.
+            if condensed.coordinates() > 1 {
+                interrupt.check()?;
+            }
             let block = &condensed.blocks()[i];
             let is_constant = block.number == 0 && block.tied.is_none();
             let is_quick = self.way == Way::Quick;
@@ -156,6 +159,7 @@ impl FrequencyCache {
             {
                 continue;
             }
+            interrupt.check()?;
             let done = match self.interpolations.get_mut(i) {
                 Some(Some(interpolation)) if is_quick && !is_constant => {
                     interpolation.evaluate(omega, table, |w, values| {
@@ -181,7 +185,7 @@ impl FrequencyCache {
 }
 
 /// The table of the i-th carried harmonic from the modes of its wave, where it has them and they agree with a factorisation
-/// over the range.
+/// at the ends of the range; at one, where an earlier harmonic of the wave has shown its modes to be right.
 fn of_wave(
     condensed: &Condensed,
     i: usize,
@@ -195,9 +199,11 @@ fn of_wave(
     let mut modal = ModalTable::new(condensed, i, response, Arc::clone(modes))?;
     let mut table = Table::new(condensed.coordinates())?;
     let outputs = condensed.coordinates() + 1;
+    let shares = |block: &HarmonicBlock| block.modes.as_ref().is_some_and(|known| Arc::ptr_eq(known, modes));
+    let is_known = condensed.blocks()[..i].iter().any(shares);
     // The slope is made of the same modes: once shows that it is right.
     let mut checks_slope = true;
-    for omega in [start, end] {
+    for omega in [start, end].into_iter().skip(usize::from(is_known)) {
         if !modal.evaluate(omega, true, &mut table, interrupt)? {
             continue;
         }

@@ -2,7 +2,7 @@
 
 use crate::condense::contact_classes::ContactClasses;
 use crate::condense::wave_modes::WaveModes;
-use crate::error::{Result, try_push, try_vec};
+use crate::error::{Result, try_copy, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
@@ -132,6 +132,102 @@ impl HarmonicBlock {
     }
 }
 
+/// A block whose matrices harmonic `number` shares: the harmonics of one wave differ in the reference stiffness alone, and those
+/// of the wave that travels the other way have the conjugate matrices.
+pub(super) fn of_same_wave<'b>(
+    model: &Model,
+    number: usize,
+    blocks: &'b [HarmonicBlock],
+) -> Option<(&'b HarmonicBlock, Form)> {
+    let structure = model.structure();
+    // The mean has no structural damping and no imaginary parts. Structural and gyroscopic matrices may be complex.
+    let conjugates = !structure.has_structural_matrix() && !structure.is_rotating();
+    let (key, backward) = structure.wave_key(number);
+    let form_of = |block: &HarmonicBlock| {
+        let (known, other) = structure.wave_key(block.number);
+        let form = if other == backward {
+            Form::Plain
+        } else {
+            Form::Conjugated
+        };
+        let is_shared = known == key && block.number > 0 && number > 0 && (form == Form::Plain || conjugates);
+        is_shared.then_some(form)
+    };
+    blocks.iter().find_map(|block| Some((block, form_of(block)?)))
+}
+
+/// The block of harmonic `number` from that of another harmonic of its wave; see [`of_same_wave`].
+pub(super) fn shared_block(
+    model: &Model,
+    number: usize,
+    (known, form): (&HarmonicBlock, Form),
+    (contact_classes, representatives): (&ContactClasses, &[(usize, usize)]),
+    kappa: impl Fn(usize) -> Complex64,
+) -> Result<HarmonicBlock> {
+    let structure = model.structure();
+    let copy = |values: &[Complex64]| -> Result<Vec<Complex64>> {
+        let mut copy = try_copy(values, "the matrices per harmonic")?;
+        if form == Form::Conjugated {
+            for v in &mut copy {
+                *v = v.conj();
+            }
+        }
+        Ok(copy)
+    };
+    let rows = rows_of(model, representatives, number)?;
+    let stiffness = copy(&known.stiffness)?;
+    let structural = match &known.structural {
+        Some(structural) => Some(copy(structural)?),
+        None => None,
+    };
+    let mut reference = known.reference.try_clone()?;
+    reference.values.copy_from_slice(&stiffness);
+    for (v, d) in reference.values.iter_mut().zip(structural.iter().flatten()) {
+        *v += Complex64::I * d;
+    }
+    for (c, row) in rows.iter().enumerate() {
+        for &(q, b) in row.iter().flatten() {
+            for &(p, a) in row.iter().flatten() {
+                reference.add_stored(p, q, a.conj() * kappa(c) * b);
+            }
+        }
+    }
+    Ok(HarmonicBlock {
+        number,
+        next: structure.phase(number, 1),
+        damping: copy(&known.damping)?,
+        mass: copy(&known.mass)?,
+        tied: match &known.tied {
+            Some(tied) => Some(TiedValues {
+                stiffness: copy(&tied.stiffness)?,
+                gyroscopic: copy(&tied.gyroscopic)?,
+            }),
+            None => None,
+        },
+        unbalance: None,
+        stiffness,
+        structural,
+        reference,
+        artificial: Artificial::None,
+        modes: None,
+        force: try_vec(structure.ndof(), Complex64::ZERO, "the forces")?,
+        rows: over_dofs(&rows)?,
+        structural_rows: rows,
+        linear_rows: over_dofs(&rows_of(model, &contact_classes.linear, number)?)?,
+        springs: Vec::new(),
+        view: None,
+    })
+}
+
+/// Rows of W of some (contact, direction) pairs.
+fn rows_of(model: &Model, contacts: &[(usize, usize)], number: usize) -> Result<Vec<Row>> {
+    let mut rows = try_vec(contacts.len(), [None; 6], "the contacts")?;
+    for (r, &(i, k)) in rows.iter_mut().zip(contacts) {
+        *r = model.structure().contact_row(&model.contacts()[i], k, number);
+    }
+    Ok(rows)
+}
+
 /// The block of harmonic `number`, with contacts that never slip as springs, one row for each of the (contact,
 /// direction) pairs that represent the coordinates, and their reference stiffness. It has no force and no
 /// artificial damping yet.
@@ -146,14 +242,7 @@ pub(super) fn harmonic_block(
     let n = structure.ndof();
     let stuck = contact_classes.never_slipping.iter().map(|&i| &model.contacts()[i]);
     let stiffness = model.sprung_stiffness(Wave::Harmonic(number), stuck)?;
-    let rows_of = |contacts: &[(usize, usize)]| -> Result<Vec<Row>> {
-        let mut rows = try_vec(contacts.len(), [None; 6], "the contacts")?;
-        for (r, &(i, k)) in rows.iter_mut().zip(contacts) {
-            *r = structure.contact_row(&model.contacts()[i], k, number);
-        }
-        Ok(rows)
-    };
-    let rows = rows_of(representatives)?;
+    let rows = rows_of(model, representatives, number)?;
     interrupt.check()?;
     let damping = structure.wave_matrix(MatrixKind::Damping, number)?;
     let structural = structure.wave_matrix(MatrixKind::Structural, number)?;
@@ -213,7 +302,7 @@ pub(super) fn harmonic_block(
         force: try_vec(n, Complex64::ZERO, "the forces")?,
         rows: over_dofs(&rows)?,
         structural_rows: rows,
-        linear_rows: over_dofs(&rows_of(&contact_classes.linear)?)?,
+        linear_rows: over_dofs(&rows_of(model, &contact_classes.linear, number)?)?,
         springs: Vec::new(),
         view: None,
     })
@@ -226,4 +315,74 @@ fn over_dofs(rows: &[Row]) -> Result<Vec<MotionRow>> {
         try_push(&mut found, MotionRow::new(row)?, "the contacts")?;
     }
     Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::condense::test_chains::{DAMPED, chain};
+    use crate::linalg::matrix_view::MatrixView;
+
+    fn close(a: &[Complex64], b: &[Complex64]) -> bool {
+        let size = b.iter().fold(0.0_f64, |m, b| m.max(b.norm()));
+        a.len() == b.len() && a.iter().zip(b).all(|(a, b)| (a - b).norm() <= 1e-15 * size)
+    }
+
+    /// Blocks of all harmonics up to 40, each made from the matrices, and how many others share theirs.
+    fn check(model: &Model, expected: usize) {
+        let interrupt = Interrupt::none();
+        let classes = ContactClasses::new(model).unwrap();
+        let representatives = [(0, 0), (1, 0), (2, 0)];
+        let contacts = (&classes, &representatives[..]);
+        let mut blocks = Vec::new();
+        let mut shared = 0;
+        for number in 0..=40 {
+            let kappa = |c: usize| Complex64::new(1.0 + c as f64, 0.1 * number as f64);
+            let made = harmonic_block(model, number, contacts, kappa, &interrupt).unwrap();
+            if let Some(known) = of_same_wave(model, number, &blocks) {
+                let block = shared_block(model, number, known, contacts, kappa).unwrap();
+                assert_eq!(block.reference.row_idx, made.reference.row_idx);
+                assert!(close(&block.reference.values, &made.reference.values), "{number}");
+                for (a, b) in [
+                    (&block.stiffness, &made.stiffness),
+                    (&block.damping, &made.damping),
+                    (&block.mass, &made.mass),
+                ] {
+                    assert!(close(a, b), "{number}");
+                }
+                assert_eq!(block.structural.is_some(), made.structural.is_some());
+                for (a, b) in block.structural.iter().zip(&made.structural) {
+                    assert!(close(a, b), "{number}");
+                }
+                shared += 1;
+            }
+            blocks.push(made);
+        }
+        assert_eq!(shared, expected);
+    }
+
+    #[test]
+    fn shared_matrices_are_those_of_the_harmonic() {
+        for sectors in [1, 9, 12] {
+            for (damping, loss_factor) in DAMPED {
+                let mut model = chain(sectors, damping);
+                model.set_loss_factor(loss_factor).unwrap();
+                // With engine order 2 waves of 0 to 4 or to 3 pairs of diameters; the mean is by itself.
+                let waves = match sectors {
+                    9 => 5,
+                    12 => 4,
+                    _ => 1,
+                };
+                check(&model, 40 - waves);
+            }
+        }
+        // The damping of one sense is not the conjugate of the other's.
+        let mut complex = chain(9, (0.0, 1e-3));
+        let mut damping = [Complex64::ZERO; 81];
+        damping[0] = Complex64::I;
+        complex
+            .set_coupling(MatrixKind::Damping, &MatrixView::dense_complex(9, &damping))
+            .unwrap();
+        check(&complex, 40 - 9);
+    }
 }

@@ -162,12 +162,8 @@ fn real_reference(condensed: &Condensed, i: usize) -> Result<Csc> {
     for (c, row) in block.rows.iter().enumerate() {
         let kappa = condensed.kappa(c, i).re;
         for &(q, b) in row.terms() {
-            let column = reference.col_ptr[q]..reference.col_ptr[q + 1];
             for &(p, a) in row.terms() {
-                let found = reference.row_idx[column.clone()].iter().position(|&row| row == p);
-                if let Some(at) = found {
-                    reference.values[column.start + at] += a.conj() * kappa * b;
-                }
+                reference.add_stored(p, q, a.conj() * kappa * b);
             }
         }
     }

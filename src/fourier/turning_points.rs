@@ -246,8 +246,8 @@ struct Bounds {
     bend: f64,
     /// Values of x′ up to this are rounding, mostly that of the angles pτ.
     noise: f64,
-    /// Width of a cell in which x varies by rounding only between roots of x′ that are not separated.
-    finest: f64,
+    /// Bound of |x|.
+    size: f64,
 }
 
 impl Bounds {
@@ -263,13 +263,13 @@ impl Bounds {
         Self {
             bend,
             noise: 4.0 * f64::EPSILON * turn,
-            // Motions that are zero or not finite are not searched: halving would not end.
-            finest: if bend > 0.0 && bend.is_finite() {
-                (1e-14 * (size / bend)).cbrt()
-            } else {
-                f64::INFINITY
-            },
+            size,
         }
+    }
+
+    /// Width of a cell in which x varies by rounding only between roots of x′ that are not separated.
+    fn finest(&self) -> f64 {
+        (1e-14 * (self.size / self.bend)).cbrt()
     }
 
     /// The most by which x′ departs from its chord within a cell.
@@ -296,7 +296,7 @@ fn isolate(set: &HarmonicSet, packed: &[f64], [a, b]: [Slope; 2], bounds: &Bound
     } else {
         a.value.abs().min(b.value.abs()) > bounds.largest_dip(width)
     };
-    if certain || width < bounds.finest {
+    if certain || width < bounds.finest() {
         if crosses {
             push_root(set, packed, a, b, found);
         }

@@ -9,19 +9,20 @@ pub(super) const LARGEST: usize = 16;
 
 const CONTEXT: &str = "a sum of sparse matrices";
 
-/// The sum of entries of square matrices of an order up to [`LARGEST`].
-pub(super) struct SmallSum {
-    columns: [[Complex64; LARGEST]; LARGEST],
+/// The sum of entries of square matrices of an order up to `N`, at most [`LARGEST`]. To clear room for the largest order takes
+/// longer than to add four rows.
+pub(super) struct SmallSum<const N: usize> {
+    columns: [[Complex64; N]; N],
     /// Bit i of number j: whether row i of column j is stored.
-    rows: [u16; LARGEST],
+    rows: [u16; N],
 }
 
-impl SmallSum {
+impl<const N: usize> SmallSum<N> {
     /// No entries.
     pub fn new() -> Self {
         Self {
-            columns: [[Complex64::ZERO; LARGEST]; LARGEST],
-            rows: [0; LARGEST],
+            columns: [[Complex64::ZERO; N]; N],
+            rows: [0; N],
         }
     }
 

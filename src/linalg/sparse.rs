@@ -215,8 +215,11 @@ impl Csc {
         if terms.iter().all(|(_, a, _)| a.stored() == 0) {
             return Self::zero(n);
         }
+        if n <= 4 {
+            return Self::small_sum::<4, A>(n, terms);
+        }
         if n <= small_sum::LARGEST {
-            return Self::small_sum(n, terms);
+            return Self::small_sum::<{ small_sum::LARGEST }, A>(n, terms);
         }
         let mut mirrored = Vec::new();
         for (_, a, _) in terms.iter().filter(|(_, _, form)| *form == Form::Transposed) {
@@ -273,8 +276,8 @@ impl Csc {
     }
 
     /// The same up to the order of [`small_sum`].
-    fn small_sum<A: Columns>(n: usize, terms: &[(Complex64, &A, Form)]) -> Result<Self> {
-        let mut sum = SmallSum::new();
+    fn small_sum<const N: usize, A: Columns>(n: usize, terms: &[(Complex64, &A, Form)]) -> Result<Self> {
+        let mut sum = SmallSum::<N>::new();
         for &(c, a, form) in terms {
             for j in 0..n {
                 a.visit(j, |i, v| {
@@ -374,6 +377,14 @@ impl Csc {
         self.values.iter().fold(0.0, |m, v| m.max(v.norm()))
     }
 
+    /// Adds to an entry that is stored; where none is, does nothing.
+    pub fn add_stored(&mut self, i: usize, j: usize, value: Complex64) {
+        let range = self.col_ptr[j]..self.col_ptr[j + 1];
+        if let Ok(at) = self.row_idx[range.clone()].binary_search(&i) {
+            self.values[range.start + at] += value;
+        }
+    }
+
     /// The entry of row `i` and column `j`, zero where none is stored.
     #[must_use]
     pub fn get(&self, i: usize, j: usize) -> Complex64 {
@@ -400,11 +411,11 @@ impl Csc {
 mod tests {
     use super::*;
 
-    /// A matrix of order `n` whose entries, the same for every order, lie among the first six rows and columns.
-    fn matrix(n: usize, which: usize) -> Csc {
-        let entries = (0..36).filter(|k| (k * 5 + which * 7) % 11 < 6).map(|k| {
+    /// A matrix of order `n` whose entries, the same for every order, lie among the first `used` rows and columns.
+    fn matrix(n: usize, used: usize, which: usize) -> Csc {
+        let entries = (0..used * used).filter(|k| (k * 5 + which * 7) % 11 < 6).map(|k| {
             let angle = (k + 40 * which) as f64;
-            (k % 6, k / 6, Complex64::new(angle.sin(), angle.cos()))
+            (k % used, k / used, Complex64::new(angle.sin(), angle.cos()))
         });
         Csc::from_triplets(n, n, entries.collect()).unwrap()
     }
@@ -412,8 +423,8 @@ mod tests {
     #[test]
     fn small_sums_are_those_of_large_matrices() {
         let forms = [Form::Plain, Form::Transposed, Form::Conjugated, Form::Transposed];
-        let sum = |n: usize, count: usize| {
-            let matrices: Vec<Csc> = (0..count).map(|which| matrix(n, which)).collect();
+        let sum = |n: usize, used: usize, count: usize| {
+            let matrices: Vec<Csc> = (0..count).map(|which| matrix(n, used, which)).collect();
             let factor = |i: usize| Complex64::new(i as f64, 1.0 - i as f64);
             let terms: Vec<_> = matrices
                 .iter()
@@ -423,10 +434,15 @@ mod tests {
             Csc::sum(n, &terms).unwrap()
         };
         for count in 1..=forms.len() {
-            let (small, large) = (sum(6, count), sum(small_sum::LARGEST + 1, count));
-            assert_eq!(small.col_ptr[..], large.col_ptr[..7]);
-            assert_eq!(large.col_ptr[7..], vec![large.col_ptr[6]; small_sum::LARGEST - 5][..]);
-            assert_eq!((small.row_idx, small.values), (large.row_idx, large.values));
+            for n in [4, 6] {
+                let (small, large) = (sum(n, n, count), sum(small_sum::LARGEST + 1, n, count));
+                assert_eq!(small.col_ptr[..], large.col_ptr[..=n]);
+                assert_eq!(
+                    large.col_ptr[n..],
+                    vec![large.col_ptr[n]; small_sum::LARGEST + 2 - n][..]
+                );
+                assert_eq!((small.row_idx, small.values), (large.row_idx, large.values));
+            }
         }
     }
 }

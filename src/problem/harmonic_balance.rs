@@ -18,6 +18,9 @@ use crate::problem::residual_scale::Squares;
 use crate::problem::static_force::static_force;
 use num_complex::Complex64;
 
+/// Harmonics between two checks of the interrupt.
+const BETWEEN_CHECKS: usize = 16;
+
 /// The forced response of a condensed model.
 pub struct HarmonicBalance<'a> {
     pub(super) condensed: &'a Condensed,
@@ -134,7 +137,9 @@ impl<'a> HarmonicBalance<'a> {
         out.d_parameter.fill(0.0);
         let (mut linear, mut rounding) = (Squares::default(), 0.0_f64);
         for (i, table) in self.tables.current().iter().enumerate() {
-            interrupt.check()?;
+            if i.is_multiple_of(BETWEEN_CHECKS) {
+                interrupt.check()?;
+            }
             let at = set.offset(i);
             let mean = set.numbers()[i] == 0;
             for row in 0..coordinates {

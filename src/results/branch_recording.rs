@@ -1,7 +1,7 @@
 //! Storing the points of a branch.
 
 use crate::condense::{Condensed, Reduction, Resolution};
-use crate::error::{Error, Result, Status, try_extend, try_push};
+use crate::error::{Error, Result, Status, try_push};
 use crate::model::Model;
 use crate::options::SolverOptions;
 use crate::results::branch::{Branch, Place, Special};
@@ -9,6 +9,9 @@ use crate::results::mode_branch::ModeData;
 use crate::results::verdict::{Bifurcation, BifurcationKind, Located};
 use num_complex::Complex64;
 use std::sync::Arc;
+
+/// With the first point there is room for so many, if their motions are not more numbers than this.
+const FIRST_ROOM: (usize, usize) = (32, 4096);
 
 /// Numbers of one point.
 #[derive(Clone, Copy, Debug)]
@@ -142,9 +145,16 @@ impl Branch {
             motion: self.motion.len(),
             response: self.response.len(),
         };
-        self.places.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+        let points = if self.places.is_empty() {
+            (FIRST_ROOM.1 / record.motion.len().max(1)).clamp(1, FIRST_ROOM.0)
+        } else {
+            1
+        };
+        self.places
+            .try_reserve(points)
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
         self.slip_fraction
-            .try_reserve(contacts)
+            .try_reserve(points * contacts)
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
         for v in [
             &mut self.amplitude,
@@ -155,12 +165,15 @@ impl Branch {
             &mut self.error_estimate,
             &mut self.damping_error_estimate,
         ] {
-            v.try_reserve(1).map_err(|_| Error::out_of_memory(CONTEXT))?;
+            v.try_reserve(points).map_err(|_| Error::out_of_memory(CONTEXT))?;
         }
         self.response
-            .try_reserve(record.response.len())
+            .try_reserve(points * record.response.len())
             .map_err(|_| Error::out_of_memory(CONTEXT))?;
-        try_extend(&mut self.motion, record.motion, CONTEXT)?;
+        self.motion
+            .try_reserve(points * record.motion.len())
+            .map_err(|_| Error::out_of_memory(CONTEXT))?;
+        self.motion.extend_from_slice(record.motion);
         // The frequency is stored last: its length is the number of points.
         try_push(&mut self.omega, record.omega, CONTEXT)?;
         self.places.push(place);
