@@ -3,11 +3,13 @@
 
 use crate::error::{Error, Result, fail, try_vec};
 use crate::interrupt::Interrupt;
+use crate::linalg::nested_dissection;
 use crate::linalg::row_index::widened;
 use crate::linalg::sparse::Csc;
 use crate::linalg::triangle::{Entry, Triangle};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{LltError, LltRegularization};
+use faer::perm::PermRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
 };
@@ -23,19 +25,85 @@ const AT_ONCE: usize = 8;
 /// Operations per entry of the factors and right-hand side.
 const OF_ONE_ENTRY: u64 = 4;
 
-fn analysed(pattern: SymbolicSparseColMatRef<'_, usize>) -> Result<SymbolicCholesky<usize>> {
-    let parameters = CholeskySymbolicParams::default();
-    factorize_symbolic_cholesky(pattern, Side::Lower, SymmetricOrdering::Amd, parameters)
-        .map_err(|_| Error::out_of_memory(CONTEXT))
+/// Entries of L by minimum degrees from which nested dissection is tried, too: below, either is a small part of the memory of
+/// a call.
+const DISSECTED_FROM: usize = 10_000_000;
+
+/// Entries of L over those of the lower triangle from which it is tried: below, the factor costs less than the search.
+const FILLED: usize = 4;
+
+/// Share of the entries by minimum degrees below which it is taken: a wide factor that saves little costs more operations.
+const SAVED: f64 = 0.9;
+
+/// An order of elimination, and the shape of its factors.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Order {
+    /// By approximate minimum degrees.
+    Degrees,
+    /// By nested dissection.
+    Dissection,
+    /// By dissection where L has many entries and clearly fewer by it, by degrees elsewhere.
+    Smaller,
 }
 
-/// Number of entries of L for a matrix with the pattern of `a`.
+fn analysed(
+    pattern: SymbolicSparseColMatRef<'_, usize>,
+    order: Order,
+    interrupt: &Interrupt<'_>,
+) -> Result<SymbolicCholesky<usize>> {
+    let n = pattern.nrows();
+    let by = |ordering: SymmetricOrdering<'_, usize>| {
+        let parameters = CholeskySymbolicParams::default();
+        factorize_symbolic_cholesky(pattern, Side::Lower, ordering, parameters)
+            .map_err(|_| Error::out_of_memory(CONTEXT))
+    };
+    let dissected = || {
+        let rows = nested_dissection::order(pattern.col_ptr(), pattern.row_idx(), interrupt)?;
+        let mut places = try_vec(n, 0, CONTEXT)?;
+        for (place, &row) in rows.iter().enumerate() {
+            places[row] = place;
+        }
+        by(SymmetricOrdering::Custom(PermRef::new_checked(&rows, &places, n)))
+    };
+    if order == Order::Dissection {
+        return dissected();
+    }
+    let symbolic = by(SymmetricOrdering::Amd)?;
+    let entries = symbolic.len_val();
+    let lower = |j: usize| pattern.row_idx_of_col_raw(j).iter().filter(|&&i| i >= j).count();
+    let filled = || entries / FILLED >= (0..n).map(lower).sum();
+    if order == Order::Degrees || entries < DISSECTED_FROM || !filled() {
+        return Ok(symbolic);
+    }
+    // Dissection has its memory.
+    drop(symbolic);
+    let symbolic = dissected()?;
+    if (symbolic.len_val() as f64) < SAVED * entries as f64 {
+        return Ok(symbolic);
+    }
+    drop(symbolic);
+    by(SymmetricOrdering::Amd)
+}
+
+/// Number of entries of L for a matrix with the pattern of `a`, in the order that [`Cholesky`] takes.
 ///
 /// # Errors
 /// `OutOfMemory`.
 pub fn entries_of_factor(a: &Csc) -> Result<usize> {
+    entries(a, Order::Smaller)
+}
+
+/// The same by minimum degrees.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub fn entries_by_degrees(a: &Csc) -> Result<usize> {
+    entries(a, Order::Degrees)
+}
+
+fn entries(a: &Csc, order: Order) -> Result<usize> {
     let pattern = SymbolicSparseColMatRef::new_checked(a.rows, a.rows, &a.col_ptr, None, &a.row_idx);
-    Ok(analysed(pattern)?.len_val())
+    Ok(analysed(pattern, order, &Interrupt::none())?.len_val())
 }
 
 /// Factors of one matrix.
@@ -69,6 +137,15 @@ impl<T: Entry> Cholesky<T> {
         allow: impl FnOnce(usize) -> Result<()>,
         interrupt: &Interrupt<'_>,
     ) -> Result<core::result::Result<Self, usize>> {
+        Self::by_order(a, Order::Smaller, allow, interrupt)
+    }
+
+    fn by_order(
+        a: &Triangle<T>,
+        order: Order,
+        allow: impl FnOnce(usize) -> Result<()>,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<core::result::Result<Self, usize>> {
         let n = a.n;
         let no_memory = || Error::out_of_memory(CONTEXT);
         if a.values.iter().any(|x| !x.complex().is_finite()) {
@@ -77,7 +154,7 @@ impl<T: Entry> Cholesky<T> {
         interrupt.announce_factorisation()?;
         let rows = widened(&a.row_idx, CONTEXT)?;
         let pattern = SymbolicSparseColMatRef::new_checked(n, n, &a.col_ptr, None, &rows);
-        let symbolic = analysed(pattern)?;
+        let symbolic = analysed(pattern, order, interrupt)?;
         let need = symbolic.factorize_numeric_llt_scratch::<T>(Par::Seq, faer::Spec::default());
         allow(symbolic.len_val() * size_of::<T>() + need.unaligned_bytes_required())?;
         let mut values = try_vec(symbolic.len_val(), T::NONE, CONTEXT)?;
@@ -206,6 +283,65 @@ mod tests {
             let indefinite = matrix(n, complex, -4.0);
             assert!(Definite::new(&indefinite, (0.0, &none), &interrupt).unwrap().is_none());
         }
+    }
+
+    /// A box of finite elements with three rows at each node, and random couplings.
+    fn box_of_elements<T: Entry>(side: usize) -> Triangle<T> {
+        let place = |k: usize| [k / 3 % side, k / 3 / side % side, k / 3 / side / side];
+        let n = 3 * side * side * side;
+        let (mut col_ptr, mut row_idx, mut values) = (vec![0], Vec::new(), Vec::new());
+        for j in 0..n {
+            let beside = |i: &usize| (0..3).all(|d| place(*i)[d].abs_diff(place(j)[d]) <= 1);
+            for i in (j..n.min(j + 3 * (side * side + side + 2))).filter(beside) {
+                let z = Complex64::new((3.0 * i as f64 + j as f64).cos(), (i as f64 - 2.0 * j as f64).sin());
+                row_idx.push(crate::linalg::row_index::narrow(i));
+                values.push(T::of(if i == j { 100.0.into() } else { z }));
+            }
+            col_ptr.push(values.len());
+        }
+        Triangle {
+            n,
+            col_ptr,
+            row_idx,
+            values,
+        }
+    }
+
+    fn solutions_by_both_orders<T: Entry>(side: usize) {
+        let interrupt = Interrupt::none();
+        let a = box_of_elements::<T>(side);
+        let x: Vec<T> = (0..a.n).map(|k| T::of(Complex64::cis(k as f64))).collect();
+        let [first, second] = [Order::Degrees, Order::Dissection].map(|order| {
+            let mut b = vec![T::NONE; a.n];
+            a.multiply(&x, &mut b, &interrupt).unwrap();
+            let factor = Cholesky::by_order(&a, order, |_| Ok(()), &interrupt).unwrap();
+            factor.unwrap().solve(&mut b, &interrupt).unwrap();
+            b
+        });
+        for (x, (a, b)) in x.iter().zip(first.iter().zip(&second)) {
+            assert!((a.complex() - b.complex()).norm() < 1e-13);
+            assert!((a.complex() - x.complex()).norm() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn both_orders_of_elimination_give_the_same_solutions() {
+        for side in [1, 2, 6] {
+            solutions_by_both_orders::<f64>(side);
+            solutions_by_both_orders::<Complex64>(side);
+        }
+    }
+
+    #[test]
+    fn dissection_has_the_smaller_factor_of_a_box_and_is_taken_where_it_is_large() {
+        let a = box_of_elements::<f64>(17);
+        let rows = widened(&a.row_idx, "a test").unwrap();
+        let pattern = SymbolicSparseColMatRef::new_checked(a.n, a.n, &a.col_ptr, None, &rows);
+        let [degrees, dissection, smaller] = [Order::Degrees, Order::Dissection, Order::Smaller]
+            .map(|order| analysed(pattern, order, &Interrupt::none()).unwrap().len_val());
+        println!("{degrees} entries by degrees, {dissection} by dissection");
+        assert!((dissection as f64) < 0.85 * degrees as f64);
+        assert_eq!(smaller, if degrees < DISSECTED_FROM { degrees } else { dissection });
     }
 
     #[test]

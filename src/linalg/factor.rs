@@ -80,7 +80,7 @@ impl Factor {
         let entries = if is_dense(a) {
             a.rows * a.rows
         } else {
-            2 * cholesky::entries_of_factor(a)?
+            2 * cholesky::entries_by_degrees(a)?
         };
         Ok(entries * size_of::<Complex64>())
     }
