@@ -61,6 +61,9 @@ pub(crate) struct Refined {
     pub stuck: bool,
 }
 
+/// Share of the step before, below which a step shows that the branch was hard to predict.
+const SHORTENED: f64 = 0.5;
+
 /// Selects the harmonics of each point of a branch.
 pub(crate) struct AdaptivityController {
     tolerance: f64,
@@ -83,6 +86,8 @@ pub(crate) struct AdaptivityController {
     /// Number of successive estimates far below the tolerance.
     low: usize,
     spacing: EstimateSpacing,
+    /// Step to the point before.
+    step: f64,
 }
 
 impl AdaptivityController {
@@ -99,6 +104,7 @@ impl AdaptivityController {
             begun: false,
             low: 0,
             spacing: EstimateSpacing::default(),
+            step: 0.0,
         }
     }
 
@@ -231,8 +237,13 @@ impl AdaptivityController {
         Ok(found)
     }
 
-    /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
+    /// Whether the error of a point is predicted by that of an earlier one; it is then taken over. Where the branch itself
+    /// was hard to predict, as where another harmonic begins to resonate, its error is, too.
     fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, signs: Signs) -> Result<bool> {
+        let before = core::mem::replace(&mut self.step, point.step);
+        if point.step > 0.0 && point.step < SHORTENED * before {
+            self.spacing.forget();
+        }
         let largest = self.tolerance / MARGIN;
         let Some(factor) = self.spacing.factor(equations.resolution(), signs, largest) else {
             return Ok(false);

@@ -134,7 +134,8 @@ impl EstimateSpacing {
         let changed = signs.share / known.signs.share * signs.steeper_than(known.signs);
         let alike = known.error.is_nan() || (1.0 / ALIKE..=ALIKE).contains(&changed);
         let safety = if self.since == 0 { SAFETY.0 } else { SAFETY.1 };
-        if !alike || safety * factor * known.error > largest {
+        // An error that seems to fall is not relied on.
+        if !alike || safety * factor.max(1.0) * known.error > largest {
             return None;
         }
         self.since += 1;
