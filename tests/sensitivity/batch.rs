@@ -316,7 +316,8 @@ fn a_range_without_a_maximum_a_stop_and_bad_calls_are_told() {
             progress: Some(&mut stop),
             ..Hooks::default()
         };
-        let loads = [300.0; 40];
+        // So many that no thread solves half of them while another one waits for a core.
+        let loads = [300.0; 2000];
         let found = batch(
             &model,
             &solver,
@@ -333,7 +334,7 @@ fn a_range_without_a_maximum_a_stop_and_bad_calls_are_told() {
             .filter(|p| p.status == Status::StoppedByCaller)
             .count();
         assert!(
-            (2..20).contains(&solved) && solved + left == 40,
+            (2..1000).contains(&solved) && solved + left == 2000,
             "{solved} solved by {threads} threads"
         );
         assert_eq!(calls.get(), 2);
