@@ -4,7 +4,8 @@
 use crate::adaptivity::branch_tracer::BranchTracer;
 use crate::adaptivity::controller::Refined;
 use crate::adaptivity::discretised::Traceable;
-use crate::continuation::{Point, initial_point};
+use crate::continuation::Point;
+use crate::continuation::initial_point::{self, Effort};
 use crate::error::{Result, Status};
 use crate::interrupt::Phase;
 
@@ -13,6 +14,11 @@ const MOST_STARTS: usize = 3;
 
 /// Most points of a homotopy to such a start.
 const MOST_POINTS: usize = 100;
+
+/// Newton iterations that a start may take as a multiple of those of the one before, for which so many count at least: with
+/// twice the harmonics the path to a solution is about as long, and most of a path that is longer leads to none.
+const MULTIPLE: usize = 4;
+const LEAST: usize = 40;
 
 impl BranchTracer<'_> {
     /// The first point with the harmonics that its error requires.
@@ -25,6 +31,10 @@ impl BranchTracer<'_> {
             first
         };
         let Refined { mut point, mut stuck } = self.controller.refine(analysis, first, true, self.interrupt)?;
+        let mut effort = Effort {
+            points: MOST_POINTS,
+            iterations: usize::MAX,
+        };
         for _ in 0..MOST_STARTS {
             let from = analysis.resolution();
             let levels = analysis.levels();
@@ -38,8 +48,9 @@ impl BranchTracer<'_> {
             }
             analysis.select(to)?;
             self.interrupt.phase(Phase::FirstPoint, 0.0)?;
-            match initial_point::solve_within(analysis.problem(), &self.course.settings, MOST_POINTS, self.interrupt) {
+            match initial_point::solve_within(analysis.problem(), &self.course.settings, effort, self.interrupt) {
                 Ok(start) => {
+                    effort.iterations = MULTIPLE * start.point.iterations.max(LEAST);
                     let refined = self.controller.refine(analysis, start.point, true, self.interrupt)?;
                     (point, stuck) = (refined.point, refined.stuck);
                 }

@@ -38,10 +38,6 @@ const LOW: usize = 2;
 const PATIENCE: usize = 10;
 const MOST_PATIENCE: usize = 80;
 
-/// Lowest level along a branch where something is nonlinear: with the forced harmonics alone nothing would show how the
-/// error changes from point to point.
-const FEW: usize = 1;
-
 /// Relative size of a harmonic that is round-off.
 const ROUND_OFF: f64 = 1e-13;
 
@@ -135,7 +131,10 @@ impl AdaptivityController {
         point: Point,
         interrupt: &Interrupt<'_>,
     ) -> Result<Point> {
-        let (level, few) = (equations.resolution(), FEW.min(equations.levels().last()));
+        let (level, few) = (
+            equations.resolution(),
+            equations.levels().few().min(equations.levels().last()),
+        );
         if !equations.levels().is_automatic() || level >= few {
             return Ok(point);
         }
@@ -229,7 +228,7 @@ impl AdaptivityController {
         let found = equations.estimate(point)?;
         if let Some(found) = &found {
             self.count(found);
-            let may_fall = equations.resolution() > FEW;
+            let may_fall = equations.resolution() > equations.levels().few();
             self.spacing.note(equations.resolution(), signs, found.error, may_fall);
             let is_low = MARGIN * found.error < DROP * self.tolerance;
             self.low = if is_low { self.low + 1 } else { 0 };
@@ -330,9 +329,9 @@ impl AdaptivityController {
         let floor = self.lowest_level(equations, error, level);
         let last = equations.levels().last();
         let next = equations.levels().level_with(required).max(floor).min(last);
-        let too_few = level < floor.min(FEW);
+        let too_few = level < floor.min(equations.levels().few());
         // Where only an unknown error asked for more harmonics, those below may do again.
-        let below = level.saturating_sub(1).max(FEW);
+        let below = level.saturating_sub(1).max(equations.levels().few());
         let again = self.unknown.is_some() && self.floor.1 == 0 && share < RAISE && !self.folded;
         let next = if again { next.min(below) } else { next };
         let may_fall = again || (share < DROP && (error == 0.0 || self.low >= LOW));
@@ -362,7 +361,10 @@ impl AdaptivityController {
         if self.folded {
             return level;
         }
-        let half = equations.levels().level_of_half(self.highest).max(FEW);
+        let half = equations
+            .levels()
+            .level_of_half(self.highest)
+            .max(equations.levels().few());
         if self.floor.1 > 0 { half.max(self.floor.0) } else { half }
     }
 

@@ -1,5 +1,6 @@
 //! The numbers of harmonics available to a run: one, or a rising list from which a tolerance selects.
 
+use crate::condense::wave_cache::have_modes;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, fail, try_push};
 use crate::error_estimate::{affordable, allow_point, is_allowed};
@@ -13,14 +14,17 @@ const CONTEXT: &str = "the harmonics";
 /// Ratio of neighbouring levels.
 const RATIO: f64 = 1.25;
 
-/// The same ratio for structures so large that each level costs many factorisations.
+/// The same ratio where each level costs many factorisations.
 const RATIO_LARGE: f64 = 2.0;
 
-/// Degrees of freedom above which a structure is large.
+/// Degrees of freedom above which a structure without modes of its waves is large.
 const LARGE: usize = 32;
 
 /// Unknowns above which no level is refined: Newton's method factors dense matrices.
 const MOST_UNKNOWNS: usize = 3000;
+
+/// Unknowns up to which the work of a point hardly depends on their number.
+const SMALL: usize = 32;
 
 /// Samples per harmonic where laws are sampled and the tolerance decides.
 const SAMPLES_PER_HARMONIC: usize = 8;
@@ -52,8 +56,9 @@ impl<'m> HarmonicLevels<'m> {
         condense: impl Fn(usize) -> Result<Condensed> + 'm,
     ) -> Result<Self> {
         let automatic = options.tolerance > 0.0;
+        let double = automatic && model.ndof() > LARGE && !have_modes(model)?;
         let numbers = if automatic {
-            automatic_numbers(model, options, forced)?
+            automatic_numbers((options, forced), if double { RATIO_LARGE } else { RATIO })?
         } else {
             let mut one = Vec::new();
             try_push(&mut one, options.harmonics, CONTEXT)?;
@@ -63,7 +68,7 @@ impl<'m> HarmonicLevels<'m> {
             models: ModelCache::new(numbers.into_iter())?,
             samples: options.samples,
             automatic,
-            double: model.ndof() > LARGE,
+            double,
             memory_limit: options.memory_limit,
             condense: Box::new(condense),
         })
@@ -114,6 +119,14 @@ impl<'m> HarmonicLevels<'m> {
         self.level_with(2 * self.models.highest(level))
     }
 
+    /// The lowest level along a branch where something is nonlinear. With the forced harmonics alone nothing shows how the
+    /// error changes, so that each point is estimated: that pays where the next level has many unknowns, and the estimates
+    /// cost no factorisation.
+    pub fn few(&self) -> usize {
+        let pays = |known: &Resolution| affordable(&known.condensed, SMALL) < self.models.highest(1);
+        usize::from(self.double || self.count() < 2 || !self.models.any().is_some_and(pays))
+    }
+
     /// The highest affordable level.
     pub fn last(&self) -> usize {
         let Some(known) = self.models.any() else {
@@ -151,7 +164,7 @@ impl<'m> HarmonicLevels<'m> {
 }
 
 /// Rising numbers of harmonics from the highest forced one to `max_harmonics`.
-fn automatic_numbers(model: &Model, options: &SolverOptions, forced: &[usize]) -> Result<Vec<usize>> {
+fn automatic_numbers((options, forced): (&SolverOptions, &[usize]), ratio: f64) -> Result<Vec<usize>> {
     let most = options.max_harmonics;
     if let Some(h) = forced.iter().find(|&&h| h > most) {
         return fail!(
@@ -159,7 +172,6 @@ fn automatic_numbers(model: &Model, options: &SolverOptions, forced: &[usize]) -
             "a force acts in harmonic {h}, but max_harmonics = {most}; raise max_harmonics to {h}"
         );
     }
-    let ratio = if model.ndof() > LARGE { RATIO_LARGE } else { RATIO };
     let base = if options.keep_even_harmonics {
         1
     } else {

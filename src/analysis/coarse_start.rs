@@ -7,7 +7,7 @@
 use crate::adaptivity::transfer::transferred;
 use crate::condense::Condensed;
 use crate::contact::Contact;
-use crate::continuation::initial_point::{self, Way};
+use crate::continuation::initial_point::{self, Effort, Way};
 use crate::continuation::{Point, Settings};
 use crate::error::{Result, Status};
 use crate::interrupt::{Interrupt, Phase};
@@ -22,8 +22,11 @@ const AT_ONCE: usize = 12;
 /// Degrees of freedom above which another number of harmonics costs more than it saves.
 const LARGE: usize = 1000;
 
-/// Most points of a homotopy with few harmonics.
-const MOST_POINTS: usize = 200;
+/// Bound of a homotopy with few harmonics.
+const EFFORT: Effort = Effort {
+    points: 200,
+    iterations: usize::MAX,
+};
 
 /// Share of the period that a contact slips above which Newton's method from small motion mostly fails.
 const MUCH_SLIP: f64 = 0.5;
@@ -70,7 +73,7 @@ impl CoarseStart {
             let is_transferred = given.is_some();
             let at = (settings.start, settings.start);
             let mut problem = HarmonicBalance::new(&condensed, response, at, solver.samples, given, interrupt)?;
-            let first = match initial_point::solve_within(&mut problem, settings, MOST_POINTS, interrupt) {
+            let first = match initial_point::solve_within(&mut problem, settings, EFFORT, interrupt) {
                 Ok(first) => first,
                 Err(e) if e.recoverable || matches!(e.status, Status::NoConvergence | Status::Singular) => {
                     return Ok(None);

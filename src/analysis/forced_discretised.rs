@@ -8,6 +8,7 @@ use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
 use crate::analysis::point_error::observed;
+use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reference, reduced_resonances};
 use crate::continuation::corrector::Corrector;
 use crate::continuation::resolve::{resolve, solve_linear};
@@ -168,7 +169,11 @@ impl<'a> ForcedDiscretised<'a> {
         model: &'a Model,
         solver: &SolverOptions,
         settings: Settings,
-        (levels, stuck, extended): (&'a HarmonicLevels<'a>, &'a HarmonicLevels<'a>, &'a ModelCache),
+        (levels, stuck, extended): (
+            &'a HarmonicLevels<'a>,
+            &'a HarmonicLevels<'a>,
+            (&'a ModelCache, &'a SharedWaves),
+        ),
         (level, guess): (usize, Option<Vec<f64>>),
         response: usize,
         interrupt: &'a Interrupt<'a>,

@@ -145,7 +145,7 @@ fn follow(
         (None, None) => None,
     };
     let extended = extended_models(solver.estimate_error || levels.is_automatic())?;
-    let models = (&levels, &stuck, &extended);
+    let models = (&levels, &stuck, (&extended, &waves));
     let mut response =
         boxed(|| ForcedDiscretised::new(model, solver, settings, models, (level, given), response_dof, interrupt))?;
     let held = response.branch().reduction().held_by_contacts;

@@ -1,5 +1,6 @@
 //! Error of stored points, see [`crate::error_estimate`].
 
+use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Artificial, Condensed, ModelCache};
 use crate::error::{Result, fail};
 use crate::error_estimate::forced_response_error::ForcedEstimator;
@@ -83,8 +84,8 @@ pub fn estimate_at_with(
         iterations: ITERATIONS,
     };
     let Some((data, at)) = branch.mode_data().zip(branch.mode_at(point)) else {
-        let models = ModelCache::for_estimates()?;
-        return ForcedEstimator::new(model, solver, branch.response_dof(), &models, interrupt).at(&solved);
+        let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
+        return ForcedEstimator::new(model, solver, branch.response_dof(), models, interrupt).at(&solved);
     };
     let wave;
     let model = if model.structure().engine_order() == data.info.engine_order {

@@ -18,7 +18,7 @@ use crate::condense::reference_stiffness::{raise_for_springs, reference_stiffnes
 use crate::condense::relative_coordinates::{AssembledDirection, assign_coordinates, relative_share};
 use crate::condense::sweep::Sweep;
 use crate::condense::tied_load::TiedLoad;
-use crate::condense::wave_cache::WaveCache;
+use crate::condense::wave_cache::{ALL_UP_TO, WaveCache};
 use crate::condense::wave_reduction::{Request, reduced_blocks};
 use crate::contact::Contact;
 use crate::error::{Result, Status, try_push, try_vec};
@@ -29,9 +29,6 @@ use crate::model::Model;
 use crate::model::structure::MatrixKind;
 use crate::options::{DampingForm, Flexibility, SolverOptions};
 use num_complex::Complex64;
-
-/// Degrees of freedom up to which a sweep computes all modes at once.
-const MODES_UP_TO: usize = 100;
 
 /// Number of unknowns above which the stuck structure is the quicker reference.
 const STUCK_ABOVE: usize = 64;
@@ -126,7 +123,7 @@ impl Condensed {
     pub fn attach_modes(&mut self, model: &Model, waves: &mut WaveCache, interrupt: &Interrupt<'_>) -> Result<()> {
         // The small motion of a near-rigid contact is lost in the rounding of modes.
         let is_rigid = (0..self.coordinates()).any(|c| self.is_near_rigid(c));
-        if self.is_reduced() || self.order > MODES_UP_TO || is_rigid {
+        if self.is_reduced() || self.order > ALL_UP_TO || is_rigid {
             return Ok(());
         }
         for i in 0..self.blocks.len() {

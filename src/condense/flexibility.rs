@@ -235,6 +235,40 @@ impl Workspace {
         Ok(&self.table)
     }
 
+    /// H as [`Self::evaluate`] left it, its columns improved until only the rounding of the matrices is left.
+    ///
+    /// # Errors
+    /// As [`Self::evaluate`].
+    pub(super) fn refined(
+        &mut self,
+        condensed: &Condensed,
+        i: usize,
+        omega: f64,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<&[Complex64]> {
+        let block = &condensed.blocks()[i];
+        let (n, outputs) = (condensed.ndof(), condensed.coordinates() + 1);
+        let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
+        let tables = self.table.value.chunks_exact_mut(outputs);
+        for (k, (x, table)) in self.columns.chunks_exact_mut(n).zip(tables).enumerate() {
+            match block.rows.get(k) {
+                Some(row) => {
+                    self.load.fill(Complex64::ZERO);
+                    for &(p, a) in row.terms() {
+                        self.load[p] += a.conj();
+                    }
+                }
+                None => block.force_at(omega, &mut self.load),
+            }
+            self.dynamic
+                .refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
+            for (value, row) in table.iter_mut().zip(rows.clone()) {
+                *value = row.along(x);
+            }
+        }
+        Ok(&self.table.value)
+    }
+
     /// Motion under the excitation, after [`Self::evaluate`].
     pub(super) fn excited(&self) -> &[Complex64] {
         &self.columns[self.columns.len() - self.product.len()..]

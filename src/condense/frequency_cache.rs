@@ -6,7 +6,7 @@ use crate::condense::frequency_interpolation::FrequencyInterpolation;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles;
 use crate::condense::{Condensed, HarmonicBlock};
-use crate::error::{Result, try_push};
+use crate::error::{Result, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
 use num_complex::Complex64;
 use std::sync::Arc;
@@ -16,6 +16,9 @@ const INTERPOLATE_ABOVE: usize = 32;
 
 /// Relative error of interpolated tables, and of tables from modes.
 const TOLERANCE: f64 = 1e-11;
+
+/// Relative error of a slope by factorisation over that of its table.
+const SLOPE: f64 = 10.0;
 
 /// Tables of all carried harmonics.
 pub struct FrequencyCache {
@@ -208,17 +211,43 @@ fn of_wave(
             continue;
         }
         let exact = workspace.evaluate(condensed, i, omega, checks_slope, interrupt)?;
-        let slopes = checks_slope.then_some((&table.slope, &exact.slope));
+        let slope = if checks_slope {
+            deviation(&table.slope, &exact.slope, outputs)
+        } else {
+            0.0
+        };
+        let value = deviation(&table.value, &exact.value, outputs);
         checks_slope = false;
-        for (a, b) in core::iter::once((&table.value, &exact.value)).chain(slopes) {
-            for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
-                let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
-                let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
-                if off > TOLERANCE * TOLERANCE * size || !off.is_finite() {
-                    return Ok(None);
-                }
-            }
+        if value.max(slope) <= TOLERANCE {
+            continue;
+        }
+        if condensed.ndof() <= INTERPOLATE_ABOVE {
+            return Ok(None);
+        }
+        // A factorisation of a stiff structure may be no better.
+        let factorised = try_copy(&exact.value, "the contact flexibility")?;
+        let refined = workspace.refined(condensed, i, omega, interrupt)?;
+        let own = deviation(&factorised, refined, outputs);
+        let by_modes = deviation(&table.value, refined, outputs);
+        if by_modes > TOLERANCE.max(own) || slope > TOLERANCE.max(SLOPE * own) || !(slope + by_modes).is_finite() {
+            return Ok(None);
         }
     }
     Ok(Some(modal))
+}
+
+/// Largest relative deviation of a column of a table from that of another one.
+fn deviation(a: &[Complex64], b: &[Complex64], outputs: usize) -> f64 {
+    let mut largest = 0.0_f64;
+    for (a, b) in a.chunks_exact(outputs).zip(b.chunks_exact(outputs)) {
+        let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
+        let size: f64 = b.iter().map(Complex64::norm_sqr).sum();
+        if off > 0.0 || off.is_nan() {
+            largest = largest.max((off / size).sqrt());
+            if off.is_nan() || size == 0.0 {
+                return f64::INFINITY;
+            }
+        }
+    }
+    largest
 }

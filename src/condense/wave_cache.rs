@@ -5,10 +5,11 @@ use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, try_extend, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen;
-use crate::linalg::sparse::Csc;
+use crate::linalg::sparse::{Csc, Form};
 use crate::model::Model;
 use crate::model::reduced_wave::MotionRow;
 use crate::model::spring_stiffness::Wave;
+use crate::model::structure::MatrixKind;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::cell::Cell;
@@ -16,6 +17,9 @@ use std::sync::Arc;
 
 /// Degrees of freedom up to which all modes are computed.
 const MOST: usize = 600;
+
+/// Degrees of freedom up to which a sweep computes all modes at once.
+pub(super) const ALL_UP_TO: usize = 100;
 
 const CONTEXT: &str = "the modes of the structure";
 
@@ -41,6 +45,31 @@ impl SharedWaves {
         condensed.attach_modes(model, &mut waves, interrupt)?;
         self.0.set(waves);
         Ok(condensed)
+    }
+
+    /// The modes of the i-th carried harmonic, as [`WaveCache::of`].
+    ///
+    /// # Errors
+    /// `OutOfMemory`; `StoppedByCaller`.
+    pub fn of(
+        &self,
+        model: &Model,
+        condensed: &Condensed,
+        i: usize,
+        interrupt: &Interrupt<'_>,
+    ) -> Result<Option<Arc<WaveModes>>> {
+        let mut waves = self.0.take();
+        let found = waves.of(model, condensed, i, interrupt);
+        self.0.set(waves);
+        found
+    }
+
+    /// Whether some wave has modes; `None` as long as none was asked for.
+    pub fn some_have_modes(&self) -> Option<bool> {
+        let waves = self.0.take();
+        let (refused, known) = (waves.refused, !waves.waves.is_empty());
+        self.0.set(waves);
+        (refused || known).then_some(!refused)
     }
 }
 
@@ -89,6 +118,34 @@ impl WaveCache {
     }
 }
 
+/// Whether the flexibility of the waves of a structure is a sum over modes along a branch, unless a contact is near-rigid.
+///
+/// # Errors
+/// `OutOfMemory`.
+pub(crate) fn have_modes(model: &Model) -> Result<bool> {
+    let structure = model.structure();
+    let n = structure.ndof();
+    if n > ALL_UP_TO || has_other_terms(model) {
+        return Ok(false);
+    }
+    let matrix = |kind| structure.wave_matrix(kind, 1);
+    let (mass, stiffness) = (matrix(MatrixKind::Mass)?, matrix(MatrixKind::Stiffness)?);
+    let damping = matrix(MatrixKind::Damping)?;
+    let pattern = Csc::sum(
+        n,
+        &[&mass, &stiffness, &damping].map(|of| (Complex64::ZERO, of, Form::Plain)),
+    )?;
+    let aligned = |of: &Csc| of.aligned(&pattern);
+    let (mass, stiffness, damping) = (aligned(&mass)?, aligned(&stiffness)?, aligned(&damping)?);
+    Ok(proportional([&mass, &stiffness, &damping]).is_some())
+}
+
+/// Whether a structure has terms of which its modes know nothing.
+fn has_other_terms(model: &Model) -> bool {
+    let structure = model.structure();
+    structure.has_structural_matrix() || structure.has_aero() || structure.is_rotating()
+}
+
 /// The modes of the i-th carried harmonic with this K_κ.
 fn modes_of(
     model: &Model,
@@ -98,11 +155,7 @@ fn modes_of(
 ) -> Result<Option<WaveModes>> {
     let block = &condensed.blocks()[i];
     let n = condensed.ndof();
-    let other_terms = model.structure().has_structural_matrix()
-        || model.structure().has_aero()
-        || model.structure().is_rotating()
-        || block.unbalance.is_some();
-    if n > MOST || other_terms {
+    if n > MOST || has_other_terms(model) || block.unbalance.is_some() {
         return Ok(None);
     }
     let Some(springs) = springs(model, condensed, block)? else {

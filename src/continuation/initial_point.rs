@@ -56,8 +56,20 @@ impl Way {
 
 const CONTEXT: &str = "the start";
 
-/// Most points of a homotopy; one that needs more circulates among corners.
-const MAX_HOMOTOPY_POINTS: usize = 1_000;
+/// Bounds of the work for a first point.
+#[derive(Clone, Copy, Debug)]
+pub struct Effort {
+    /// Most points of a homotopy.
+    pub points: usize,
+    /// Newton iterations after which no homotopy is followed any more.
+    pub iterations: usize,
+}
+
+/// A homotopy that needs more points circulates among corners.
+const FULL: Effort = Effort {
+    points: 1_000,
+    iterations: usize::MAX,
+};
 
 /// Share of a homotopy that counts as progress.
 const PROGRESS: f64 = 1e-3;
@@ -79,29 +91,29 @@ const UNBALANCED: f64 = 1e-2;
 /// `NoConvergence` if every method failed, or the failure of a law if that was the cause; `Singular` if the linear
 /// structure has no solution; those of the problem; `StoppedByCaller`.
 pub fn solve(problem: &mut dyn Problem, settings: &Settings, interrupt: &Interrupt<'_>) -> Result<First> {
-    solve_within(problem, settings, MAX_HOMOTOPY_POINTS, interrupt)
+    solve_within(problem, settings, FULL, interrupt)
 }
 
-/// The same by homotopies of so many points at most.
+/// The same with bounded work.
 ///
 /// # Errors
 /// Those of [`solve`].
 pub fn solve_within(
     problem: &mut dyn Problem,
     settings: &Settings,
-    most_points: usize,
+    effort: Effort,
     interrupt: &Interrupt<'_>,
 ) -> Result<First> {
     let tolerance = settings.steps.tolerance(settings.tolerance);
     let mut corrector = Corrector::new(problem.size(), tolerance, settings.max_iterations)?;
-    let mut first = try_each_way(problem, (settings, most_points), &mut corrector, interrupt)?;
+    let mut first = try_each_way(problem, (settings, effort), &mut corrector, interrupt)?;
     first.point.iterations = corrector.steps_taken();
     Ok(first)
 }
 
 fn try_each_way(
     problem: &mut dyn Problem,
-    (settings, most_points): (&Settings, usize),
+    (settings, effort): (&Settings, Effort),
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
 ) -> Result<First> {
@@ -133,7 +145,7 @@ fn try_each_way(
         }
         // The homotopy is more reliable than a poorer initial guess.
         if let Some(u) = &homotopy_guess {
-            let reached = homotopy(problem, (settings, most_points), u, corrector, interrupt);
+            let reached = homotopy(problem, (settings, effort), u, corrector, interrupt);
             if let Some(first) = attempt(reached, None, &mut failure)? {
                 return Ok(first);
             }
@@ -141,7 +153,7 @@ fn try_each_way(
         }
     }
     if problem.is_bounded() {
-        let reached = try_anchors(problem, (settings, most_points), corrector, interrupt);
+        let reached = try_anchors(problem, (settings, effort), corrector, interrupt);
         if let Some(first) = attempt(reached, None, &mut failure)? {
             return Ok(first);
         }
@@ -184,7 +196,7 @@ fn at_fixed(
 /// Follows the problem's homotopy, from near `u` to the given problem.
 fn homotopy(
     problem: &mut dyn Problem,
-    (settings, most_points): (&Settings, usize),
+    (settings, effort): (&Settings, Effort),
     u: &[f64],
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
@@ -198,7 +210,7 @@ fn homotopy(
         steps: StepControl::new(0.0, 0.0, LONG_STEP),
         ..*settings
     };
-    let points = (most_points, homotopy.patience);
+    let points = (effort, homotopy.patience);
     let reached = follow(&mut *homotopy.problem, (&path, points), u, corrector, interrupt);
     drop(homotopy);
     let Reached::End(v) = reached? else { return Ok(None) };
@@ -238,7 +250,7 @@ const ANCHORS: [(InitialGuess, f64); 3] = [
 /// Tries homotopies from one anchor after the other.
 fn try_anchors(
     problem: &mut dyn Problem,
-    (settings, most_points): (&Settings, usize),
+    (settings, effort): (&Settings, Effort),
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
 ) -> Result<Option<First>> {
@@ -251,7 +263,7 @@ fn try_anchors(
         ..*settings
     };
     for (kind, factor) in ANCHORS {
-        if !problem.initial_guess(kind, p, &mut anchor)? {
+        if corrector.steps_taken() >= effort.iterations || !problem.initial_guess(kind, p, &mut anchor)? {
             continue;
         }
         for a in &mut anchor {
@@ -260,7 +272,7 @@ fn try_anchors(
         let mut homotopy = NewtonHomotopy::new(problem, p, &anchor)?;
         let reached = match follow(
             &mut homotopy,
-            (&path, (most_points, most_points)),
+            (&path, (effort, effort.points)),
             &anchor,
             corrector,
             interrupt,
@@ -302,10 +314,10 @@ enum Reached {
     Nothing,
 }
 
-/// Follows a homotopy over so many points at most, of which so many may make no progress.
+/// Follows a homotopy with bounded work, of which so many points may make no progress.
 fn follow(
     problem: &mut dyn Problem,
-    (settings, (most_points, patience)): (&Settings, (usize, usize)),
+    (settings, (effort, patience)): (&Settings, (Effort, usize)),
     u: &[f64],
     corrector: &mut Corrector,
     interrupt: &Interrupt<'_>,
@@ -320,8 +332,8 @@ fn follow(
     let mut continuation = Continuation::new(*settings, Point::new(v, corrected, 0.0))?;
     let path = (settings.end - settings.start).abs();
     let (mut reference, mut since) = (left(&nearest), 0);
-    for _ in 0..most_points {
-        if since >= patience {
+    for _ in 0..effort.points {
+        if since >= patience || corrector.steps_taken() + continuation.steps_taken() >= effort.iterations {
             break;
         }
         match continuation.advance(problem, interrupt)? {

@@ -17,6 +17,7 @@ use crate::linalg::inner;
 use crate::linalg::lu::Lu;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Norm of kt^½ G kt^½ from which on the structure is compliant in a harmonic.
 const COMPLIANT: f64 = 0.5;
@@ -59,7 +60,7 @@ pub(super) fn all_waves(condensed: &Condensed) -> usize {
 
 /// Finds the cut-off harmonic of a model at one frequency after the other.
 pub(super) struct CutoffHarmonic {
-    condensed: Condensed,
+    condensed: Arc<Condensed>,
     workspace: Workspace,
     /// Highest natural frequency of the structure without its contacts, where it is known.
     highest: Option<f64>,
@@ -73,7 +74,7 @@ pub(super) struct CutoffHarmonic {
 
 impl CutoffHarmonic {
     /// Memory for a condensed model.
-    pub fn new(condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Self> {
+    pub fn new(condensed: Arc<Condensed>, interrupt: &Interrupt<'_>) -> Result<Self> {
         let coordinates = condensed.coordinates();
         Ok(Self {
             workspace: Workspace::new(&condensed, None)?,
@@ -300,6 +301,7 @@ mod tests {
     use crate::model::structure::MatrixKind;
     use crate::options::SolverOptions;
     use num_complex::Complex64;
+    use std::sync::Arc;
 
     #[test]
     fn the_norm_of_a_diagonal_matrix_is_its_largest_entry() {
@@ -343,7 +345,7 @@ mod tests {
             model.add_contact(&Contact::jenkins(0, None, kt, 0.5, 1.0)).unwrap();
             model.add_force(0, 1, 1.0.into()).unwrap();
             let condensed = Condensed::new(&model, &SolverOptions::default(), omega, &Interrupt::none()).unwrap();
-            let mut cutoff = CutoffHarmonic::new(condensed, &Interrupt::none()).unwrap();
+            let mut cutoff = CutoffHarmonic::new(Arc::new(condensed), &Interrupt::none()).unwrap();
             let last = ((k + 2.0 * kt) / mass).sqrt() / omega;
             let found = cutoff.at(omega, 1, 3001, &Interrupt::none()).unwrap();
             assert!(

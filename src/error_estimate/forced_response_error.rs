@@ -1,7 +1,7 @@
 //! The error of a point of a forced response.
 
 use crate::condense::modal_table::ModalTable;
-use crate::condense::wave_cache::WaveCache;
+use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Resolution};
 use crate::error::{Result, boxed, try_copy, try_push, try_vec};
 use crate::error_estimate::cutoff_harmonic::{self, CutoffHarmonic};
@@ -12,6 +12,7 @@ use crate::error_estimate::estimate::{
 use crate::error_estimate::extended_newton::extend;
 use crate::error_estimate::extended_system::{ExtendedSystem, Factored};
 use crate::error_estimate::kept_changes::{Extension, KeptChanges};
+use crate::error_estimate::kept_ratio::KeptRatio;
 use crate::error_estimate::work::{Sizes, Work};
 use crate::error_estimate::{Corrected, Estimate, Solved};
 use crate::interrupt::{Interrupt, Phase};
@@ -34,14 +35,11 @@ const BLOCK: f64 = 300.0;
 /// Flexibility tables by factorisation that cost about as much as all modes of a structure.
 const TABLES: usize = 24;
 
-/// Estimates that a ratio serves before it is found anew: the first one, and the most while it does not change.
-const USES: (usize, usize) = (3, 12);
+/// Degrees of freedom up to which a factorisation costs about as much as a sum over modes.
+const SMALL: usize = 32;
 
 /// Largest error, relative to the tolerance, that a ratio tells well enough.
 const SURE: f64 = 0.5;
-
-/// Relative change of a ratio up to which the next one serves twice as many estimates.
-const STEADY: f64 = 0.25;
 
 /// Share of the residual that a guess from another point may leave.
 const CLOSER: f64 = 0.5;
@@ -62,25 +60,14 @@ pub struct ForcedEstimator<'a> {
     interrupt: &'a Interrupt<'a>,
     /// The problems extended last, with their slots in the cache.
     extended: Vec<(usize, Box<ExtendedSystem<HarmonicBalance<'a>>>)>,
-    ratio: Option<Ratio>,
+    ratio: KeptRatio,
     changes: KeptChanges,
     /// Operations that the last estimate might take, and the most that the next one may.
     allowed: f64,
     most: f64,
     /// Modes of the waves, and the flexibility tables made so far.
-    waves: WaveCache,
+    waves: &'a SharedWaves,
     tables: usize,
-}
-
-/// Ratio of the whole change of the response to that of the first extension.
-#[derive(Clone, Copy)]
-struct Ratio {
-    value: f64,
-    /// Harmonic of the first extension.
-    least: usize,
-    /// Estimates that it serves, and how many of them were made.
-    uses: usize,
-    used: usize,
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -90,7 +77,7 @@ impl<'a> ForcedEstimator<'a> {
         model: &'a Model,
         options: &SolverOptions,
         response: usize,
-        models: &'a ModelCache,
+        (models, waves): (&'a ModelCache, &'a SharedWaves),
         interrupt: &'a Interrupt<'a>,
     ) -> Self {
         Self {
@@ -101,11 +88,11 @@ impl<'a> ForcedEstimator<'a> {
             models,
             interrupt,
             extended: Vec::new(),
-            ratio: None,
+            ratio: KeptRatio::default(),
             changes: KeptChanges::default(),
             allowed: 0.0,
             most: f64::INFINITY,
-            waves: WaveCache::default(),
+            waves,
             tables: 0,
         }
     }
@@ -144,9 +131,10 @@ impl<'a> ForcedEstimator<'a> {
         }
         if self.cutoff.is_none() {
             let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
-            let options = extended_options(&self.options, waves);
-            let condensed = Condensed::new(self.model, &options, solved.omega, self.interrupt)?;
-            self.cutoff = Some(CutoffHarmonic::new(condensed, self.interrupt)?);
+            let Some(resolution) = self.model_with(waves, solved.omega)? else {
+                return Ok(None);
+            };
+            self.cutoff = Some(CutoffHarmonic::new(Arc::clone(&resolution.condensed), self.interrupt)?);
         }
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);
@@ -212,7 +200,7 @@ impl<'a> ForcedEstimator<'a> {
             if highest >= extent.core && !extent.short {
                 return Ok(Some(found));
             }
-            if let Some(ratio) = self.ratio_for(extent.least).filter(|_| last.is_none()) {
+            if let Some(ratio) = self.ratio.at(extent.least).filter(|_| last.is_none()) {
                 let scaled = series.scaled(ratio);
                 if scaled <= SURE * self.options.tolerance {
                     found.response = scaled;
@@ -226,7 +214,7 @@ impl<'a> ForcedEstimator<'a> {
             let next = if extent.short { next } else { next.min(extent.highest) };
             let ends = next > self.affordable(solved, &work);
             if series.has_settled() || (ends && series.suffices()) {
-                self.note_ratio(extent.least, series.ratio());
+                self.ratio.note(extent.least, series.ratio());
                 return Ok(Some(series.completed(found)));
             }
             if ends {
@@ -237,10 +225,15 @@ impl<'a> ForcedEstimator<'a> {
         }
     }
 
-    /// Whether so many tables were made that modes pay.
+    /// Whether modes are known, or so many tables were made that they pay.
     fn modes_pay(&mut self, condensed: &Condensed) -> bool {
         self.tables += condensed.set().numbers().len();
-        self.tables > TABLES && !self.waves.is_refused()
+        let pay = self.tables > TABLES;
+        match self.waves.some_have_modes() {
+            // Few small factorisations cost no more.
+            Some(known) => known && (pay || condensed.ndof() > SMALL),
+            None => pay,
+        }
     }
 
     /// The table of each harmonic from modes, where it has them.
@@ -254,30 +247,22 @@ impl<'a> ForcedEstimator<'a> {
         Ok(tables)
     }
 
-    /// The ratio found for points with these harmonics, as long as it serves.
-    fn ratio_for(&mut self, least: usize) -> Option<f64> {
-        let ratio = self.ratio.as_mut()?;
-        if ratio.least != least || ratio.used == ratio.uses {
-            return None;
+    /// The model with harmonics up to one at least; `None` where there is none.
+    fn model_with(&self, highest: usize, omega: f64) -> Result<Option<&'a Resolution>> {
+        let slot = self.models.slot_with(highest);
+        if slot == self.models.slots() {
+            return Ok(None);
         }
-        ratio.used += 1;
-        Some(ratio.value)
-    }
-
-    /// Keeps a ratio for the following estimates: for more of them where it is about the one before.
-    fn note_ratio(&mut self, least: usize, value: f64) {
-        let uses = match self.ratio {
-            Some(before) if before.least == least && (value / before.value - 1.0).abs() <= STEADY => {
-                (2 * before.uses).min(USES.1)
-            }
-            _ => USES.0,
-        };
-        self.ratio = Some(Ratio {
-            value,
-            least,
-            uses,
-            used: 0,
-        });
+        let resolution = self.models.model(slot, |highest| {
+            let options = extended_options(&self.options, highest);
+            let condensed = Condensed::new(self.model, &options, omega, self.interrupt)?;
+            let carried = condensed.set().numbers().last().copied().unwrap_or(0);
+            Ok(Resolution {
+                samples: extended_options(&self.options, carried).samples,
+                condensed: Arc::new(condensed),
+            })
+        })?;
+        Ok(Some(resolution))
     }
 
     /// Extends a point to the highest harmonic of an extent, from a solution with fewer of them or from the point itself.
@@ -289,20 +274,10 @@ impl<'a> ForcedEstimator<'a> {
         extent: Extent,
         mut work: Work,
     ) -> Result<(Option<Estimate>, Work)> {
-        let slot = self.models.slot_with(extent.highest);
-        if slot == self.models.slots() {
+        let (slot, omega) = (self.models.slot_with(extent.highest), solved.omega);
+        let Some(resolution) = self.model_with(extent.highest, omega)? else {
             return Ok((Some(solved.unknown(0.0, true)?), work));
-        }
-        let omega = solved.omega;
-        let resolution = self.models.model(slot, |highest| {
-            let options = extended_options(&self.options, highest);
-            let condensed = Condensed::new(self.model, &options, omega, self.interrupt)?;
-            let carried = condensed.set().numbers().last().copied().unwrap_or(0);
-            Ok(Resolution {
-                samples: extended_options(&self.options, carried).samples,
-                condensed: Arc::new(condensed),
-            })
-        })?;
+        };
         let condensed = &*resolution.condensed;
         let set = condensed.set();
         let by_modes = self.modes_pay(condensed);

@@ -17,6 +17,7 @@ use crate::model::Model;
 use crate::options::{DampingForm, SolverOptions};
 use crate::problem::epmc::{Epmc, Gauge, LinearMode};
 use num_complex::Complex64;
+use std::sync::Arc;
 
 /// Ratio of the harmonics of an extended model to those needed up to which the model is used again.
 const SPARE: f64 = 1.25;
@@ -110,7 +111,7 @@ impl<'a> ModeEstimator<'a> {
         }
         if self.cutoff.is_none() {
             let waves = least.max(cutoff_harmonic::all_waves(solved.condensed));
-            self.cutoff = Some(CutoffHarmonic::new(self.condensed(waves)?, self.interrupt)?);
+            self.cutoff = Some(CutoffHarmonic::new(Arc::new(self.condensed(waves)?), self.interrupt)?);
         }
         let Some(cutoff) = &mut self.cutoff else {
             return Ok(None);

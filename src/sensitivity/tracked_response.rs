@@ -8,6 +8,7 @@
 //!
 //! [`fold_point`]: crate::sensitivity::fold_point
 
+use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{Condensed, ModelCache, Reference, Resolution};
 use crate::continuation::Point;
 use crate::error::{Result, fail, try_copy, try_vec};
@@ -356,8 +357,8 @@ impl Tracked for TrackedResponse<'_> {
             sticks: None,
             iterations: ITERATIONS,
         };
-        let models = ModelCache::for_estimates()?;
-        let mut estimator = ForcedEstimator::new(&model, &self.solver, self.response_dof, &models, self.interrupt);
+        let models = (&ModelCache::for_estimates()?, &SharedWaves::default());
+        let mut estimator = ForcedEstimator::new(&model, &self.solver, self.response_dof, models, self.interrupt);
         let estimate = estimator.at(&solved)?;
         Ok(Some((estimate.response, estimate)))
     }
