@@ -76,7 +76,7 @@ impl FrequencyCache {
             };
             let interpolation = if sweep && from_modes.is_none() && condensed.ndof() > INTERPOLATE_ABOVE {
                 let resonances = resonance_poles::near(condensed, &mut workspace, i, range, interrupt)?;
-                Some(FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE)?)
+                Some(FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE))
             } else {
                 None
             };

@@ -7,37 +7,30 @@
 //! Approximation Practice, 2013, ch. 8). Panels are added along the sweep, as wide as the tail of the series
 //! allows; the derivative is that of the series.
 
+use crate::condense::chebyshev_series::{ChebyshevSeries, MOST_INTERVALS, Samples};
 use crate::condense::flexibility::Table;
-use crate::error::{Result, try_copy, try_push, try_vec};
-use faer::linalg::matmul::matmul;
-use faer::{Accum, MatMut, MatRef, Par};
+use crate::error::{Result, try_push};
 use num_complex::Complex64;
-use std::f64::consts::PI;
 
-/// Samples per panel.
-const NODES: usize = 24;
+/// Intervals between the samples with which a panel is tried, one after the other.
+const INTERVALS: [usize; 3] = [8, 16, MOST_INTERVALS];
 
-/// Samples with which a panel is tried first: every third of the others.
-const FEW: usize = NODES / 3;
+/// Last coefficients that must be small.
+const TAIL: usize = 2;
+
+/// Last coefficients that show whether the series still converges, against as many before them.
+const TREND: usize = 3;
 
 const CONTEXT: &str = "the interpolated flexibility";
 
-/// Attempts at one panel before it is accepted at the accuracy that rounding allows, or rejected.
+/// Attempts at one panel before it is rejected.
 const MAX_ATTEMPTS: usize = 24;
 
-/// Share of the tolerance below which the last coefficients are left out.
-const NEGLIGIBLE: f64 = 1e-2;
+/// Size of coefficients, over the tolerance, whose rounding to 24 bits is a tenth of the tolerance.
+const NARROW: f64 = 0.1 / f32::EPSILON as f64;
 
 /// Largest tail at which a panel is accepted whose convergence rounding prevents.
 const NOISE: f64 = 1e-8;
-
-/// One interval with its series.
-struct Panel {
-    low: f64,
-    high: f64,
-    /// Degrees × table size, degree by degree.
-    coefficients: Vec<Complex64>,
-}
 
 /// The panels of one harmonic.
 pub struct FrequencyInterpolation {
@@ -49,11 +42,10 @@ pub struct FrequencyInterpolation {
     /// Width of the panel added last.
     last_width: f64,
     rising: bool,
-    panels: Vec<Panel>,
-    samples: Vec<Complex64>,
-    /// Degrees of the series tried last, and the relative size of the coefficients of each.
-    degrees: usize,
-    decay: [f64; NODES],
+    panels: Vec<ChebyshevSeries>,
+    samples: Samples,
+    /// Relative size of the coefficients of the series tried last.
+    decay: Vec<f64>,
     /// Number of factorisations.
     evaluations: usize,
 }
@@ -61,15 +53,11 @@ pub struct FrequencyInterpolation {
 impl FrequencyInterpolation {
     /// Interpolation of tables of `coordinates` contacts along a sweep over `range` = (start, end) with the given
     /// `resonances` near it, with a relative error of `tolerance`.
-    ///
-    /// # Errors
-    /// `OutOfMemory`.
-    pub fn new(coordinates: usize, range: (f64, f64), resonances: Vec<Complex64>, tolerance: f64) -> Result<Self> {
+    #[must_use]
+    pub fn new(coordinates: usize, range: (f64, f64), resonances: Vec<Complex64>, tolerance: f64) -> Self {
         let (start, end) = range;
-        let outputs = coordinates + 1;
-        let size = NODES.saturating_mul(outputs.saturating_mul(outputs));
-        Ok(Self {
-            outputs,
+        Self {
+            outputs: coordinates + 1,
             tolerance,
             resonances,
             // One panel over the whole range, with the margin behind its start.
@@ -77,11 +65,10 @@ impl FrequencyInterpolation {
             last_width: 0.0,
             rising: end >= start,
             panels: Vec::new(),
-            samples: try_vec(size, Complex64::ZERO, CONTEXT)?,
-            degrees: 0,
-            decay: [0.0; NODES],
+            samples: Samples::default(),
+            decay: Vec::new(),
             evaluations: 0,
-        })
+        }
     }
 
     /// Number of factorisations so far.
@@ -101,7 +88,7 @@ impl FrequencyInterpolation {
         table: &mut Table,
         mut sample: impl FnMut(f64, &mut [Complex64]) -> Result<()>,
     ) -> Result<bool> {
-        let found = self.panels.iter().rposition(|p| p.low <= omega && omega <= p.high);
+        let found = self.panels.iter().rposition(|panel| panel.holds(omega));
         let index = match found {
             Some(index) => index,
             None => match self.add_panel(omega, &mut sample)? {
@@ -112,13 +99,7 @@ impl FrequencyInterpolation {
                 None => return Ok(false),
             },
         };
-        self.panels[index].evaluate(omega, table);
-        let (d, d_slope) = self.denominator(omega);
-        let inverse = d.inv();
-        for (value, slope) in table.value.iter_mut().zip(&mut table.slope) {
-            *value *= inverse;
-            *slope = (*slope - d_slope * *value) * inverse;
-        }
+        self.panels[index].evaluate(omega, self.denominator(omega), table);
         Ok(true)
     }
 
@@ -139,19 +120,12 @@ impl FrequencyInterpolation {
         &mut self,
         omega: f64,
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<Option<Panel>> {
-        let below = self
-            .panels
-            .iter()
-            .map(|p| p.high)
-            .filter(|&x| x < omega)
-            .fold(0.0, f64::max);
-        let above = self
-            .panels
-            .iter()
-            .map(|p| p.low)
-            .filter(|&x| x > omega)
-            .fold(f64::INFINITY, f64::min);
+    ) -> Result<Option<ChebyshevSeries>> {
+        let ends = self.panels.iter().map(ChebyshevSeries::interval);
+        let below = ends.clone().map(|(_, high)| high).filter(|&x| x < omega);
+        let below = below.fold(0.0, f64::max);
+        let above = ends.map(|(low, _)| low).filter(|&x| x > omega);
+        let above = above.fold(f64::INFINITY, f64::min);
         let mut last_tail = f64::INFINITY;
         for _ in 0..MAX_ATTEMPTS {
             // A small margin behind, in case the corrector steps back.
@@ -163,23 +137,12 @@ impl FrequencyInterpolation {
                 let high = above.min(omega + back);
                 ((high - self.width).max(below).min(omega), high)
             };
-            if high - low <= 1e-9 * omega {
+            let width = high - low;
+            if width <= 1e-9 * omega {
                 return Ok(None);
             }
-            let series = self.series((low, high), sample)?;
-            let (tail, is_level) = (self.tail(), self.is_level());
-            let stalled = tail < NOISE && (tail > 0.3 * last_tail || is_level);
-            if stalled {
-                // This is the rounding error of the factorisations: later panels cannot be better.
-                self.tolerance = self.tolerance.max(2.0 * tail);
-            }
-            if tail <= self.tolerance {
-                // Beyond them rounding, or next to nothing.
-                let least = if is_level { 1.0 } else { NEGLIGIBLE } * self.tolerance;
-                let needed = self.degrees_above(least) * self.outputs * self.outputs;
-                let coefficients = try_copy(&series[..needed], CONTEXT)?;
+            if let Some(panel) = self.series((low, high), last_tail, sample)? {
                 // Towards a resonance each panel is shorter than the one before.
-                let width = high - low;
                 let trend = if self.last_width > 0.0 {
                     width / self.last_width
                 } else {
@@ -187,123 +150,104 @@ impl FrequencyInterpolation {
                 };
                 self.width = width * trend.clamp(0.3, 1.0) * self.possible_widening().clamp(0.7, 4.0);
                 self.last_width = width;
-                return Ok(Some(Panel {
-                    low,
-                    high,
-                    coefficients,
-                }));
+                return Ok(Some(panel));
             }
-            last_tail = tail;
-            let factor = 0.9 * (self.tolerance / tail).powf(1.0 / (NODES - 1) as f64);
-            self.width = (high - low) * factor.clamp(0.1, 0.6);
+            last_tail = self.tail();
+            let factor = 0.9 * (self.tolerance / last_tail).powf(1.0 / MOST_INTERVALS as f64);
+            self.width = width * factor.clamp(0.1, 0.6);
         }
+        Ok(None)
+    }
+
+    /// The series on a panel, from as few samples as suffice; `None` where all do not. `last_tail`: that of the panel tried before.
+    fn series(
+        &mut self,
+        panel: (f64, f64),
+        last_tail: f64,
+        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
+    ) -> Result<Option<ChebyshevSeries>> {
+        let (low, high) = panel;
+        let size = self.outputs * self.outputs;
+        let mut samples = core::mem::take(&mut self.samples);
+        samples.clear();
+        for intervals in INTERVALS {
+            samples.refine(intervals, size, |x, values| {
+                let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
+                sample(omega, values)?;
+                let (d, _) = self.denominator(omega);
+                for v in values {
+                    *v *= d;
+                }
+                self.evaluations += 1;
+                Ok(())
+            })?;
+            let mut series = samples.series(panel)?;
+            self.note_decay(&samples, &series)?;
+            let tail = self.tail();
+            let stalled = tail < NOISE && (tail > 0.3 * last_tail || self.is_level());
+            if stalled {
+                // This is the rounding error of the factorisations: later panels cannot be better.
+                self.tolerance = self.tolerance.max(2.0 * tail);
+            }
+            if tail <= self.tolerance {
+                let wide = self.terms_above(NARROW * self.tolerance);
+                series.compress(wide, self.terms_above(self.tolerance) + 1)?;
+                self.samples = samples;
+                return Ok(Some(series));
+            }
+        }
+        self.samples = samples;
         Ok(None)
     }
 
     /// Largest of the last coefficients of the series tried last.
     fn tail(&self) -> f64 {
-        let last = if self.degrees == FEW { 3 } else { 2 };
-        self.decay[self.degrees - last..self.degrees]
+        self.largest(0, TAIL)
+    }
+
+    /// Largest of so many coefficients behind which there are so many more.
+    fn largest(&self, behind: usize, count: usize) -> f64 {
+        let end = self.decay.len() - behind;
+        self.decay[end - count..end]
             .iter()
-            .fold(0.0, |tail, d| tail.max(*d))
+            .fold(0.0_f64, |most, d| most.max(*d))
     }
 
-    /// Whether the coefficients of the last half of all degrees do not fall any more.
+    /// Whether the last coefficients do not fall any more.
     fn is_level(&self) -> bool {
-        let most = |part: &[f64]| part.iter().fold(0.0_f64, |most, d| most.max(*d));
-        let (before, last) = self.decay[NODES / 2..].split_at(NODES / 4);
-        self.degrees == NODES && most(last) > 0.3 * most(before)
+        self.largest(0, TREND) > 0.3 * self.largest(TREND, TREND)
     }
 
-    /// Degrees of the series tried last up to the last one whose coefficients are above `least`.
-    fn degrees_above(&self, least: f64) -> usize {
-        let last = self.decay[..self.degrees].iter().rposition(|d| *d > least);
+    /// Terms of the series tried last up to the last one whose coefficients are above `least`.
+    fn terms_above(&self, least: f64) -> usize {
+        let last = self.decay.iter().rposition(|d| *d > least);
         last.map_or(1, |last| last + 1)
     }
 
     /// Factor by which a panel could have been wider. Its series reached the tolerance t at degree k, so that it
     /// converges like t^(1/k) per degree, and about as much slower as the panel is wider.
     fn possible_widening(&self) -> f64 {
-        let needed = self.degrees_above(3.0 * self.tolerance) + 1;
-        let spare = 1.0 / needed as f64 - 1.0 / (NODES - 2) as f64;
+        let needed = self.terms_above(3.0 * self.tolerance) + 1;
+        let spare = 1.0 / needed as f64 - 1.0 / (MOST_INTERVALS - 1) as f64;
         0.9 * self.tolerance.powf(-spare)
     }
 
-    /// The series on a panel, degree by degree: from few samples where these are enough, else from all.
-    fn series(
-        &mut self,
-        panel: (f64, f64),
-        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<Vec<Complex64>> {
-        let is_of_few = |j: &usize| j % 3 == 1;
-        self.take_samples((0..NODES).filter(is_of_few), panel, sample)?;
-        let coefficients = self.transform(FEW)?;
-        if self.tail() <= self.tolerance {
-            return Ok(coefficients);
-        }
-        self.take_samples((0..NODES).filter(|j| !is_of_few(j)), panel, sample)?;
-        self.transform(NODES)
-    }
-
-    /// Samples d·H at some of the nodes of a panel.
-    fn take_samples(
-        &mut self,
-        nodes: impl Iterator<Item = usize>,
-        (low, high): (f64, f64),
-        sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
-    ) -> Result<()> {
-        let size = self.outputs * self.outputs;
-        for j in nodes {
-            let x = (PI * (j as f64 + 0.5) / NODES as f64).cos();
-            let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
-            let (d, _) = self.denominator(omega);
-            let values = &mut self.samples[j * size..(j + 1) * size];
-            sample(omega, values)?;
-            for v in values {
-                *v *= d;
-            }
-            self.evaluations += 1;
-        }
-        Ok(())
-    }
-
-    /// Turns samples into coefficients of so many degrees, and notes their relative size: the largest over contact
-    /// flexibility, contact motion, response row and response, each against its own largest value.
-    fn transform(&mut self, degrees: usize) -> Result<Vec<Complex64>> {
-        let size = self.outputs * self.outputs;
-        let (first, stride) = if degrees == FEW { (1, 3) } else { (0, 1) };
-        let mut cosines = try_vec(degrees * degrees, Complex64::ZERO, CONTEXT)?;
-        for (k, row) in cosines.chunks_exact_mut(degrees).enumerate() {
-            let factor = if k == 0 { 1.0 } else { 2.0 } / degrees as f64;
-            for (j, z) in row.iter_mut().enumerate() {
-                // cos(kπ(2j + 1)/(2N)), the angle reduced to one turn.
-                let angle = PI * ((k * (2 * j + 1)) % (4 * degrees)) as f64 / (2 * degrees) as f64;
-                *z = (factor * angle.cos()).into();
-            }
-        }
-        let mut coefficients = try_vec(degrees * size, Complex64::ZERO, CONTEXT)?;
-        matmul(
-            MatMut::from_row_major_slice_mut(&mut coefficients, degrees, size),
-            Accum::Replace,
-            MatRef::from_row_major_slice(&cosines, degrees, degrees),
-            MatRef::from_row_major_slice_with_stride(&self.samples[first * size..], degrees, size, stride * size),
-            Complex64::ONE,
-            Par::Seq,
-        );
+    /// Notes the relative size of the coefficients: the largest over contact flexibility, contact motion, response row and
+    /// response, each against its own largest sample.
+    fn note_decay(&mut self, samples: &Samples, series: &ChebyshevSeries) -> Result<()> {
         let mut largest = [0.0_f64; 4];
-        for j in (first..NODES).step_by(stride) {
-            self.squares(&self.samples[j * size..(j + 1) * size], &mut largest);
+        for sample in samples.iter() {
+            self.squares(sample, &mut largest);
         }
-        self.degrees = degrees;
-        for (k, of_degree) in coefficients.chunks_exact(size).enumerate() {
+        self.decay.clear();
+        for of_degree in series.coefficients() {
             let mut sizes = [0.0_f64; 4];
             self.squares(of_degree, &mut sizes);
             let relative = sizes.iter().zip(&largest).filter(|(_, largest)| **largest > 0.0);
-            self.decay[k] = relative
-                .fold(0.0_f64, |worst, (size, largest)| worst.max(size / largest))
-                .sqrt();
+            let worst = relative.fold(0.0_f64, |worst, (size, largest)| worst.max(size / largest));
+            try_push(&mut self.decay, worst.sqrt(), CONTEXT)?;
         }
-        Ok(coefficients)
+        Ok(())
     }
 
     /// Raises the largest squares of each of the four parts of a table to those of its entries.
@@ -318,29 +262,6 @@ impl FrequencyInterpolation {
     }
 }
 
-impl Panel {
-    /// Σ cₖ Tₖ(x) and its derivative, T′ₖ = k Uₖ₋₁.
-    fn evaluate(&self, omega: f64, table: &mut Table) {
-        let x = (2.0 * omega - self.low - self.high) / (self.high - self.low);
-        let stretch = 2.0 / (self.high - self.low);
-        table.value.fill(Complex64::ZERO);
-        table.slope.fill(Complex64::ZERO);
-        let size = table.value.len();
-        let (mut t, mut t_next) = (1.0, x);
-        let (mut u_before, mut u) = (0.0, 1.0);
-        for (k, coefficients) in self.coefficients.chunks_exact(size).enumerate() {
-            // uₖ₋₁ is in `u_before` shifted by one: U₋₁ = 0, U₀ = 1.
-            let slope = k as f64 * u_before * stretch;
-            for ((v, s), c) in table.value.iter_mut().zip(&mut table.slope).zip(coefficients) {
-                *v += t * c;
-                *s += slope * c;
-            }
-            (t, t_next) = (t_next, 2.0 * x * t_next - t);
-            (u_before, u) = (u, 2.0 * x * u - u_before);
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -351,7 +272,7 @@ mod tests {
         let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
         let slope = |w: f64| -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
         for (start, end) in [(0.9, 1.1), (1.1, 0.9)] {
-            let mut interpolation = FrequencyInterpolation::new(0, (start, end), Vec::new(), 1e-11).unwrap();
+            let mut interpolation = FrequencyInterpolation::new(0, (start, end), Vec::new(), 1e-11);
             let mut table = Table::new(0).unwrap();
             for k in 0..=400 {
                 let w = start + (end - start) * f64::from(k) / 400.0;
@@ -381,7 +302,7 @@ mod tests {
     fn a_resonance_that_is_known_costs_a_single_panel() {
         let pole = (Complex64::new(4.0 - 0.002_f64.powi(2), 0.0).sqrt() + Complex64::new(0.0, 0.002)) * 0.5;
         let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
-        let mut interpolation = FrequencyInterpolation::new(0, (0.9, 1.1), vec![pole], 1e-11).unwrap();
+        let mut interpolation = FrequencyInterpolation::new(0, (0.9, 1.1), vec![pole], 1e-11);
         let mut table = Table::new(0).unwrap();
         for k in 0..=100 {
             let w = 0.9 + 0.002 * f64::from(k);
@@ -394,6 +315,7 @@ mod tests {
             let slope = -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
             assert!((table.slope[0] - slope).norm() < 1e-9 * slope.norm());
         }
-        assert_eq!(interpolation.evaluations(), NODES);
+        assert_eq!(interpolation.panels.len(), 1);
+        assert_eq!(interpolation.evaluations(), 17);
     }
 }

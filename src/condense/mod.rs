@@ -1,6 +1,7 @@
 //! Exact condensation of the linear degrees of freedom onto the relative motions of the contacts.
 
 mod certificate;
+mod chebyshev_series;
 mod condensation;
 mod condensed;
 pub mod contact_classes;

@@ -8,12 +8,13 @@ use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
 use crate::error::{Result, Status, try_push};
 use crate::interrupt::Interrupt;
+use crate::linalg::eigen::Pairs;
 use crate::linalg::lanczos;
 use crate::linalg::sparse::{Csc, Form};
 use num_complex::Complex64;
 
-/// Number of modes considered; a range beyond them is treated without poles.
-const MODES: usize = 24;
+/// Numbers of modes considered, more where the fewer end below what is needed; a range beyond them is treated without poles.
+const MODES: [usize; 2] = [6, 24];
 
 /// Largest number of iterations; convergence is cubic.
 const MAX_ITERATIONS: usize = 8;
@@ -37,7 +38,7 @@ pub fn near(
     let mut found = Vec::new();
     let h = block.number as f64;
     let n = condensed.ndof();
-    if block.number == 0 || MODES > n / 2 {
+    if block.number == 0 || MODES[1] > n / 2 {
         return Ok(found);
     }
     let reference = &block.reference;
@@ -50,13 +51,11 @@ pub fn near(
     )?;
     let mut mass = reference.try_clone()?;
     mass.values.copy_from_slice(&block.mass);
-    let modes = match lanczos::lowest(&hermitian, &mass, MODES, interrupt) {
-        Ok(modes) => modes,
-        Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
-        Err(_) => return Ok(found),
-    };
     let (low, high) = (range.0.min(range.1), range.0.max(range.1));
     let width = high - low;
+    let Some(modes) = lowest_modes((&hermitian, &mass), h * (high + width), interrupt)? else {
+        return Ok(found);
+    };
     for (mode, lambda) in modes.values.iter().enumerate() {
         let omega = lambda.max(0.0).sqrt() / h;
         if omega < low - width || omega > high + width {
@@ -72,6 +71,23 @@ pub fn near(
         }
     }
     Ok(found)
+}
+
+/// The lowest modes, up to one above `highest` where there are not too many; `None` where they cannot be found.
+fn lowest_modes((k, m): (&Csc, &Csc), highest: f64, interrupt: &Interrupt<'_>) -> Result<Option<Pairs>> {
+    for count in MODES {
+        match lanczos::lowest(k, m, count, interrupt) {
+            Ok(modes) => {
+                let ends_above = |last: &f64| last.max(0.0).sqrt() > highest;
+                if count == MODES[1] || modes.values.last().is_some_and(ends_above) {
+                    return Ok(Some(modes));
+                }
+            }
+            Err(e) if matches!(e.status, Status::OutOfMemory | Status::StoppedByCaller) => return Err(e),
+            Err(_) => return Ok(None),
+        }
+    }
+    Ok(None)
 }
 
 /// Follows one resonance from its undamped mode.

@@ -4,6 +4,7 @@
 //! blocked kernels of faer, and large ones panels between which a caller may interrupt.
 
 mod panels;
+mod substitution;
 
 use crate::error::{Error, Result, fail, try_vec};
 use crate::interrupt::Interrupt;
@@ -13,6 +14,8 @@ use faer::perm::PermRef;
 use faer::{Conj, MatMut, MatRef, Par};
 use nalgebra::ComplexField;
 use num_complex::Complex64;
+use pulp::Arch;
+use substitution::Substitution;
 
 /// Scalars of the matrices: `f64` and [`Complex64`].
 pub trait Scalar: ComplexField<RealField = f64> + faer::traits::ComplexField + Copy {
@@ -57,6 +60,7 @@ struct Blocked {
 
 /// Factors P A = L U of a square column-major matrix, with the memory to hold them.
 pub struct Lu<T> {
+    arch: Arch,
     n: usize,
     a: Vec<T>,
     pivots: Vec<usize>,
@@ -93,6 +97,7 @@ impl<T: Scalar> Lu<T> {
             None
         };
         Ok(Self {
+            arch: Arch::new(),
             n,
             a: try_vec(nn, <T as nalgebra::ComplexField>::from_real(0.0), CONTEXT)?,
             pivots: try_vec(n, 0, CONTEXT)?,
@@ -201,6 +206,10 @@ impl<T: Scalar> Lu<T> {
         let n = self.n;
         for k in 0..n {
             b.swap(k, self.pivots[k]);
+        }
+        if n > BLOCKED_ABOVE {
+            let factors = &self.a[..n * n];
+            return self.arch.dispatch(Substitution { n, factors, b });
         }
         for k in 0..n {
             let x = b[k];
