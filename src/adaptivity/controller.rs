@@ -57,9 +57,6 @@ pub(crate) struct Refined {
     pub stuck: bool,
 }
 
-/// Share of the step before, below which a step shows that the branch was hard to predict.
-const SHORTENED: f64 = 0.5;
-
 /// Selects the harmonics of each point of a branch.
 pub(crate) struct AdaptivityController {
     tolerance: f64,
@@ -82,8 +79,6 @@ pub(crate) struct AdaptivityController {
     /// Number of successive estimates far below the tolerance.
     low: usize,
     spacing: EstimateSpacing,
-    /// Step to the point before.
-    step: f64,
 }
 
 impl AdaptivityController {
@@ -100,7 +95,6 @@ impl AdaptivityController {
             begun: false,
             low: 0,
             spacing: EstimateSpacing::default(),
-            step: 0.0,
         }
     }
 
@@ -236,13 +230,9 @@ impl AdaptivityController {
         Ok(found)
     }
 
-    /// Whether the error of a point is predicted by that of an earlier one; it is then taken over. Where the branch itself
-    /// was hard to predict, as where another harmonic begins to resonate, its error is, too.
+    /// Whether the error of a point is predicted by that of an earlier one; it is then taken over.
     fn is_predicted(&mut self, equations: &mut dyn Discretised, point: &Point, signs: Signs) -> Result<bool> {
-        let before = core::mem::replace(&mut self.step, point.step);
-        if point.step > 0.0 && point.step < SHORTENED * before {
-            self.spacing.forget();
-        }
+        self.spacing.note_step(point.step);
         let largest = self.tolerance / MARGIN;
         let Some(factor) = self.spacing.factor(equations.resolution(), signs, largest) else {
             return Ok(false);

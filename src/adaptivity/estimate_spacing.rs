@@ -35,6 +35,9 @@ const ALIKE: f64 = 5.0;
 const DIFFERENT: f64 = 1.05;
 const EXPONENTS: (f64, f64) = (0.5, 8.0);
 
+/// Share of the step before, below which a step shows that the branch was hard to predict.
+const SHORTENED: f64 = 0.5;
+
 /// Share of the harmonics above half of the carried ones in packed motions; 0 where none is below.
 pub(crate) fn share_of_highest(set: &HarmonicSet, motion: &[f64]) -> f64 {
     let numbers = set.numbers();
@@ -116,6 +119,8 @@ pub(crate) struct EstimateSpacing {
     spacing: usize,
     /// Points since that estimate.
     since: usize,
+    /// Step to the point before.
+    step: f64,
 }
 
 impl EstimateSpacing {
@@ -168,6 +173,15 @@ impl EstimateSpacing {
             level,
             exponent: before.map_or(1.0, |known| known.exponent_to(signs, error)),
         });
+    }
+
+    /// Notes the step to a point. Where the branch itself was hard to predict, as where another harmonic begins to resonate, its
+    /// error is, too: the point is estimated.
+    pub fn note_step(&mut self, step: f64) {
+        let before = core::mem::replace(&mut self.step, step);
+        if step > 0.0 && step < SHORTENED * before {
+            self.forget();
+        }
     }
 
     /// Forgets the estimate made last: the next point is estimated.

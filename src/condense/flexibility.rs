@@ -4,8 +4,8 @@
 //! With outputs R (rows of W, then the response degree of freedom) and inputs B (Wᴴ, then F), the
 //! table is H = R Z_κ⁻¹ B and ∂H/∂ω = −R Z_κ⁻¹ Z′ Z_κ⁻¹ B, Z′ = −2h²ωM + ihC.
 
-use crate::condense::Condensed;
 use crate::condense::dynamic_stiffness::{DynamicStiffness, Variable, add_slope_product, product};
+use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use crate::model::reduced_wave::MotionRow;
@@ -139,15 +139,9 @@ impl Workspace {
     /// Fills the columns Z⁻¹ B.
     fn solve_columns(&mut self, condensed: &Condensed, i: usize, omega: f64, interrupt: &Interrupt<'_>) -> Result<()> {
         let block = &condensed.blocks()[i];
-        let n = condensed.ndof();
-        let coordinates = condensed.coordinates();
-        self.columns.fill(Complex64::ZERO);
-        for (column, row) in self.columns.chunks_exact_mut(n).zip(&block.rows) {
-            for &(p, a) in row.terms() {
-                column[p] += a.conj();
-            }
+        for (k, column) in self.columns.chunks_exact_mut(condensed.ndof()).enumerate() {
+            fill_load(block, k, omega, column);
         }
-        block.force_at(omega, &mut self.columns[coordinates * n..]);
         self.dynamic
             .solve(condensed, i, omega, &mut self.columns, false, interrupt)
     }
@@ -186,14 +180,9 @@ impl Workspace {
         let n = condensed.ndof();
         let outputs = condensed.coordinates() + 1;
         let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
-        for (column, table) in self
-            .columns
-            .chunks_exact(n)
-            .zip(self.table.value.chunks_exact_mut(outputs))
-        {
-            for (value, row) in table.iter_mut().zip(rows.clone()) {
-                *value = row.along(column);
-            }
+        let tables = self.table.value.chunks_exact_mut(outputs);
+        for (column, table) in self.columns.chunks_exact(n).zip(tables) {
+            read(rows.clone(), column, table);
         }
         if !slopes {
             self.table.slope.fill(Complex64::ZERO);
@@ -251,20 +240,10 @@ impl Workspace {
         let rows = block.rows.iter().chain(core::iter::once(&self.responses[i]));
         let tables = self.table.value.chunks_exact_mut(outputs);
         for (k, (x, table)) in self.columns.chunks_exact_mut(n).zip(tables).enumerate() {
-            match block.rows.get(k) {
-                Some(row) => {
-                    self.load.fill(Complex64::ZERO);
-                    for &(p, a) in row.terms() {
-                        self.load[p] += a.conj();
-                    }
-                }
-                None => block.force_at(omega, &mut self.load),
-            }
+            fill_load(block, k, omega, &mut self.load);
             self.dynamic
                 .refine(condensed, i, (omega, self.damping), &self.load, x, interrupt)?;
-            for (value, row) in table.iter_mut().zip(rows.clone()) {
-                *value = row.along(x);
-            }
+            read(rows.clone(), x, table);
         }
         Ok(&self.table.value)
     }
@@ -356,5 +335,23 @@ impl Workspace {
         x.copy_from_slice(&self.load);
         self.dynamic.solve(condensed, i, omega, x, false, interrupt)?;
         self.dynamic.refine(condensed, i, at, &self.load, x, interrupt)
+    }
+}
+
+/// The k-th column of B: the unit force of a contact, the last one the excitation at `omega`.
+fn fill_load(block: &HarmonicBlock, k: usize, omega: f64, load: &mut [Complex64]) {
+    let Some(row) = block.rows.get(k) else {
+        return block.force_at(omega, load);
+    };
+    load.fill(Complex64::ZERO);
+    for &(p, a) in row.terms() {
+        load[p] += a.conj();
+    }
+}
+
+/// R x, a column of the table.
+fn read<'r>(rows: impl Iterator<Item = &'r MotionRow>, x: &[Complex64], table: &mut [Complex64]) {
+    for (value, row) in table.iter_mut().zip(rows) {
+        *value = row.along(x);
     }
 }

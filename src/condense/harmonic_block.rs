@@ -164,7 +164,6 @@ pub(super) fn shared_block(
     (contact_classes, representatives): (&ContactClasses, &[(usize, usize)]),
     kappa: impl Fn(usize) -> Complex64,
 ) -> Result<HarmonicBlock> {
-    let structure = model.structure();
     let copy = |values: &[Complex64]| -> Result<Vec<Complex64>> {
         let mut copy = try_copy(values, "the matrices per harmonic")?;
         if form == Form::Conjugated {
@@ -176,10 +175,7 @@ pub(super) fn shared_block(
     };
     let rows = rows_of(model, representatives, number)?;
     let stiffness = copy(&known.stiffness)?;
-    let structural = match &known.structural {
-        Some(structural) => Some(copy(structural)?),
-        None => None,
-    };
+    let structural = known.structural.as_deref().map(copy).transpose()?;
     let mut reference = known.reference.try_clone()?;
     reference.values.copy_from_slice(&stiffness);
     for (v, d) in reference.values.iter_mut().zip(structural.iter().flatten()) {
@@ -192,31 +188,63 @@ pub(super) fn shared_block(
             }
         }
     }
-    Ok(HarmonicBlock {
-        number,
-        next: structure.phase(number, 1),
+    let tied = known.tied.as_ref().map(|tied| {
+        Ok(TiedValues {
+            stiffness: copy(&tied.stiffness)?,
+            gyroscopic: copy(&tied.gyroscopic)?,
+        })
+    });
+    let matrices = Matrices {
         damping: copy(&known.damping)?,
         mass: copy(&known.mass)?,
-        tied: match &known.tied {
-            Some(tied) => Some(TiedValues {
-                stiffness: copy(&tied.stiffness)?,
-                gyroscopic: copy(&tied.gyroscopic)?,
-            }),
-            None => None,
-        },
-        unbalance: None,
+        tied: tied.transpose()?,
         stiffness,
         structural,
         reference,
-        artificial: Artificial::None,
-        modes: None,
-        force: try_vec(structure.ndof(), Complex64::ZERO, "the forces")?,
-        rows: over_dofs(&rows)?,
-        structural_rows: rows,
-        linear_rows: over_dofs(&rows_of(model, &contact_classes.linear, number)?)?,
-        springs: Vec::new(),
-        view: None,
-    })
+    };
+    matrices.into_block(model, number, contact_classes, rows)
+}
+
+/// The matrices of a block; see [`HarmonicBlock`].
+struct Matrices {
+    stiffness: Vec<Complex64>,
+    structural: Option<Vec<Complex64>>,
+    damping: Vec<Complex64>,
+    mass: Vec<Complex64>,
+    tied: Option<TiedValues>,
+    reference: Csc,
+}
+
+impl Matrices {
+    /// A block with the rows of its coordinates, without force, artificial damping and modes.
+    fn into_block(
+        self,
+        model: &Model,
+        number: usize,
+        contact_classes: &ContactClasses,
+        rows: Vec<Row>,
+    ) -> Result<HarmonicBlock> {
+        let structure = model.structure();
+        Ok(HarmonicBlock {
+            number,
+            next: structure.phase(number, 1),
+            reference: self.reference,
+            stiffness: self.stiffness,
+            structural: self.structural,
+            damping: self.damping,
+            mass: self.mass,
+            artificial: Artificial::None,
+            modes: None,
+            force: try_vec(structure.ndof(), Complex64::ZERO, "the forces")?,
+            unbalance: None,
+            tied: self.tied,
+            rows: over_dofs(&rows)?,
+            structural_rows: rows,
+            linear_rows: over_dofs(&rows_of(model, &contact_classes.linear, number)?)?,
+            springs: Vec::new(),
+            view: None,
+        })
+    }
 }
 
 /// Rows of W of some (contact, direction) pairs.
@@ -277,35 +305,22 @@ pub(super) fn harmonic_block(
     }
     let reference = Csc::sum(n, &terms)?;
     interrupt.check()?;
-    Ok(HarmonicBlock {
-        number,
-        next: structure.phase(number, 1),
+    let tied = tied.map(|tied| {
+        Ok(TiedValues {
+            stiffness: tied.stiffness.aligned(&reference)?,
+            gyroscopic: tied.gyroscopic.aligned(&reference)?,
+        })
+    });
+    let structural = (!structural.is_empty()).then(|| structural.aligned(&reference));
+    let matrices = Matrices {
+        stiffness: stiffness.aligned(&reference)?,
+        structural: structural.transpose()?,
         damping: damping.aligned(&reference)?,
         mass: mass.aligned(&reference)?,
-        tied: match &tied {
-            Some(tied) => Some(TiedValues {
-                stiffness: tied.stiffness.aligned(&reference)?,
-                gyroscopic: tied.gyroscopic.aligned(&reference)?,
-            }),
-            None => None,
-        },
-        unbalance: None,
-        stiffness: stiffness.aligned(&reference)?,
-        structural: if structural.is_empty() {
-            None
-        } else {
-            Some(structural.aligned(&reference)?)
-        },
+        tied: tied.transpose()?,
         reference,
-        artificial: Artificial::None,
-        modes: None,
-        force: try_vec(n, Complex64::ZERO, "the forces")?,
-        rows: over_dofs(&rows)?,
-        structural_rows: rows,
-        linear_rows: over_dofs(&rows_of(model, &contact_classes.linear, number)?)?,
-        springs: Vec::new(),
-        view: None,
-    })
+    };
+    matrices.into_block(model, number, contact_classes, rows)
 }
 
 /// Rows as those of matrices on the degrees of freedom.

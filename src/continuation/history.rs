@@ -76,7 +76,7 @@ impl History {
         match self.count {
             1 => v.copy_from_slice(&self.other),
             count if predictor.count() == MOST_POINTS => {
-                predictor.place(step, MOST_POINTS + 2 - count, &mut self.other);
+                predictor.place(step, other_than(count), &mut self.other);
                 return predictor.amplitude(step, count);
             }
             _ => {}
@@ -96,7 +96,12 @@ impl History {
             metric.distance(from, v).powi(2) - along * along
         };
         if across(&self.other) < across(predicted) {
-            self.most = MOST_POINTS + 2 - self.count;
+            self.most = other_than(self.count);
         }
     }
+}
+
+/// Two points instead of the most, and the other way round.
+fn other_than(count: usize) -> usize {
+    MOST_POINTS + 2 - count
 }

@@ -154,7 +154,7 @@ impl Graph {
         Ok((merged, pair))
     }
 
-    /// The part of the graph with the given vertices. `number` has an entry for each vertex and is left as it was.
+    /// The part of the graph with the given vertices.
     ///
     /// # Errors
     /// `OutOfMemory`.
