@@ -28,6 +28,8 @@ mod flags;
 mod json;
 #[path = "support/matrix_market.rs"]
 mod matrix_market;
+#[path = "support/memory.rs"]
+mod memory;
 #[path = "support/plot.rs"]
 mod plot;
 #[path = "support/progress.rs"]

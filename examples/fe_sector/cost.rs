@@ -12,6 +12,7 @@ use hbvib::condense::flexibility::Workspace;
 use hbvib::linalg::lu::Lu;
 use hbvib::{Model, SolverOptions};
 
+use crate::memory::peak_memory;
 use crate::response::Response;
 
 /// Repetitions of a measurement; the shortest time counts.
@@ -109,12 +110,4 @@ fn factorisation(model: &Model, solver: &SolverOptions, omega: f64) -> Result<Du
         best = best.min(begin.elapsed());
     }
     Ok(best)
-}
-
-/// Peak memory of this process, in MiB, if the system reports it (Linux).
-fn peak_memory() -> Option<f64> {
-    let status = std::fs::read_to_string("/proc/self/status").ok()?;
-    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"))?;
-    let kibibytes: f64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
-    Some(kibibytes / 1024.0)
 }

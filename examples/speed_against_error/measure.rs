@@ -2,11 +2,11 @@
 
 use std::error::Error;
 use std::thread;
-use std::time::Instant;
 
 use hbvib::{Branch, ForcedOptions, Hooks, SolverOptions, Special, Status, estimate_at, forced_response};
 use num_complex::Complex64;
 
+use crate::cpu_time::cpu_seconds;
 use crate::systems::System;
 use crate::truth::{ROUNDING, Truth, fundamental};
 
@@ -56,7 +56,7 @@ pub struct Checked {
 #[derive(Debug)]
 pub struct Outcome {
     pub way: Way,
-    /// Time of the whole response without estimates that were not requested, s.
+    /// CPU time of the whole response without estimates that were not requested, s.
     pub seconds: f64,
     pub points: usize,
     pub status: Status,
@@ -149,9 +149,9 @@ pub fn all(system: &System, ways: &[Way], truth: &Truth) -> Result<Vec<Outcome>,
     let mut spent = vec![0.0; ways.len()];
     for _ in 0..ROUNDS {
         for (outcome, spent) in outcomes.iter_mut().zip(&mut spent).filter(|o| *o.1 < ENOUGH) {
-            let begin = Instant::now();
+            let begin = cpu_seconds();
             let branch = sweep(system, &outcome.way.options(system.response), &[])?;
-            let seconds = begin.elapsed().as_secs_f64();
+            let seconds = cpu_seconds() - begin;
             outcome.seconds = outcome.seconds.min(seconds);
             *spent += seconds;
             outcome.points = branch.points();

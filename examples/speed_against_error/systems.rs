@@ -1,12 +1,14 @@
-//! The structures whose responses are timed: one of each kind of law, and one with many contacts.
+//! The structures whose responses are timed: one of each kind of law, some with many contacts or masses, one with light damping.
 
 use std::error::Error;
 use std::f64::consts::TAU;
+use std::path::Path;
 
 use hbvib::{Contact, ContactState, MatrixKind, MatrixView, Model};
 use num_complex::Complex64;
 
 use crate::model::{B2, Parameters};
+use crate::sector::{Sector, Size};
 
 /// A structure, the range of its response, and the ways in which that is computed.
 pub struct System {
@@ -38,13 +40,22 @@ const TOLERANCES: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-6];
 
 type Built = Result<System, Box<dyn Error>>;
 
-/// All systems.
+/// All systems; that of finite elements is read from a folder.
 ///
 /// # Errors
 ///
-/// If a model is refused.
-pub fn all() -> Result<Vec<System>, Box<dyn Error>> {
-    Ok(vec![blisk()?, duffing()?, stop()?, plane()?, beam()?])
+/// If a model is refused, or a file of it cannot be read.
+pub fn all(data: &Path) -> Result<Vec<System>, Box<dyn Error>> {
+    Ok(vec![
+        blisk()?,
+        duffing()?,
+        stop()?,
+        plane()?,
+        beam()?,
+        chain()?,
+        light()?,
+        sector(data)?,
+    ])
 }
 
 /// The bladed disk with its light friction ring.
@@ -187,6 +198,82 @@ fn beam() -> Built {
         sampled: &[9, 31],
         tolerances: &TOLERANCES,
         truth: (127, 0),
+    })
+}
+
+/// Mass and stiffness of a chain of equal masses, fixed at its beginning.
+fn chain_matrices(n: usize, mass: f64, spring: f64) -> (Vec<f64>, Vec<f64>) {
+    let (mut m, mut k) = (vec![0.0; n * n], vec![0.0; n * n]);
+    for i in 0..n {
+        m[i * n + i] = mass;
+        k[i * n + i] = if i + 1 == n { spring } else { 2.0 * spring };
+        if i > 0 {
+            k[i * n + i - 1] = -spring;
+            k[(i - 1) * n + i] = -spring;
+        }
+    }
+    (m, k)
+}
+
+/// A long chain of masses with a slider in its middle.
+fn chain() -> Built {
+    const MASSES: usize = 40;
+    let (mass, stiffness) = chain_matrices(MASSES, 0.1, 1e6);
+    let damping: Vec<f64> = stiffness.iter().map(|k| 1e-6 * k).collect();
+    let mut model = structure(&mass, &damping, &stiffness)?;
+    model.add_contact(&Contact::jenkins(20, None, 1e6, 30.0, 1.0))?;
+    model.add_force(MASSES - 1, 1, 5.0.into())?;
+    let first = model.linear_modes(0, ContactState::Stuck)?.omega[0];
+    Ok(System {
+        key: 'f',
+        title: "chain of 40 masses with a slider, 0.5 to 1.2 times the first resonance",
+        model,
+        range: (0.5 * first, 1.2 * first),
+        response: MASSES - 1,
+        fixed: &[1, 3, 5, 7, 9, 13, 17, 21, 31],
+        sampled: &[],
+        tolerances: &[1e-2, 1e-3, 1e-4],
+        truth: (127, 0),
+    })
+}
+
+/// A chain whose resonances are damped by a slider alone: the structure has a damping ratio of 1e-5.
+fn light() -> Built {
+    const MASSES: usize = 5;
+    let (mass, stiffness) = chain_matrices(MASSES, 1.0, 1.0);
+    let mut model = structure(&mass, &[0.0; MASSES * MASSES], &stiffness)?;
+    let stuck =
+        |model: &Model| -> Result<f64, Box<dyn Error>> { Ok(model.linear_modes(0, ContactState::Stuck)?.omega[0]) };
+    model.add_contact(&Contact::jenkins(2, None, 0.3, 0.05, 1.0))?;
+    let first = stuck(&model)?;
+    model.set_rayleigh(0.0, 2e-5 / first)?;
+    model.add_force(MASSES - 1, 1, 0.02.into())?;
+    Ok(System {
+        key: 'g',
+        title: "chain of 5 masses with a slider, damping ratio 1e-5",
+        model,
+        range: (0.8 * first, 1.1 * first),
+        response: MASSES - 1,
+        fixed: &[1, 3, 5, 7, 9, 13, 17, 21, 31],
+        sampled: &[],
+        tolerances: &[1e-2, 1e-3, 1e-4],
+        truth: (127, 0),
+    })
+}
+
+/// The finite-element sector of the example `fe_sector`, with 60 contacts.
+fn sector(data: &Path) -> Built {
+    let sector = Sector::read(data, Size::Reduced)?;
+    Ok(System {
+        key: 'h',
+        title: "finite-element sector, 293 degrees of freedom, 60 friction contacts, 2 N",
+        model: sector.forced(2.0)?,
+        range: (510.0 * TAU, 560.0 * TAU),
+        response: sector.size.tip(),
+        fixed: &[1, 3, 5, 7, 9],
+        sampled: &[],
+        tolerances: &[1e-2],
+        truth: (21, 0),
     })
 }
 

@@ -23,6 +23,10 @@ pub struct Measured {
     pub system: System,
     pub truth: Truth,
     pub outcomes: Vec<Outcome>,
+    /// CPU time of one LU factorisation of order 11 with a solution, before and after, s.
+    pub units: [f64; 2],
+    /// Largest resident memory of the program so far, MiB, where the system tells it.
+    pub memory: Option<f64>,
 }
 
 impl Measured {
@@ -49,12 +53,18 @@ impl Measured {
         }
         writeln!(
             screen,
-            ", {} frequencies; half as many change it by {:.1e} at most\n\n\
-             way                  time ms  points     H along it  estimates  largest error  own points     peak  \
+            ", {} frequencies; half as many change it by {:.1e} at most\n\
+             one LU factorisation of order 11 with a solution, LU11: {} µs before, {} µs after; \
+             largest memory so far {} MiB\n\n\
+             way                  time ms  1000 LU11  points     H along it  estimates  largest error  own points     peak  \
              estimate/error in [0.3, 3]  [0.1, 10]  unknown",
             truth.solutions.len(),
             truth.change,
+            format_args!("{:.3}", 1e6 * self.units[0]),
+            format_args!("{:.3}", 1e6 * self.units[1]),
+            self.memory.map_or("?".into(), |m| format!("{m:.0}")),
         )?;
+        let unit = self.units[0].min(self.units[1]);
         for o in &self.outcomes {
             let [low, middle, high] = o.used;
             let [near, far, all] = o.effectivity(floor);
@@ -77,9 +87,10 @@ impl Measured {
             };
             write!(
                 screen,
-                "{:<18}  {:>8.3}  {:>6}  {along:>13}  {:>9}  {:>13}  {own:>10}  {:>7}  {:>26}  {:>9}  {:>7}",
+                "{:<18}  {:>8.3}  {:>9.2}  {:>6}  {along:>13}  {:>9}  {:>13}  {own:>10}  {:>7}  {:>26}  {:>9}  {:>7}",
                 name(o),
                 1e3 * o.seconds,
+                1e-3 * o.seconds / unit,
                 o.points,
                 o.estimates,
                 shown(o.error(), floor),

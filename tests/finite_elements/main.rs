@@ -15,6 +15,8 @@ mod flags;
 mod json;
 #[path = "../../examples/support/matrix_market.rs"]
 mod matrix_market;
+#[path = "../../examples/support/memory.rs"]
+mod memory;
 #[path = "../../examples/support/plate.rs"]
 mod plate;
 #[path = "../../examples/support/progress.rs"]
