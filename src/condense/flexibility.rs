@@ -28,7 +28,14 @@ impl Table {
     /// # Errors
     /// `OutOfMemory`.
     pub fn new(coordinates: usize) -> Result<Self> {
-        let size = (coordinates + 1).saturating_mul(coordinates + 1);
+        Self::of_size((coordinates + 1).saturating_mul(coordinates + 1))
+    }
+
+    /// Memory for so many numbers.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub(super) fn of_size(size: usize) -> Result<Self> {
         Ok(Self {
             value: try_vec(size, Complex64::ZERO, "the contact flexibility")?,
             slope: try_vec(size, Complex64::ZERO, "the contact flexibility")?,

@@ -5,6 +5,7 @@ use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles;
+use crate::condense::table_layout::is_symmetric;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
@@ -76,7 +77,8 @@ impl FrequencyCache {
             };
             let interpolation = if sweep && from_modes.is_none() && condensed.ndof() > INTERPOLATE_ABOVE {
                 let resonances = resonance_poles::near(condensed, &mut workspace, i, range, interrupt)?;
-                Some(FrequencyInterpolation::new(coordinates, range, resonances, TOLERANCE))
+                let kind = (coordinates, is_symmetric(&condensed.blocks()[i]));
+                Some(FrequencyInterpolation::new(kind, range, resonances, TOLERANCE)?)
             } else {
                 None
             };

@@ -9,7 +9,8 @@
 
 use crate::condense::chebyshev_series::{ChebyshevSeries, MOST_INTERVALS, Samples};
 use crate::condense::flexibility::Table;
-use crate::error::{Result, try_push};
+use crate::condense::table_layout::TableLayout;
+use crate::error::{Result, try_push, try_vec};
 use num_complex::Complex64;
 
 /// Intervals between the samples with which a panel is tried, one after the other.
@@ -35,6 +36,10 @@ const NOISE: f64 = 1e-8;
 /// The panels of one harmonic.
 pub struct FrequencyInterpolation {
     outputs: usize,
+    layout: TableLayout,
+    /// A table of kept numbers, and a sample, where a half is left out.
+    packed: Table,
+    sample: Vec<Complex64>,
     tolerance: f64,
     resonances: Vec<Complex64>,
     /// Width of the next attempt at a panel.
@@ -51,13 +56,30 @@ pub struct FrequencyInterpolation {
 }
 
 impl FrequencyInterpolation {
-    /// Interpolation of tables of `coordinates` contacts along a sweep over `range` = (start, end) with the given
-    /// `resonances` near it, with a relative error of `tolerance`.
-    #[must_use]
-    pub fn new(coordinates: usize, range: (f64, f64), resonances: Vec<Complex64>, tolerance: f64) -> Self {
+    /// Interpolation of tables of `coordinates` contacts, symmetric or not, along a sweep over `range` = (start, end) with the
+    /// given `resonances` near it, with a relative error of `tolerance`.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn new(
+        (coordinates, is_symmetric): (usize, bool),
+        range: (f64, f64),
+        resonances: Vec<Complex64>,
+        tolerance: f64,
+    ) -> Result<Self> {
         let (start, end) = range;
-        Self {
-            outputs: coordinates + 1,
+        let outputs = coordinates + 1;
+        let layout = TableLayout::new(coordinates, is_symmetric);
+        let (half, whole) = if is_symmetric {
+            (layout.size(), outputs * outputs)
+        } else {
+            (0, 0)
+        };
+        Ok(Self {
+            outputs,
+            layout,
+            packed: Table::of_size(half)?,
+            sample: try_vec(whole, Complex64::ZERO, CONTEXT)?,
             tolerance,
             resonances,
             // One panel over the whole range, with the margin behind its start.
@@ -68,7 +90,7 @@ impl FrequencyInterpolation {
             samples: Samples::default(),
             decay: Vec::new(),
             evaluations: 0,
-        }
+        })
     }
 
     /// Number of factorisations so far.
@@ -99,7 +121,14 @@ impl FrequencyInterpolation {
                 None => return Ok(false),
             },
         };
-        self.panels[index].evaluate(omega, self.denominator(omega), table);
+        let denominator = self.denominator(omega);
+        if self.layout.is_symmetric() {
+            self.panels[index].evaluate(omega, denominator, &mut self.packed);
+            self.layout.unpack(&self.packed.value, &mut table.value);
+            self.layout.unpack(&self.packed.slope, &mut table.slope);
+        } else {
+            self.panels[index].evaluate(omega, denominator, table);
+        }
         Ok(true)
     }
 
@@ -167,13 +196,18 @@ impl FrequencyInterpolation {
         sample: &mut impl FnMut(f64, &mut [Complex64]) -> Result<()>,
     ) -> Result<Option<ChebyshevSeries>> {
         let (low, high) = panel;
-        let size = self.outputs * self.outputs;
+        let size = self.layout.size();
         let mut samples = core::mem::take(&mut self.samples);
         samples.clear();
         for intervals in INTERVALS {
             samples.refine(intervals, size, |x, values| {
                 let omega = 0.5 * (low + high) + 0.5 * (high - low) * x;
-                sample(omega, values)?;
+                if self.layout.is_symmetric() {
+                    sample(omega, &mut self.sample)?;
+                    self.layout.pack(&self.sample, values);
+                } else {
+                    sample(omega, values)?;
+                }
                 let (d, _) = self.denominator(omega);
                 for v in values {
                     *v *= d;
@@ -253,9 +287,12 @@ impl FrequencyInterpolation {
     /// Raises the largest squares of each of the four parts of a table to those of its entries.
     fn squares(&self, table: &[Complex64], largest: &mut [f64; 4]) {
         let most = |part: &[Complex64], least: f64| part.iter().fold(least, |most, z| most.max(z.norm_sqr()));
-        for (j, column) in table.chunks_exact(self.outputs).enumerate() {
+        let mut rest = table;
+        for (j, from) in self.layout.columns() {
+            let (column, others) = rest.split_at(self.outputs - from);
+            rest = others;
             let excited = 2 * usize::from(j + 1 == self.outputs);
-            let (contacts, response) = column.split_at(self.outputs - 1);
+            let (contacts, response) = column.split_at(column.len() - 1);
             largest[excited] = most(contacts, largest[excited]);
             largest[excited + 1] = most(response, largest[excited + 1]);
         }
@@ -272,7 +309,7 @@ mod tests {
         let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
         let slope = |w: f64| -exact(w) * exact(w) * Complex64::new(-2.0 * w, 0.002);
         for (start, end) in [(0.9, 1.1), (1.1, 0.9)] {
-            let mut interpolation = FrequencyInterpolation::new(0, (start, end), Vec::new(), 1e-11);
+            let mut interpolation = FrequencyInterpolation::new((0, false), (start, end), Vec::new(), 1e-11).unwrap();
             let mut table = Table::new(0).unwrap();
             for k in 0..=400 {
                 let w = start + (end - start) * f64::from(k) / 400.0;
@@ -299,10 +336,39 @@ mod tests {
     }
 
     #[test]
+    fn a_half_of_a_symmetric_table_gives_the_same_as_all_of_it() {
+        // Twenty contacts, an unsymmetric row of the response, and an excitation.
+        let coordinates = 20;
+        let outputs = coordinates + 1;
+        let fill = |w: f64, values: &mut [Complex64]| {
+            for (k, z) in values.iter_mut().enumerate() {
+                let (i, j) = ((k % outputs) as f64, (k / outputs) as f64);
+                let inner = i.max(j) < coordinates as f64;
+                let (a, b) = if inner { (i.min(j), i.max(j)) } else { (i, 2.0 * j) };
+                *z = Complex64::new((w * a).cos() + b, (w + b).sin());
+            }
+            Ok(())
+        };
+        let make = |half| FrequencyInterpolation::new((coordinates, half), (0.9, 1.4), Vec::new(), 1e-11).unwrap();
+        let [mut half, mut whole] = [true, false].map(make);
+        let [mut a, mut b] = [0; 2].map(|_| Table::new(coordinates).unwrap());
+        for k in 0..20 {
+            let w = 0.9 + 0.025 * f64::from(k);
+            assert!(half.evaluate(w, &mut a, fill).unwrap() && whole.evaluate(w, &mut b, fill).unwrap());
+            let mut exact = vec![Complex64::ZERO; outputs * outputs];
+            fill(w, &mut exact).unwrap();
+            for ((a, b), exact) in a.value.iter().zip(&b.value).zip(&exact) {
+                assert!((a - b).norm() < 1e-10 && (a - exact).norm() < 1e-9);
+            }
+            assert!(a.slope.iter().zip(&b.slope).all(|(a, b)| (a - b).norm() < 1e-8));
+        }
+    }
+
+    #[test]
     fn a_resonance_that_is_known_costs_a_single_panel() {
         let pole = (Complex64::new(4.0 - 0.002_f64.powi(2), 0.0).sqrt() + Complex64::new(0.0, 0.002)) * 0.5;
         let exact = |w: f64| 1.0 / Complex64::new(1.0 - w * w, 0.002 * w);
-        let mut interpolation = FrequencyInterpolation::new(0, (0.9, 1.1), vec![pole], 1e-11);
+        let mut interpolation = FrequencyInterpolation::new((0, false), (0.9, 1.1), vec![pole], 1e-11).unwrap();
         let mut table = Table::new(0).unwrap();
         for k in 0..=100 {
             let w = 0.9 + 0.002 * f64::from(k);

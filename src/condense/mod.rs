@@ -29,6 +29,7 @@ pub mod resonance_poles;
 mod single_contact;
 mod single_motion;
 mod sweep;
+mod table_layout;
 mod tied_load;
 mod under_force;
 pub mod wave_cache;
