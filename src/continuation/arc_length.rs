@@ -62,7 +62,7 @@ const CONTEXT: &str = "the continuation";
 /// Least cosine between the directions of the branch at the two ends of one step.
 const STRAIGHT: f64 = 0.5;
 
-/// Step below which a failure counts as a corner of the branch.
+/// Step below which a failure counts as a corner of the branch, and no resonance is looked for.
 const CORNER_STEP: f64 = 1e-6;
 
 /// Step of a branch that a corner no longer shortens.
@@ -82,6 +82,9 @@ const MOST_STATIONARY: usize = 32;
 /// Length of a step that changes no parameter beyond rounding, wherever the branch leads.
 const TINY: f64 = 1e-6;
 
+/// Share of the way to a resonance that a step goes which would pass it.
+const APPROACH: f64 = 0.5;
+
 /// Outcome of the corrected prediction of one step.
 enum Attempt {
     /// With the error of the prediction and the cosine of the angle between the tangents at its ends.
@@ -92,6 +95,10 @@ enum Attempt {
     },
     Poor {
         error: f64,
+    },
+    /// Beyond a resonance at this share of the step.
+    Passed {
+        share: f64,
     },
     Failed,
 }
@@ -233,6 +240,7 @@ impl Continuation {
                         return Ok(Advance::Stopped(Status::StoppedStepTooSmall));
                     }
                 }
+                Attempt::Passed { share } => self.steps.at_most(APPROACH * share * length),
                 Attempt::Failed => {
                     // The code below uses the corrector again.
                     let failure = self.corrector.failure();
@@ -356,6 +364,11 @@ impl Continuation {
         }
         if !self.steps.accepts(error) {
             return Ok(Attempt::Poor { error });
+        }
+        if step > self.steps.smallest().max(CORNER_STEP)
+            && let Some(share) = problem.resonance_between(&here.as_end(metric), &point.as_end(metric), chord)
+        {
+            return Ok(Attempt::Passed { share });
         }
         Ok(Attempt::Good { point, error, kept })
     }

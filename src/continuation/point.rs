@@ -1,7 +1,9 @@
 //! A solved point of a branch with its tangent.
 
 use crate::continuation::corrector::Corrected;
+use crate::continuation::metric::Metric;
 use crate::error::{Result, try_copy};
+use crate::problem::End;
 use num_complex::Complex64;
 
 /// Relative change of a parameter that may be round-off of the correction.
@@ -69,6 +71,16 @@ impl Point {
     #[must_use]
     pub fn unknowns(&self) -> &[f64] {
         &self.v[..self.v.len() - 1]
+    }
+
+    /// The point as the end of a step.
+    #[must_use]
+    pub fn as_end(&self, metric: Metric) -> End<'_> {
+        End {
+            unknowns: self.unknowns(),
+            tangent: &self.tangent,
+            unit: 1.0 / metric.norm(&self.tangent),
+        }
     }
 
     /// Whether the parameter decreases from `before` although it increases at both ends, or the other way round: at

@@ -100,6 +100,12 @@ impl StepControl {
         self.step
     }
 
+    /// The smallest step.
+    #[must_use]
+    pub fn smallest(&self) -> f64 {
+        self.min
+    }
+
     /// The largest step.
     #[must_use]
     pub fn largest(&self) -> f64 {

@@ -13,7 +13,8 @@ use crate::linalg::linear_system::{Jacobian, MatrixFree};
 use crate::linalg::lu::Lu;
 use crate::problem::contact_forces::ContactForces;
 use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
-use crate::problem::parametric_problem::{Homotopy, InitialGuess, Problem, Residual, put};
+use crate::problem::parametric_problem::{End, Homotopy, InitialGuess, Problem, Residual, put};
+use crate::problem::passed_resonance;
 use crate::problem::residual_scale::Squares;
 use crate::problem::static_force::static_force;
 use num_complex::Complex64;
@@ -402,6 +403,14 @@ impl Problem for HarmonicBalance<'_> {
     /// Damping absorbs the power of the forces; without damping, resonances are the exception.
     fn is_bounded(&self) -> bool {
         true
+    }
+
+    fn resonance_between(&self, a: &End<'_>, b: &End<'_>, length: f64) -> Option<f64> {
+        // Kinks seem to be resonances.
+        if self.forces.is_sampled() {
+            return None;
+        }
+        passed_resonance::between(self.condensed.set(), a, b, length)
     }
 
     fn set_pointwise(&mut self, pointwise: bool) {

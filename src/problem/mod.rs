@@ -11,8 +11,9 @@ pub mod harmonic_balance;
 pub mod homotopy;
 pub mod newton_products;
 mod parametric_problem;
+mod passed_resonance;
 mod residual_scale;
 pub mod static_force;
 pub mod static_state;
 
-pub use parametric_problem::{Homotopy, InitialGuess, Problem, Residual};
+pub use parametric_problem::{End, Homotopy, InitialGuess, Problem, Residual};

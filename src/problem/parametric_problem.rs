@@ -57,6 +57,16 @@ pub struct Homotopy<'a> {
     pub patience: usize,
 }
 
+/// One end of a step along the branch.
+pub struct End<'a> {
+    /// u
+    pub unknowns: &'a [f64],
+    /// Direction of the branch in (u, p).
+    pub tangent: &'a [f64],
+    /// Factor that makes this direction the derivative by the arc length.
+    pub unit: f64,
+}
+
 /// A problem R(u, p) = 0 with one parameter. Its Jacobian is that of the point last evaluated.
 pub trait Problem: Jacobian {
     /// Residual and its derivative by the parameter at (u, p).
@@ -86,6 +96,12 @@ pub trait Problem: Jacobian {
     /// a solution.
     fn is_bounded(&self) -> bool {
         false
+    }
+
+    /// Share of a step of this length along the branch at which something resonates that the step passes as a whole; `None` where
+    /// nothing does.
+    fn resonance_between(&self, _a: &End<'_>, _b: &End<'_>, _length: f64) -> Option<f64> {
+        None
     }
 
     /// Selects the most accurate evaluation at the following parameter values, instead of the fast one along a

@@ -11,6 +11,7 @@ mod hard_sweeps;
 mod interrupts;
 mod linear_stretches;
 mod near_rigid;
+mod passed_resonances;
 mod random_points;
 mod random_problems;
 mod saved_models;

@@ -23,6 +23,12 @@ impl ContactForces<'_> {
         self.linear[coordinate] && self.condensed.may_be_eliminated(coordinate)
     }
 
+    /// Whether some law is sampled, so that the forces have a kink wherever an event passes a sample.
+    #[must_use]
+    pub fn is_sampled(&self) -> bool {
+        self.other.is_some()
+    }
+
     /// Whether in addition f = κ y, so that nothing couples back at all; a normal load at rest does.
     #[must_use]
     #[inline]

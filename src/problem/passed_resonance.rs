@@ -1,0 +1,195 @@
+//! Resonances that a step along a branch passes as a whole.
+//!
+//! Forces, slip and impacts excite harmonics h of the frequency, which resonate where hω meets a natural frequency. With light damping
+//! such a resonance may lie within one step, and its ends are smooth and predict each other. Its pole shows at them all the same.
+//! With
+//!
+//! > X_h ≈ B + R/(s₀ − s),  X_h′ ≈ R/(s₀ − s)²
+//!
+//! along the arc s from a to b, distances u and w before and behind the pole, the harmonic changes against its derivatives:
+//!
+//! > X_h(b) − X_h(a) ≈ −R (1/u + 1/w),  |X_h′(a)| u² ≈ |X_h′(b)| w² ≈ |R|.
+//!
+//! A smooth function of s does so where it oscillates within the step: then, too, the step is too long. Harmonics above the first
+//! are seen in the time of that one, in which e^{−ihφ} takes a shift φ out.
+
+use crate::fourier::HarmonicSet;
+use crate::linalg::norm;
+use crate::problem::parametric_problem::End;
+use num_complex::Complex64;
+
+/// Least change of a harmonic that counts, as a share of the motion.
+const RELEVANT: f64 = 1e-4;
+
+/// Cosine of the angle between the change and a derivative below which they have opposite directions.
+const OPPOSITE: f64 = -0.5;
+
+/// Largest ratio of the change to that of the pole, either way.
+const ALIKE: f64 = 2.0;
+
+/// Share of the step, of this length, from `a` to `b` at which a harmonic resonates between them; that of the first one.
+pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) -> Option<f64> {
+    let least = RELEVANT * norm(a.unknowns).max(norm(b.unknowns));
+    let mut shift: Option<(usize, Shift)> = None;
+    let mut first: Option<f64> = None;
+    for (i, &h) in set.numbers().iter().enumerate().filter(|(_, h)| **h > 0) {
+        let order = if let Some((base, _)) = &shift { h / base } else { 0 };
+        let (_, shift) = shift.get_or_insert_with(|| (h, Shift::of(set, i, a, b)));
+        let found = Passage::of(set, i, (a, b), &shift.in_harmonic(order)).pole(length, least);
+        if let Some(share) = found {
+            first = Some(first.map_or(share, |f| f.min(share)));
+        }
+    }
+    first
+}
+
+/// Shift of time from one end to the other: a factor e^{−iφ} for the motion at the other end, and −iφ′ at both.
+struct Shift {
+    turn: Complex64,
+    rates: (Complex64, Complex64),
+}
+
+impl Shift {
+    /// The shift of a harmonic.
+    fn of(set: &HarmonicSet, i: usize, a: &End<'_>, b: &End<'_>) -> Self {
+        let m = set.packed_len();
+        let product = |x: &[f64], y: &[f64]| {
+            let signals = x.chunks_exact(m).zip(y.chunks_exact(m));
+            signals.fold(Complex64::ZERO, |sum, (x, y)| {
+                sum + set.get(x, i).conj() * set.get(y, i)
+            })
+        };
+        let rate = |end: &End<'_>| {
+            let rate = end.unit * product(end.unknowns, end.tangent).im / product(end.unknowns, end.unknowns).re;
+            -Complex64::I * if rate.is_finite() { rate } else { 0.0 }
+        };
+        let both = product(a.unknowns, b.unknowns);
+        let length = both.norm();
+        Self {
+            turn: if length > 0.0 {
+                both.conj() / length
+            } else {
+                Complex64::ONE
+            },
+            rates: (rate(a), rate(b)),
+        }
+    }
+
+    /// The shift in a harmonic of so many times that one's number.
+    fn in_harmonic(&self, order: usize) -> Self {
+        Self {
+            turn: self.turn.powu(order as u32),
+            rates: (self.rates.0 * order as f64, self.rates.1 * order as f64),
+        }
+    }
+}
+
+/// One harmonic of all coordinates at the ends of a step: squares of its change and its derivatives, and their products.
+#[derive(Default)]
+struct Passage {
+    change: f64,
+    before: f64,
+    behind: f64,
+    along_before: f64,
+    along_behind: f64,
+}
+
+impl Passage {
+    fn of(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), shift: &Shift) -> Self {
+        let mut sums = Self::default();
+        let m = set.packed_len();
+        let signals = a.unknowns.chunks_exact(m).zip(b.unknowns.chunks_exact(m));
+        let tangents = a.tangent.chunks_exact(m).zip(b.tangent.chunks_exact(m));
+        for ((xa, xb), (ta, tb)) in signals.zip(tangents) {
+            let (xa, xb) = (set.get(xa, i), set.get(xb, i));
+            let change = shift.turn * xb - xa;
+            let before = a.unit * set.get(ta, i) + shift.rates.0 * xa;
+            let behind = shift.turn * (b.unit * set.get(tb, i) + shift.rates.1 * xb);
+            sums.change += change.norm_sqr();
+            sums.before += before.norm_sqr();
+            sums.behind += behind.norm_sqr();
+            sums.along_before += (change.conj() * before).re;
+            sums.along_behind += (change.conj() * behind).re;
+        }
+        sums
+    }
+
+    /// Place of a pole in the step, as a share of its length; `None` where there is none, or changes below `least` come from it.
+    fn pole(&self, length: f64, least: f64) -> Option<f64> {
+        if self.change < least * least {
+            return None;
+        }
+        let opposite = |along: f64, size: f64| along < OPPOSITE * (self.change * size).sqrt();
+        if !opposite(self.along_before, self.before) || !opposite(self.along_behind, self.behind) {
+            return None;
+        }
+        let share = 1.0 / (1.0 + (self.before / self.behind).powf(0.25));
+        let foreseen = self.before.sqrt() * share * length / (1.0 - share);
+        let ratio = self.change.sqrt() / foreseen;
+        (1.0 / ALIKE..=ALIKE).contains(&ratio).then_some(share)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A motion of two coordinates in harmonics 1, 3, 5 along s, and its derivative: harmonic 3 has a pole at 0.37 + iδ, of
+    /// strength R in the first coordinate, and all are shifted in time by 3s.
+    fn at(set: &HarmonicSet, s: f64, (strength, half_width): (f64, f64)) -> [Vec<f64>; 2] {
+        let m = set.packed_len();
+        let (mut motion, mut derivative) = (vec![0.0; 2 * m], vec![0.0; 2 * m + 1]);
+        for (i, &h) in set.numbers().iter().enumerate() {
+            for c in 0..2 {
+                let place = h as f64 + c as f64;
+                let mut value = Complex64::new((2.0 * s + place).cos(), s) / place.powi(2);
+                let mut slope = Complex64::new(-2.0 * (2.0 * s + place).sin(), 1.0) / place.powi(2);
+                if h == 3 && c == 0 {
+                    let distance = Complex64::new(0.37 - s, half_width);
+                    value += strength / distance;
+                    slope += strength / distance.powi(2);
+                }
+                let turn = Complex64::from_polar(1.0, 3.0 * s * h as f64);
+                set.set(&mut motion[c * m..(c + 1) * m], i, turn * value);
+                let slope = turn * (slope + 3.0 * Complex64::I * h as f64 * value);
+                set.set(&mut derivative[c * m..(c + 1) * m], i, slope);
+            }
+        }
+        [motion, derivative]
+    }
+
+    /// The pole found in a step.
+    fn found(from: f64, to: f64, pole: (f64, f64)) -> Option<f64> {
+        let set = HarmonicSet::excited(&[1], 5, true, true, false).unwrap();
+        let ends = [from, to].map(|s| at(&set, s, pole));
+        // Derivatives in other units than the motion.
+        let tangents = [&ends[0], &ends[1]].map(|end| end[1].iter().map(|t| 7.0 * t).collect::<Vec<_>>());
+        let end = |i: usize| End {
+            unknowns: &ends[i][0],
+            tangent: &tangents[i],
+            unit: 1.0 / 7.0,
+        };
+        between(&set, &end(0), &end(1), (to - from).abs())
+    }
+
+    #[test]
+    fn a_pole_is_found_at_its_place_within_a_step() {
+        for (from, to) in [(0.3, 0.4), (0.35, 0.38), (0.36, 0.45)] {
+            let share = found(from, to, (0.01, 1e-6)).unwrap();
+            let truth = (0.37 - from) / (to - from);
+            assert!((share / truth - 1.0).abs() < 0.2, "{share}, {truth}");
+        }
+    }
+
+    #[test]
+    fn steps_without_a_pole_or_finer_than_it_pass_none() {
+        for i in 0..200_i32 {
+            let s = 0.01 * f64::from(i);
+            assert_eq!(found(s, s + 0.05, (0.0, 1.0)), None);
+            // A wide one, and one that is not worth its points.
+            assert_eq!(found(s, s + 0.01, (0.01, 0.05)), None);
+            assert_eq!(found(s, s + 0.05, (1e-7, 1e-4)), None);
+        }
+        assert_eq!(found(0.2, 0.36, (0.01, 1e-6)), None);
+    }
+}
