@@ -29,7 +29,7 @@ fn chain(masses: &[f64], springs: &[f64], damping: f64) -> Model {
 /// The highest peak.
 fn highest(branch: &Branch) -> (f64, f64) {
     assert!(matches!(branch.status(), Status::Ok), "{:?}", branch.reason());
-    let peaks = branch.peaks().into_iter().map(|p| (p.omega, p.amplitude));
+    let peaks = branch.peaks().iter().map(|p| (p.omega, p.amplitude));
     peaks.fold((0.0, 0.0), |m, p| if p.1 > m.1 { p } else { m })
 }
 
