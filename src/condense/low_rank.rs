@@ -5,8 +5,8 @@
 //!
 //! > T = T′ + T′_B e X,  X = (1 − G′ e)⁻¹ T′ᴮ,
 //!
-//! where T′_B are the columns and T′ᴮ the rows of B, and G′ is where they cross (Woodbury's identity; X are the rows of
-//! B in T itself). By the frequency
+//! where T′_B are the columns and T′ᴮ the rows of B, and G′ is where they cross (Woodbury's identity). X are the rows of B in T
+//! itself, so that the term is added to the row of the response alone. By the frequency
 //!
 //! > ∂T = ∂T′ + ∂T′_B e X + T′_B (∂e X + e ∂X),  ∂X = (1 − G′ e)⁻¹ (∂T′ᴮ + (∂G′ e + G′ ∂e) X).
 
@@ -80,8 +80,9 @@ pub struct LowRank {
     coordinates: usize,
     coefficients: Coefficients,
     lu: Lu<Complex64>,
-    /// X, e X and ∂(e X), one column for each contact and for the excitation.
+    /// X and ∂X, e X and ∂(e X), one column for each contact and for the excitation.
     inner: Vec<Complex64>,
+    d_inner: Vec<Complex64>,
     force: Vec<Complex64>,
     d_force: Vec<Complex64>,
 }
@@ -102,6 +103,7 @@ impl LowRank {
             coordinates,
             lu: Lu::new(order, coordinates + 1)?,
             inner: columns()?,
+            d_inner: columns()?,
             force: columns()?,
             d_force: columns()?,
             coefficients,
@@ -139,17 +141,19 @@ impl LowRank {
             return Ok(());
         }
         self.solve(plain, at, interrupt)?;
-        self.add_columns(plain.value, plain.rows, &self.force, &mut table.value);
+        self.copy_rows(&self.inner, &mut table.value);
+        self.add_response(plain.value, plain.rows, &self.force, &mut table.value);
         if slopes {
             self.differentiate(plain, at, interrupt)?;
-            self.add_columns(plain.slope, plain.rows, &self.force, &mut table.slope);
-            self.add_columns(plain.value, plain.rows, &self.d_force, &mut table.slope);
+            self.copy_rows(&self.d_inner, &mut table.slope);
+            self.add_response(plain.slope, plain.rows, &self.force, &mut table.slope);
+            self.add_response(plain.value, plain.rows, &self.d_force, &mut table.slope);
         }
         Ok(())
     }
 
     /// Row of B number b in T′: the response lies between contacts and springs.
-    fn row_of(&self, b: usize) -> usize {
+    pub fn row_of(&self, b: usize) -> usize {
         if b < self.coordinates { b } else { b + 1 }
     }
 
@@ -178,7 +182,7 @@ impl LowRank {
         Ok(())
     }
 
-    /// ∂(e X), after [`Self::solve`].
+    /// ∂X and ∂(e X), after [`Self::solve`].
     fn differentiate(&mut self, plain: &Plain<'_>, at: Frequency, interrupt: &Interrupt<'_>) -> Result<()> {
         let (order, rows) = (self.order(), plain.rows);
         for k in 0..=self.coordinates {
@@ -189,28 +193,34 @@ impl LowRank {
                     let d_e_x = self.d_entry(q, at) * self.inner[k * order + q];
                     sum += plain.slope[entry] * self.force[k * order + q] + plain.value[entry] * d_e_x;
                 }
-                self.d_force[k * order + p] = sum;
+                self.d_inner[k * order + p] = sum;
             }
         }
-        self.lu.solve_columns(&mut self.d_force, false, interrupt)?;
+        self.lu.solve_columns(&mut self.d_inner, false, interrupt)?;
         for k in 0..=self.coordinates {
             for p in 0..order {
                 let x = self.inner[k * order + p];
-                let d_x = self.d_force[k * order + p];
+                let d_x = self.d_inner[k * order + p];
                 self.d_force[k * order + p] = self.entry(p, at) * d_x + self.d_entry(p, at) * x;
             }
         }
         Ok(())
     }
 
-    /// table += T′_B X, without the column of the excitation in T′_B.
-    fn add_columns(&self, plain: &[Complex64], rows: usize, x: &[Complex64], table: &mut [Complex64]) {
+    /// The rows of the contacts: those of X, or of its slope.
+    fn copy_rows(&self, x: &[Complex64], table: &mut [Complex64]) {
+        let (order, outputs) = (self.order(), self.coordinates + 1);
+        for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
+            to[..self.coordinates].copy_from_slice(&x[..self.coordinates]);
+        }
+    }
+
+    /// Adds T′_B x to the row of the response.
+    fn add_response(&self, plain: &[Complex64], rows: usize, x: &[Complex64], table: &mut [Complex64]) {
         let (order, outputs) = (self.order(), self.coordinates + 1);
         for (x, to) in x.chunks_exact(order).zip(table.chunks_exact_mut(outputs)) {
             for (q, x) in x.iter().enumerate() {
-                for (to, from) in to.iter_mut().zip(&plain[self.row_of(q) * rows..]) {
-                    *to += from * x;
-                }
+                to[self.coordinates] += plain[self.row_of(q) * rows + self.coordinates] * x;
             }
         }
     }
