@@ -24,6 +24,9 @@ pub enum Artificial {
     Stiffness(Vec<Complex64>),
 }
 
+/// Values of a matrix at the entries of a pattern, which the harmonics of one wave share.
+pub type Values = Arc<Vec<Complex64>>;
+
 /// Matrices, forces and contact rows of one harmonic.
 #[derive(Clone, Debug)]
 pub struct HarmonicBlock {
@@ -34,13 +37,13 @@ pub struct HarmonicBlock {
     /// K_h with springs, contacts that never slip, structural damping iD_h, and Wᴴ κ W; its pattern holds C and M too.
     pub reference: Csc,
     /// K_h with springs and contacts that never slip, without iD_h and Wᴴ κ W, at the entries of the pattern.
-    pub stiffness: Vec<Complex64>,
+    pub stiffness: Values,
     /// D_h of the structural damping iD_h, ηK_h included, at the entries of the pattern; `None` without such damping.
-    pub structural: Option<Vec<Complex64>>,
+    pub structural: Option<Values>,
     /// C_h at the entries of the pattern.
-    pub damping: Vec<Complex64>,
+    pub damping: Values,
     /// M_h at the entries of the pattern.
-    pub mass: Vec<Complex64>,
+    pub mass: Values,
     /// The artificial damping.
     pub artificial: Artificial,
     /// Modes of the wave along a sweep of a small structure, where the flexibility is a sum over them.
@@ -153,7 +156,10 @@ pub(super) fn of_same_wave<'b>(
         let is_shared = known == key && block.number > 0 && number > 0 && (form == Form::Plain || conjugates);
         is_shared.then_some(form)
     };
-    blocks.iter().find_map(|block| Some((block, form_of(block)?)))
+    let sharing = || blocks.iter().filter_map(|block| Some((block, form_of(block)?)));
+    // Values of the same direction are not copied.
+    let same = sharing().find(|(_, form)| *form == Form::Plain);
+    same.or_else(|| sharing().next())
 }
 
 /// The block of harmonic `number` from that of another harmonic of its wave; see [`of_same_wave`].
@@ -173,12 +179,22 @@ pub(super) fn shared_block(
         }
         Ok(copy)
     };
+    let share = |values: &Values| -> Result<Values> {
+        if form == Form::Plain {
+            return Ok(Arc::clone(values));
+        }
+        copy(values).map(Arc::new)
+    };
     let rows = rows_of(model, representatives, number)?;
-    let stiffness = copy(&known.stiffness)?;
-    let structural = known.structural.as_deref().map(copy).transpose()?;
+    let stiffness = share(&known.stiffness)?;
+    let structural = known.structural.as_ref().map(share).transpose()?;
     let mut reference = known.reference.try_clone()?;
     reference.values.copy_from_slice(&stiffness);
-    for (v, d) in reference.values.iter_mut().zip(structural.iter().flatten()) {
+    for (v, d) in reference
+        .values
+        .iter_mut()
+        .zip(structural.iter().flat_map(|values| values.iter()))
+    {
         *v += Complex64::I * d;
     }
     for (c, row) in rows.iter().enumerate() {
@@ -195,8 +211,8 @@ pub(super) fn shared_block(
         })
     });
     let matrices = Matrices {
-        damping: copy(&known.damping)?,
-        mass: copy(&known.mass)?,
+        damping: share(&known.damping)?,
+        mass: share(&known.mass)?,
         tied: tied.transpose()?,
         stiffness,
         structural,
@@ -207,10 +223,10 @@ pub(super) fn shared_block(
 
 /// The matrices of a block; see [`HarmonicBlock`].
 struct Matrices {
-    stiffness: Vec<Complex64>,
-    structural: Option<Vec<Complex64>>,
-    damping: Vec<Complex64>,
-    mass: Vec<Complex64>,
+    stiffness: Values,
+    structural: Option<Values>,
+    damping: Values,
+    mass: Values,
     tied: Option<TiedValues>,
     reference: Csc,
 }
@@ -311,12 +327,13 @@ pub(super) fn harmonic_block(
             gyroscopic: tied.gyroscopic.aligned(&reference)?,
         })
     });
-    let structural = (!structural.is_empty()).then(|| structural.aligned(&reference));
+    let aligned = |matrix: &Csc| matrix.aligned(&reference).map(Arc::new);
+    let structural = (!structural.is_empty()).then(|| aligned(&structural));
     let matrices = Matrices {
-        stiffness: stiffness.aligned(&reference)?,
+        stiffness: aligned(&stiffness)?,
         structural: structural.transpose()?,
-        damping: damping.aligned(&reference)?,
-        mass: mass.aligned(&reference)?,
+        damping: aligned(&damping)?,
+        mass: aligned(&mass)?,
         tied: tied.transpose()?,
         reference,
     };

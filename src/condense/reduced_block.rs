@@ -10,6 +10,7 @@ use crate::model::reduced_wave::{MotionRow, ReducedView};
 use crate::model::spring::Row;
 use crate::model::spring_stiffness::Wave;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 const CONTEXT: &str = "the reduced structure";
 
@@ -72,10 +73,10 @@ pub(super) fn reduced_block(
         number,
         next: structure.phase(number, 1),
         reference: full,
-        stiffness,
+        stiffness: Arc::new(stiffness),
         structural: None,
-        damping,
-        mass,
+        damping: Arc::new(damping),
+        mass: Arc::new(mass),
         artificial: Artificial::None,
         modes: None,
         force: try_vec(n, Complex64::ZERO, "the forces")?,

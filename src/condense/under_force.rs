@@ -6,6 +6,7 @@ use crate::error::{Result, try_copy, try_push};
 use crate::linalg::sparse::{Csc, Form};
 use crate::model::structure::Structure;
 use num_complex::Complex64;
+use std::sync::Arc;
 
 const CONTEXT: &str = "the matrices per harmonic";
 
@@ -67,6 +68,7 @@ impl HarmonicBlock {
             own.values.copy_from_slice(values);
             own.aligned(&reference)
         };
+        let structural = self.structural.as_ref().map(|values| aligned(values).map(Arc::new));
         let mass = aligned(&self.mass)?;
         let mut damping = aligned(&self.damping)?;
         for (c, m) in damping.iter_mut().zip(&mass) {
@@ -80,9 +82,9 @@ impl HarmonicBlock {
         Ok(Self {
             number: self.number,
             next: self.next,
-            stiffness: aligned(&self.stiffness)?,
-            damping,
-            mass,
+            stiffness: Arc::new(aligned(&self.stiffness)?),
+            damping: Arc::new(damping),
+            mass: Arc::new(mass),
             artificial: Artificial::None,
             modes: None,
             force: try_copy(&self.force, CONTEXT)?,
@@ -90,7 +92,7 @@ impl HarmonicBlock {
             structural_rows: try_copy(&self.structural_rows, CONTEXT)?,
             linear_rows: self.linear_rows.clone(),
             springs: try_copy(&self.springs, CONTEXT)?,
-            structural: self.structural.as_deref().map(&aligned).transpose()?,
+            structural: structural.transpose()?,
             unbalance: None,
             tied: match &self.tied {
                 Some(tied) => Some(TiedValues {
