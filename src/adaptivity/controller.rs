@@ -223,7 +223,8 @@ impl AdaptivityController {
         if let Some(found) = &found {
             self.count(found);
             let may_fall = equations.resolution() > equations.levels().few();
-            self.spacing.note(equations.resolution(), signs, found.error, may_fall);
+            let error = (found.error, self.tolerance / MARGIN);
+            self.spacing.note(equations.resolution(), signs, error, may_fall);
             let is_low = MARGIN * found.error < DROP * self.tolerance;
             self.low = if is_low { self.low + 1 } else { 0 };
         }

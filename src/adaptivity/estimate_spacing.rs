@@ -28,6 +28,10 @@ const MOST_UNKNOWN: usize = 32;
 /// farther on: one and a half times, and three times the factor of two within which the rule held.
 const SAFETY: (f64, f64) = (3.0, 6.0);
 
+/// Share of the largest error below which errors and their predictions need not agree: estimates of so small ones differ by what
+/// they leave unfinished.
+const HARMLESS: f64 = 0.05;
+
 /// Ratio of the shares of two points beyond which nothing is predicted.
 const ALIKE: f64 = 5.0;
 
@@ -147,8 +151,9 @@ impl EstimateSpacing {
         Some(factor)
     }
 
-    /// Notes an estimate: its error, NaN where it is unknown, and whether the curve may have fewer harmonics.
-    pub fn note(&mut self, level: usize, signs: Signs, error: f64, may_fall: bool) {
+    /// Notes an estimate: its error, NaN where it is unknown, and whether the curve may have fewer harmonics. Errors up to
+    /// `allowed` meet the tolerance.
+    pub fn note(&mut self, level: usize, signs: Signs, (error, allowed): (f64, f64), may_fall: bool) {
         let largest = if may_fall { MOST } else { MOST_WITH_FEWEST };
         let before = self.known.filter(|known| known.level == level);
         let (holds, most) = match before {
@@ -157,8 +162,10 @@ impl EstimateSpacing {
                 (error.is_nan() && known.error.is_nan(), MOST_UNKNOWN)
             }
             Some(known) => {
-                let ratio = error / (known.error * known.factor_to(signs));
-                ((1.0 / HOLDS..=HOLDS).contains(&ratio), largest)
+                let predicted = known.error * known.factor_to(signs);
+                let is_harmless = error.max(predicted) <= HARMLESS * allowed;
+                let ratio = error / predicted;
+                ((1.0 / HOLDS..=HOLDS).contains(&ratio) || is_harmless, largest)
             }
         };
         self.spacing = if holds { (2 * self.spacing).min(most) } else { 1 };
@@ -205,7 +212,7 @@ mod tests {
         for i in 0..count {
             if spacing.factor(3, signs(1e-3, 1.0), 1e-3).is_none() {
                 made.push(i);
-                spacing.note(3, signs(1e-3, 1.0), error(i), true);
+                spacing.note(3, signs(1e-3, 1.0), (error(i), 1e-3), true);
             }
         }
         made
@@ -218,13 +225,20 @@ mod tests {
 
     #[test]
     fn a_prediction_that_failed_is_checked_at_the_next_point() {
-        let made = estimated(20, |i| if i < 5 { 2e-5 } else { 5e-5 });
+        let made = estimated(20, |i| if i < 5 { 4e-5 } else { 1e-4 });
         assert_eq!(made, [0, 1, 3, 7, 8, 10, 14, 18]);
     }
 
     #[test]
     fn points_near_the_tolerance_are_estimated_each() {
         assert_eq!(estimated(5, |_| 4e-4), [0, 1, 2, 3, 4]);
+    }
+
+    #[test]
+    fn errors_far_below_the_tolerance_need_not_be_predicted() {
+        let made = estimated(20, |i| if i % 3 == 0 { 4e-5 } else { 5e-6 });
+        assert_eq!(made, [0, 1, 3, 7, 11, 15, 19]);
+        assert!(estimated(20, |i| if i % 3 == 0 { 1.2e-4 } else { 1.5e-5 }).len() > 7);
     }
 
     #[test]
@@ -240,7 +254,7 @@ mod tests {
                 assert!((known * factor / error - 1.0).abs() < 1e-9, "{share}");
             } else {
                 made += 1;
-                spacing.note(3, signs(share, 1.0), error, true);
+                spacing.note(3, signs(share, 1.0), (error, 1e-3), true);
             }
         }
         assert!(made < 16, "{made}");
@@ -255,7 +269,7 @@ mod tests {
     fn other_harmonics_are_estimated_anew() {
         let mut spacing = EstimateSpacing::default();
         for _ in 0..3 {
-            spacing.note(3, signs(1e-3, 1.0), 5e-5, true);
+            spacing.note(3, signs(1e-3, 1.0), (5e-5, 1e-3), true);
         }
         assert!(spacing.factor(4, signs(1e-3, 1.0), 1e-3).is_none());
         assert!(spacing.factor(3, signs(1e-2, 1.0), 1e-3).is_none());

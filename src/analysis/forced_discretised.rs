@@ -8,6 +8,7 @@ use crate::adaptivity::resolutions::Resolutions;
 use crate::adaptivity::transfer::transferred_point;
 use crate::analysis::branch_stability::BranchStability;
 use crate::analysis::point_error::observed;
+use crate::condense::shared_tables::SharedTables;
 use crate::condense::wave_cache::SharedWaves;
 use crate::condense::{ModelCache, Reference, reduced_resonances};
 use crate::continuation::corrector::Corrector;
@@ -56,11 +57,12 @@ impl<'a> Equations<'a> {
         settings: &Settings,
         response: usize,
         given: Option<Vec<f64>>,
-        interrupt: &'a Interrupt<'a>,
+        (tables, interrupt): (&'a SharedTables, &'a Interrupt<'a>),
     ) -> Result<Self> {
         let (condensed, samples) = (&*resolution.condensed, resolution.samples);
         let range = (settings.start, settings.end);
-        let problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
+        let mut problem = HarmonicBalance::new(condensed, response, range, samples, given, interrupt)?;
+        problem.share_tables(tables);
         Ok(Self {
             corrector: Box::new(Corrector::new(
                 problem.unknowns(),
@@ -147,6 +149,8 @@ pub(super) struct ForcedDiscretised<'a> {
     resolutions: Resolutions<'a, Equations<'a>>,
     linear_response: LinearResponse<'a>,
     recorder: BranchRecorder<'a>,
+    /// Interpolated flexibilities of all resolutions.
+    tables: &'a SharedTables,
     estimator: Option<Box<ForcedEstimator<'a>>>,
     /// Whether the current problem may have been evaluated at another point than the current one.
     stale: bool,
@@ -186,16 +190,24 @@ impl<'a> ForcedDiscretised<'a> {
             branch.tell_stability();
         }
         let estimates = solver.estimate_error || levels.is_automatic();
-        let equations = boxed(|| Equations::new(resolution, &settings, response, guess, interrupt))?;
+        let equations =
+            boxed(|| Equations::new(resolution, &settings, response, guess, (&extended.1.tables, interrupt)))?;
         Ok(Self {
             recorder: BranchRecorder::new(branch, solver.tolerance),
             resolutions: Resolutions::new(levels, level, equations)?,
             linear_response: LinearResponse::new(stuck),
+            tables: &extended.1.tables,
             model,
             settings,
             interrupt,
             estimator: estimates
-                .then(|| boxed(|| Ok(ForcedEstimator::new(model, solver, response, extended, interrupt))))
+                .then(|| {
+                    boxed(|| {
+                        let mut estimator = ForcedEstimator::new(model, solver, response, extended, interrupt);
+                        estimator.set_range((settings.start, settings.end));
+                        Ok(estimator)
+                    })
+                })
                 .transpose()?,
             stale: false,
             estimated: None,
@@ -288,9 +300,9 @@ impl Discretised for ForcedDiscretised<'_> {
     fn select(&mut self, resolution: usize) -> Result<()> {
         self.stale |= resolution != self.resolutions.index();
         let (settings, response) = (&self.settings, self.recorder.branch().response_dof());
-        let interrupt = self.interrupt;
+        let shared = (self.tables, self.interrupt);
         self.resolutions.select(resolution, |level| {
-            Equations::new(level, settings, response, None, interrupt)
+            Equations::new(level, settings, response, None, shared)
         })
     }
 
@@ -365,7 +377,13 @@ impl Discretised for ForcedDiscretised<'_> {
             && self.model.structure().is_damped();
         let factorised = self.linear_response.accurate || condensed.ndof() <= FACTORISE_UP_TO;
         let own = self.linear_response.equations(needed, index, |resolution| {
-            Equations::new(resolution, &self.settings, response, None, self.interrupt)
+            Equations::new(
+                resolution,
+                &self.settings,
+                response,
+                None,
+                (self.tables, self.interrupt),
+            )
         });
         let settings = &self.settings;
         let current = &mut *self.resolutions.current;

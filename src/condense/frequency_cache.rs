@@ -5,10 +5,12 @@ use crate::condense::flexibility::{Table, Workspace};
 use crate::condense::frequency_interpolation::FrequencyInterpolation;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles;
+use crate::condense::shared_tables::SharedTables;
 use crate::condense::table_layout::is_symmetric;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_copy, try_push};
 use crate::interrupt::{Interrupt, Phase};
+use core::ops::RangeInclusive;
 use num_complex::Complex64;
 use std::sync::Arc;
 
@@ -18,15 +20,34 @@ const INTERPOLATE_ABOVE: usize = 32;
 /// Relative error of interpolated tables, and of tables from modes.
 const TOLERANCE: f64 = 1e-11;
 
+/// Relative error of tables for estimates of errors.
+const FOR_ESTIMATES: f64 = 1e-7;
+
+/// Numbers of relative motions with which sums over modes are interpolated: with fewer the sums take no longer, with more the
+/// tables would take too much memory.
+const INTERPOLATED: RangeInclusive<usize> = 8..=96;
+
+/// Most resonances that are divided out of them: the product of more would hide small tables beside large ones.
+const MOST_RESONANCES: usize = 8;
+
+/// Relative error of a column of an interpolated sum that shows that it must not be used.
+const CLOSE: f64 = 1e-4;
+
+/// Frequencies at which sums over modes are made before they are interpolated.
+const POINTWISE: usize = 6;
+
 /// Relative error of a slope by factorisation over that of its table.
 const SLOPE: f64 = 10.0;
 
 /// Tables of all carried harmonics.
-pub struct FrequencyCache {
+pub struct FrequencyCache<'a> {
     workspace: Workspace,
     current: Vec<Table>,
-    /// Per harmonic its interpolation, where it is used.
-    interpolations: Vec<Option<FrequencyInterpolation>>,
+    /// Per harmonic, whether a sweep interpolates its table.
+    interpolated: Vec<bool>,
+    /// Interpolated tables over the range of the sweep.
+    tables: Tables<'a>,
+    range: (f64, f64),
     /// Per harmonic the table from modes, where it is used.
     modal: Vec<Option<ModalTable>>,
     /// Whether the tables from modes have slopes.
@@ -38,6 +59,23 @@ pub struct FrequencyCache {
     /// Frequency of the current tables, and how they were made.
     tabulated: Option<(f64, Way)>,
     way: Way,
+    /// Memory of a sample, where sums over modes are interpolated.
+    sample: Option<Table>,
+}
+
+/// Interpolated tables of this cache alone, or those that it shares with others.
+enum Tables<'a> {
+    Own(SharedTables),
+    Shared(&'a SharedTables),
+}
+
+impl Tables<'_> {
+    fn get(&self) -> &SharedTables {
+        match self {
+            Self::Own(tables) => tables,
+            Self::Shared(tables) => tables,
+        }
+    }
 }
 
 /// How tables are made.
@@ -51,7 +89,7 @@ enum Way {
     Factorised,
 }
 
-impl FrequencyCache {
+impl<'a> FrequencyCache<'a> {
     /// Tables for a sweep over `range` = (start, end), with `response` as the last row.
     ///
     /// # Errors
@@ -63,7 +101,7 @@ impl FrequencyCache {
         let sweep = start.to_bits() != end.to_bits();
         let mut workspace = Workspace::new(condensed, Some(response))?;
         let mut tables = Vec::new();
-        let mut interpolations = Vec::new();
+        let mut interpolated = Vec::new();
         let (mut modal, mut constant, mut is_quicker) = (Vec::new(), Vec::new(), false);
         let count = condensed.blocks().len();
         for i in 0..count {
@@ -75,26 +113,23 @@ impl FrequencyCache {
             } else {
                 None
             };
-            let interpolation = if sweep && from_modes.is_none() && condensed.ndof() > INTERPOLATE_ABOVE {
-                let resonances = resonance_poles::near(condensed, &mut workspace, i, range, interrupt)?;
-                let kind = (coordinates, is_symmetric(&condensed.blocks()[i]));
-                Some(FrequencyInterpolation::new(kind, range, resonances, TOLERANCE)?)
-            } else {
-                None
-            };
-            is_quicker |= from_modes.is_some() || interpolation.is_some();
+            let interpolates = sweep && from_modes.is_none() && condensed.ndof() > INTERPOLATE_ABOVE;
+            is_quicker |= from_modes.is_some() || interpolates;
             try_push(&mut modal, from_modes, CONTEXT)?;
-            try_push(&mut interpolations, interpolation, CONTEXT)?;
+            try_push(&mut interpolated, interpolates, CONTEXT)?;
         }
         Ok(Self {
             workspace,
             current: tables,
-            interpolations,
+            interpolated,
+            tables: Tables::Own(SharedTables::default()),
+            range,
             modal,
             modal_slopes: true,
             is_quicker,
             constant,
             tabulated: None,
+            sample: None,
             // Without a sweep no slope is used.
             way: if !sweep && condensed.ndof() > INTERPOLATE_ABOVE {
                 Way::Pointwise
@@ -118,11 +153,31 @@ impl FrequencyCache {
         }
     }
 
-    /// Makes tables of the harmonics from modes where they are given, without slopes.
-    pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
+    /// Shares interpolated tables with other caches of the run, whose range and response are the same.
+    pub fn share_tables(&mut self, tables: &'a SharedTables) {
+        self.tables = Tables::Shared(tables);
+    }
+
+    /// Makes tables of the harmonics from modes where they are given, without slopes: from the first frequencies on interpolated
+    /// over a range, if one is given, as exactly as an estimate of an error needs them.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn set_modes(
+        &mut self,
+        condensed: &Condensed,
+        modal: Vec<Option<ModalTable>>,
+        interpolated: Option<((f64, f64), &'a SharedTables)>,
+    ) -> Result<()> {
         self.modal = modal;
         self.modal_slopes = false;
         self.tabulated = None;
+        if let Some((range, tables)) = interpolated.filter(|_| INTERPOLATED.contains(&condensed.coordinates())) {
+            self.range = range;
+            self.tables = Tables::Shared(tables);
+            self.sample = Some(Table::new(condensed.coordinates())?);
+        }
+        Ok(())
     }
 
     /// Whether tables are made from modes.
@@ -159,21 +214,21 @@ impl FrequencyCache {
             let is_constant = block.number == 0 && block.tied.is_none();
             let is_quick = self.way == Way::Quick;
             let exactly = self.modal_slopes && !is_quick;
-            if let Some(Some(modal)) = self.modal.get_mut(i).filter(|_| !exactly)
-                && modal.evaluate(omega, self.modal_slopes, table, interrupt)?
-            {
-                continue;
+            let at = (condensed, i, omega);
+            let shared = (self.tables.get(), self.range);
+            if let Some(Some(modal)) = self.modal.get_mut(i).filter(|_| !exactly) {
+                if let Some(sample) = &mut self.sample
+                    && interpolate_sums(shared, at, (modal, workspace, sample), table, interrupt)?
+                {
+                    continue;
+                }
+                if modal.evaluate(omega, self.modal_slopes, table, interrupt)? {
+                    continue;
+                }
             }
             interrupt.check()?;
-            let done = match self.interpolations.get_mut(i) {
-                Some(Some(interpolation)) if is_quick && !is_constant => {
-                    interpolation.evaluate(omega, table, |w, values| {
-                        values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
-                        Ok(())
-                    })?
-                }
-                _ => false,
-            };
+            let interpolates = self.interpolated[i] && is_quick && !is_constant;
+            let done = interpolates && interpolate(shared, at, workspace, table, interrupt)?;
             if !done {
                 // A derived clone_from would allocate at each frequency.
                 let slopes =
@@ -187,6 +242,91 @@ impl FrequencyCache {
         self.tabulated = Some((omega, self.way));
         Ok(())
     }
+}
+
+/// Interpolates a table between factorisations; `false` where that is not possible.
+fn interpolate(
+    (tables, range): (&SharedTables, (f64, f64)),
+    (condensed, i, omega): (&Condensed, usize, f64),
+    workspace: &mut Workspace,
+    table: &mut Table,
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    tables.with(condensed, i, |kept, modes| {
+        let interpolation = match &mut kept.interpolation {
+            Some(known) => known,
+            none => {
+                let resonances = resonance_poles::near(condensed, workspace, i, range, modes, interrupt)?;
+                none.insert(FrequencyInterpolation::new(
+                    kind(condensed, i),
+                    range,
+                    resonances,
+                    TOLERANCE,
+                )?)
+            }
+        };
+        interpolation.evaluate(omega, table, |w, values| {
+            values.copy_from_slice(&workspace.evaluate(condensed, i, w, false, interrupt)?.value);
+            Ok(())
+        })
+    })
+}
+
+/// Interpolates a table between sums over modes, without slopes; `false` for the first frequencies, where the sums take less
+/// time, and where it is not possible.
+fn interpolate_sums(
+    (tables, range): (&SharedTables, (f64, f64)),
+    (condensed, i, omega): (&Condensed, usize, f64),
+    (modal, workspace, sample): (&mut ModalTable, &mut Workspace, &mut Table),
+    table: &mut Table,
+    interrupt: &Interrupt<'_>,
+) -> Result<bool> {
+    tables.with(condensed, i, |kept, _| {
+        kept.requests += 1;
+        if kept.requests <= POINTWISE || kept.rejected {
+            return Ok(false);
+        }
+        let interpolation = match &mut kept.interpolation {
+            Some(known) => known,
+            none => {
+                let width = (range.1 - range.0).abs();
+                let around = (range.0.min(range.1) - width, range.0.max(range.1) + width);
+                let resonances = modal.resonances(around)?;
+                if resonances.len() > MOST_RESONANCES {
+                    kept.rejected = true;
+                    return Ok(false);
+                }
+                let kind = kind(condensed, i);
+                none.insert(FrequencyInterpolation::new(kind, range, resonances, FOR_ESTIMATES)?)
+            }
+        };
+        let mut sum = |w: f64, sample: &mut Table| -> Result<()> {
+            if !modal.evaluate(w, false, sample, interrupt)? {
+                let found = workspace.evaluate(condensed, i, w, false, interrupt)?;
+                sample.value.copy_from_slice(&found.value);
+            }
+            Ok(())
+        };
+        let sums = interpolation.evaluations();
+        let mut done = interpolation.evaluate(omega, table, |w, values| {
+            sum(w, sample)?;
+            values.copy_from_slice(&sample.value);
+            Ok(())
+        })?;
+        if done && interpolation.evaluations() > sums {
+            // The error of a panel is relative to its largest tables.
+            sum(omega, sample)?;
+            done = deviation(&table.value, &sample.value, condensed.coordinates() + 1) <= CLOSE;
+        }
+        // Each further attempt would cost many sums.
+        kept.rejected = !done;
+        Ok(done)
+    })
+}
+
+/// Relative motions, and whether tables are symmetric.
+fn kind(condensed: &Condensed, i: usize) -> (usize, bool) {
+    (condensed.coordinates(), is_symmetric(&condensed.blocks()[i]))
 }
 
 /// The table of the i-th carried harmonic from the modes of its wave, where it has them and they agree with a factorisation

@@ -26,6 +26,7 @@ mod reference_stiffness;
 mod relative_coordinates;
 mod resolution;
 pub mod resonance_poles;
+pub mod shared_tables;
 mod single_contact;
 mod single_motion;
 mod sweep;

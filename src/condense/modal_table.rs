@@ -8,7 +8,7 @@ use crate::condense::flexibility::Table;
 use crate::condense::low_rank::{Coefficients, Frequency, LowRank, Plain};
 use crate::condense::single_contact::{Denominators, SingleContact};
 use crate::condense::wave_modes::{NEAR_RESONANCE, WaveModes};
-use crate::error::{Result, boxed, try_vec};
+use crate::error::{Result, boxed, try_push, try_vec};
 use crate::interrupt::Interrupt;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
@@ -146,6 +146,32 @@ impl ModalTable {
             check_finite(&table.value, omega)?;
         }
         Ok(is_clear)
+    }
+
+    /// Resonances of the structure with its reference stiffness between two frequencies, to first order in the low-rank term:
+    /// 1 + c − Σ e |b φ|² = (ν² − iνα) μ.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn resonances(&self, (low, high): (f64, f64)) -> Result<Vec<Complex64>> {
+        let mut found = Vec::new();
+        let Sums::Any(general) = &self.sums else {
+            return Ok(found);
+        };
+        let modes = self.modes.values.iter().zip(general.left.chunks_exact(general.rows));
+        for (mu, rows) in modes.filter(|(mu, _)| **mu > 0.0) {
+            let omega = mu.sqrt().recip() / self.number;
+            if !(low..=high).contains(&omega) {
+                continue;
+            }
+            let at = self.frequency(omega);
+            let low_rank = &general.low_rank;
+            let of_row = |b: usize| low_rank.entry(b, at) * rows[low_rank.row_of(b)].norm_sqr();
+            let stiffness = 1.0 + at.c - (0..low_rank.order()).map(of_row).sum::<Complex64>();
+            let damping = Complex64::I * self.modes.proportional.0 * self.number * omega;
+            try_push(&mut found, (stiffness / mu + damping).sqrt() / self.number, CONTEXT)?;
+        }
+        Ok(found)
     }
 
     /// c and ∂c/∂ω.

@@ -4,8 +4,8 @@
 //! damping and the complex reference stiffness: p ← p − yᴴ Z x / (yᴴ Z′ x) with x ← Z⁻¹Z′x, y ← Z⁻ᴴZ′ᴴy (Ruhe 1973,
 //! Algorithms for the nonlinear eigenvalue problem, doi:10.1137/0710059).
 
-use crate::condense::Condensed;
 use crate::condense::flexibility::Workspace;
+use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, try_push};
 use crate::interrupt::Interrupt;
 use crate::linalg::eigen::Pairs;
@@ -22,6 +22,23 @@ const MAX_ITERATIONS: usize = 8;
 /// Relative change of a pole that counts as converged.
 const TOLERANCE: f64 = 1e-12;
 
+/// Undamped modes of waves, by the motion of the next sector over that of one.
+#[derive(Default)]
+pub struct KnownModes(Vec<(Complex64, Pairs)>);
+
+impl KnownModes {
+    /// Modes of a wave, or of the one that travels the other way, whose modes are the conjugates, up to one above `highest`
+    /// where there are not too many; whether they are conjugates.
+    fn find(&self, next: Complex64, highest: f64) -> Option<(&Pairs, bool)> {
+        let suffices = |modes: &Pairs| modes.values.len() >= MODES[1] || ends_above(modes, highest);
+        let (at, modes) = self
+            .0
+            .iter()
+            .find(|(at, modes)| (*at == next || at.conj() == next) && suffices(modes))?;
+        Some((modes, *at != next))
+    }
+}
+
 /// The resonances of the i-th carried harmonic within `range` and one width of it on either side. Where some cannot
 /// be found the list is shorter, which affects the speed only.
 ///
@@ -32,6 +49,7 @@ pub fn near(
     workspace: &mut Workspace,
     i: usize,
     range: (f64, f64),
+    known: &mut KnownModes,
     interrupt: &Interrupt<'_>,
 ) -> Result<Vec<Complex64>> {
     let block = &condensed.blocks()[i];
@@ -41,19 +59,19 @@ pub fn near(
     if block.number == 0 || MODES[1] > n / 2 {
         return Ok(found);
     }
-    let reference = &block.reference;
-    let half = Complex64::new(0.5, 0.0);
-    // (A + Aᴴ)/2, with Aᴴ as the conjugate of the transpose.
-    let transposed = Csc::sum(n, &[(Complex64::ONE, reference, Form::Transposed)])?;
-    let hermitian = Csc::sum(
-        n,
-        &[(half, reference, Form::Plain), (half, &transposed, Form::Conjugated)],
-    )?;
-    let mut mass = reference.try_clone()?;
-    mass.values.copy_from_slice(&block.mass);
     let (low, high) = (range.0.min(range.1), range.0.max(range.1));
     let width = high - low;
-    let Some(modes) = lowest_modes((&hermitian, &mass), h * (high + width), interrupt)? else {
+    let highest = h * (high + width);
+    // Each basis has its own coordinates.
+    let mut of_basis = KnownModes::default();
+    let known = if block.view.is_some() { &mut of_basis } else { known };
+    if known.find(block.next, highest).is_none() {
+        let Some(modes) = lowest_modes(block, highest, interrupt)? else {
+            return Ok(found);
+        };
+        try_push(&mut known.0, (block.next, modes), "the resonances")?;
+    }
+    let Some((modes, conjugated)) = known.find(block.next, highest) else {
         return Ok(found);
     };
     for (mode, lambda) in modes.values.iter().enumerate() {
@@ -61,7 +79,8 @@ pub fn near(
         if omega < low - width || omega > high + width {
             continue;
         }
-        let shape: Vec<Complex64> = modes.vectors.column(mode).iter().copied().collect();
+        let column = modes.vectors.column(mode);
+        let shape: Vec<Complex64> = column.iter().map(|z| if conjugated { z.conj() } else { *z }).collect();
         let pole = refine(condensed, workspace, i, (omega.into(), shape), interrupt)?;
         if let Some(p) = pole.filter(|p| p.re > low - 2.0 * width && p.re < high + 2.0 * width) {
             let known = found.iter().any(|q: &Complex64| (q - p).norm() <= 1e-6 * p.norm());
@@ -73,13 +92,28 @@ pub fn near(
     Ok(found)
 }
 
+/// Whether the last of some modes lies above a frequency.
+fn ends_above(modes: &Pairs, highest: f64) -> bool {
+    modes.values.last().is_some_and(|last| last.max(0.0).sqrt() > highest)
+}
+
 /// The lowest modes, up to one above `highest` where there are not too many; `None` where they cannot be found.
-fn lowest_modes((k, m): (&Csc, &Csc), highest: f64, interrupt: &Interrupt<'_>) -> Result<Option<Pairs>> {
+fn lowest_modes(block: &HarmonicBlock, highest: f64, interrupt: &Interrupt<'_>) -> Result<Option<Pairs>> {
+    let reference = &block.reference;
+    let n = reference.rows;
+    let half = Complex64::new(0.5, 0.0);
+    // (A + Aᴴ)/2, with Aᴴ as the conjugate of the transpose.
+    let transposed = Csc::sum(n, &[(Complex64::ONE, reference, Form::Transposed)])?;
+    let hermitian = Csc::sum(
+        n,
+        &[(half, reference, Form::Plain), (half, &transposed, Form::Conjugated)],
+    )?;
+    let mut mass = reference.try_clone()?;
+    mass.values.copy_from_slice(&block.mass);
     for count in MODES {
-        match lanczos::lowest(k, m, count, interrupt) {
+        match lanczos::lowest(&hermitian, &mass, count, interrupt) {
             Ok(modes) => {
-                let ends_above = |last: &f64| last.max(0.0).sqrt() > highest;
-                if count == MODES[1] || modes.values.last().is_some_and(ends_above) {
+                if count == MODES[1] || ends_above(&modes, highest) {
                     return Ok(Some(modes));
                 }
             }

@@ -1,5 +1,6 @@
 //! Computes the modes of waves, each once; see [`crate::condense::wave_modes`].
 
+use crate::condense::shared_tables::SharedTables;
 use crate::condense::wave_modes::{WaveModes, proportional};
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, Status, try_extend, try_push};
@@ -31,9 +32,15 @@ pub struct WaveCache {
     refused: bool,
 }
 
-/// The waves of one model, for condensed models with different harmonics.
+/// The waves of one model and their flexibilities over one range, for condensed models with different harmonics.
 #[derive(Default)]
-pub struct SharedWaves(Cell<WaveCache>);
+pub struct SharedWaves {
+    waves: Cell<WaveCache>,
+    /// Interpolated tables of solutions.
+    pub tables: SharedTables,
+    /// Those of estimates of errors, which are less exact.
+    pub estimated: SharedTables,
+}
 
 impl SharedWaves {
     /// The condensed model with the modes of its waves, as [`Condensed::attach_modes`].
@@ -41,9 +48,9 @@ impl SharedWaves {
     /// # Errors
     /// `OutOfMemory`; `StoppedByCaller`.
     pub fn attach(&self, model: &Model, mut condensed: Condensed, interrupt: &Interrupt<'_>) -> Result<Condensed> {
-        let mut waves = self.0.take();
+        let mut waves = self.waves.take();
         condensed.attach_modes(model, &mut waves, interrupt)?;
-        self.0.set(waves);
+        self.waves.set(waves);
         Ok(condensed)
     }
 
@@ -58,17 +65,17 @@ impl SharedWaves {
         i: usize,
         interrupt: &Interrupt<'_>,
     ) -> Result<Option<Arc<WaveModes>>> {
-        let mut waves = self.0.take();
+        let mut waves = self.waves.take();
         let found = waves.of(model, condensed, i, interrupt);
-        self.0.set(waves);
+        self.waves.set(waves);
         found
     }
 
     /// Whether some wave has modes; `None` as long as none was asked for.
     pub fn some_have_modes(&self) -> Option<bool> {
-        let waves = self.0.take();
+        let waves = self.waves.take();
         let (refused, known) = (waves.refused, !waves.waves.is_empty());
-        self.0.set(waves);
+        self.waves.set(waves);
         (refused || known).then_some(!refused)
     }
 }

@@ -99,6 +99,13 @@ impl Doubling {
         (self.last - self.point).norm() * (1.0 + self.next()) / self.first
     }
 
+    /// The same with another change like the last one; `None` where one extension shows no change after the first.
+    pub fn bounded_ratio(&self) -> Option<f64> {
+        let [_, last] = self.changes;
+        let whole = (self.last - self.point).norm();
+        (self.extensions > 1 && self.first > 0.0).then(|| (whole + last) / self.first)
+    }
+
     /// The estimate of the last extension with the change that is missing.
     pub fn completed(&self, mut estimate: Estimate) -> Estimate {
         estimate.response *= 1.0 + self.next();
@@ -135,6 +142,16 @@ mod tests {
             // The whole change is the error 1e-3 itself, the first one (1 − q) of it.
             let error = two.ratio() * 1e-3 * (1.0 - q);
             assert!((error / 1e-3 - 1.0).abs() < 0.1, "{q}: {error}");
+        }
+    }
+
+    #[test]
+    fn a_bounded_ratio_is_no_less_than_the_whole_change() {
+        assert!(series(0.3, 1).bounded_ratio().is_none());
+        for q in [0.05, 0.3, 0.45] {
+            let ratio = series(q, 2).bounded_ratio().unwrap();
+            let whole = 1.0 / (1.0 - q);
+            assert!(ratio >= whole && ratio < 1.5 * whole, "{q}: {ratio}");
         }
     }
 

@@ -68,6 +68,8 @@ pub struct ForcedEstimator<'a> {
     /// Modes of the waves, and the flexibility tables made so far.
     waves: &'a SharedWaves,
     tables: usize,
+    /// Range of the frequencies of the points.
+    range: Option<(f64, f64)>,
 }
 
 impl<'a> ForcedEstimator<'a> {
@@ -94,7 +96,13 @@ impl<'a> ForcedEstimator<'a> {
             most: f64::INFINITY,
             waves,
             tables: 0,
+            range: None,
         }
+    }
+
+    /// Points lie in a range of frequency.
+    pub fn set_range(&mut self, range: (f64, f64)) {
+        self.range = (range.0.to_bits() != range.1.to_bits()).then_some(range);
     }
 
     /// Bounds the next estimate by half of the work that the last one might take, which told nothing.
@@ -208,6 +216,9 @@ impl<'a> ForcedEstimator<'a> {
                 }
             }
             if series.is_harmless(self.options.tolerance) {
+                if let Some(ratio) = series.bounded_ratio() {
+                    self.ratio.note(extent.least, ratio);
+                }
                 return Ok(Some(series.bounded(found)));
             }
             let next = cutoff_harmonic::carried_from(solved.condensed.set(), 2 * highest + 1);
@@ -305,7 +316,9 @@ impl<'a> ForcedEstimator<'a> {
             boxed(|| ExtendedSystem::iterative(*problem, omega, factored, (sizes, work)))?
         };
         if by_modes && !system.problem.has_modes() {
-            system.problem.set_modes(self.modal_tables(condensed)?);
+            let modal = self.modal_tables(condensed)?;
+            let shared = self.range.map(|range| (range, &self.waves.estimated));
+            system.problem.set_modes(modal, shared)?;
         }
         let found = on(
             &mut system,

@@ -6,6 +6,7 @@
 use crate::condense::Condensed;
 use crate::condense::frequency_cache::FrequencyCache;
 use crate::condense::modal_table::ModalTable;
+use crate::condense::shared_tables::SharedTables;
 use crate::error::{Result, Status, try_vec};
 use crate::fourier::HarmonicSet;
 use crate::interrupt::Interrupt;
@@ -27,7 +28,7 @@ pub struct HarmonicBalance<'a> {
     pub(super) condensed: &'a Condensed,
     /// In a box, as other parts of problems: values that calls pass on take little of a small stack.
     pub(super) forces: Box<ContactForces<'a>>,
-    pub(super) tables: FrequencyCache,
+    pub(super) tables: FrequencyCache<'a>,
     /// Index of the observed harmonic among the carried ones.
     observed: usize,
     given: Option<Vec<f64>>,
@@ -87,9 +88,22 @@ impl<'a> HarmonicBalance<'a> {
         })
     }
 
-    /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only.
-    pub fn set_modes(&mut self, modal: Vec<Option<ModalTable>>) {
-        self.tables.set_modes(modal);
+    /// Shares interpolated flexibilities with other problems of the run, whose range and response are the same.
+    pub fn share_tables(&mut self, tables: &'a SharedTables) {
+        self.tables.share_tables(tables);
+    }
+
+    /// Makes the flexibility of the harmonics from modes where they are given: at fixed frequencies only, or with tables
+    /// interpolated over a range.
+    ///
+    /// # Errors
+    /// `OutOfMemory`.
+    pub fn set_modes(
+        &mut self,
+        modal: Vec<Option<ModalTable>>,
+        interpolated: Option<((f64, f64), &'a SharedTables)>,
+    ) -> Result<()> {
+        self.tables.set_modes(self.condensed, modal, interpolated)
     }
 
     /// Whether the flexibility is made from modes.
