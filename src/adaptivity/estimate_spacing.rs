@@ -28,8 +28,8 @@ const MOST_UNKNOWN: usize = 32;
 /// farther on: one and a half times, and three times the factor of two within which the rule held.
 const SAFETY: (f64, f64) = (3.0, 6.0);
 
-/// Share of the largest error below which errors and their predictions need not agree: estimates of so small ones differ by what
-/// they leave unfinished.
+/// Share of the largest error below which a prediction may be too large: estimates of so small errors differ by what they leave
+/// unfinished.
 const HARMLESS: f64 = 0.05;
 
 /// Ratio of the shares of two points beyond which nothing is predicted.
@@ -163,9 +163,9 @@ impl EstimateSpacing {
             }
             Some(known) => {
                 let predicted = known.error * known.factor_to(signs);
-                let is_harmless = error.max(predicted) <= HARMLESS * allowed;
                 let ratio = error / predicted;
-                ((1.0 / HOLDS..=HOLDS).contains(&ratio) || is_harmless, largest)
+                let is_harmless = predicted <= HARMLESS * allowed;
+                (ratio <= HOLDS && (ratio >= HOLDS.recip() || is_harmless), largest)
             }
         };
         self.spacing = if holds { (2 * self.spacing).min(most) } else { 1 };
@@ -236,9 +236,11 @@ mod tests {
 
     #[test]
     fn errors_far_below_the_tolerance_need_not_be_predicted() {
-        let made = estimated(20, |i| if i % 3 == 0 { 4e-5 } else { 5e-6 });
-        assert_eq!(made, [0, 1, 3, 7, 11, 15, 19]);
-        assert!(estimated(20, |i| if i % 3 == 0 { 1.2e-4 } else { 1.5e-5 }).len() > 7);
+        let falls = |from: f64| estimated(20, move |i| from * 0.3_f64.powi(i as i32));
+        assert_eq!(falls(4e-5), [0, 1, 3, 7, 11, 15, 19]);
+        assert_eq!(falls(4e-4)[..3], [0, 1, 2]);
+        // A rise is told by the next estimate.
+        assert!(estimated(20, |i| if i % 4 == 3 { 4e-5 } else { 5e-6 }).len() > 7);
     }
 
     #[test]
