@@ -16,8 +16,8 @@ const SHORT: f64 = 0.1;
 /// Size of a first step, relative to the change, up to which a guess is as good as a point that a step has reached.
 const CLOSE: f64 = 0.3;
 
-/// Size of the simplified step over that of the step before, up to which it is the next step: a new matrix and its solution would
-/// cost more than the few further steps that it saves.
+/// Size of the simplified step over that of the step before, up to which it is the next step where a solution takes many
+/// products: a new one would cost more than the few further steps that it saves.
 const CONTRACTION: f64 = 0.25;
 
 /// Damping factor below which a step is accepted without the monotonicity test.
@@ -150,7 +150,7 @@ pub(super) fn extend<P: Problem>(
             }
             continue;
         }
-        contracts = damping == 1.0 && norm(&next) <= CONTRACTION * size;
+        contracts = system.iterates_long() && damping == 1.0 && norm(&next) <= CONTRACTION * size;
         z.copy_from_slice(&trial);
         change_from(point, (&z, &next), &mut change);
         if !change.iter().all(|x| x.is_finite()) {
