@@ -6,6 +6,7 @@ use crate::condense::frequency_interpolation::FrequencyInterpolation;
 use crate::condense::modal_table::ModalTable;
 use crate::condense::resonance_poles;
 use crate::condense::shared_tables::SharedTables;
+use crate::condense::single_contact_lanes::SingleContactLanes;
 use crate::condense::table_layout::is_symmetric;
 use crate::condense::{Condensed, HarmonicBlock};
 use crate::error::{Result, try_copy, try_push};
@@ -50,6 +51,8 @@ pub struct FrequencyCache<'a> {
     range: (f64, f64),
     /// Per harmonic the table from modes, where it is used.
     modal: Vec<Option<ModalTable>>,
+    /// The same tables of all harmonics at once, where each is from modes of a single contact.
+    lanes: Option<SingleContactLanes>,
     /// Whether the tables from modes have slopes.
     modal_slopes: bool,
     /// Whether a sweep uses other tables than those by factorisation.
@@ -124,6 +127,7 @@ impl<'a> FrequencyCache<'a> {
             interpolated,
             tables: Tables::Own(SharedTables::default()),
             range,
+            lanes: SingleContactLanes::new(&modal)?,
             modal,
             modal_slopes: true,
             is_quicker,
@@ -170,6 +174,7 @@ impl<'a> FrequencyCache<'a> {
         interpolated: Option<((f64, f64), &'a SharedTables)>,
     ) -> Result<()> {
         self.modal = modal;
+        self.lanes = None;
         self.modal_slopes = false;
         self.tabulated = None;
         if let Some((range, tables)) = interpolated.filter(|_| INTERPOLATED.contains(&condensed.coordinates())) {
@@ -201,6 +206,13 @@ impl<'a> FrequencyCache<'a> {
             return Ok(());
         }
         self.tabulated = None;
+        if self.way == Way::Quick
+            && let Some(lanes) = &self.lanes
+            && lanes.evaluate(omega, &mut self.current)
+        {
+            self.tabulated = Some((omega, self.way));
+            return Ok(());
+        }
         let workspace = &mut self.workspace;
         for (i, table) in self.current.iter_mut().enumerate() {
             if self.constant[i] {

@@ -28,6 +28,7 @@ mod resolution;
 pub mod resonance_poles;
 pub mod shared_tables;
 mod single_contact;
+mod single_contact_lanes;
 mod single_motion;
 mod sweep;
 mod table_layout;
@@ -48,4 +49,4 @@ pub use sweep::Sweep;
 pub use tied_load::{LoadedLaw, TiedLoad};
 
 #[cfg(test)]
-mod test_chains;
+pub(crate) mod test_chains;

@@ -34,6 +34,17 @@ enum Sums {
     Any(Box<General>),
 }
 
+/// The numbers of a table of one contact without springs.
+pub struct SinglePart<'a> {
+    pub contact: &'a SingleContact,
+    pub coefficients: &'a Coefficients,
+    pub number: f64,
+    /// α and β
+    pub proportional: (f64, f64),
+    /// η
+    pub loss_factor: f64,
+}
+
 /// Sums for any number of contacts and springs.
 struct General {
     coordinates: usize,
@@ -107,6 +118,20 @@ impl ModalTable {
             sums,
             modes,
         })
+    }
+
+    /// Its numbers where it is one of a single contact without springs.
+    pub(super) fn single(&self) -> Option<SinglePart<'_>> {
+        match &self.sums {
+            Sums::Single(contact, coefficients) => Some(SinglePart {
+                contact,
+                coefficients,
+                number: self.number,
+                proportional: self.modes.proportional,
+                loss_factor: self.modes.loss_factor,
+            }),
+            Sums::Any(_) => None,
+        }
     }
 
     /// Evaluates H at `omega`, and ∂H/∂ω if `slopes`; `false` so near a resonance of the structure with stuck contacts that

@@ -16,11 +16,11 @@ const ENTRIES: usize = 4;
 type Entries = [[f64; ENTRIES]; 2];
 
 /// One mode.
-struct Mode {
+pub struct Mode {
     /// μ
-    value: f64,
+    pub value: f64,
     /// Output times input of each entry.
-    products: Entries,
+    pub products: Entries,
 }
 
 /// The modes as one contact and the response see them.
@@ -63,6 +63,16 @@ impl SingleContact {
             modes,
             is_forced: right.chunks_exact(2).any(|r| r[1] != Complex64::ZERO),
         })
+    }
+
+    /// The modes.
+    pub fn modes(&self) -> &[Mode] {
+        &self.modes
+    }
+
+    /// Whether the excitation moves one of them.
+    pub fn is_forced(&self) -> bool {
+        self.is_forced
     }
 
     /// The table and its slope with the low-rank term whose coefficient is e and its derivative; `false` where a denominator
