@@ -64,7 +64,7 @@ impl Assembly {
         out: &mut Evaluation,
     ) {
         out.count(state, transform[0].re);
-        add_stiffness(&mut self.spectrum, piece.slope, transform);
+        add_stiffness(&mut self.spectrum, piece.slope, transform, set.stride());
         out.linear = anchor.is_none() && is_whole(transform[0].re);
         if piece.offset == 0.0 && anchor.is_none() {
             out.stuck = is_whole(transform[0].re);
@@ -159,7 +159,10 @@ impl WithSimd for Columns<'_> {
 impl Columns<'_> {
     /// For signals of length N; 0: of any length.
     #[inline(always)]
-    fn write<const N: usize>(self) {
+    fn write<const N: usize>(mut self) {
+        if N > 0 && N.is_multiple_of(2) && !self.begun && self.write_paired::<N>() {
+            return;
+        }
         let m = if N > 0 { N } else { self.motion.len() };
         let (anchors, g, count) = self.products;
         let (motion, force) = (&self.motion[..m], &mut self.force[..m]);
@@ -198,6 +201,41 @@ impl Columns<'_> {
                 column.copy_from_slice(&registers);
             }
         }
+    }
+}
+
+impl Columns<'_> {
+    /// The same for signals of length N without a mean, where no products are held yet; `false` where the lengths differ.
+    #[inline(always)]
+    fn write_paired<const N: usize>(&mut self) -> bool {
+        let (anchors, g, count) = self.products;
+        let (anchors, g) = (anchors.as_chunks::<N>().0, g.as_chunks::<N>().0);
+        let (Some(motion), Some(force)) = (self.motion.first_chunk::<N>(), self.force.first_chunk_mut::<N>()) else {
+            return false;
+        };
+        let mut total = *force;
+        for (j, column) in self.jacobian.as_chunks_mut::<N>().0.iter_mut().enumerate() {
+            let [a, b] = self.toeplitz.column(j).parts;
+            let (Some(a), Some(b)) = (a.first_chunk::<N>(), b.first_chunk::<N>()) else {
+                return false;
+            };
+            let mut sum = [0.0; N];
+            for i in 0..N {
+                sum[i] = a[i] + b[i];
+            }
+            for k in 0..count {
+                let (factor, g) = (anchors[k][j], &g[k]);
+                for i in 0..N {
+                    sum[i] += factor * g[i];
+                }
+            }
+            for i in 0..N {
+                total[i] += motion[j] * sum[i];
+            }
+            *column = sum;
+        }
+        *force = total;
+        true
     }
 }
 

@@ -52,10 +52,10 @@ pub(super) fn pack(set: &HarmonicSet, transform: &[Complex64], g: &mut [f64]) {
     if mean == 1 {
         g[0] = transform[0].re;
     }
-    for (k, pair) in g[mean..].chunks_exact_mut(2).enumerate() {
-        let t = 2.0 * transform[set.reduced(k)];
-        pair[0] = t.re;
-        pair[1] = t.im;
+    // The reduced numbers begin at 1.
+    let numbers = transform[1..].iter().step_by(set.stride());
+    for (pair, t) in g[mean..].as_chunks_mut::<2>().0.iter_mut().zip(numbers) {
+        *pair = [2.0 * t.re, 2.0 * t.im];
     }
 }
 
@@ -65,10 +65,10 @@ pub(super) fn apply(jacobian: &[f64], motion: &[f64], offset: &[f64], force: &mu
     add_product(1.0, jacobian, motion, force);
 }
 
-/// Adds s·tₙ, the share of a piece of tangent stiffness s, to the spectrum of the stiffness.
-pub(super) fn add_stiffness(spectrum: &mut [Complex64], stiffness: f64, transform: &[Complex64]) {
+/// Adds s·tₙ, the share of a piece of tangent stiffness s, to the spectrum of the stiffness for every `stride`-th n.
+pub(super) fn add_stiffness(spectrum: &mut [Complex64], stiffness: f64, transform: &[Complex64], stride: usize) {
     if stiffness != 0.0 {
-        for (s, t) in spectrum.iter_mut().zip(transform) {
+        for (s, t) in spectrum.iter_mut().zip(transform).step_by(stride) {
             *s += stiffness * t;
         }
     }

@@ -132,7 +132,7 @@ impl PlaneFrictionEvaluator {
             }
             if let PlaneForce::Stick { force, pull } = piece.force {
                 transform([piece.start, piece.end], turn.recip(), turn, &mut self.transform);
-                add_stiffness(&mut self.spectra[0], law.stiffness(), &self.transform);
+                add_stiffness(&mut self.spectra[0], law.stiffness(), &self.transform, 1);
                 pack(set, &self.transform, &mut self.g);
                 for (i, offset) in out.offset.chunks_exact_mut(m.max(1)).take(2).enumerate() {
                     for (o, g) in offset.iter_mut().zip(&self.g) {

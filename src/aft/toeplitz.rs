@@ -54,20 +54,26 @@ impl Toeplitz {
     /// Sets S, given for n from 0 to twice the highest reduced harmonic.
     pub(super) fn set(&mut self, set: &HarmonicSet, s: &[Complex64]) {
         let stride = set.stride();
-        for k in 0..(2 * self.order).saturating_sub(1) {
+        // S from the most negative difference on, and the same times i; S of the sums, and the same times −i.
+        let [differences, d_turned] = &mut self.differences;
+        let numbers = pairs(differences).zip(pairs(d_turned));
+        for (k, (to, turned)) in numbers.enumerate() {
             let n = stride * (k + 1).abs_diff(self.order);
             let minus = if k + 1 < self.order { s[n].conj() } else { s[n] };
-            let plus = s[2 * set.reduced(0) + stride * k];
-            put(&mut self.differences, k, [minus, Complex64::I * minus]);
-            put(&mut self.sums, k, [plus, -Complex64::I * plus]);
+            (*to, *turned) = ([minus.re, minus.im], [-minus.im, minus.re]);
+        }
+        let [sums, s_turned] = &mut self.sums;
+        let spectrum = s[2 * set.reduced(0).min(s.len() / 2)..].iter().step_by(stride);
+        for ((to, turned), plus) in pairs(sums).zip(pairs(s_turned)).zip(spectrum) {
+            (*to, *turned) = ([plus.re, plus.im], [plus.im, -plus.re]);
         }
         if self.has_mean {
             self.row[0] = s[0].re;
-            for k in 0..self.order {
+            let [column, zeros] = &mut self.column;
+            for (k, (to, zero)) in pairs(column).zip(pairs(zeros)).enumerate() {
                 let z = s[set.reduced(k)];
-                self.row[1 + 2 * k] = z.re;
-                self.row[2 + 2 * k] = z.im;
-                put(&mut self.column, k, [2.0 * z, Complex64::ZERO]);
+                (self.row[1 + 2 * k], self.row[2 + 2 * k]) = (z.re, z.im);
+                (*to, *zero) = ([2.0 * z.re, 2.0 * z.im], [0.0; 2]);
             }
         }
     }
@@ -112,13 +118,10 @@ impl Toeplitz {
     }
 }
 
-/// Writes complex number `k` of two lists.
+/// The complex numbers of a list.
 #[inline]
-fn put(lists: &mut [Vec<f64>; 2], k: usize, values: [Complex64; 2]) {
-    for (list, z) in lists.iter_mut().zip(values) {
-        list[2 * k] = z.re;
-        list[2 * k + 1] = z.im;
-    }
+fn pairs(list: &mut [f64]) -> core::slice::IterMut<'_, [f64; 2]> {
+    list.as_chunks_mut::<2>().0.iter_mut()
 }
 
 #[cfg(test)]

@@ -110,7 +110,7 @@ impl VaryingNormalLoadEvaluator {
                 out.open_fraction += self.transform[0].re;
                 continue;
             }
-            add_stiffness(&mut self.spectra[2], piece.slope, &self.transform);
+            add_stiffness(&mut self.spectra[2], piece.slope, &self.transform, 1);
             pack(set, &self.transform, &mut self.g);
             for (o, g) in out.offset[m..].iter_mut().zip(&self.g) {
                 *o += piece.offset * g;
@@ -137,8 +137,8 @@ impl VaryingNormalLoadEvaluator {
             out.stuck = piece.state == State::Stick && piece.anchor.is_none() && is_whole(share);
             out.linear = out.stuck;
             let [by_x, by_y, _] = &mut self.spectra;
-            add_stiffness(by_x, piece.of_x, &self.transform);
-            add_stiffness(by_y, piece.of_y, &self.transform);
+            add_stiffness(by_x, piece.of_x, &self.transform, 1);
+            add_stiffness(by_y, piece.of_y, &self.transform, 1);
             pack(set, &self.transform, &mut self.g);
             let mut constant = piece.constant;
             if let Some(r) = piece.anchor {

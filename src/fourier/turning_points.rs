@@ -131,17 +131,26 @@ impl TurningPoints {
         let hidden = bounds.largest_dip(self.spacing);
         // Most cells hold no root, and certainly none: both ends are far from zero, on the same side.
         let far = hidden.max(bounds.noise);
-        for j in 1..=n {
-            let value = self.slope[j];
-            if j < n && (value.min(left.value) > far || value.max(left.value) < -far) {
-                left.tau = j as f64 * self.spacing;
-                left.value = value;
+        let mut j = 1;
+        while j <= n {
+            if j + BLOCK <= n
+                && let Some(block) = self.slope[j..].first_chunk::<BLOCK>()
+                && is_far(left.value, block, far)
+            {
+                j += BLOCK;
+                (left.tau, left.value) = ((j - 1) as f64 * self.spacing, block[BLOCK - 1]);
+                continue;
+            }
+            let (value, tau) = (self.slope[j], j as f64 * self.spacing);
+            j += 1;
+            if j <= n && (value.min(left.value) > far || value.max(left.value) < -far) {
+                (left.tau, left.value) = (tau, value);
                 continue;
             }
             let right = Slope {
-                tau: j as f64 * self.spacing,
+                tau,
                 value,
-                positive: if j == n {
+                positive: if j > n {
                     start != odd
                 } else {
                     sign(value, left.positive)
@@ -160,7 +169,9 @@ impl TurningPoints {
                 e.x = if odd { -e.x } else { e.x };
             }
         }
-        found.sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau));
+        if found.len() > 1 {
+            found.sort_unstable_by(|a, b| a.tau.total_cmp(&b.tau));
+        }
     }
 
     /// x′ at the grid points.
@@ -183,6 +194,20 @@ impl TurningPoints {
             }
         }
     }
+}
+
+/// Cells that are judged together.
+const BLOCK: usize = 8;
+
+/// Whether a value and all that follow are farther from zero than `far`, on the same side.
+#[inline]
+fn is_far(first: f64, block: &[f64; BLOCK], far: f64) -> bool {
+    let (mut above, mut below) = (first > far, first < -far);
+    for value in block {
+        above &= *value > far;
+        below &= *value < -far;
+    }
+    above || below
 }
 
 /// Sines of the angles that divide a turn into equal parts, a multiple of 4.
@@ -254,11 +279,13 @@ impl Bounds {
     fn new(set: &HarmonicSet, packed: &[f64]) -> Self {
         let rest = &packed[usize::from(set.has_mean())..];
         let (mut size, mut turn, mut bend) = (0.0, 0.0, 0.0);
-        for (k, pair) in rest.chunks_exact(2).enumerate() {
-            let (amplitude, p) = (pair[0].abs() + pair[1].abs(), set.reduced(k) as f64);
+        let (mut p, stride) = (1.0, set.stride() as f64);
+        for [a, b] in rest.as_chunks::<2>().0 {
+            let amplitude = a.abs() + b.abs();
             size += amplitude;
             turn += amplitude * p * p;
-            bend += amplitude * p.powi(3);
+            bend += amplitude * p * p * p;
+            p += stride;
         }
         Self {
             bend,
