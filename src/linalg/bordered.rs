@@ -61,6 +61,23 @@ impl Factors {
         }
     }
 
+    /// Fills in [J·u, r·p; row].
+    fn fill_bordered(&mut self, jacobian: &[f64], (u, p): (f64, f64), column: &[f64], row: &[f64]) {
+        let n = column.len();
+        if let Self::Small(lu) = self {
+            lu.fill_bordered(jacobian, (u, p), column, row);
+            return;
+        }
+        let columns = jacobian.chunks_exact(n.max(1)).map(|c| (c, u)).chain([(column, p)]);
+        for ((j, (from, factor)), last) in columns.enumerate().zip(row) {
+            let to = self.column(j);
+            for (x, from) in to.iter_mut().zip(from) {
+                *x = from * factor;
+            }
+            to[n] = *last;
+        }
+    }
+
     fn factor(&mut self, interrupt: &Interrupt<'_>) -> Result<()> {
         match self {
             Self::Small(lu) => lu.factor(),
@@ -149,18 +166,7 @@ impl Bordered {
         let m = self.active.len() + 1;
         self.lu.set_order(m);
         if self.eliminated.is_empty() {
-            for (j, from) in jacobian.chunks_exact(n.max(1)).enumerate() {
-                let to = self.lu.column(j);
-                for (x, from) in to.iter_mut().zip(from) {
-                    *x = from * u_scale;
-                }
-                to[n] = row[j];
-            }
-            let to = self.lu.column(n);
-            for (x, c) in to.iter_mut().zip(column) {
-                *x = c * p_scale;
-            }
-            to[n] = row[n];
+            self.lu.fill_bordered(jacobian, (u_scale, p_scale), column, row);
             self.border.clear();
             self.rest.clear();
             return self.lu.factor(interrupt);

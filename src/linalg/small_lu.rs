@@ -28,7 +28,7 @@ pub struct SmallLu {
     n: usize,
     /// A, then U, with what remains of A below it.
     upper: Vec<Column>,
-    /// L without its diagonal, its rows not interchanged by later pivots.
+    /// L without its diagonal.
     lower: Vec<Column>,
     pivots: [usize; LARGEST],
 }
@@ -61,6 +61,12 @@ impl SmallLu {
     /// A column to fill.
     pub fn column(&mut self, j: usize) -> &mut [f64] {
         &mut self.upper[j].as_flattened_mut()[..self.n]
+    }
+
+    /// Fills in [A·a, c·b; row], of the order set last, from the columns of A and c one after the other.
+    pub fn fill_bordered(&mut self, matrix: &[f64], (a, b): (f64, f64), column: &[f64], row: &[f64]) {
+        let upper = &mut self.upper[..self.n];
+        self.arch.dispatch(Fill(upper, matrix, (a, b), column, row));
     }
 
     /// Factors the matrix that was filled in.
@@ -118,6 +124,37 @@ impl SmallLu {
     }
 }
 
+/// Fills in a bordered matrix.
+struct Fill<'a>(&'a mut [Column], &'a [f64], (f64, f64), &'a [f64], &'a [f64]);
+
+impl WithSimd for Fill<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        let Self(upper, matrix, (a, b), column, row) = self;
+        let n = column.len();
+        for (j, to) in upper.iter_mut().enumerate() {
+            let (from, factor) = match matrix.get(j * n..(j + 1) * n) {
+                Some(from) if j < n => (from, a),
+                _ => (column, b),
+            };
+            let (blocks, rest) = from.as_chunks::<WIDTH>();
+            for (to, from) in to.iter_mut().zip(blocks) {
+                for (to, from) in to.iter_mut().zip(from) {
+                    *to = factor * from;
+                }
+            }
+            let numbers = to.as_flattened_mut();
+            let first = n - rest.len();
+            for (to, from) in numbers[first..].iter_mut().zip(rest) {
+                *to = factor * from;
+            }
+            numbers[n] = row[j];
+        }
+    }
+}
+
 /// Factors columns of B blocks; the pivot that is zero or not finite, with its size, if there is one.
 struct Factor<'a, const B: usize>(&'a mut [Column], &'a mut [Column], &'a mut [usize]);
 
@@ -125,7 +162,7 @@ impl<const B: usize> WithSimd for Factor<'_, B> {
     type Output = Option<(usize, f64)>;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) -> Self::Output {
+    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
         let Self(upper, lower, pivots) = self;
         let n = upper.len();
         for k in 0..n {
@@ -133,9 +170,9 @@ impl<const B: usize> WithSimd for Factor<'_, B> {
             let column = &mut left[k];
             let numbers = column.as_flattened_mut();
             let (mut pivot, mut size) = (k, numbers[k].abs());
-            for (i, x) in numbers.iter().enumerate().take(n).skip(k + 1) {
+            for (i, x) in numbers[k + 1..n].iter().enumerate() {
                 if x.abs() > size {
-                    (pivot, size) = (i, x.abs());
+                    (pivot, size) = (k + 1 + i, x.abs());
                 }
             }
             if size == 0.0 || !size.is_finite() {
@@ -144,22 +181,32 @@ impl<const B: usize> WithSimd for Factor<'_, B> {
             pivots[k] = pivot;
             let inverse = 1.0 / numbers[pivot];
             numbers.swap(k, pivot);
+            // Blocks above the row of the pivot are not used.
+            let first = k / WIDTH;
             let mut l = [[0.0; WIDTH]; B];
-            for (l, c) in l.iter_mut().zip(&*column) {
+            for (l, c) in l[first..].iter_mut().zip(&column[first..]) {
                 for (l, c) in l.iter_mut().zip(c) {
                     *l = c * inverse;
                 }
             }
-            l.as_flattened_mut()[..=k].fill(0.0);
+            for l in &mut l[first][..=k % WIDTH] {
+                *l = 0.0;
+            }
             lower[k][..B].copy_from_slice(&l);
-            for column in right {
-                column.as_flattened_mut().swap(k, pivot);
-                let factor = column[k / WIDTH][k % WIDTH];
-                for (c, l) in column.iter_mut().zip(&l) {
-                    for (c, l) in c.iter_mut().zip(l) {
-                        *c -= factor * l;
-                    }
+            if pivot != k {
+                for column in &mut *right {
+                    column.as_flattened_mut().swap(k, pivot);
                 }
+                for column in &mut lower[..k] {
+                    column.as_flattened_mut().swap(k, pivot);
+                }
+            }
+            match B - first {
+                1 => eliminate::<S, 1>(simd, right, &l, k),
+                2 => eliminate::<S, 2>(simd, right, &l, k),
+                3 => eliminate::<S, 3>(simd, right, &l, k),
+                4 => eliminate::<S, 4>(simd, right, &l, k),
+                _ => eliminate::<S, B>(simd, right, &l, k),
             }
         }
         None
@@ -173,32 +220,59 @@ impl<const B: usize> WithSimd for Solve<'_, B> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _simd: S) {
+    fn with_simd<S: Simd>(self, simd: S) {
         let Self(upper, lower, pivots, b) = self;
         let mut x = [[0.0; WIDTH]; B];
         for (x, b) in x.as_flattened_mut().iter_mut().zip(&*b) {
             *x = *b;
         }
-        for (k, (l, &pivot)) in lower.iter().zip(pivots).enumerate() {
-            x.as_flattened_mut().swap(k, pivot);
+        for (k, &pivot) in pivots.iter().enumerate() {
+            if pivot != k {
+                x.as_flattened_mut().swap(k, pivot);
+            }
+        }
+        for (k, l) in lower.iter().enumerate() {
             let value = x[k / WIDTH][k % WIDTH];
-            subtract(&mut x, l, value);
+            for block in k / WIDTH..B {
+                subtract(simd, &mut x[block], value, &l[block]);
+            }
         }
         for (k, u) in upper.iter().enumerate().rev() {
             let value = x[k / WIDTH][k % WIDTH] / u[k / WIDTH][k % WIDTH];
             b[k] = value;
             // This also changes rows from k on, which are not read again.
-            subtract(&mut x, u, value);
+            for block in 0..(k / WIDTH + 1).min(B) {
+                subtract(simd, &mut x[block], value, &u[block]);
+            }
         }
     }
 }
 
 /// x −= factor·column
 #[inline(always)]
-fn subtract<const B: usize>(x: &mut [[f64; WIDTH]; B], column: &Column, factor: f64) {
+fn subtract<S: Simd>(simd: S, x: &mut [f64; WIDTH], factor: f64, column: &[f64; WIDTH]) {
+    let ((x, x_rest), (column, rest)) = (S::as_mut_simd_f64s(x), S::as_simd_f64s(column));
+    let vector = simd.splat_f64s(factor);
     for (x, c) in x.iter_mut().zip(column) {
-        for (x, c) in x.iter_mut().zip(c) {
-            *x -= factor * c;
+        *x = simd.sub_f64s(*x, simd.mul_f64s(vector, *c));
+    }
+    for (x, c) in x_rest.iter_mut().zip(rest) {
+        *x -= factor * c;
+    }
+}
+
+/// Subtracts multiples of l, the column of pivot k, from the last R blocks of the columns beyond; from all where R is B.
+#[inline(always)]
+fn eliminate<S: Simd, const R: usize>(simd: S, columns: &mut [Column], l: &[[f64; WIDTH]], k: usize) {
+    let first = l.len().saturating_sub(R);
+    let Some(l) = l[first..].first_chunk::<R>() else { return };
+    for column in columns {
+        let factor = column[k / WIDTH][k % WIDTH];
+        let Some(rows) = column[first..].first_chunk_mut::<R>() else {
+            return;
+        };
+        for (rows, l) in rows.iter_mut().zip(l) {
+            subtract(simd, rows, factor, l);
         }
     }
 }
