@@ -17,6 +17,7 @@ use crate::fourier::HarmonicSet;
 use crate::linalg::norm;
 use crate::problem::parametric_problem::End;
 use num_complex::Complex64;
+use std::f64::consts::FRAC_PI_2;
 
 /// Least change of a harmonic that counts, as a share of the motion.
 const RELEVANT: f64 = 1e-4;
@@ -30,12 +31,23 @@ const ALIKE: f64 = 2.0;
 /// Share of the step, of this length, from `a` to `b` at which a harmonic resonates between them; that of the first one.
 pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) -> Option<f64> {
     let least = RELEVANT * norm(a.unknowns).max(norm(b.unknowns));
-    let mut shift: Option<(usize, Shift)> = None;
+    let mut base: Option<(usize, usize)> = None;
+    let mut shift: Option<Shift> = None;
     let mut first: Option<f64> = None;
     for (i, &h) in set.numbers().iter().enumerate().filter(|(_, h)| **h > 0) {
-        let order = if let Some((base, _)) = &shift { h / base } else { 0 };
-        let (_, shift) = shift.get_or_insert_with(|| (h, Shift::of(set, i, a, b)));
-        let found = Passage::of(set, i, (a, b), &shift.in_harmonic(order)).pole(length, least);
+        let (lowest, number) = *base.get_or_insert((i, h));
+        // The lowest one is seen in its own time.
+        let own = if i == lowest {
+            Shift::NONE
+        } else {
+            let shift = shift.get_or_insert_with(|| Shift::of(set, lowest, a, b));
+            let order = h / number;
+            if largest_change(set, i, (a, b), order as f64 * shift.angle) < least {
+                continue;
+            }
+            shift.in_harmonic(order)
+        };
+        let found = Passage::of(set, i, (a, b), &own, least).and_then(|passage| passage.pole(length));
         if let Some(share) = found {
             first = Some(first.map_or(share, |f| f.min(share)));
         }
@@ -43,34 +55,70 @@ pub(super) fn between(set: &HarmonicSet, a: &End<'_>, b: &End<'_>, length: f64) 
     first
 }
 
+/// Bound of the change of a harmonic whose motion at `b` is shifted by this angle at most: that without the shift, and the
+/// angle times its size.
+fn largest_change(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), angle: f64) -> f64 {
+    let (m, mut first) = (set.packed_len(), set.offset(i));
+    let (mut change, mut size) = (0.0, 0.0);
+    while let (Some(xa), Some(xb)) = (pair(a.unknowns, first), pair(b.unknowns, first)) {
+        change += (xb - xa).norm_sqr();
+        size += xb.norm_sqr();
+        first += m;
+    }
+    change.sqrt() + angle * size.sqrt()
+}
+
+/// The complex number that begins there; `None` beyond the end.
+#[inline]
+fn pair(packed: &[f64], at: usize) -> Option<Complex64> {
+    match packed.get(at..at + 2)? {
+        [re, im] => Some(Complex64::new(*re, *im)),
+        _ => None,
+    }
+}
+
 /// Shift of time from one end to the other: a factor e^{−iφ} for the motion at the other end, and −iφ′ at both.
 struct Shift {
     turn: Complex64,
+    /// Bound of |φ|.
+    angle: f64,
     rates: (Complex64, Complex64),
 }
 
 impl Shift {
+    const NONE: Self = Self {
+        turn: Complex64::ONE,
+        angle: 0.0,
+        rates: (Complex64::ZERO, Complex64::ZERO),
+    };
+
     /// The shift of a harmonic.
     fn of(set: &HarmonicSet, i: usize, a: &End<'_>, b: &End<'_>) -> Self {
-        let m = set.packed_len();
         let product = |x: &[f64], y: &[f64]| {
-            let signals = x.chunks_exact(m).zip(y.chunks_exact(m));
-            signals.fold(Complex64::ZERO, |sum, (x, y)| {
-                sum + set.get(x, i).conj() * set.get(y, i)
-            })
+            let (m, mut first) = (set.packed_len(), set.offset(i));
+            let mut sum = Complex64::ZERO;
+            while let (Some(x), Some(y)) = (pair(x, first), pair(y, first)) {
+                sum += x.conj() * y;
+                first += m;
+            }
+            sum
         };
         let rate = |end: &End<'_>| {
-            let rate = end.unit * product(end.unknowns, end.tangent).im / product(end.unknowns, end.unknowns).re;
+            let tangent = &end.tangent[..end.unknowns.len()];
+            let rate = end.unit * product(end.unknowns, tangent).im / product(end.unknowns, end.unknowns).re;
             -Complex64::I * if rate.is_finite() { rate } else { 0.0 }
         };
         let both = product(a.unknowns, b.unknowns);
         let length = both.norm();
+        let turn = if length > 0.0 {
+            both.conj() / length
+        } else {
+            Complex64::ONE
+        };
         Self {
-            turn: if length > 0.0 {
-                both.conj() / length
-            } else {
-                Complex64::ONE
-            },
+            turn,
+            // An arc is shorter than π/2 of its chord.
+            angle: FRAC_PI_2 * (turn - 1.0).norm(),
             rates: (rate(a), rate(b)),
         }
     }
@@ -79,6 +127,7 @@ impl Shift {
     fn in_harmonic(&self, order: usize) -> Self {
         Self {
             turn: self.turn.powu(order as u32),
+            angle: self.angle * order as f64,
             rates: (self.rates.0 * order as f64, self.rates.1 * order as f64),
         }
     }
@@ -95,32 +144,45 @@ struct Passage {
 }
 
 impl Passage {
-    fn of(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), shift: &Shift) -> Self {
+    /// The passage; `None` where it changes by less than `least`, or as it does away from a pole.
+    fn of(set: &HarmonicSet, i: usize, (a, b): (&End<'_>, &End<'_>), shift: &Shift, least: f64) -> Option<Self> {
         let mut sums = Self::default();
-        let m = set.packed_len();
-        let signals = a.unknowns.chunks_exact(m).zip(b.unknowns.chunks_exact(m));
-        let tangents = a.tangent.chunks_exact(m).zip(b.tangent.chunks_exact(m));
-        for ((xa, xb), (ta, tb)) in signals.zip(tangents) {
-            let (xa, xb) = (set.get(xa, i), set.get(xb, i));
+        let (m, at) = (set.packed_len(), set.offset(i));
+        let mut first = at;
+        while let (Some(xa), Some(xb), Some(ta)) =
+            (pair(a.unknowns, first), pair(b.unknowns, first), pair(a.tangent, first))
+        {
             let change = shift.turn * xb - xa;
-            let before = a.unit * set.get(ta, i) + shift.rates.0 * xa;
-            let behind = shift.turn * (b.unit * set.get(tb, i) + shift.rates.1 * xb);
+            let before = a.unit * ta + shift.rates.0 * xa;
             sums.change += change.norm_sqr();
             sums.before += before.norm_sqr();
-            sums.behind += behind.norm_sqr();
             sums.along_before += (change.conj() * before).re;
-            sums.along_behind += (change.conj() * behind).re;
+            first += m;
         }
-        sums
-    }
-
-    /// Place of a pole in the step, as a share of its length; `None` where there is none, or changes below `least` come from it.
-    fn pole(&self, length: f64, least: f64) -> Option<f64> {
-        if self.change < least * least {
+        if sums.change < least * least || !sums.is_opposite(sums.along_before, sums.before) {
             return None;
         }
-        let opposite = |along: f64, size: f64| along < OPPOSITE * (self.change * size).sqrt();
-        if !opposite(self.along_before, self.before) || !opposite(self.along_behind, self.behind) {
+        first = at;
+        while let (Some(xa), Some(xb), Some(tb)) =
+            (pair(a.unknowns, first), pair(b.unknowns, first), pair(b.tangent, first))
+        {
+            let change = shift.turn * xb - xa;
+            let behind = shift.turn * (b.unit * tb + shift.rates.1 * xb);
+            sums.behind += behind.norm_sqr();
+            sums.along_behind += (change.conj() * behind).re;
+            first += m;
+        }
+        Some(sums)
+    }
+
+    /// Whether the change and a derivative of this square have opposite directions.
+    fn is_opposite(&self, along: f64, size: f64) -> bool {
+        along < OPPOSITE * (self.change * size).sqrt()
+    }
+
+    /// Place of a pole in the step, as a share of its length; `None` where there is none.
+    fn pole(&self, length: f64) -> Option<f64> {
+        if !self.is_opposite(self.along_behind, self.behind) {
             return None;
         }
         let share = 1.0 / (1.0 + (self.before / self.behind).powf(0.25));
