@@ -13,9 +13,11 @@ use crate::linalg::norm;
 use crate::problem::contact_jacobian::Blocks;
 use crate::problem::static_state::StaticState;
 use num_complex::Complex64;
+use pulp::Arch;
 
 /// Forces f of all laws, summed per relative coordinate, at the motion evaluated last.
 pub struct ContactForces<'a> {
+    arch: Arch,
     condensed: &'a Condensed,
     interrupt: &'a Interrupt<'a>,
     evaluator: Box<Evaluator>,
@@ -98,6 +100,7 @@ impl<'a> ContactForces<'a> {
         let samples = if linear { 0 } else { samples };
         let evaluator = Box::new(Evaluator::refined(set, (samples, condensed.refinement()), laws())?);
         Ok(Self {
+            arch: Arch::new(),
             condensed,
             interrupt,
             evaluator,
@@ -224,14 +227,18 @@ impl<'a> ContactForces<'a> {
             let closed = 1.0 - found.open_fraction;
             let stuck = (closed - found.slip_fraction).max(0.0);
             // Slip under a load that varies has the rounding of the load.
+            let lost = |c: usize| match self.condensed.rounding(c) {
+                0.0 => 0.0,
+                rounding => rounding * norm(&motion[c * m..(c + 1) * m]),
+            };
             let of_load = match assembled.normal.and_then(|i| at.get(i)) {
-                Some(&c) => closed * self.condensed.rounding(c) * norm(&motion[c * m..(c + 1) * m]),
+                Some(&c) => closed * lost(c),
                 None => 0.0,
             };
             self.all_linear &= found.linear;
             for (i, &c) in at.iter().enumerate() {
                 let normal = assembled.normal == Some(i);
-                let of_spring = stuck * self.condensed.rounding(c) * norm(&motion[c * m..(c + 1) * m]);
+                let of_spring = stuck * lost(c);
                 self.rounding[c] = self.rounding[c].max(of_spring + of_load);
                 self.linear[c] &= if normal {
                     found.open_fraction == 0.0
@@ -369,6 +376,13 @@ impl<'a> ContactForces<'a> {
     #[inline]
     pub fn d_ln_scale(&self, coordinate: usize, i: usize) -> Complex64 {
         self.part(&self.offset, coordinate, i)
+    }
+
+    /// ∂f/∂ω, packed, coordinate after coordinate.
+    #[must_use]
+    #[inline]
+    pub fn all_by_omega(&self) -> &[f64] {
+        &self.by_omega
     }
 
     /// ∂f/∂ω of a coordinate in the i-th carried harmonic.

@@ -17,6 +17,7 @@ use crate::problem::homotopy::{AlongPath, Path, PathHomotopy};
 use crate::problem::parametric_problem::{End, Homotopy, InitialGuess, Problem, Residual, put};
 use crate::problem::passed_resonance;
 use crate::problem::residual_scale::Squares;
+use crate::problem::single_balance::{self, SingleForce};
 use crate::problem::static_force::static_force;
 use num_complex::Complex64;
 
@@ -144,6 +145,28 @@ impl<'a> HarmonicBalance<'a> {
         let interrupt = self.forces.interrupt();
         self.tables.tabulate(self.condensed, omega, interrupt)?;
         self.forces.evaluate(u, omega)?;
+        if self.condensed.coordinates() == 1 && path.is_none() {
+            self.balance_single(u, out);
+            return Ok(());
+        }
+        self.balance(u, path, out)
+    }
+
+    /// The residual of a single relative motion, with the forces at `u`.
+    fn balance_single(&self, u: &[f64], out: &mut Residual) {
+        let force = SingleForce {
+            force: self.forces.forces(),
+            by_omega: self.forces.all_by_omega(),
+            is_inactive: self.forces.is_inactive(0),
+            rounding: self.forces.rounding(0),
+        };
+        let of = (self.condensed.set(), self.tables.current());
+        single_balance::balance(of, u, &force, |i| self.condensed.kappa(0, i), out);
+    }
+
+    /// The residual with the forces at `u`.
+    pub(super) fn balance(&self, u: &[f64], path: Option<(Path, f64)>, out: &mut Residual) -> Result<()> {
+        let interrupt = self.forces.interrupt();
         let set = self.condensed.set();
         let m = set.packed_len();
         let coordinates = self.condensed.coordinates();

@@ -13,6 +13,7 @@ pub mod newton_products;
 mod parametric_problem;
 mod passed_resonance;
 mod residual_scale;
+mod single_balance;
 pub mod static_force;
 pub mod static_state;
 

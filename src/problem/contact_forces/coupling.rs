@@ -1,10 +1,13 @@
 //! Coupling of the relative motions by the contact forces: their Jacobians in Newton's matrix, and the elimination of
 //! those that equal the reference stiffness.
 
+#![allow(clippy::inline_always, reason = "compiled for the instructions of the caller")]
+
 use crate::error::Result;
 use crate::problem::contact_forces::{ContactForces, add};
 use core::ops::Range;
 use num_complex::Complex64;
+use pulp::{Simd, WithSimd};
 
 /// Term added to the diagonal of the means in Newton's matrix, not in the residual. A slipping contact does not
 /// resist a mean motion; where nothing else does, as for a ring free to turn, the mean is indeterminate and the
@@ -62,9 +65,14 @@ impl ContactForces<'_> {
         let m = set.packed_len();
         let du = &direction[coordinate * m..(coordinate + 1) * m];
         let mut dw = -self.condensed.kappa(coordinate, i) * set.get(du, i);
+        let (at, has_pair) = (set.offset(i), set.numbers()[i] != 0);
         for (by, block) in self.jacobians.of_force(coordinate) {
             for (column, d) in block.chunks_exact(m).zip(&direction[by * m..]) {
-                dw += set.get(column, i) * d;
+                match column[at..] {
+                    [re, im, ..] if has_pair => dw += Complex64::new(re, im) * d,
+                    [re, ..] => dw.re += re * d,
+                    [] => {}
+                }
             }
         }
         dw
@@ -216,17 +224,14 @@ impl ContactForces<'_> {
                 self.interrupt.check()?;
                 let first = first * BETWEEN_CHECKS;
                 let block = (&block[first * m..], first);
-                // With few harmonics most of the time would be spent around loops of unknown length.
-                match harmonics - mean {
-                    1 => couple_columns::<1>(mean, rows, block, kappa, change, (columns, n)),
-                    2 => couple_columns::<2>(mean, rows, block, kappa, change, (columns, n)),
-                    3 => couple_columns::<3>(mean, rows, block, kappa, change, (columns, n)),
-                    4 => couple_columns::<4>(mean, rows, block, kappa, change, (columns, n)),
-                    5 => couple_columns::<5>(mean, rows, block, kappa, change, (columns, n)),
-                    7 => couple_columns::<7>(mean, rows, block, kappa, change, (columns, n)),
-                    9 => couple_columns::<9>(mean, rows, block, kappa, change, (columns, n)),
-                    _ => couple_columns::<0>(mean, rows, block, kappa, change, (columns, n)),
-                }
+                self.arch.dispatch(Coupling {
+                    mean,
+                    rows,
+                    block,
+                    kappa,
+                    change: &mut *change,
+                    columns: (columns, n),
+                });
             }
         }
         Ok(())
@@ -274,16 +279,51 @@ impl ContactForces<'_> {
     }
 }
 
+/// The arguments of [`couple_columns`].
+struct Coupling<'a, K> {
+    mean: usize,
+    rows: &'a [Complex64],
+    block: (&'a [f64], usize),
+    kappa: K,
+    change: &'a mut [f64],
+    columns: (&'a mut [f64], usize),
+}
+
+impl<K: Fn(usize) -> Complex64> WithSimd for Coupling<'_, K> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _simd: S) {
+        // With few harmonics most of the time would be spent around loops of unknown length.
+        match (self.change.len() - self.mean) / 2 {
+            1 => couple_columns::<1, K>(self),
+            2 => couple_columns::<2, K>(self),
+            3 => couple_columns::<3, K>(self),
+            4 => couple_columns::<4, K>(self),
+            5 => couple_columns::<5, K>(self),
+            7 => couple_columns::<7, K>(self),
+            9 => couple_columns::<9, K>(self),
+            _ => couple_columns::<0, K>(self),
+        }
+    }
+}
+
 /// Adds G (J − κ) to columns of `n` rows: J from its column `first` on, and G for each row coordinate harmonic after harmonic,
 /// of which P carry a vibration; 0: any number.
-fn couple_columns<const P: usize>(
-    mean: usize,
-    rows: &[Complex64],
-    (jacobian, first): (&[f64], usize),
-    kappa: impl Fn(usize) -> Complex64,
-    change: &mut [f64],
-    (columns, n): (&mut [f64], usize),
-) {
+#[inline(always)]
+fn couple_columns<const P: usize, K: Fn(usize) -> Complex64>(by: Coupling<'_, K>) {
+    let Coupling {
+        mean,
+        rows,
+        block: (jacobian, first),
+        kappa,
+        change,
+        columns: (columns, n),
+    } = by;
+    if P > 0 && mean == 0 && n == 2 * P {
+        couple_single::<P, K>(rows, jacobian, (kappa, first / 2), columns);
+        return;
+    }
     let pairs = if P > 0 { P } else { (change.len() - mean) / 2 };
     let m = 2 * pairs + mean;
     let change = &mut change[..m];
@@ -313,6 +353,36 @@ fn couple_columns<const P: usize>(
                 x[0] += g.re * z[0] - g.im * z[1];
                 x[1] += g.re * z[1] + g.im * z[0];
             }
+        }
+    }
+}
+
+/// The same for a single coordinate whose mean is not carried, from a column of a real part on; κ of the harmonics from `first`
+/// on belongs to these columns.
+#[inline(always)]
+fn couple_single<const P: usize, K: Fn(usize) -> Complex64>(
+    rows: &[Complex64],
+    jacobian: &[f64],
+    (kappa, first): (K, usize),
+    columns: &mut [f64],
+) {
+    let Some(g) = rows.first_chunk::<P>() else { return };
+    let (columns, jacobian) = (columns.as_chunks_mut::<2>().0, jacobian.as_chunks::<2>().0);
+    let columns = columns
+        .as_chunks_mut::<P>()
+        .0
+        .iter_mut()
+        .zip(jacobian.as_chunks::<P>().0);
+    for (q, (column, from)) in columns.enumerate() {
+        let mut z = *from;
+        let kappa = kappa(first + q / 2);
+        let own = &mut z[first + q / 2];
+        let lost = if q % 2 == 0 { kappa } else { kappa * Complex64::I };
+        own[0] -= lost.re;
+        own[1] -= lost.im;
+        for ((x, z), g) in column.iter_mut().zip(z).zip(g) {
+            x[0] += g.re * z[0] - g.im * z[1];
+            x[1] += g.re * z[1] + g.im * z[0];
         }
     }
 }
