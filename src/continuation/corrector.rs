@@ -1,8 +1,10 @@
 //! Newton's method on R(u, p) = 0 with one linear condition on (u, p): the corrector of the continuation, and with
 //! damping the solver of the first point.
 
+mod last_evaluation;
+
 use crate::continuation::Metric;
-use crate::error::{Error, Result, Status, try_copy, try_vec};
+use crate::error::{Error, Result, Status, try_extend, try_vec};
 use crate::interrupt::Interrupt;
 use crate::linalg::linear_system::automatic::AutomaticSystem;
 use crate::linalg::linear_system::{Border, LinearSystem};
@@ -57,12 +59,17 @@ pub struct Corrector {
     step: Vec<f64>,
     trial: Vec<f64>,
     next: Vec<f64>,
+    /// Memory of the next tangent.
+    unused: Vec<f64>,
+    change: Vec<f64>,
     tolerance: f64,
     min_iterations: usize,
     max_iterations: usize,
     /// Newton steps taken so far, over all corrections.
     steps_taken: usize,
     failure: Option<Error>,
+    /// Whether a correction may end with the factors of the iteration before.
+    may_end_early: bool,
 }
 
 /// Relative size of a Newton step that is round-off: no further progress is possible.
@@ -94,11 +101,14 @@ impl Corrector {
             step: try_vec(n + 1, 0.0, "Newton's method")?,
             trial: try_vec(n + 1, 0.0, "Newton's method")?,
             next: try_vec(n + 1, 0.0, "Newton's method")?,
+            unused: Vec::new(),
+            change: try_vec(n + 1, 0.0, "Newton's method")?,
             tolerance,
             min_iterations: 0,
             max_iterations,
             steps_taken: 0,
             failure: None,
+            may_end_early: true,
         })
     }
 
@@ -111,6 +121,11 @@ impl Corrector {
     /// Counts the steps of another corrector, which prepared a correction of this one.
     pub fn count_steps(&mut self, of_other: usize) {
         self.steps_taken += of_other;
+    }
+
+    /// Takes memory that is no longer used for the next tangent.
+    pub fn recycle(&mut self, unused: Vec<f64>) {
+        self.unused = unused;
     }
 
     /// Sets the bounds of the number of Newton iterations, and returns those before.
@@ -149,11 +164,18 @@ impl Corrector {
             return Ok(Outcome::Failed);
         }
         let mut damping = 1.0;
-        let (mut last_size, mut last_residual) = (f64::INFINITY, f64::INFINITY);
+        let (mut last_size, mut last_residual, mut last_relative) = (f64::INFINITY, f64::INFINITY, f64::INFINITY);
         let n = v.len() - 1;
         for iteration in 0..=self.max_iterations {
             interrupt.check()?;
             let residual = self.relative_residual();
+            let is_last = iteration > self.min_iterations && residual <= self.attainable();
+            if is_last
+                && self.may_end_early
+                && self.ends_by_earlier_factors(problem, (v, last_relative), (metric, row), interrupt)?
+            {
+                return self.finish(problem, v, metric, (iteration, residual));
+            }
             // The damping test compares steps by one matrix, that of the iteration.
             let reuse = iteration > 0 && !damped;
             if !residual.is_finite() || !self.newton_step(problem, metric, row, reuse, interrupt)? {
@@ -164,20 +186,23 @@ impl Corrector {
                 return Ok(Outcome::Failed);
             }
             let round_off = self.is_round_off(v, metric);
-            let near = norm(&self.step[..n]) * metric.u <= NEAR * norm(&v[..n]);
+            let (length, motion) = (norm(&self.step[..n]) * metric.u, norm(&v[..n]));
+            let near = length <= NEAR * motion;
             // A step that is round-off of all unknowns may still matter to the small motion of a stiff contact.
             let shrinks = !damped && iteration < self.max_iterations && size < 0.5 * last_size;
             let converged = (residual <= self.attainable() && near) || (round_off && !shrinks);
             if converged && iteration >= self.min_iterations {
-                let found = self.finish(problem, v, (metric, row), (iteration, residual), interrupt)?;
-                return Ok(found.map_or(Outcome::Failed, Outcome::Converged));
+                if !self.solve_for_tangent(problem, (metric, row), interrupt)? {
+                    return Ok(Outcome::Failed);
+                }
+                return self.finish(problem, v, metric, (iteration, residual));
             }
             // Where a near-rigid contact begins to close, the residual falls while small steps are dominated by rounding.
             let falls = self.at.rounding > 0.0 && near && residual < 0.5 * last_residual;
             if iteration == self.max_iterations || (!damped && size > last_size && !falls) {
                 break;
             }
-            (last_size, last_residual) = (size, residual);
+            (last_size, last_residual, last_relative) = (size, residual, length / motion);
             self.steps_taken += 1;
             if damped {
                 match self.damped_step(problem, v, metric, (size, damping), interrupt)? {
@@ -260,6 +285,15 @@ impl Corrector {
         Ok(factored)
     }
 
+    /// step = −(R, 0)
+    fn negate_residual(&mut self) {
+        let n = self.step.len() - 1;
+        for (s, r) in self.step.iter_mut().zip(&self.at.values) {
+            *s = -r;
+        }
+        self.step[n] = 0.0;
+    }
+
     /// step = −[J r; row]⁻¹ (R, 0) in scaled unknowns; `false` where the matrix is singular. The factors of an
     /// earlier iteration may be reused where the matrix has hardly changed.
     fn newton_step(
@@ -270,11 +304,7 @@ impl Corrector {
         reuse: bool,
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
-        let n = self.step.len() - 1;
-        for (s, r) in self.step.iter_mut().zip(&self.at.values) {
-            *s = -r;
-        }
-        self.step[n] = 0.0;
+        self.negate_residual();
         self.factors = if reuse { Factors::Earlier } else { Factors::None };
         self.update(problem, metric, row, interrupt)?;
         self.solve(problem, (metric, row), STEP_ERROR, interrupt)
@@ -349,18 +379,19 @@ impl Corrector {
         Ok(None)
     }
 
-    /// Applies the last Newton step without another evaluation (its error is the square of a residual already below
-    /// the tolerance); tangent and amplitude come from the same matrix. `None`: the matrix is singular.
+    /// Applies the last Newton step, in `step`, without another evaluation (its error is the square of a residual already
+    /// below the tolerance); the tangent is that in `next`.
     fn finish(
         &mut self,
         problem: &mut dyn Problem,
         v: &mut [f64],
-        (metric, row): (Metric, &[f64]),
+        metric: Metric,
         (iterations, residual): (usize, f64),
-        interrupt: &Interrupt<'_>,
-    ) -> Result<Option<Corrected>> {
+    ) -> Result<Outcome> {
         let n = v.len() - 1;
-        let mut tangent = try_copy(&self.step, "Newton's method")?;
+        let mut tangent = core::mem::take(&mut self.unused);
+        tangent.clear();
+        try_extend(&mut tangent, &self.step, "Newton's method")?;
         metric.unscale(&mut tangent);
         let (at_residual, mut correction) = problem.observe(&v[..n], &tangent);
         if residual <= self.tolerance {
@@ -368,16 +399,14 @@ impl Corrector {
         } else {
             correction = Complex64::ZERO;
         }
-        if !self.tangent(problem, (metric, row), &mut tangent, interrupt)? {
-            return Ok(None);
-        }
+        self.unit_tangent(metric, &mut tangent);
         let (_, slope) = problem.observe(&v[..n], &tangent);
         // A point with a number that is not finite is no solution, however it came about.
         let numbers = v.iter().chain(&tangent).all(|x| x.is_finite());
         if !(numbers && (at_residual + correction).is_finite() && slope.is_finite()) {
-            return Ok(None);
+            return Ok(Outcome::Failed);
         }
-        Ok(Some(Corrected {
+        Ok(Outcome::Converged(Corrected {
             iterations,
             residual,
             stalled: residual > self.attainable(),
@@ -388,26 +417,29 @@ impl Corrector {
         }))
     }
 
-    /// Unit tangent of the current matrix, in unscaled numbers; `false` where it is singular.
-    fn tangent(
+    /// The tangent of the current matrix in scaled numbers, of any length, in `next`; `false` where the matrix is singular.
+    fn solve_for_tangent(
         &mut self,
         problem: &mut dyn Problem,
         (metric, row): (Metric, &[f64]),
-        tangent: &mut [f64],
         interrupt: &Interrupt<'_>,
     ) -> Result<bool> {
         let n = self.step.len() - 1;
+        core::mem::swap(&mut self.step, &mut self.next);
         self.step.fill(0.0);
         self.step[n] = 1.0;
-        if !self.solve(problem, (metric, row), TANGENT_ERROR, interrupt)? {
-            return Ok(false);
-        }
-        let length = norm(&self.step);
-        for (t, s) in tangent.iter_mut().zip(&self.step) {
+        let solved = self.solve(problem, (metric, row), TANGENT_ERROR, interrupt);
+        core::mem::swap(&mut self.step, &mut self.next);
+        solved
+    }
+
+    /// The unit tangent in unscaled numbers from the one in `next`.
+    fn unit_tangent(&self, metric: Metric, tangent: &mut [f64]) {
+        let length = norm(&self.next);
+        for (t, s) in tangent.iter_mut().zip(&self.next) {
             *t = s / length;
         }
         metric.unscale(tangent);
-        Ok(true)
     }
 
     /// Direction in which the linearisation at `v` keeps the residual, solution or not: filled into `tangent`,
@@ -428,9 +460,10 @@ impl Corrector {
             return Ok(None);
         }
         self.update(problem, metric, row, interrupt)?;
-        if !self.factor(problem, interrupt)? || !self.tangent(problem, (metric, row), tangent, interrupt)? {
+        if !self.factor(problem, interrupt)? || !self.solve_for_tangent(problem, (metric, row), interrupt)? {
             return Ok(None);
         }
+        self.unit_tangent(metric, tangent);
         Ok(Some(self.system.is_positive()))
     }
 }

@@ -44,11 +44,11 @@ pub struct HarmonicBalance<'a> {
     pub(super) products: ProductMemory,
 }
 
-/// Memory of products with the Jacobian, allocated by the first of them.
+/// Memory of products with the Jacobian; that for systems which are solved by iteration is allocated by the first of them.
 #[derive(Default)]
 pub(super) struct ProductMemory {
-    pub column: Vec<f64>,
     pub change: Vec<f64>,
+    pub column: Vec<f64>,
     /// Stored contact Jacobians.
     pub kept: Vec<f64>,
 }
@@ -85,7 +85,10 @@ impl<'a> HarmonicBalance<'a> {
             sum: try_vec(condensed.coordinates(), Complex64::ZERO, CONTEXT)?,
             flexibility: try_vec(flexibility, Complex64::ZERO, CONTEXT)?,
             change: try_vec(set.packed_len(), 0.0, CONTEXT)?,
-            products: ProductMemory::default(),
+            products: ProductMemory {
+                change: try_vec(condensed.unknowns(), 0.0, CONTEXT)?,
+                ..ProductMemory::default()
+            },
         })
     }
 
@@ -357,6 +360,16 @@ impl Jacobian for HarmonicBalance<'_> {
             }
         }
         Ok(())
+    }
+
+    fn multiply_here(&mut self, d: &[f64], out: &mut [f64]) -> Result<bool> {
+        // The matrices of sampled laws jump wherever an event passes a sample.
+        if self.forces.is_sampled() {
+            return Ok(false);
+        }
+        self.forces.interrupt().check()?;
+        self.multiply_current(d, out);
+        Ok(true)
     }
 
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {

@@ -73,14 +73,20 @@ impl MatrixFree for HarmonicBalance<'_> {
     }
 
     fn multiply(&mut self, d: &[f64], out: &mut [f64]) -> Result<()> {
+        // The contact Jacobians are the stored ones, not those of the motion evaluated last.
+        self.forces.swap_jacobians(&mut self.products.kept);
+        self.multiply_current(d, out);
+        self.forces.swap_jacobians(&mut self.products.kept);
+        Ok(())
+    }
+}
+
+impl HarmonicBalance<'_> {
+    /// out = J d with the contact Jacobians that the forces hold.
+    pub(super) fn multiply_current(&mut self, d: &[f64], out: &mut [f64]) {
         let set = self.condensed.set();
         let m = set.packed_len();
         let coordinates = self.condensed.coordinates();
-        if self.products.change.is_empty() {
-            self.products.change = try_vec(m * coordinates, 0.0, CONTEXT)?;
-        }
-        // The contact Jacobians are the stored ones, not those of the motion evaluated last.
-        self.forces.swap_jacobians(&mut self.products.kept);
         let dw = &mut self.products.change[..];
         out.copy_from_slice(d);
         for (c, dw) in dw.chunks_exact_mut(m).enumerate() {
@@ -103,8 +109,6 @@ impl MatrixFree for HarmonicBalance<'_> {
                 }
             }
         }
-        self.forces.swap_jacobians(&mut self.products.kept);
-        Ok(())
     }
 }
 

@@ -59,6 +59,12 @@ impl AutomaticSystem {
         })
     }
 
+    /// Whether the matrix taken over last is solved by factors of all of it.
+    #[must_use]
+    pub fn is_direct(&self) -> bool {
+        !self.iterates
+    }
+
     /// Length of the groups and of their part in the block, where an iteration is quicker.
     fn lengths(&self, jacobian: &mut dyn Jacobian) -> Option<(usize, usize)> {
         if self.direct > 0 || self.n <= DIRECT_UP_TO {

@@ -28,6 +28,15 @@ pub trait Jacobian {
     /// `StoppedByCaller`.
     fn fill(&mut self, matrix: &mut [f64], active: &mut [bool]) -> Result<()>;
 
+    /// out = J d at the point evaluated last, for less work than [`Self::fill`]; `false` where the problem has no such
+    /// product.
+    ///
+    /// # Errors
+    /// `StoppedByCaller`.
+    fn multiply_here(&mut self, _d: &[f64], _out: &mut [f64]) -> Result<bool> {
+        Ok(false)
+    }
+
     /// The same Jacobian by products, where the problem has them.
     fn matrix_free(&mut self) -> Option<&mut dyn MatrixFree> {
         None
